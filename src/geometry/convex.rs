@@ -1,0 +1,500 @@
+//! Convex polygons, degenerate ones included: a point is a polygon of one vertex, a segment of two.
+
+use crate::frame::{Vector, cross, to_starboard};
+use crate::tolerance;
+
+/// Why points do not make a convex polygon.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GeometryError {
+    /// No points at all.
+    #[error("no vertices; at least one is needed")]
+    Empty,
+    /// A coordinate that is not a finite number.
+    #[error("vertex {index} is not finite")]
+    NotFinite {
+        /// Which vertex, from 0.
+        index: usize,
+    },
+    /// A vertex lies inside the hull of the others.
+    #[error(
+        "vertex {index} lies {depth:.3e} inside the hull of the vertices; the set must be convex"
+    )]
+    NotConvex {
+        /// Which vertex, from 0.
+        index: usize,
+        /// How deep, in the unit of the coordinates.
+        depth: f64,
+    },
+}
+
+/// A convex polygon with counter-clockwise vertices, none repeated and none on the line through its
+/// neighbours. One vertex is a point, two are a segment.
+///
+/// The set is its support function `h(n) = max n . p`: membership, half-spaces and sums follow.
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// let square = ConvexPolygon::hull(&[
+///     Vector::new(0.0, 0.0), Vector::new(1.0, 0.0), Vector::new(1.0, 1.0), Vector::new(0.0, 1.0),
+/// ])?;
+/// assert_eq!(square.support(Vector::new(1.0, 0.0)), 1.0);
+/// assert_eq!(square.signed_distance(Vector::new(3.0, 0.5)), 2.0);
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvexPolygon {
+    vertices: Vec<Vector>,
+}
+
+impl ConvexPolygon {
+    /// The convex hull of a non-empty set of finite points, in O(n log n). Points closer than
+    /// [`tolerance::DUPLICATE`] of the extent are one; a hull thinner than [`tolerance::THIN`] of it
+    /// is a segment; vertices are dropped by their turn angle, so that genuine short edges stay.
+    pub fn hull(points: &[Vector]) -> Result<Self, GeometryError> {
+        if points.is_empty() {
+            return Err(GeometryError::Empty);
+        }
+        if let Some(index) = points
+            .iter()
+            .position(|p| !(p.x.is_finite() && p.y.is_finite()))
+        {
+            return Err(GeometryError::NotFinite { index });
+        }
+        let mut sorted = unsigned_zeros(points);
+        sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        let extent = extent(&sorted);
+        sorted.dedup_by(|a, b| (*a - *b).norm() <= tolerance::DUPLICATE * extent);
+        let mut chain: Vec<Vector> = Vec::with_capacity(2 * sorted.len());
+        for half in 0..2 {
+            let start = chain.len();
+            let mut push = |p: Vector| {
+                while chain.len() >= start + 2
+                    && cross(
+                        chain[chain.len() - 1] - chain[chain.len() - 2],
+                        p - chain[chain.len() - 2],
+                    ) <= 0.0
+                {
+                    chain.pop();
+                }
+                chain.push(p);
+            };
+            if half == 0 {
+                sorted.iter().for_each(|p| push(*p));
+            } else {
+                sorted.iter().rev().for_each(|p| push(*p));
+            }
+            chain.pop();
+        }
+        if chain.is_empty() {
+            chain.push(sorted[0]);
+        }
+        Ok(Self::from_ccw(chain))
+    }
+
+    /// A polygon from vertices that must all lie on its boundary, in any order of turning:
+    /// duplicates and points on an edge are accepted, a vertex inside is an error. What a user writes
+    /// by hand goes through here.
+    pub fn from_vertices(points: &[Vector]) -> Result<Self, GeometryError> {
+        let hull = Self::hull(points)?;
+        let limit = 1e-9 * extent(points);
+        for (index, p) in points.iter().enumerate() {
+            let depth = -hull.signed_distance(*p);
+            if depth > limit {
+                return Err(GeometryError::NotConvex { index, depth });
+            }
+        }
+        Ok(hull)
+    }
+
+    /// The set of one point.
+    pub fn point(p: Vector) -> Self {
+        Self { vertices: vec![p] }
+    }
+
+    /// A polygon from the counter-clockwise boundary of a convex set; cleans duplicates, collinear
+    /// vertices and slivers. Panics never; an empty list is the origin.
+    pub(crate) fn from_ccw(points: Vec<Vector>) -> Self {
+        let mut v = unsigned_zeros(&points);
+        let extent = extent(&v);
+        v.dedup_by(|a, b| (*a - *b).norm() <= tolerance::DUPLICATE * extent);
+        while v.len() > 1 && (v[0] - v[v.len() - 1]).norm() <= tolerance::DUPLICATE * extent {
+            v.pop();
+        }
+        // drop by turn angle, until nothing more drops
+        let mut i = 0;
+        let mut kept = 0;
+        while v.len() > 2 && kept < v.len() {
+            let n = v.len();
+            let (a, b) = (v[(i + n - 1) % n], v[i % n]);
+            let c = v[(i + 1) % n];
+            let (e, f) = (b - a, c - b);
+            if cross(e, f) <= tolerance::COLLINEAR_RAD * e.norm() * f.norm() && e.dot(&f) > 0.0 {
+                v.remove(i % n);
+                kept = 0;
+                i %= v.len();
+            } else {
+                i = (i + 1) % n;
+                kept += 1;
+            }
+        }
+        if v.len() > 2 {
+            let (a, b) = farthest_pair(&v);
+            let axis = (b - a) / (b - a).norm();
+            let (mut low, mut high) = (0.0_f64, 0.0_f64);
+            for p in &v {
+                let d = cross(axis, p - a);
+                low = low.min(d);
+                high = high.max(d);
+            }
+            if high - low <= tolerance::THIN * extent {
+                v = vec![a, b];
+            }
+        }
+        if v.is_empty() {
+            v.push(Vector::zeros());
+        }
+        // lowest, then leftmost first: one polygon has one representation
+        let first = (0..v.len())
+            .min_by(|&i, &j| v[i].y.total_cmp(&v[j].y).then(v[i].x.total_cmp(&v[j].x)))
+            .unwrap_or(0);
+        v.rotate_left(first);
+        Self { vertices: v }
+    }
+
+    /// Counter-clockwise vertices, lowest first.
+    pub fn vertices(&self) -> &[Vector] {
+        &self.vertices
+    }
+
+    /// `h(n) = max over the set of n . p`. O(vertices).
+    pub fn support(&self, n: Vector) -> f64 {
+        self.vertices
+            .iter()
+            .map(|p| n.dot(p))
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Outward unit normals whose half-spaces are the set: one per edge; for a segment both
+    /// perpendiculars and both ends; for a point the four axes.
+    pub fn normals(&self) -> Vec<Vector> {
+        match self.vertices.as_slice() {
+            [_] => vec![
+                Vector::new(1.0, 0.0),
+                Vector::new(0.0, 1.0),
+                Vector::new(-1.0, 0.0),
+                Vector::new(0.0, -1.0),
+            ],
+            [a, b] => {
+                let along = (b - a).normalize();
+                let across = to_starboard(along);
+                vec![along, across, -along, -across]
+            }
+            _ => self
+                .edges()
+                .map(|(a, b)| to_starboard(b - a).normalize())
+                .collect(),
+        }
+    }
+
+    /// Directed edges, counter-clockwise; a segment has one to and one fro, a point has none.
+    pub fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> + '_ {
+        let n = if self.vertices.len() < 2 {
+            0
+        } else {
+            self.vertices.len()
+        };
+        (0..n).map(move |i| (self.vertices[i], self.vertices[(i + 1) % n]))
+    }
+
+    /// The Minkowski sum `{a + b}`, by merging the edges by angle, in O(n + m).
+    pub fn minkowski_sum(&self, other: &Self) -> Self {
+        let edges = |p: &Self| p.edges().map(|(a, b)| b - a).collect::<Vec<_>>();
+        let (left, right) = (edges(self), edges(other));
+        let mut at = self.vertices[0] + other.vertices[0];
+        let mut points = Vec::with_capacity(left.len() + right.len() + 1);
+        points.push(at);
+        let (mut i, mut j) = (0, 0);
+        while i < left.len() || j < right.len() {
+            let take_left = j == right.len()
+                || (i < left.len()
+                    && half_plane_then_cross(left[i], right[j]) != std::cmp::Ordering::Greater);
+            let step = if take_left {
+                i += 1;
+                left[i - 1]
+            } else {
+                j += 1;
+                right[j - 1]
+            };
+            at += step;
+            points.push(at);
+        }
+        points.pop_if(|_| left.len() + right.len() > 0);
+        Self::from_ccw(points)
+    }
+
+    /// The set moved by `shift`.
+    pub fn translated(&self, shift: Vector) -> Self {
+        Self {
+            vertices: self.vertices.iter().map(|p| p + shift).collect(),
+        }
+    }
+
+    /// The set turned by `angle` radians about the origin.
+    pub fn rotated(&self, angle: f64) -> Self {
+        let (s, c) = angle.sin_cos();
+        Self::from_ccw(
+            self.vertices
+                .iter()
+                .map(|p| Vector::new(c * p.x - s * p.y, s * p.x + c * p.y))
+                .collect(),
+        )
+    }
+
+    /// The set scaled about the origin by `factor >= 0`.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self::from_ccw(self.vertices.iter().map(|p| p * factor).collect())
+    }
+
+    /// The set mirrored through the origin, `-P`.
+    pub fn negated(&self) -> Self {
+        Self::from_ccw(self.vertices.iter().map(|p| -p).collect())
+    }
+
+    /// Area centroid of a polygon, midpoint of a segment, the point itself.
+    pub fn centroid(&self) -> Vector {
+        let o = self.vertices[0];
+        match self.vertices.as_slice() {
+            [p] => *p,
+            [a, b] => (a + b) * 0.5,
+            v => {
+                let (mut area, mut moment) = (0.0, Vector::zeros());
+                for w in v[1..].windows(2) {
+                    let (a, b) = (w[0] - o, w[1] - o);
+                    let twice = cross(a, b);
+                    area += twice;
+                    moment += (a + b) * twice;
+                }
+                o + moment / (3.0 * area)
+            }
+        }
+    }
+
+    /// Enclosed area; zero for a segment and a point.
+    pub fn area(&self) -> f64 {
+        let o = self.vertices[0];
+        self.edges().map(|(a, b)| cross(a - o, b - o)).sum::<f64>() * 0.5
+    }
+
+    /// Euclidean distance from `p` to the set, negative inside: minus the distance to the boundary.
+    /// A segment and a point have no inside. NaN in, NaN out. O(vertices).
+    pub fn signed_distance(&self, p: Vector) -> f64 {
+        if !(p.x.is_finite() && p.y.is_finite()) {
+            return f64::NAN;
+        }
+        if let [only] = self.vertices.as_slice() {
+            return (p - only).norm();
+        }
+        let mut outside = self.vertices.len() == 2;
+        let mut nearest = f64::INFINITY;
+        for (a, b) in self.edges() {
+            let e = b - a;
+            outside |= cross(e, p - a) < 0.0;
+            let t = ((p - a).dot(&e) / e.norm_squared()).clamp(0.0, 1.0);
+            nearest = nearest.min((p - a - e * t).norm());
+        }
+        if outside { nearest } else { -nearest }
+    }
+
+    /// True when `p` is in the closed set. NaN is inside: what is not known to be clear is not.
+    pub fn contains(&self, p: Vector) -> bool {
+        // negated on purpose: a NaN must not be outside
+        !(self.signed_distance(p) > 0.0)
+    }
+
+    /// Euclidean distance between two sets, negative when they overlap: minus the shortest
+    /// translation that separates them. O(n + m).
+    pub fn separation(&self, other: &Self) -> f64 {
+        self.minkowski_sum(&other.negated())
+            .signed_distance(Vector::zeros())
+    }
+
+    /// The largest distance of a point of the set from the origin.
+    pub fn reach(&self) -> f64 {
+        self.vertices.iter().map(|p| p.norm()).fold(0.0, f64::max)
+    }
+}
+
+/// Total orders tell -0 from 0, geometry does not.
+fn unsigned_zeros(points: &[Vector]) -> Vec<Vector> {
+    points.iter().map(|p| p.add_scalar(0.0)).collect()
+}
+
+fn extent(points: &[Vector]) -> f64 {
+    let (mut low, mut high) = (
+        Vector::repeat(f64::INFINITY),
+        Vector::repeat(f64::NEG_INFINITY),
+    );
+    for p in points {
+        low = low.inf(p);
+        high = high.sup(p);
+    }
+    if points.is_empty() {
+        0.0
+    } else {
+        (high - low).norm()
+    }
+}
+
+fn farthest_pair(points: &[Vector]) -> (Vector, Vector) {
+    let mut best = (points[0], points[0]);
+    let mut length = -1.0;
+    for (i, a) in points.iter().enumerate() {
+        for b in &points[i + 1..] {
+            if (b - a).norm() > length {
+                length = (b - a).norm();
+                best = (*a, *b);
+            }
+        }
+    }
+    best
+}
+
+/// Orders edge directions by angle from east, counter-clockwise, exactly.
+fn half_plane_then_cross(a: Vector, b: Vector) -> std::cmp::Ordering {
+    let lower = |v: Vector| v.y < 0.0 || (v.y == 0.0 && v.x < 0.0);
+    lower(a)
+        .cmp(&lower(b))
+        .then_with(|| 0.0_f64.total_cmp(&cross(a, b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn random_polygon(rng: &mut ChaCha8Rng) -> ConvexPolygon {
+        let n = rng.random_range(1..8);
+        let grid = rng.random_bool(0.5);
+        let points: Vec<Vector> = (0..n)
+            .map(|_| {
+                let p = Vector::new(rng.random_range(-5.0..5.0), rng.random_range(-5.0..5.0));
+                if grid { p.map(f64::round) } else { p }
+            })
+            .collect();
+        ConvexPolygon::hull(&points).expect("finite points")
+    }
+
+    #[test]
+    fn hulls_of_degenerate_points_are_points_and_segments() {
+        let p = Vector::new(2.0, 3.0);
+        let point = ConvexPolygon::hull(&[p, p, p]).expect("a point");
+        assert_eq!(point.vertices(), &[p]);
+        let line: Vec<Vector> = (0..5)
+            .map(|i| Vector::new(f64::from(i), 2.0 * f64::from(i)))
+            .collect();
+        let segment = ConvexPolygon::hull(&line).expect("a segment");
+        assert_eq!(segment.vertices(), &[line[0], line[4]]);
+        assert!(matches!(
+            ConvexPolygon::hull(&[]),
+            Err(GeometryError::Empty)
+        ));
+        assert!(matches!(
+            ConvexPolygon::hull(&[p, Vector::new(f64::NAN, 0.0)]),
+            Err(GeometryError::NotFinite { index: 1 })
+        ));
+    }
+
+    #[test]
+    fn a_vertex_inside_is_named() {
+        let square = [(0.0, 0.0), (4.0, 0.0), (2.0, 1.0), (4.0, 4.0), (0.0, 4.0)];
+        let points: Vec<Vector> = square.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+        let found = ConvexPolygon::from_vertices(&points);
+        assert!(matches!(
+            found,
+            Err(GeometryError::NotConvex { index: 2, .. })
+        ));
+    }
+
+    #[test]
+    fn minkowski_sums_match_the_hull_of_all_vertex_sums() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        for _ in 0..2000 {
+            let (a, b) = (random_polygon(&mut rng), random_polygon(&mut rng));
+            let sum = a.minkowski_sum(&b);
+            let all: Vec<Vector> = a
+                .vertices()
+                .iter()
+                .flat_map(|p| b.vertices().iter().map(move |q| p + q))
+                .collect();
+            let hull = ConvexPolygon::hull(&all).expect("finite points");
+            assert!((sum.area() - hull.area()).abs() < 1e-9);
+            for i in 0..64 {
+                let n = crate::frame::direction(f64::from(i) * 0.1);
+                assert!((sum.support(n) - a.support(n) - b.support(n)).abs() < 1e-9);
+            }
+            assert_eq!(sum.vertices().len(), hull.vertices().len(), "{a:?} + {b:?}");
+        }
+    }
+
+    #[test]
+    fn half_spaces_of_the_normals_are_the_set() {
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        for _ in 0..2000 {
+            let set = random_polygon(&mut rng);
+            let p = Vector::new(rng.random_range(-6.0..6.0), rng.random_range(-6.0..6.0));
+            let slack = set
+                .normals()
+                .iter()
+                .map(|n| n.dot(&p) - set.support(*n))
+                .fold(f64::NEG_INFINITY, f64::max);
+            let distance = set.signed_distance(p);
+            if distance < -1e-9 {
+                assert!((slack - distance).abs() < 1e-9);
+            } else if distance > 1e-9 {
+                assert!(slack > 0.0 && slack <= distance + 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn separation_is_symmetric_and_zero_at_touch() {
+        let square = outer_square(1.0);
+        let moved = square.translated(Vector::new(5.0, 0.0));
+        assert!((square.separation(&moved) - 3.0).abs() < 1e-12);
+        assert!((moved.separation(&square) - 3.0).abs() < 1e-12);
+        assert!(
+            square
+                .separation(&square.translated(Vector::new(2.0, 0.0)))
+                .abs()
+                < 1e-12
+        );
+        assert!((square.separation(&square.translated(Vector::new(1.5, 0.0))) + 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn not_a_number_is_inside() {
+        let square = outer_square(1.0);
+        assert!(square.contains(Vector::new(f64::NAN, 100.0)));
+        assert!(!square.contains(Vector::new(100.0, 100.0)));
+    }
+
+    #[test]
+    fn centroid_is_the_area_mean() {
+        let l = [(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (0.0, 2.0)];
+        let points: Vec<Vector> = l.iter().map(|&(x, y)| Vector::new(x + 1e6, y)).collect();
+        let c = ConvexPolygon::hull(&points).expect("finite").centroid();
+        assert!((c - Vector::new(1e6 + 2.0, 1.0)).norm() < 1e-9);
+    }
+
+    fn outer_square(half: f64) -> ConvexPolygon {
+        ConvexPolygon::hull(&[
+            Vector::new(-half, -half),
+            Vector::new(half, -half),
+            Vector::new(half, half),
+            Vector::new(-half, half),
+        ])
+        .expect("finite")
+    }
+}

@@ -1,0 +1,7 @@
+//! Convex sets and predicates in the plane. Knows no ship and no time.
+
+mod convex;
+mod disc;
+
+pub use convex::{ConvexPolygon, GeometryError};
+pub use disc::{DISC_SIDES, outer_disc};

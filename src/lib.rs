@@ -1,0 +1,15 @@
+//! Searoom plans how a ship keeps clear of others when nobody knows exactly what they will do.
+
+pub mod colregs;
+pub mod evaluation;
+pub mod frame;
+pub mod geometry;
+pub mod obstacle;
+pub mod pipeline;
+pub mod planner;
+pub mod scenario;
+pub mod search;
+pub mod target;
+pub mod tolerance;
+pub mod trajectory;
+pub mod vessel;

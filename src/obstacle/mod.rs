@@ -1,0 +1,6 @@
+//! Space-time obstacles: convex bodies that contain every position a target may reach, at every time.
+
+pub mod contact;
+mod polytope;
+
+pub use polytope::{HalfSpace, PolytopeObstacle, Slack};

@@ -1,0 +1,195 @@
+//! The polytope obstacle `O = {(x, t) : t >= 0, x in O_0 + t V}`, paper eqs. (2)-(9), in support form.
+
+use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
+
+/// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a unit
+/// normal in the plane. Formulas section 1; the corrected eq. (9) is a positive multiple of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfSpace {
+    /// Outward unit normal `n`.
+    pub normal: Vector,
+    /// `h_V(n)`, m/s: how fast the face moves outward.
+    pub velocity_support: f64,
+    /// `h_O0(n)`, metres: where the face is at t = 0.
+    pub initial_support: f64,
+}
+
+impl HalfSpace {
+    /// Signed distance of the point from the face's line at `time`, metres; positive outside.
+    pub fn slack(&self, position: Vector, time: f64) -> f64 {
+        self.normal.dot(&position) - self.velocity_support * time - self.initial_support
+    }
+}
+
+/// How far a point is outside, and by which face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slack {
+    /// `g(x, t)`, metres: inside is `g <= 0`, and then `-g` is the depth; outside `g` is a lower bound
+    /// of the distance.
+    pub value: f64,
+    /// Index of the face that attains it.
+    pub face: usize,
+}
+
+/// Every position that a target may reach: `O_t = O_0 + t V` for `0 <= t`, convex in space-time.
+/// Because `V` is convex, `O_t` also contains every position reached with a velocity that varies in
+/// time and stays in `V`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PolytopeObstacle {
+    name: String,
+    initial: ConvexPolygon,
+    velocity: ConvexPolygon,
+    faces: Vec<HalfSpace>,
+}
+
+impl PolytopeObstacle {
+    /// From the two sets, in O((n + m) log(n + m)). Points and segments are exact.
+    pub fn new(name: impl Into<String>, initial: ConvexPolygon, velocity: ConvexPolygon) -> Self {
+        let mut normals = initial.normals();
+        normals.extend(velocity.normals());
+        normals.sort_by(|a, b| a.y.atan2(a.x).total_cmp(&b.y.atan2(b.x)));
+        normals.dedup_by(|a, b| (*a - *b).norm() < 1e-12);
+        let faces = normals
+            .into_iter()
+            .map(|normal| HalfSpace {
+                normal,
+                velocity_support: velocity.support(normal),
+                initial_support: initial.support(normal),
+            })
+            .collect();
+        Self {
+            name: name.into(),
+            initial,
+            velocity,
+            faces,
+        }
+    }
+
+    /// The target's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// `O_0`, metres.
+    pub fn initial(&self) -> &ConvexPolygon {
+        &self.initial
+    }
+
+    /// `V`, m/s.
+    pub fn velocity(&self) -> &ConvexPolygon {
+        &self.velocity
+    }
+
+    /// The faces, by the angle of their normals.
+    pub fn faces(&self) -> &[HalfSpace] {
+        &self.faces
+    }
+
+    /// The section `O_t` for `t >= 0`, paper eq. (6). O(n + m).
+    pub fn section(&self, time: f64) -> ConvexPolygon {
+        if time > 0.0 {
+            self.initial.minkowski_sum(&self.velocity.scaled(time))
+        } else {
+            self.initial.clone()
+        }
+    }
+
+    /// `g(x, t) = max over faces of the signed distance`, formulas section 1. O(n + m). NaN in, NaN out.
+    pub fn slack(&self, position: Vector, time: f64) -> Slack {
+        let mut best = Slack {
+            value: f64::NEG_INFINITY,
+            face: 0,
+        };
+        for (face, h) in self.faces.iter().enumerate() {
+            let value = h.slack(position, time);
+            // negated on purpose: a NaN is taken over and stays
+            if !(value <= best.value) {
+                best = Slack { value, face };
+                if value.is_nan() {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    /// True when `(position, time)` is in the closed body. A NaN is inside; a time before 0 is outside.
+    pub fn contains(&self, position: Vector, time: f64) -> bool {
+        // both negated on purpose: what is not known to be clear is not
+        !(time < 0.0) && !(self.slack(position, time).value > 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn random_set(rng: &mut ChaCha8Rng, scale: f64) -> ConvexPolygon {
+        let n = rng.random_range(1..7);
+        let grid = rng.random_bool(0.5);
+        let points: Vec<Vector> = (0..n)
+            .map(|_| {
+                let p = Vector::new(rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0));
+                (if grid { p.map(f64::round) } else { p }) * scale
+            })
+            .collect();
+        ConvexPolygon::hull(&points).expect("finite")
+    }
+
+    /// Definition: the hull of all vertex sums, formulas eq. (6).
+    fn hull_of_sums(o: &PolytopeObstacle, t: f64) -> ConvexPolygon {
+        let points: Vec<Vector> = o
+            .initial()
+            .vertices()
+            .iter()
+            .flat_map(|p| o.velocity().vertices().iter().map(move |v| p + v * t))
+            .collect();
+        ConvexPolygon::hull(&points).expect("finite")
+    }
+
+    #[test]
+    fn membership_matches_the_hull_of_vertex_sums() {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        for _ in 0..3000 {
+            let (initial, velocity) = (random_set(&mut rng, 10.0), random_set(&mut rng, 1.0));
+            let o = PolytopeObstacle::new("x", initial, velocity);
+            let t = if rng.random_bool(0.2) {
+                0.0
+            } else {
+                rng.random_range(0.0..50.0)
+            };
+            let p = Vector::new(
+                rng.random_range(-200.0..200.0),
+                rng.random_range(-200.0..200.0),
+            );
+            let distance = hull_of_sums(&o, t).signed_distance(p);
+            let slack = o.slack(p, t).value;
+            if distance.abs() > 1e-6 {
+                assert_eq!(o.contains(p, t), distance < 0.0, "{o:?} {p:?} {t}");
+            }
+            if distance < -1e-6 {
+                assert!((slack - distance).abs() < 1e-6);
+            } else {
+                assert!(slack <= distance + 1e-6);
+            }
+            assert!((o.section(t).area() - hull_of_sums(&o, t).area()).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn degenerate_sets_block_exactly_their_points() {
+        let at = |x: f64, y: f64| Vector::new(x, y);
+        let line = PolytopeObstacle::new(
+            "mast",
+            ConvexPolygon::point(at(0.0, 0.0)),
+            ConvexPolygon::point(at(2.0, 1.0)),
+        );
+        assert!(line.contains(at(20.0, 10.0), 10.0));
+        assert!(!line.contains(at(20.0, 10.0 + 1e-6), 10.0));
+        assert!(!line.contains(at(0.0, 0.0), -1.0));
+        assert!(line.contains(at(f64::NAN, 0.0), 1.0) && line.contains(at(1e9, 0.0), f64::NAN));
+    }
+}

@@ -1,0 +1,71 @@
+//! The graph that a search made, kept for pictures and as an oracle for tests.
+
+use petgraph::graph::DiGraph;
+
+use crate::frame::Pose;
+use crate::trajectory::Segment;
+
+/// What a node of the space-time graph is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum NodeKind {
+    /// Own ship at t = 0.
+    Start,
+    /// A pose on the desired path at which a manoeuvre begins.
+    Departure,
+    /// On an edge of an obstacle: a moving vertex.
+    Vertex {
+        /// Index of the obstacle.
+        obstacle: usize,
+        /// Index of the initial set's vertex.
+        initial: usize,
+        /// Index of the velocity set's vertex.
+        velocity: usize,
+    },
+    /// The end of the desired path.
+    End,
+}
+
+/// A node that the search made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExploredNode {
+    /// What it is.
+    pub kind: NodeKind,
+    /// Where own ship is there.
+    pub pose: Pose,
+    /// And when, seconds.
+    pub time: f64,
+    /// Cost of the best known way to it, m².
+    pub cost: f64,
+    /// True when its successors were made.
+    pub expanded: bool,
+}
+
+/// What is known of an edge.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EdgeVerdict {
+    /// Clear of every set.
+    Free,
+    /// Meets a set.
+    Blocked {
+        /// Index of the obstacle that it meets first.
+        obstacle: usize,
+        /// Seconds.
+        time: f64,
+    },
+    /// Never reached by the search, so never tested.
+    Untested,
+}
+
+/// A motion between two nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExploredEdge {
+    /// Lines and arcs, in order.
+    pub segments: Vec<Segment>,
+    /// Its part of the space-time error, m².
+    pub cost: f64,
+    /// Tested or not, free or not.
+    pub verdict: EdgeVerdict,
+}
+
+/// Every node and edge that a search made.
+pub type ExploredGraph = DiGraph<ExploredNode, ExploredEdge>;

@@ -1,0 +1,127 @@
+//! A problem, a plan, an outcome: what every planner takes and gives.
+
+pub mod cost;
+mod explored;
+pub mod space_time;
+
+pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
+
+use std::time::Duration;
+
+use crate::obstacle::PolytopeObstacle;
+use crate::trajectory::{DesiredTrajectory, Trajectory};
+use crate::vessel::OwnShip;
+
+/// Which search runs over the graph.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SearchKind {
+    /// Best first by cost plus an admissible bound of the cost to go.
+    AStar,
+    /// Best first by cost.
+    Dijkstra,
+}
+
+/// What a planner is asked: keep `own` clear of every obstacle, close to `desired`, until she arrives.
+#[derive(Debug, Clone)]
+pub struct Problem<'a> {
+    /// Own ship and her limits.
+    pub own: &'a OwnShip,
+    /// Where she is meant to be, and when.
+    pub desired: &'a DesiredTrajectory,
+    /// The sets to stay out of, own ship's footprint folded in.
+    pub obstacles: &'a [PolytopeObstacle],
+    /// Seconds: arrival must not be later; the obstacles are known until then.
+    pub horizon: f64,
+    /// `q` of eq. (30), m²/s².
+    pub time_weight: f64,
+    /// Search over the graph.
+    pub search: SearchKind,
+    /// Wall-clock budget of one plan.
+    pub deadline: Duration,
+}
+
+/// What the search did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SearchStats {
+    /// Nodes whose successors were made.
+    pub expanded: usize,
+    /// Nodes made.
+    pub generated: usize,
+    /// Edges tested against every obstacle.
+    pub edges_checked: usize,
+}
+
+/// A collision-free trajectory to the end of the desired path.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// From own ship's pose at t = 0 to the last waypoint.
+    pub trajectory: Trajectory,
+    /// The space-time error of the trajectory, m²; what was minimised.
+    pub cost: f64,
+    /// The cheapest plan on the graph before refinement, m²; `None` where the graph had none.
+    pub graph_cost: Option<f64>,
+}
+
+/// Why there is no plan.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoPlan {
+    /// Own ship starts inside an obstacle.
+    #[error("own ship starts inside the set of '{target}', {depth:.1} m deep")]
+    StartInside {
+        /// Name of the obstacle.
+        target: String,
+        /// Metres.
+        depth: f64,
+    },
+    /// The end cannot be reached before the horizon even without obstacles.
+    #[error(
+        "the last waypoint is reached after {earliest:.1} s at the earliest, but the horizon is {horizon:.1} s"
+    )]
+    HorizonTooShort {
+        /// Seconds.
+        earliest: f64,
+        /// Seconds.
+        horizon: f64,
+    },
+    /// No candidate is clear of every set.
+    #[error(
+        "no trajectory of the graph and its refinement is clear of every set until arrival; {closest}"
+    )]
+    NoCandidate {
+        /// What blocks the undisturbed trajectory first.
+        closest: String,
+    },
+}
+
+/// What a planner answers. None of these is an error.
+#[derive(Debug, Clone)]
+pub enum Outcome {
+    /// A plan, clear of every set.
+    Solved(Plan),
+    /// No plan exists among the candidates.
+    Infeasible(NoPlan),
+    /// The budget ran out; the best plan so far, if there is one.
+    Deadline(Option<Plan>),
+}
+
+impl Outcome {
+    /// The plan, where there is one.
+    pub fn plan(&self) -> Option<&Plan> {
+        match self {
+            Self::Solved(plan) => Some(plan),
+            Self::Deadline(plan) => plan.as_ref(),
+            Self::Infeasible(_) => None,
+        }
+    }
+}
+
+/// The answer of a planner with what led to it.
+#[derive(Debug, Clone)]
+pub struct Planned {
+    /// The verdict.
+    pub outcome: Outcome,
+    /// What the search did.
+    pub stats: SearchStats,
+    /// Every node and edge that the search made.
+    pub explored: ExploredGraph,
+}

@@ -1,0 +1,199 @@
+//! A target: a tracked ship as two sets, where she may be now and every velocity she may take.
+
+use crate::frame::{Pose, Vector, direction};
+use crate::geometry::ConvexPolygon;
+use crate::vessel::Hull;
+
+/// Half the angle between two tangents of the faster arc: 5°, radians.
+const TANGENT_SPACING: f64 = std::f64::consts::PI / 36.0;
+
+/// How the initial set of a target is shaped for the rules of the road.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DomainKind {
+    /// A symmetric base swept to the side that the encounter forbids.
+    Colregs,
+    /// One convex polygon, large in front and to starboard, sized by the target's length.
+    Paper,
+    /// No shape: the hull and the margin alone.
+    Hull,
+    /// Distances from the hull's edge, metres.
+    Custom {
+        /// Ahead of the bow.
+        fore: f64,
+        /// Behind the stern.
+        aft: f64,
+        /// To port.
+        port: f64,
+        /// To starboard.
+        starboard: f64,
+    },
+}
+
+/// A tracked ship: nominal motion and what is not known of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShipTrack {
+    /// Estimated hull centre and heading at t = 0. Course and heading are one: no drift.
+    pub pose: Pose,
+    /// Estimated speed, m/s, not negative.
+    pub speed: f64,
+    /// Her hull.
+    pub hull: Hull,
+    /// Standard deviation of the position, metres per axis.
+    pub position_std: f64,
+    /// Half-width of the speed, m/s.
+    pub speed_spread: f64,
+    /// Half-width of the course, radians.
+    pub course_spread: f64,
+    /// The shape asked for.
+    pub domain: DomainKind,
+}
+
+impl ShipTrack {
+    /// Estimated velocity, m/s.
+    pub fn velocity(&self) -> Vector {
+        self.pose.ahead() * self.speed
+    }
+
+    /// Estimated pose at `time`.
+    pub fn pose_at(&self, time: f64) -> Pose {
+        Pose::new(
+            self.pose.position + self.velocity() * time,
+            self.pose.heading,
+        )
+    }
+
+    /// An outer polygon of every velocity with a speed in `[speed - spread, speed + spread]`,
+    /// clipped at 0, and a course within `course_spread`. The faster arc is replaced by tangents at
+    /// most 5° from their touching point: it reaches at most 0.4 % beyond the largest speed.
+    pub fn outer_velocity_set(&self) -> ConvexPolygon {
+        let (slow, fast) = (
+            (self.speed - self.speed_spread).max(0.0),
+            self.speed + self.speed_spread,
+        );
+        let spread = self.course_spread.min(std::f64::consts::PI);
+        let mut points = Vec::new();
+        for edge in [-spread, spread] {
+            let ahead = direction(self.pose.heading + edge);
+            points.push(ahead * slow);
+            points.push(ahead * fast);
+        }
+        if spread > 0.0 {
+            let pieces = (spread / TANGENT_SPACING).ceil().max(1.0);
+            let half = spread / pieces;
+            for piece in 0..pieces as usize {
+                let middle = self.pose.heading - spread + half * (2 * piece + 1) as f64;
+                points.push(direction(middle) * (fast / half.cos()));
+            }
+        }
+        // finite by the type's contract; should a number overflow, every velocity is possible
+        ConvexPolygon::hull(&points).unwrap_or_else(|_| everything())
+    }
+}
+
+fn everything() -> ConvexPolygon {
+    let far = f64::MAX.sqrt();
+    ConvexPolygon::from_ccw(vec![
+        Vector::new(-far, -far),
+        Vector::new(far, -far),
+        Vector::new(far, far),
+        Vector::new(-far, far),
+    ])
+}
+
+/// What is known of a target's motion.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Motion {
+    /// A tracked ship.
+    Ship(ShipTrack),
+    /// The two sets outright: own ship is then a point, and nothing is added.
+    Sets {
+        /// Where it may be at t = 0, metres.
+        initial: ConvexPolygon,
+        /// Every velocity it may take, m/s.
+        velocity: ConvexPolygon,
+    },
+}
+
+/// A target.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Unique within a scenario.
+    pub name: String,
+    /// What is known of it.
+    pub motion: Motion,
+}
+
+impl Target {
+    /// Nominal centre at `time`: the estimated position, or the centroids of the two sets.
+    pub fn position_at(&self, time: f64) -> Vector {
+        match &self.motion {
+            Motion::Ship(ship) => ship.pose_at(time).position,
+            Motion::Sets { initial, velocity } => initial.centroid() + velocity.centroid() * time,
+        }
+    }
+
+    /// Every velocity it may take, m/s.
+    pub fn velocity_set(&self) -> ConvexPolygon {
+        match &self.motion {
+            Motion::Ship(ship) => ship.outer_velocity_set(),
+            Motion::Sets { velocity, .. } => velocity.clone(),
+        }
+    }
+
+    /// The tracked ship, where it is one.
+    pub fn ship(&self) -> Option<&ShipTrack> {
+        match &self.motion {
+            Motion::Ship(ship) => Some(ship),
+            Motion::Sets { .. } => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+
+    #[test]
+    fn the_velocity_set_contains_every_velocity_within_the_spreads() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(3);
+        for _ in 0..500 {
+            let ship = ShipTrack {
+                pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
+                speed: rng.random_range(0.0..10.0),
+                hull: Hull {
+                    length: 50.0,
+                    beam: 10.0,
+                },
+                position_std: 0.0,
+                speed_spread: rng.random_range(0.0..3.0),
+                course_spread: rng.random_range(0.0..3.5),
+                domain: DomainKind::Hull,
+            };
+            let set = ship.outer_velocity_set();
+            for _ in 0..50 {
+                let speed =
+                    (ship.speed + rng.random_range(-1.0..=1.0) * ship.speed_spread).max(0.0);
+                let course = ship.pose.heading + rng.random_range(-1.0..=1.0) * ship.course_spread;
+                assert!(set.signed_distance(direction(course) * speed) <= 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn no_spread_is_a_point() {
+        let ship = ShipTrack {
+            pose: Pose::new(Vector::zeros(), 0.3),
+            speed: 5.0,
+            hull: Hull {
+                length: 50.0,
+                beam: 10.0,
+            },
+            position_std: 0.0,
+            speed_spread: 0.0,
+            course_spread: 0.0,
+            domain: DomainKind::Hull,
+        };
+        assert_eq!(ship.outer_velocity_set().vertices().len(), 1);
+    }
+}

@@ -1,0 +1,31 @@
+//! Every tolerance of the program, with its unit and its reason.
+
+/// Metres. Two lengths closer than this are the same length: rounding of coordinates up to
+/// 1,000 km stays a thousand times smaller.
+pub const LENGTH_M: f64 = 1e-9;
+
+/// Metres. A checker rejects a plan that is deeper inside a set than this. Planners aim for zero,
+/// so the gap covers the rounding of both.
+pub const DEPTH_M: f64 = 1e-6;
+
+/// Metres. Positions at the joint of two segments may differ by this much: rounding along a chain
+/// of some hundred segments.
+pub const JOINT_M: f64 = 1e-6;
+
+/// Radians. Headings at the joint of two segments may differ by this much.
+pub const JOINT_RAD: f64 = 1e-9;
+
+/// Relative. Points of a set closer than this fraction of its extent are one point.
+pub const DUPLICATE: f64 = 1e-11;
+
+/// Relative. A set narrower than this fraction of its extent is a segment.
+pub const THIN: f64 = 1e-12;
+
+/// Radians. A vertex at which the boundary turns less than this is no vertex.
+pub const COLLINEAR_RAD: f64 = 1e-9;
+
+/// Seconds. Two instants closer than this are the same instant.
+pub const TIME_S: f64 = 1e-9;
+
+/// Relative. A turning radius, a speed or a curvature may differ from its limit by this fraction.
+pub const LIMIT: f64 = 1e-9;

@@ -1,0 +1,189 @@
+//! The desired trajectory: a polyline run leg by leg at given speeds.
+
+use super::TrajectoryError;
+use crate::frame::{Vector, cross};
+
+/// One leg of the desired trajectory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DesiredLeg {
+    /// First end, metres.
+    pub start: Vector,
+    /// Unit vector along the leg.
+    pub direction: Vector,
+    /// Metres, positive.
+    pub length: f64,
+    /// m/s, positive.
+    pub speed: f64,
+    /// Seconds at which the leg is to be begun.
+    pub start_time: f64,
+    /// Metres along the path at which the leg begins.
+    pub start_distance: f64,
+}
+
+impl DesiredLeg {
+    /// Seconds at which the leg is to be finished.
+    pub fn end_time(&self) -> f64 {
+        self.start_time + self.length / self.speed
+    }
+}
+
+/// The point of the desired trajectory nearest in space-time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Squared space-time distance, m².
+    pub error: f64,
+    /// Metres along the path.
+    pub distance: f64,
+    /// Index of the leg.
+    pub leg: usize,
+}
+
+/// Where own ship is meant to be, and when: starts at t = 0 at the first waypoint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DesiredTrajectory {
+    legs: Vec<DesiredLeg>,
+}
+
+impl DesiredTrajectory {
+    /// From at least two waypoints (metres) and one speed (m/s) per leg.
+    pub fn new(waypoints: &[Vector], leg_speeds: &[f64]) -> Result<Self, TrajectoryError> {
+        if waypoints.len() < 2 {
+            return Err(TrajectoryError::TooFewWaypoints);
+        }
+        let (mut time, mut distance) = (0.0, 0.0);
+        let mut legs = Vec::with_capacity(waypoints.len() - 1);
+        for (index, pair) in waypoints.windows(2).enumerate() {
+            let step = pair[1] - pair[0];
+            let (length, speed) = (
+                step.norm(),
+                leg_speeds.get(index).copied().unwrap_or(f64::NAN),
+            );
+            if !(length > 0.0 && speed > 0.0 && length.is_finite() && speed.is_finite()) {
+                return Err(TrajectoryError::EmptyLeg { index });
+            }
+            legs.push(DesiredLeg {
+                start: pair[0],
+                direction: step / length,
+                length,
+                speed,
+                start_time: time,
+                start_distance: distance,
+            });
+            time += length / speed;
+            distance += length;
+        }
+        Ok(Self { legs })
+    }
+
+    /// The legs, in order.
+    pub fn legs(&self) -> &[DesiredLeg] {
+        &self.legs
+    }
+
+    /// Every waypoint, in order.
+    pub fn waypoints(&self) -> Vec<Vector> {
+        let mut points: Vec<Vector> = self.legs.iter().map(|l| l.start).collect();
+        points.push(self.end());
+        points
+    }
+
+    /// `T_d`: seconds from the first waypoint to the last.
+    pub fn duration(&self) -> f64 {
+        self.legs[self.legs.len() - 1].end_time()
+    }
+
+    /// Metres along the path.
+    pub fn length(&self) -> f64 {
+        let last = &self.legs[self.legs.len() - 1];
+        last.start_distance + last.length
+    }
+
+    /// The last waypoint.
+    pub fn end(&self) -> Vector {
+        let last = &self.legs[self.legs.len() - 1];
+        last.start + last.direction * last.length
+    }
+
+    /// Desired position at `time`, standing at the ends before and after.
+    pub fn position_at(&self, time: f64) -> Vector {
+        let index = self
+            .legs
+            .partition_point(|l| l.end_time() <= time)
+            .min(self.legs.len() - 1);
+        let leg = &self.legs[index];
+        leg.start + leg.direction * ((time - leg.start_time) * leg.speed).clamp(0.0, leg.length)
+    }
+
+    /// The nearest point in space-time: `min over sigma of |x - x_d(sigma)|² + q (t - t_d(sigma))²`,
+    /// formulas section 7, in closed form per leg. `q` in m²/s². Of equal legs the earlier. O(legs).
+    pub fn nearest(&self, position: Vector, time: f64, q: f64) -> Nearest {
+        let mut best = Nearest {
+            error: f64::INFINITY,
+            distance: 0.0,
+            leg: 0,
+        };
+        for (index, leg) in self.legs.iter().enumerate() {
+            let offset = position - leg.start;
+            let (along, across) = (leg.direction.dot(&offset), cross(leg.direction, offset));
+            let elapsed = time - leg.start_time;
+            let slowness = 1.0 / leg.speed;
+            let sigma = ((along + q * elapsed * slowness) / (1.0 + q * slowness * slowness))
+                .clamp(0.0, leg.length);
+            let (behind, late) = (along - sigma, elapsed - sigma * slowness);
+            let error = across * across + behind * behind + q * late * late;
+            if error < best.error {
+                best = Nearest {
+                    error,
+                    distance: leg.start_distance + sigma,
+                    leg: index,
+                };
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_point_matches_a_dense_scan() {
+        let points = [(0.0, 0.0), (400.0, 0.0), (600.0, 300.0), (500.0, 320.0)];
+        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+        let desired = DesiredTrajectory::new(&points, &[5.0, 4.0, 3.0]).expect("valid");
+        let q = 25.0;
+        for i in 0..200 {
+            let k = f64::from(i);
+            let (x, t) = (
+                Vector::new(700.0 * (k * 0.7).sin(), 300.0 * (k * 1.3).cos()),
+                k * 1.1 - 10.0,
+            );
+            let found = desired.nearest(x, t, q).error;
+            let scan = (0..=40_000)
+                .map(|j| {
+                    let td = desired.duration() * f64::from(j) / 40_000.0;
+                    (x - desired.position_at(td)).norm_squared() + q * (t - td) * (t - td)
+                })
+                .fold(f64::INFINITY, f64::min);
+            assert!(
+                found <= scan + 1e-9 && scan - found < 1e-2 * (1.0 + scan.sqrt()),
+                "{found} {scan}"
+            );
+        }
+    }
+
+    #[test]
+    fn bad_waypoints_are_named() {
+        let p = Vector::new(0.0, 0.0);
+        assert!(matches!(
+            DesiredTrajectory::new(&[p], &[]),
+            Err(TrajectoryError::TooFewWaypoints)
+        ));
+        assert!(matches!(
+            DesiredTrajectory::new(&[p, p], &[1.0]),
+            Err(TrajectoryError::EmptyLeg { index: 0 })
+        ));
+        assert!(DesiredTrajectory::new(&[p, Vector::new(f64::NAN, 0.0)], &[1.0]).is_err());
+    }
+}

@@ -1,0 +1,150 @@
+//! A line or an arc at constant speed.
+
+use crate::frame::{Pose, Vector, direction};
+
+/// Motion at constant speed and constant turn rate: a straight line (turn rate 0), a circular arc,
+/// or a wait (speed 0). Exact at every instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Pose at `start_time`.
+    pub start: Pose,
+    /// Seconds from the scenario's start.
+    pub start_time: f64,
+    /// Seconds, not negative.
+    pub duration: f64,
+    /// m/s, not negative.
+    pub speed: f64,
+    /// Radians per second, counter-clockwise (to port) positive.
+    pub turn_rate: f64,
+}
+
+impl Segment {
+    /// True when every number is finite and neither duration nor speed is negative.
+    pub fn is_valid(&self) -> bool {
+        let Pose { position, heading } = self.start;
+        [
+            position.x,
+            position.y,
+            heading,
+            self.start_time,
+            self.turn_rate,
+        ]
+        .iter()
+        .all(|v| v.is_finite())
+            && self.duration >= 0.0
+            && self.duration.is_finite()
+            && self.speed >= 0.0
+            && self.speed.is_finite()
+    }
+
+    /// Seconds.
+    pub fn end_time(&self) -> f64 {
+        self.start_time + self.duration
+    }
+
+    /// Pose at the end.
+    pub fn end(&self) -> Pose {
+        self.pose_after(self.duration)
+    }
+
+    /// Pose at an absolute time in seconds. Not clamped: outside its time the segment's motion goes on.
+    pub fn pose_at(&self, time: f64) -> Pose {
+        self.pose_after(time - self.start_time)
+    }
+
+    /// Pose `elapsed` seconds after the start. The chord form `2 R sin(turn/2)` is exact for small
+    /// turns too, where the difference of two sines would cancel.
+    pub fn pose_after(&self, elapsed: f64) -> Pose {
+        let turn = self.turn_rate * elapsed;
+        let half = 0.5 * turn;
+        let sinc = if half.abs() < 1e-4 {
+            1.0 - half * half / 6.0
+        } else {
+            half.sin() / half
+        };
+        let chord = self.speed * elapsed * sinc;
+        Pose {
+            position: self.start.position + direction(self.start.heading + half) * chord,
+            heading: self.start.heading + turn,
+        }
+    }
+
+    /// Metres.
+    pub fn length(&self) -> f64 {
+        self.speed * self.duration
+    }
+
+    /// Velocity at an absolute time, m/s.
+    pub fn velocity_at(&self, time: f64) -> Vector {
+        direction(self.start.heading + self.turn_rate * (time - self.start_time)) * self.speed
+    }
+
+    /// True when the segment bends.
+    pub fn is_arc(&self) -> bool {
+        self.turn_rate != 0.0 && self.speed > 0.0
+    }
+
+    /// Signed radius of the arc in metres, positive to port; infinite on a line.
+    pub fn radius(&self) -> f64 {
+        self.speed / self.turn_rate
+    }
+
+    /// The part of the segment between two absolute times, clamped to the segment.
+    pub fn between(&self, from: f64, to: f64) -> Self {
+        let from = from.clamp(self.start_time, self.end_time());
+        let to = to.clamp(from, self.end_time());
+        Self {
+            start: self.pose_at(from),
+            start_time: from,
+            duration: to - from,
+            ..*self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arc_stays_on_its_circle_and_a_flat_one_is_a_line() {
+        let start = Pose::new(Vector::new(3.0, -2.0), 0.4);
+        let arc = Segment {
+            start,
+            start_time: 5.0,
+            duration: 40.0,
+            speed: 5.0,
+            turn_rate: -0.05,
+        };
+        let centre = start.position + crate::frame::to_starboard(start.ahead()) * 100.0;
+        for i in 0..=40 {
+            let p = arc.pose_at(5.0 + f64::from(i)).position;
+            assert!(((p - centre).norm() - 100.0).abs() < 1e-9);
+        }
+        let flat = Segment {
+            turn_rate: 1e-13,
+            ..arc
+        };
+        let line = Segment {
+            turn_rate: 0.0,
+            ..arc
+        };
+        assert!((flat.end().position - line.end().position).norm() < 1e-8);
+    }
+
+    #[test]
+    fn cutting_keeps_the_motion() {
+        let start = Pose::new(Vector::new(0.0, 0.0), 1.0);
+        let arc = Segment {
+            start,
+            start_time: 2.0,
+            duration: 30.0,
+            speed: 4.0,
+            turn_rate: 0.03,
+        };
+        let part = arc.between(10.0, 20.0);
+        for t in [10.0, 13.3, 20.0] {
+            assert!((part.pose_at(t).position - arc.pose_at(t).position).norm() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Shortest paths of bounded curvature between two poses (Dubins 1957, doi:10.2307/2372560), in the
+//! closed forms of Shkel & Lumelsky (doi:10.1016/S0921-8890(00)00127-5); formulas section 8.
+
+use std::f64::consts::TAU;
+
+use crate::frame::{Pose, Side, heading_of, wrap_positive};
+
+/// Radians. An arc this close to a full circle is no arc: otherwise rounding adds a circle to a
+/// straight run.
+const FULL_CIRCLE_SLACK: f64 = 1e-10;
+
+/// Allowed rounding below zero of a squared length, relative to the radius.
+const ROUNDING: f64 = 1e-12;
+
+/// A piece of a path: an arc to a side, or a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Side of the turn, `None` on a line.
+    pub turn: Option<Side>,
+    /// Metres along the piece.
+    pub length: f64,
+}
+
+/// Three pieces, some possibly of no length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DubinsPath {
+    /// In order.
+    pub pieces: [Piece; 3],
+}
+
+impl DubinsPath {
+    /// Metres.
+    pub fn length(&self) -> f64 {
+        self.pieces.iter().map(|p| p.length).sum()
+    }
+}
+
+/// The six words of Dubins: which way each piece turns.
+const WORDS: [[Option<Side>; 3]; 6] = [
+    [Some(Side::Port), None, Some(Side::Port)],
+    [Some(Side::Starboard), None, Some(Side::Starboard)],
+    [Some(Side::Port), None, Some(Side::Starboard)],
+    [Some(Side::Starboard), None, Some(Side::Port)],
+    [
+        Some(Side::Starboard),
+        Some(Side::Port),
+        Some(Side::Starboard),
+    ],
+    [Some(Side::Port), Some(Side::Starboard), Some(Side::Port)],
+];
+
+/// Every word that joins the two poses, in the order LSL, RSR, LSR, RSL, RLR, LRL. `radius` in metres,
+/// positive. Empty only when an input is not finite.
+pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
+    let step = to.position - from.position;
+    let d = step.norm() / radius;
+    let theta = heading_of(step);
+    let (a, b) = (from.heading - theta, to.heading - theta);
+    let (sin_a, cos_a) = a.sin_cos();
+    let (sin_b, cos_b) = b.sin_cos();
+    let c = (a - b).cos();
+    let csc = |square: f64| (square >= -ROUNDING).then(|| square.max(0.0).sqrt());
+    let ccc = |cosine: f64| {
+        (cosine.abs() <= 1.0 + ROUNDING).then(|| TAU - cosine.clamp(-1.0, 1.0).acos())
+    };
+    let lsl = csc(2.0 + d * d - 2.0 * c + 2.0 * d * (sin_a - sin_b)).map(|p| {
+        let k = (cos_b - cos_a).atan2(d + sin_a - sin_b);
+        [k - a, p, b - k]
+    });
+    let rsr = csc(2.0 + d * d - 2.0 * c + 2.0 * d * (sin_b - sin_a)).map(|p| {
+        let k = (cos_a - cos_b).atan2(d - sin_a + sin_b);
+        [a - k, p, k - b]
+    });
+    let lsr = csc(-2.0 + d * d + 2.0 * c + 2.0 * d * (sin_a + sin_b)).map(|p| {
+        let k = (-cos_a - cos_b).atan2(d + sin_a + sin_b) - (-2.0_f64).atan2(p);
+        [k - a, p, k - b]
+    });
+    let rsl = csc(-2.0 + d * d + 2.0 * c - 2.0 * d * (sin_a + sin_b)).map(|p| {
+        let k = (cos_a + cos_b).atan2(d - sin_a - sin_b) - 2.0_f64.atan2(p);
+        [a - k, p, b - k]
+    });
+    let rlr = ccc((6.0 - d * d + 2.0 * c + 2.0 * d * (sin_a - sin_b)) / 8.0).map(|p| {
+        let t = wrap_positive(a - (cos_a - cos_b).atan2(d - sin_a + sin_b) + p / 2.0);
+        [t, p, a - b - t + p]
+    });
+    let lrl = ccc((6.0 - d * d + 2.0 * c + 2.0 * d * (sin_b - sin_a)) / 8.0).map(|p| {
+        let k = (cos_b - cos_a).atan2(d + sin_a - sin_b);
+        let t = wrap_positive(k - a + p / 2.0);
+        [t, p, b - a - t + p]
+    });
+    [lsl, rsr, lsr, rsl, rlr, lrl]
+        .into_iter()
+        .zip(WORDS)
+        .filter_map(|(lengths, turns)| {
+            let lengths = lengths?;
+            let piece = |i: usize| Piece {
+                turn: turns[i],
+                length: radius
+                    * if turns[i].is_some() {
+                        arc_angle(lengths[i])
+                    } else {
+                        lengths[i]
+                    },
+            };
+            let path = DubinsPath {
+                pieces: [piece(0), piece(1), piece(2)],
+            };
+            path.length().is_finite().then_some(path)
+        })
+        .collect()
+}
+
+/// The shortest path; of equal ones the first word. `None` only when an input is not finite.
+pub fn shortest(from: &Pose, to: &Pose, radius: f64) -> Option<DubinsPath> {
+    paths(from, to, radius)
+        .into_iter()
+        .min_by(|a, b| a.length().total_cmp(&b.length()))
+}
+
+fn arc_angle(angle: f64) -> f64 {
+    let wrapped = wrap_positive(angle);
+    if TAU - wrapped < FULL_CIRCLE_SLACK {
+        0.0
+    } else {
+        wrapped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Vector, wrap};
+    use crate::trajectory::Segment;
+    use rand::{Rng, SeedableRng};
+
+    fn end(from: Pose, path: &DubinsPath, radius: f64) -> Pose {
+        path.pieces.iter().fold(from, |pose, piece| {
+            Segment {
+                start: pose,
+                start_time: 0.0,
+                duration: piece.length,
+                speed: 1.0,
+                turn_rate: piece.turn.map_or(0.0, |s| s.turn_sign() / radius),
+            }
+            .end()
+        })
+    }
+
+    #[test]
+    fn every_word_ends_at_its_goal_and_none_is_shorter_than_the_chord() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(11);
+        for _ in 0..5000 {
+            let mut pose = || {
+                Pose::new(
+                    Vector::new(
+                        rng.random_range(-500.0..500.0),
+                        rng.random_range(-500.0..500.0),
+                    ),
+                    rng.random_range(-4.0..4.0),
+                )
+            };
+            let (from, to) = (pose(), pose());
+            let radius = rng.random_range(10.0..300.0);
+            let all = paths(&from, &to, radius);
+            assert!(!all.is_empty());
+            for path in &all {
+                let reached = end(from, path, radius);
+                assert!((reached.position - to.position).norm() < 1e-6);
+                assert!(wrap(reached.heading - to.heading).abs() < 1e-8);
+            }
+            let best = shortest(&from, &to, radius).expect("finite").length();
+            assert!(best >= (to.position - from.position).norm() - 1e-9);
+            let back = |p: &Pose| Pose::new(p.position, p.heading + std::f64::consts::PI);
+            let reversed = shortest(&back(&to), &back(&from), radius)
+                .expect("finite")
+                .length();
+            assert!((best - reversed).abs() < 1e-6, "{best} {reversed}");
+        }
+    }
+
+    #[test]
+    fn known_lengths() {
+        let at = |x: f64, y: f64, h: f64| Pose::new(Vector::new(x, y), h);
+        let length = |a: Pose, b: Pose| shortest(&a, &b, 100.0).expect("finite").length();
+        assert!(length(at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.0)) < 1e-6);
+        assert!((length(at(0.0, 0.0, 0.0), at(1500.0, 0.0, 0.0)) - 1500.0).abs() < 1e-9);
+        let reversal = length(at(0.0, 0.0, 0.0), at(0.0, 0.0, std::f64::consts::PI));
+        assert!((reversal - 700.0 * std::f64::consts::PI / 3.0).abs() < 1e-6);
+    }
+}

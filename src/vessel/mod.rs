@@ -1,0 +1,63 @@
+//! Own ship: her hull, her limits, her shortest paths.
+
+pub mod dubins;
+
+use crate::frame::{Pose, Vector};
+use crate::geometry::ConvexPolygon;
+
+/// A rectangular hull about its centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hull {
+    /// Metres.
+    pub length: f64,
+    /// Metres.
+    pub beam: f64,
+}
+
+impl Hull {
+    /// The rectangle at a pose.
+    pub fn polygon(&self, pose: &Pose) -> ConvexPolygon {
+        let (l, b) = (self.length / 2.0, self.beam / 2.0);
+        let corners = [(l, -b), (l, b), (-l, b), (-l, -b)];
+        ConvexPolygon::from_ccw(
+            corners
+                .iter()
+                .map(|&(ahead, port)| pose.world_coordinates(Vector::new(ahead, port)))
+                .collect(),
+        )
+    }
+
+    /// Radius of the circle about the centre that contains the hull on any heading, metres.
+    pub fn half_diagonal(&self) -> f64 {
+        self.length.hypot(self.beam) / 2.0
+    }
+}
+
+/// Own ship as the planners see her. Speeds change instantaneously.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnShip {
+    /// Where she is at t = 0.
+    pub pose: Pose,
+    /// m/s at t = 0.
+    pub speed: f64,
+    /// Her hull; of no size where the sets already contain it.
+    pub hull: Hull,
+    /// Least radius of a turn at every speed, metres, positive.
+    pub turning_radius: f64,
+    /// The finite set of speeds, m/s, increasing, not negative, the largest positive.
+    pub speeds: Vec<f64>,
+    /// Kept between hulls, metres.
+    pub safety_margin: f64,
+}
+
+impl OwnShip {
+    /// The largest speed, m/s.
+    pub fn max_speed(&self) -> f64 {
+        self.speeds.last().copied().unwrap_or(0.0)
+    }
+
+    /// The smallest speed, m/s; zero when she may stand still.
+    pub fn min_speed(&self) -> f64 {
+        self.speeds.first().copied().unwrap_or(0.0)
+    }
+}
