@@ -1,1 +1,342 @@
 //! A* and Dijkstra over a graph that is given by its successors. Knows nothing of ships.
+//!
+//! States are continuous, so two ways to one place are two nodes: the search is over the tree of
+//! ways. Edges are tested when their node leaves the queue, not when it enters: most never do.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+use ordered_float::OrderedFloat;
+
+/// A graph for [`Search`].
+pub trait Space {
+    /// What a node is.
+    type State;
+
+    /// Adds every state that can follow, with the cost of its edge (not negative).
+    fn successors(&mut self, state: &Self::State, out: &mut Vec<(Self::State, f64)>);
+
+    /// A lower bound of the cost from here to any goal. Zero turns A* into Dijkstra.
+    fn bound(&mut self, state: &Self::State) -> f64;
+
+    /// True at a goal.
+    fn is_goal(&self, state: &Self::State) -> bool;
+
+    /// True when the edge into this state may be used. Called at most once per node, when it leaves
+    /// the queue.
+    fn admits(&mut self, state: &Self::State) -> bool;
+}
+
+/// What became of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fate {
+    /// Still in the queue: its edge was never tested.
+    Queued,
+    /// Its edge is not admitted.
+    Rejected,
+    /// Its successors were made.
+    Expanded,
+    /// A goal that was reached.
+    Goal,
+}
+
+/// A node of the search tree.
+#[derive(Debug, Clone)]
+pub struct Node<S> {
+    /// What it is.
+    pub state: S,
+    /// The node before it; `None` at the root.
+    pub parent: Option<usize>,
+    /// Cost from the root.
+    pub cost: f64,
+    /// What became of it.
+    pub fate: Fate,
+}
+
+/// Why a search stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stop {
+    /// The cheapest goal not yet reported; its node.
+    Goal(usize),
+    /// There are no more goals.
+    Exhausted,
+    /// The budget of expansions is spent.
+    Budget,
+}
+
+/// Counts of a search.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Nodes whose successors were made.
+    pub expanded: usize,
+    /// Nodes made.
+    pub generated: usize,
+    /// Edges tested.
+    pub tested: usize,
+}
+
+/// A best-first search that can be resumed: each [`Search::next_goal`] gives the next cheapest goal.
+/// Ties: less cost plus bound first, then the greater cost (nearer the goal), then the older node.
+#[derive(Debug)]
+pub struct Search<S> {
+    nodes: Vec<Node<S>>,
+    queue: BinaryHeap<Reverse<Entry>>,
+    counts: Counts,
+}
+
+#[derive(Debug, PartialEq, Eq)]
+struct Entry {
+    estimate: OrderedFloat<f64>,
+    cost: OrderedFloat<f64>,
+    node: usize,
+}
+
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.estimate
+            .cmp(&other.estimate)
+            .then_with(|| other.cost.cmp(&self.cost))
+            .then_with(|| self.node.cmp(&other.node))
+    }
+}
+
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<S> Search<S> {
+    /// A search from one root, whose edge needs no test.
+    pub fn new(root: S) -> Self {
+        let zero = OrderedFloat(0.0);
+        let mut queue = BinaryHeap::new();
+        queue.push(Reverse(Entry {
+            estimate: zero,
+            cost: zero,
+            node: 0,
+        }));
+        Self {
+            nodes: vec![Node {
+                state: root,
+                parent: None,
+                cost: 0.0,
+                fate: Fate::Queued,
+            }],
+            queue,
+            counts: Counts {
+                generated: 1,
+                ..Counts::default()
+            },
+        }
+    }
+
+    /// Every node made so far.
+    pub fn nodes(&self) -> &[Node<S>] {
+        &self.nodes
+    }
+
+    /// What was done so far.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Nodes from the root to `node`.
+    pub fn way_to(&self, node: usize) -> Vec<usize> {
+        let mut way = vec![node];
+        let mut at = node;
+        while let Some(parent) = self.nodes[at].parent {
+            way.push(parent);
+            at = parent;
+        }
+        way.reverse();
+        way
+    }
+
+    /// Runs until the next cheapest goal, the end, or `max_expanded` expansions in all. The `k`-th
+    /// goal reported is the `k`-th cheapest when the bound never exceeds the true cost to go. An edge
+    /// whose cost or bound is not a number is dropped as not admitted.
+    pub fn next_goal<G: Space<State = S>>(&mut self, space: &mut G, max_expanded: usize) -> Stop {
+        let mut successors = Vec::new();
+        loop {
+            let Some(Reverse(entry)) = self.queue.pop() else {
+                return Stop::Exhausted;
+            };
+            let index = entry.node;
+            if self.counts.expanded >= max_expanded {
+                self.queue.push(Reverse(entry));
+                return Stop::Budget;
+            }
+            if self.nodes[index].parent.is_some() {
+                self.counts.tested += 1;
+                if !space.admits(&self.nodes[index].state) {
+                    self.nodes[index].fate = Fate::Rejected;
+                    continue;
+                }
+            }
+            if space.is_goal(&self.nodes[index].state) {
+                self.nodes[index].fate = Fate::Goal;
+                return Stop::Goal(index);
+            }
+            self.nodes[index].fate = Fate::Expanded;
+            self.counts.expanded += 1;
+            successors.clear();
+            space.successors(&self.nodes[index].state, &mut successors);
+            let cost_here = self.nodes[index].cost;
+            for (state, step) in successors.drain(..) {
+                let cost = cost_here + step;
+                let estimate = cost + space.bound(&state);
+                let comparable = step >= 0.0 && estimate.is_finite();
+                let node = self.nodes.len();
+                self.counts.generated += 1;
+                if comparable {
+                    self.queue.push(Reverse(Entry {
+                        estimate: OrderedFloat(estimate),
+                        cost: OrderedFloat(cost),
+                        node,
+                    }));
+                }
+                let fate = if comparable {
+                    Fate::Queued
+                } else {
+                    Fate::Rejected
+                };
+                self.nodes.push(Node {
+                    state,
+                    parent: Some(index),
+                    cost,
+                    fate,
+                });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lattice steps east and north with costs from a hash; some cells closed; goal at a corner.
+    struct Grid {
+        size: i32,
+        informed: bool,
+    }
+
+    impl Grid {
+        fn weight(x: i32, y: i32) -> f64 {
+            1.0 + f64::from((x * 7919 + y * 104_729).rem_euclid(13)) / 13.0
+        }
+    }
+
+    impl Space for Grid {
+        type State = (i32, i32);
+        fn successors(&mut self, &(x, y): &(i32, i32), out: &mut Vec<((i32, i32), f64)>) {
+            for (a, b) in [(x + 1, y), (x, y + 1)] {
+                if a < self.size && b < self.size {
+                    out.push(((a, b), Self::weight(a, b)));
+                }
+            }
+        }
+        fn bound(&mut self, &(x, y): &(i32, i32)) -> f64 {
+            if self.informed {
+                f64::from(2 * self.size - 2 - x - y)
+            } else {
+                0.0
+            }
+        }
+        fn is_goal(&self, &(x, y): &(i32, i32)) -> bool {
+            x == self.size - 1 && y == self.size - 1
+        }
+        fn admits(&mut self, &(x, y): &(i32, i32)) -> bool {
+            (x * 31 + y * 17) % 11 != 5
+        }
+    }
+
+    fn costs(informed: bool) -> (Vec<f64>, Counts) {
+        let mut grid = Grid { size: 7, informed };
+        let mut search = Search::new((0, 0));
+        let mut found = Vec::new();
+        while let Stop::Goal(node) = search.next_goal(&mut grid, usize::MAX) {
+            found.push(search.nodes()[node].cost);
+            let way = search.way_to(node);
+            assert_eq!(way.len(), 13);
+            if found.len() == 5 {
+                break;
+            }
+        }
+        (found, search.counts())
+    }
+
+    /// Every way, by plain recursion.
+    fn all_costs(grid: &mut Grid, at: (i32, i32), cost: f64, out: &mut Vec<f64>) {
+        if grid.is_goal(&at) {
+            out.push(cost);
+            return;
+        }
+        let mut next = Vec::new();
+        grid.successors(&at, &mut next);
+        for (state, step) in next {
+            if grid.admits(&state) {
+                all_costs(grid, state, cost + step, out);
+            }
+        }
+    }
+
+    #[test]
+    fn goals_come_in_order_of_cost_and_are_those_of_plain_enumeration() {
+        let mut every = Vec::new();
+        all_costs(
+            &mut Grid {
+                size: 7,
+                informed: false,
+            },
+            (0, 0),
+            0.0,
+            &mut every,
+        );
+        every.sort_by(f64::total_cmp);
+        let (astar, informed) = costs(true);
+        let (dijkstra, blind) = costs(false);
+        for k in 0..5 {
+            assert!((astar[k] - every[k]).abs() < 1e-12 && (dijkstra[k] - every[k]).abs() < 1e-12);
+        }
+        assert!(informed.expanded < blind.expanded, "{informed:?} {blind:?}");
+    }
+
+    #[test]
+    fn a_budget_stops_and_can_be_raised() {
+        let mut grid = Grid {
+            size: 7,
+            informed: false,
+        };
+        let mut search = Search::new((0, 0));
+        assert_eq!(search.next_goal(&mut grid, 3), Stop::Budget);
+        assert_eq!(search.counts().expanded, 3);
+        assert!(matches!(
+            search.next_goal(&mut grid, usize::MAX),
+            Stop::Goal(_)
+        ));
+    }
+
+    struct Broken;
+    impl Space for Broken {
+        type State = u8;
+        fn successors(&mut self, _: &u8, out: &mut Vec<(u8, f64)>) {
+            out.extend([(1, f64::NAN), (2, -1.0)]);
+        }
+        fn bound(&mut self, _: &u8) -> f64 {
+            0.0
+        }
+        fn is_goal(&self, state: &u8) -> bool {
+            *state > 0
+        }
+        fn admits(&mut self, _: &u8) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn costs_that_are_no_numbers_are_no_edges() {
+        assert_eq!(Search::new(0).next_goal(&mut Broken, 10), Stop::Exhausted);
+    }
+}
