@@ -1,6 +1,9 @@
 //! The space-time planner: a graph of Dubins segments that hug the bodies' edges, searched for the
 //! least space-time error, then refined.
 
+mod interception;
+mod route;
+
 use super::{ExploredGraph, NoPlan, Outcome, Planned, Problem, SearchStats};
 
 /// Plans one problem.

@@ -1,0 +1,302 @@
+//! Meeting a moving vertex by turning and then running straight, formulas section 10 (vi).
+
+use std::f64::consts::TAU;
+
+use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap_positive};
+
+/// What own ship sails: a turn and a line at one speed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Chase {
+    /// Where and when she starts.
+    pub pose: Pose,
+    /// Seconds.
+    pub time: f64,
+    /// m/s, positive.
+    pub speed: f64,
+    /// Turning radius, metres.
+    pub radius: f64,
+    /// Side of the turn.
+    pub side: Side,
+}
+
+/// Bounds of what counts as a meeting.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Radians of turn at most.
+    pub turn: f64,
+    /// Seconds on the clock at most.
+    pub time: f64,
+}
+
+/// A meeting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Interception {
+    /// Radians turned, not negative.
+    pub turn: f64,
+    /// Metres of line after the turn.
+    pub line: f64,
+    /// Seconds on the clock.
+    pub time: f64,
+}
+
+/// Metres. Own ship and the vertex are this close when they meet.
+const MEETING_M: f64 = 1e-6;
+
+/// Radians. A turn this close to a full circle is none.
+const DEAD_AHEAD_RAD: f64 = 1e-9;
+
+/// Iterations of a root; Newton on a concave piece needs about five.
+const MAX_ITERATIONS: usize = 60;
+
+impl Chase {
+    /// The way to a fixed point: turn and line. `None` inside the turning circle.
+    pub(crate) fn way_to(&self, point: Vector) -> Option<(f64, f64)> {
+        let (turn, line) = self.unsnapped_way_to(point)?;
+        // a full circle is a rounded zero: the point is dead ahead
+        Some((
+            if TAU - turn < DEAD_AHEAD_RAD {
+                0.0
+            } else {
+                turn
+            },
+            line,
+        ))
+    }
+
+    /// The way without the rounding of full circles, which would hide the jump at a wrap.
+    fn unsnapped_way_to(&self, point: Vector) -> Option<(f64, f64)> {
+        let sigma = self.side.turn_sign();
+        let centre = self.pose.position + to_port(self.pose.ahead()) * (sigma * self.radius);
+        let to = point - centre;
+        let square = to.norm_squared() - self.radius * self.radius;
+        if !(square >= 0.0) {
+            return None;
+        }
+        let line = square.sqrt();
+        let course = heading_of(to) + sigma * self.radius.atan2(line);
+        let turn = wrap_positive(sigma * (course - self.pose.heading));
+        // a full circle is a rounded zero: the point is dead ahead
+        let turn = if std::f64::consts::TAU - turn < 1e-9 {
+            0.0
+        } else {
+            turn
+        };
+        Some((turn, line))
+    }
+
+    /// The earliest meeting with `origin + velocity t` within the limits. `t` is on the clock. Between
+    /// its breakpoints `F(t) = u (t - t0) - length(t)` is concave, so each piece has at most two roots.
+    pub(crate) fn intercept(
+        &self,
+        origin: Vector,
+        velocity: Vector,
+        limits: Limits,
+    ) -> Option<Interception> {
+        let from = self.time;
+        let until = limits.time;
+        if !(until > from) {
+            return None;
+        }
+        let sigma = self.side.turn_sign();
+        let ahead = self.pose.ahead();
+        let centre = self.pose.position + to_port(ahead) * (sigma * self.radius);
+        let mut cuts = [from, until, until, until, until];
+        let mut count = 1;
+        let mut cut = |t: f64| {
+            if t > from && t < until {
+                cuts[count] = t;
+                count += 1;
+            }
+        };
+        // P on the line ahead: the turn wraps between nothing and a full circle
+        let drift = cross(ahead, velocity);
+        if drift != 0.0 {
+            cut(-cross(ahead, origin - self.pose.position) / drift);
+        }
+        // P on the turning circle
+        let (a, b, c) = (
+            velocity.norm_squared(),
+            velocity.dot(&(origin - centre)),
+            (origin - centre).norm_squared() - self.radius * self.radius,
+        );
+        let discriminant = b * b - a * c;
+        if a > 0.0 && discriminant > 0.0 {
+            let root = discriminant.sqrt();
+            cut((-b - root) / a);
+            cut((-b + root) / a);
+        }
+        cuts[..count].sort_by(f64::total_cmp);
+        cuts[count] = until;
+        for pair in cuts[..=count].windows(2) {
+            let width = pair[1] - pair[0];
+            // one-sided values at a wrap
+            let inset = (1e-9 * (1.0 + pair[1].abs())).min(width / 4.0);
+            let (low, high) = (pair[0] + inset, pair[1] - inset);
+            for root in self
+                .roots(origin, velocity, low, high)
+                .into_iter()
+                .flatten()
+            {
+                let Some((turn, line)) = self.way_to(origin + velocity * root) else {
+                    continue;
+                };
+                if turn <= limits.turn {
+                    return Some(Interception {
+                        turn,
+                        line,
+                        time: root,
+                    });
+                }
+            }
+        }
+        None
+    }
+
+    /// `F` and its derivative.
+    fn gap(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
+        let point = origin + velocity * time;
+        let parallel = cross(self.pose.ahead(), velocity).abs() <= 1e-12 * velocity.norm();
+        let (turn, line) = if parallel {
+            self.way_to(point)?
+        } else {
+            self.unsnapped_way_to(point)?
+        };
+        let course = self.pose.heading + self.side.turn_sign() * turn;
+        let value = self.speed * (time - self.time) - (self.radius * turn + line);
+        Some((
+            value,
+            self.speed - crate::frame::direction(course).dot(&velocity),
+        ))
+    }
+
+    /// Roots of the concave `F` on one piece, at most two, earliest first.
+    fn roots(&self, origin: Vector, velocity: Vector, low: f64, high: f64) -> [Option<f64>; 2] {
+        let gap = |t: f64| self.gap(origin, velocity, t);
+        let (Some((fa, da)), Some((fb, db))) = (gap(low), gap(high)) else {
+            return [None, None];
+        };
+        if (fa < 0.0) != (fb < 0.0) {
+            return [self.root(gap, low, fa, high), None];
+        }
+        if fa < 0.0 && da > 0.0 && db < 0.0 {
+            let (mut a, mut b) = (low, high);
+            for _ in 0..MAX_ITERATIONS {
+                let middle = 0.5 * (a + b);
+                let Some((f, d)) = gap(middle) else {
+                    return [None, None];
+                };
+                if f >= 0.0 {
+                    return [
+                        self.root(gap, low, fa, middle),
+                        self.root(gap, middle, f, high),
+                    ];
+                }
+                if d > 0.0 {
+                    a = middle
+                } else {
+                    b = middle
+                }
+                if b - a < 1e-9 {
+                    break;
+                }
+            }
+        }
+        [None, None]
+    }
+
+    /// The one sign change between `a` and `b`, by safeguarded Newton.
+    fn root(
+        &self,
+        gap: impl Fn(f64) -> Option<(f64, f64)>,
+        a: f64,
+        fa: f64,
+        b: f64,
+    ) -> Option<f64> {
+        let (mut low, mut high) = (a, b);
+        let rising = fa < 0.0;
+        let mut at = 0.5 * (a + b);
+        for _ in 0..MAX_ITERATIONS {
+            let (f, d) = gap(at)?;
+            if (f < 0.0) == rising {
+                low = at
+            } else {
+                high = at
+            }
+            let newton = at - f / d;
+            let next = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+            if (next - at).abs() <= 1e-12 * (1.0 + at.abs()) {
+                return Some(next);
+            }
+            at = next;
+        }
+        Some(at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+
+    #[test]
+    fn meetings_are_meetings_and_the_earliest_of_a_dense_scan() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(21);
+        let mut met = 0;
+        for _ in 0..3000 {
+            let chase = Chase {
+                pose: Pose::new(Vector::new(0.0, 0.0), rng.random_range(-3.1..3.1)),
+                time: rng.random_range(0.0..50.0),
+                speed: [2.5, 5.0, 6.0][rng.random_range(0..3)],
+                radius: 100.0,
+                side: if rng.random_bool(0.5) {
+                    Side::Port
+                } else {
+                    Side::Starboard
+                },
+            };
+            let origin = Vector::new(
+                rng.random_range(-900.0..900.0),
+                rng.random_range(-900.0..900.0),
+            );
+            let velocity = Vector::new(rng.random_range(-7.0..7.0), rng.random_range(-7.0..7.0));
+            let limits = Limits {
+                turn: 2.0,
+                time: chase.time + 300.0,
+            };
+            let found = chase.intercept(origin, velocity, limits);
+            // dense scan for the first sign change with a small turn
+            let n = 6000;
+            let mut dense = None;
+            let mut before: Option<(f64, f64)> = None;
+            for i in 0..=n {
+                let t = chase.time + 300.0 * f64::from(i) / f64::from(n);
+                let now = chase.way_to(origin + velocity * t).map(|(turn, line)| {
+                    (chase.speed * (t - chase.time) - 100.0 * turn - line, turn)
+                });
+                if let (Some((f0, turn0)), Some((f1, turn1))) = (before, now)
+                    && (f0 < 0.0) != (f1 < 0.0)
+                    && turn0.max(turn1) < 1.99
+                    && (turn0 - turn1).abs() < 1.0
+                {
+                    dense = Some(t);
+                    break;
+                }
+                before = now;
+            }
+            if let Some(meeting) = found {
+                met += 1;
+                let sailed = 100.0 * meeting.turn + meeting.line;
+                assert!((sailed - chase.speed * (meeting.time - chase.time)).abs() < 1e-6);
+            }
+            if let Some(t) = dense {
+                let first = found.expect("the scan met it").time;
+                assert!(first <= t + 1e-6, "{first} {t}");
+            }
+        }
+        assert!(met > 500, "{met}");
+    }
+}

@@ -1,0 +1,512 @@
+//! The route: the desired path as own ship can sail it, from her own pose to the last waypoint, with
+//! the time at which she is due at each place; and the policy that follows it.
+
+use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
+use crate::planner::Problem;
+use crate::planner::cost::space_time_error;
+use crate::tolerance;
+use crate::trajectory::{DesiredTrajectory, Segment};
+use crate::vessel::dubins;
+
+/// Seconds. Less lateness than this is on time.
+const ON_TIME_S: f64 = 1e-6;
+
+/// Places ahead of the nearest one at which own ship may join the path, in turning radii.
+const JOINS: [f64; 10] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0, 14.0];
+
+/// Metres between two returns to schedule where the desired speed is not one of own ship's.
+const ALTERNATION_M: f64 = 400.0;
+
+/// A line or an arc of the route.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    start: Pose,
+    /// Metres along the route at which it begins.
+    distance: f64,
+    length: f64,
+    /// Radians per metre, to port positive.
+    curvature: f64,
+    /// Seconds at which own ship is due at its start, and how many more per metre.
+    due: f64,
+    slowness: f64,
+    /// The leg that it lies on, where it is straight on one.
+    leg: Option<usize>,
+    /// Speed at which it is sailed whatever is due: the joining manoeuvre.
+    speed: Option<f64>,
+}
+
+impl Piece {
+    fn end(&self) -> Pose {
+        self.pose_after(self.length)
+    }
+
+    fn pose_after(&self, distance: f64) -> Pose {
+        segment(self.start, 0.0, distance, 1.0, self.curvature).end()
+    }
+}
+
+fn segment(start: Pose, start_time: f64, length: f64, speed: f64, curvature: f64) -> Segment {
+    Segment {
+        start,
+        start_time,
+        duration: length / speed,
+        speed,
+        turn_rate: curvature * speed,
+    }
+}
+
+/// The straight stretch of the route on one leg.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stretch {
+    /// Metres along the route at its start.
+    pub distance: f64,
+    /// Metres along the leg at its start and end.
+    pub from: f64,
+    pub to: f64,
+}
+
+/// The sailable path with its timetable.
+#[derive(Debug, Clone)]
+pub(crate) struct Route {
+    pieces: Vec<Piece>,
+    /// Increasing, as of own ship.
+    speeds: Vec<f64>,
+}
+
+impl Route {
+    /// The cheapest route of those that join the path at [`JOINS`] at each speed; corners are rounded
+    /// with the turning radius where the legs are long enough, otherwise sailed through on the mean
+    /// course. `None` only when nothing is finite.
+    pub(crate) fn new(problem: &Problem) -> Option<Self> {
+        let own = problem.own;
+        let desired = problem.desired;
+        let mut best: Option<(f64, Self)> = None;
+        for (leg, along) in joins(problem) {
+            let moving = own.speeds.iter().copied().filter(|u| *u > 0.0);
+            for speed in moving {
+                let Some(mut route) = Self::joining(problem, leg, along, speed) else {
+                    continue;
+                };
+                let arrival = route.arrival(0.0, 0.0);
+                if arrival > problem.horizon {
+                    let factor = problem.horizon * (1.0 - 1e-6) / arrival.max(desired.duration());
+                    for piece in &mut route.pieces {
+                        piece.due *= factor;
+                        piece.slowness *= factor;
+                    }
+                }
+                let mut followed = Vec::new();
+                route.follow(0.0, 0.0, &mut followed);
+                let cost: f64 = followed
+                    .iter()
+                    .map(|s| space_time_error(desired, s, problem.time_weight))
+                    .sum();
+                let late = route.arrival(0.0, 0.0) > problem.horizon;
+                let rank = if late { cost + 1e12 } else { cost };
+                if rank.is_finite()
+                    && best
+                        .as_ref()
+                        .is_none_or(|(b, _)| rank < b * (1.0 - 1e-9) - 1e-9)
+                {
+                    let direct = route.pieces.first().is_some_and(|p| p.leg.is_some());
+                    best = Some((rank, route));
+                    // already on the path: every join is the same
+                    if direct {
+                        return best.map(|(_, r)| r);
+                    }
+                }
+            }
+        }
+        best.map(|(_, route)| route)
+    }
+
+    fn joining(problem: &Problem, leg: usize, along: f64, speed: f64) -> Option<Self> {
+        let (own, desired) = (problem.own, problem.desired);
+        let legs = desired.legs();
+        let heading = |i: usize| heading_of(legs[i].direction);
+        let radius = own.turning_radius;
+        let first = legs.get(leg)?;
+        let mut route = Self {
+            pieces: Vec::new(),
+            speeds: own.speeds.clone(),
+        };
+        let join = Pose::new(first.start + first.direction * along, heading(leg));
+        let due = first.start_time + along / first.speed;
+        route.connect(own.pose, join, radius, None, due, Some(speed))?;
+        let mut at = (join, due, along);
+        for next in leg + 1..legs.len() {
+            let before = &legs[next - 1];
+            let after = &legs[next];
+            let turn = wrap(heading(next) - heading(next - 1));
+            let tangent = radius * (turn.abs() / 2.0).tan();
+            let share = if next + 1 == legs.len() { 1.0 } else { 0.5 };
+            let fits = tangent <= before.length - at.2 && tangent <= after.length * share;
+            let (entry, exit, offset) = if turn.abs() < tolerance::JOINT_RAD {
+                let pose = Pose::new(after.start, heading(next));
+                (pose, pose, 0.0)
+            } else if fits {
+                (
+                    Pose::new(after.start - before.direction * tangent, heading(next - 1)),
+                    Pose::new(after.start + after.direction * tangent, heading(next)),
+                    tangent,
+                )
+            } else {
+                let mean = Pose::new(after.start, heading(next - 1) + turn / 2.0);
+                (mean, mean, 0.0)
+            };
+            let entry_due = after.start_time - offset / before.speed;
+            let exit_due = after.start_time + offset / after.speed;
+            route.connect(
+                at.0,
+                entry,
+                radius,
+                Some((next - 1, before)),
+                entry_due,
+                None,
+            )?;
+            route.connect(entry, exit, radius, None, exit_due, None)?;
+            at = (exit, exit_due, offset);
+        }
+        let last = legs.len() - 1;
+        let end = Pose::new(desired.end(), heading(last));
+        route.connect(
+            at.0,
+            end,
+            radius,
+            Some((last, &legs[last])),
+            desired.duration(),
+            None,
+        )?;
+        (!route.pieces.is_empty()).then_some(route)
+    }
+
+    /// Appends the shortest path between two poses; own ship is due at its end at `due`.
+    fn connect(
+        &mut self,
+        from: Pose,
+        to: Pose,
+        radius: f64,
+        leg: Option<(usize, &crate::trajectory::DesiredLeg)>,
+        due: f64,
+        speed: Option<f64>,
+    ) -> Option<()> {
+        let path = dubins::shortest(&from, &to, radius)?;
+        let total = path.length();
+        if total <= tolerance::LENGTH_M {
+            return Some(());
+        }
+        let mut pose = from;
+        let mut distance = self.length();
+        let mut due_here = self.pieces.last().map_or_else(
+            || speed.map_or(0.0, |u| due - total / u),
+            |p| p.due + p.slowness * p.length,
+        );
+        let slowness = (due - due_here) / total;
+        for part in path.pieces {
+            if part.length <= tolerance::LENGTH_M {
+                continue;
+            }
+            let curvature = part.turn.map_or(0.0, |side| side.turn_sign() / radius);
+            let on_leg = leg.filter(|(_, l)| {
+                curvature == 0.0
+                    && cross(l.direction, pose.position - l.start).abs() < tolerance::JOINT_M
+                    && wrap(pose.heading - heading_of(l.direction)).abs() < 1e-7
+            });
+            let piece = Piece {
+                start: on_leg.map_or(pose, |(_, l)| {
+                    Pose::new(pose.position, heading_of(l.direction))
+                }),
+                distance,
+                length: part.length,
+                curvature,
+                due: due_here,
+                slowness,
+                leg: on_leg.map(|(i, _)| i),
+                speed,
+            };
+            pose = piece.end();
+            distance += part.length;
+            due_here += slowness * part.length;
+            self.pieces.push(piece);
+        }
+        Some(())
+    }
+
+    /// Metres.
+    pub(crate) fn length(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |p| p.distance + p.length)
+    }
+
+    fn piece_at(&self, distance: f64) -> usize {
+        self.pieces
+            .partition_point(|p| p.distance + p.length <= distance)
+            .min(self.pieces.len().saturating_sub(1))
+    }
+
+    /// Pose and curvature (1/m, to port positive) at a distance along the route.
+    pub(crate) fn pose_at(&self, distance: f64) -> (Pose, f64) {
+        let piece = &self.pieces[self.piece_at(distance)];
+        (piece.pose_after(distance - piece.distance), piece.curvature)
+    }
+
+    /// The straight stretch on a leg, where there is one.
+    pub(crate) fn stretch(&self, leg: usize, desired: &DesiredTrajectory) -> Option<Stretch> {
+        let piece = self
+            .pieces
+            .iter()
+            .filter(|p| p.leg == Some(leg))
+            .max_by(|a, b| a.length.total_cmp(&b.length))?;
+        let l = desired.legs().get(leg)?;
+        let from = l.direction.dot(&(piece.start.position - l.start));
+        Some(Stretch {
+            distance: piece.distance,
+            from,
+            to: from + piece.length,
+        })
+    }
+
+    /// Runs `length` metres along the route at one speed; gives the distance reached.
+    pub(crate) fn run(
+        &self,
+        from: f64,
+        time: f64,
+        length: f64,
+        speed: f64,
+        out: &mut Vec<Segment>,
+    ) -> f64 {
+        let (mut at, mut time) = (from, time);
+        let end = (from + length).min(self.length());
+        while end - at > tolerance::LENGTH_M {
+            let piece = &self.pieces[self.piece_at(at)];
+            let step = (piece.distance + piece.length).min(end) - at;
+            let part = segment(
+                piece.pose_after(at - piece.distance),
+                time,
+                step,
+                speed,
+                piece.curvature,
+            );
+            time += part.duration;
+            at += step;
+            out.push(part);
+        }
+        at
+    }
+
+    /// Where a run of `duration` seconds at one speed ends.
+    pub(crate) fn due_at(&self, distance: f64) -> f64 {
+        let piece = &self.pieces[self.piece_at(distance)];
+        piece.due + piece.slowness * (distance - piece.distance)
+    }
+
+    /// Follows the route to its end: at the greatest speed while late, at the least while early, then
+    /// on schedule; where the desired speed is not one of own ship's, by turns slower and faster.
+    pub(crate) fn follow(&self, from: f64, time: f64, out: &mut Vec<Segment>) {
+        let (mut at, mut time) = (from, time);
+        let end = self.length();
+        while end - at > tolerance::LENGTH_M {
+            let index = self.piece_at(at);
+            let piece = &self.pieces[index];
+            let left = piece.distance + piece.length - at;
+            let (speed, length) = self.pace(piece, at, left, time);
+            let step = if left - length < tolerance::LENGTH_M {
+                left
+            } else {
+                length
+            };
+            let pose = piece.pose_after(at - piece.distance);
+            let late = time - self.due_at(at);
+            if speed == 0.0 {
+                let wait = Segment {
+                    start: pose,
+                    start_time: time,
+                    duration: -late,
+                    speed,
+                    turn_rate: 0.0,
+                };
+                time += wait.duration;
+                out.push(wait);
+                continue;
+            }
+            let part = segment(pose, time, step, speed, piece.curvature);
+            time += part.duration;
+            at += step;
+            out.push(part);
+        }
+    }
+
+    /// Seconds of arrival when the route is followed from a distance at a time.
+    pub(crate) fn arrival(&self, from: f64, time: f64) -> f64 {
+        let mut segments = Vec::new();
+        self.follow(from, time, &mut segments);
+        segments.last().map_or(time, Segment::end_time)
+    }
+
+    /// Speed, and the metres for which to keep it.
+    fn pace(&self, piece: &Piece, at: f64, left: f64, time: f64) -> (f64, f64) {
+        if let Some(speed) = piece.speed {
+            return (speed, left);
+        }
+        let late = time - self.due_at(at);
+        let slowness = piece.slowness;
+        let (slowest, fastest) = (self.speeds[0], self.speeds[self.speeds.len() - 1]);
+        // on an arc own ship keeps her speed unless she is far off schedule
+        if piece.curvature != 0.0 && late.abs() < 0.5 * slowness * piece.length {
+            return (self.nearest_speed(1.0 / slowness), left);
+        }
+        if late > ON_TIME_S {
+            let gain = slowness - 1.0 / fastest;
+            return (
+                fastest,
+                if gain > 0.0 {
+                    (late / gain).min(left)
+                } else {
+                    left
+                },
+            );
+        }
+        if late < -ON_TIME_S {
+            if slowest == 0.0 {
+                return (0.0, 0.0);
+            }
+            let loss = 1.0 / slowest - slowness;
+            return (
+                slowest,
+                if loss > 0.0 {
+                    (-late / loss).min(left)
+                } else {
+                    left
+                },
+            );
+        }
+        let speed = 1.0 / slowness;
+        if let Some(same) = self
+            .speeds
+            .iter()
+            .find(|u| (*u - speed).abs() <= 1e-9 * speed)
+        {
+            return (*same, left);
+        }
+        // faster first: she then falls back to schedule within the same cycle
+        let cycle = left / (left / ALTERNATION_M).ceil().max(1.0);
+        match self.speeds.iter().find(|u| **u > speed) {
+            Some(&fast) => {
+                let slow = self.speeds.iter().rev().find(|u| **u < speed && **u > 0.0);
+                let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
+                (fast, (cycle * share).max(left * 1e-3))
+            }
+            None => (fastest, left),
+        }
+    }
+
+    fn nearest_speed(&self, speed: f64) -> f64 {
+        self.speeds
+            .iter()
+            .copied()
+            .filter(|u| *u > 0.0)
+            .min_by(|a, b| (a - speed).abs().total_cmp(&(b - speed).abs()))
+            .unwrap_or(speed)
+    }
+}
+
+/// Places on the path at which own ship may join it: `(leg, metres along it)`.
+fn joins(problem: &Problem) -> Vec<(usize, f64)> {
+    let (own, desired) = (problem.own, problem.desired);
+    let first = &desired.legs()[0];
+    let here = own.pose.position;
+    if (here - first.start).norm() < tolerance::JOINT_M
+        && wrap(own.pose.heading - heading_of(first.direction)).abs() < tolerance::JOINT_RAD
+    {
+        return vec![(0, 0.0)];
+    }
+    let geometric = desired.nearest(here, 0.0, 0.0).distance;
+    let mut places: Vec<f64> = JOINS
+        .iter()
+        .map(|k| (geometric + k * own.turning_radius).min(desired.length()))
+        .collect();
+    places.dedup();
+    places
+        .into_iter()
+        .map(|s| {
+            let leg = desired
+                .legs()
+                .partition_point(|l| l.start_distance <= s)
+                .saturating_sub(1);
+            (leg, s - desired.legs()[leg].start_distance)
+        })
+        .collect()
+}
+
+/// Turn-and-line onto a leg's line: first turn, line, last turn, each possibly of no length.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Return {
+    /// Signed metres of the first arc (to port positive), metres of line, signed metres of last arc.
+    pub first: f64,
+    pub line: f64,
+    pub last: f64,
+}
+
+/// The way back onto the line through `origin` along `heading`, approached at `angle` radians:
+/// first from the side own ship is on, else across it. `None` where neither fits.
+pub(crate) fn return_to_line(
+    pose: &Pose,
+    origin: Vector,
+    heading: f64,
+    radius: f64,
+    angle: f64,
+) -> Option<Return> {
+    let ahead = crate::frame::direction(heading);
+    let offset = cross(ahead, pose.position - origin);
+    let relative = wrap(pose.heading - heading);
+    let near = if offset >= 0.0 {
+        Side::Port
+    } else {
+        Side::Starboard
+    };
+    for side in [near, near.opposite()] {
+        for share in [1.0, 0.7, 0.45, 0.25] {
+            let toward = -side.turn_sign() * angle * share;
+            let turn = toward - relative;
+            let curvature = turn.signum() / radius;
+            let after_first = offset + (relative.cos() - toward.cos()) / curvature;
+            let last_gain = (toward.cos() - 1.0) * side.turn_sign() * radius;
+            let line = -(after_first + last_gain) / toward.sin();
+            if line >= 0.0 {
+                return Some(Return {
+                    first: turn * radius,
+                    line,
+                    last: -toward * radius,
+                });
+            }
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_return_ends_on_the_line_on_its_course() {
+        for i in 0..400 {
+            let k = f64::from(i);
+            let pose = Pose::new(
+                Vector::new(k, 150.0 * (k * 0.3).sin()),
+                1.2 * (k * 0.7).cos(),
+            );
+            let (origin, heading) = (Vector::new(0.0, 5.0), 0.1);
+            let Some(back) = return_to_line(&pose, origin, heading, 100.0, 0.6) else {
+                continue;
+            };
+            let mut at = pose;
+            for (length, bend) in [(back.first, true), (back.line, false), (back.last, true)] {
+                let curvature = if bend { length.signum() / 100.0 } else { 0.0 };
+                at = segment(at, 0.0, length.abs(), 1.0, curvature).end();
+            }
+            let ahead = crate::frame::direction(heading);
+            assert!(cross(ahead, at.position - origin).abs() < 1e-9, "{back:?}");
+            assert!(wrap(at.heading - heading).abs() < 1e-9);
+        }
+    }
+}
