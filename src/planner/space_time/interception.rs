@@ -40,7 +40,7 @@ pub(crate) struct Interception {
 }
 
 /// Metres. Own ship and the vertex are this close when they meet.
-const MEETING_M: f64 = 1e-6;
+const MEETING_M: f64 = 1e-7;
 
 /// Radians. A turn this close to a full circle is none.
 const DEAD_AHEAD_RAD: f64 = 1e-9;
