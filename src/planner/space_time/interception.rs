@@ -140,7 +140,9 @@ impl Chase {
                 let Some((turn, line)) = self.way_to(origin + velocity * root) else {
                     continue;
                 };
-                if turn <= limits.turn {
+                let sailed = self.radius * turn + line;
+                let met = (sailed - self.speed * (root - from)).abs() <= MEETING_M;
+                if met && turn <= limits.turn {
                     return Some(Interception {
                         turn,
                         line,
