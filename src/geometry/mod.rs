@@ -2,6 +2,8 @@
 
 mod convex;
 mod disc;
+mod simplify;
 
 pub use convex::{ConvexPolygon, GeometryError};
 pub use disc::{DISC_SIDES, outer_disc};
+pub use simplify::outer_simplified;

@@ -3,4 +3,4 @@
 pub mod contact;
 mod polytope;
 
-pub use polytope::{HalfSpace, PolytopeObstacle, Slack};
+pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};

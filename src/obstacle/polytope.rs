@@ -32,6 +32,18 @@ pub struct Slack {
     pub face: usize,
 }
 
+/// A vertex of the sections `O_t`: it moves in a straight line, and its path is an edge of the
+/// space-time body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingVertex {
+    /// Index of the vertex of `O_0`, and of `V`.
+    pub indices: (usize, usize),
+    /// Position at t = 0, metres.
+    pub origin: Vector,
+    /// m/s.
+    pub velocity: Vector,
+}
+
 /// Every position that a target may reach: `O_t = O_0 + t V` for `0 <= t`, convex in space-time.
 /// Because `V` is convex, `O_t` also contains every position reached with a velocity that varies in
 /// time and stays in `V`.
@@ -86,6 +98,29 @@ impl PolytopeObstacle {
         &self.faces
     }
 
+    /// The vertices of the sections for t > 0, counter-clockwise: at most n + m. O((n + m)²).
+    pub fn moving_vertices(&self) -> Vec<MovingVertex> {
+        let n = self.faces.len();
+        let mut vertices: Vec<MovingVertex> = (0..n)
+            .map(|i| {
+                // a direction strictly between two neighbouring normals has one support vertex in each set
+                let between = self.faces[i].normal + self.faces[(i + 1) % n].normal;
+                let (j, origin) = farthest(self.initial.vertices(), between);
+                let (k, velocity) = farthest(self.velocity.vertices(), between);
+                MovingVertex {
+                    indices: (j, k),
+                    origin,
+                    velocity,
+                }
+            })
+            .collect();
+        vertices.dedup_by_key(|v| v.indices);
+        while vertices.len() > 1 && vertices[0].indices == vertices[vertices.len() - 1].indices {
+            vertices.pop();
+        }
+        vertices
+    }
+
     /// The section `O_t` for `t >= 0`, paper eq. (6). O(n + m).
     pub fn section(&self, time: f64) -> ConvexPolygon {
         if time > 0.0 {
@@ -119,6 +154,16 @@ impl PolytopeObstacle {
         // both negated on purpose: what is not known to be clear is not
         !(time < 0.0) && !(self.slack(position, time).value > 0.0)
     }
+}
+
+fn farthest(points: &[Vector], n: Vector) -> (usize, Vector) {
+    let mut best = (0, points[0]);
+    for (i, p) in points.iter().enumerate() {
+        if n.dot(p) > n.dot(&best.1) {
+            best = (i, *p);
+        }
+    }
+    best
 }
 
 #[cfg(test)]
@@ -176,6 +221,27 @@ mod tests {
                 assert!(slack <= distance + 1e-6);
             }
             assert!((o.section(t).area() - hull_of_sums(&o, t).area()).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn moving_vertices_are_the_vertices_of_every_section() {
+        let mut rng = ChaCha8Rng::seed_from_u64(8);
+        for _ in 0..500 {
+            let o =
+                PolytopeObstacle::new("x", random_set(&mut rng, 10.0), random_set(&mut rng, 1.0));
+            for t in [0.5, 7.0, 100.0] {
+                let points: Vec<Vector> = o
+                    .moving_vertices()
+                    .iter()
+                    .map(|v| v.origin + v.velocity * t)
+                    .collect();
+                let hull = ConvexPolygon::hull(&points).expect("finite");
+                assert!((hull.area() - o.section(t).area()).abs() < 1e-6 * (1.0 + hull.area()));
+                for v in o.section(t).vertices() {
+                    assert!(points.iter().any(|p| (p - v).norm() < 1e-9));
+                }
+            }
         }
     }
 

@@ -299,6 +299,6 @@ mod tests {
                 assert!(first <= t + 1e-6, "{first} {t}");
             }
         }
-        assert!(met > 500, "{met}");
+        assert!(met > 200, "{met}");
     }
 }

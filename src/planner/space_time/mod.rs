@@ -1,6 +1,7 @@
 //! The space-time planner: a graph of Dubins segments that hug the bodies' edges, searched for the
 //! least space-time error, then refined.
 
+mod heuristic;
 mod interception;
 mod route;
 

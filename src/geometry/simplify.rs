@@ -1,0 +1,61 @@
+//! Fewer vertices, never less of the set.
+
+use super::ConvexPolygon;
+use crate::frame::{Vector, cross};
+
+/// An outer approximation with at most `max_vertices` (at least 3): edges are removed one at a time,
+/// always the one whose removal, by extending its neighbours until they meet, adds the least area.
+/// Sets with few enough vertices, points and segments come back unchanged. O(n²).
+pub fn outer_simplified(set: &ConvexPolygon, max_vertices: usize) -> ConvexPolygon {
+    let mut vertices = set.vertices().to_vec();
+    while vertices.len() > max_vertices.max(3) {
+        let n = vertices.len();
+        let best = (0..n)
+            .filter_map(|i| {
+                corner_without_edge(&vertices, i).map(|(corner, area)| (i, corner, area))
+            })
+            .min_by(|a, b| a.2.total_cmp(&b.2));
+        let Some((i, corner, _)) = best else { break };
+        vertices[i] = corner;
+        vertices.remove((i + 1) % n);
+    }
+    ConvexPolygon::from_ccw(vertices)
+}
+
+/// Where the neighbours of the edge from vertex `i` meet, and the area that this adds; `None` when they
+/// diverge.
+fn corner_without_edge(v: &[Vector], i: usize) -> Option<(Vector, f64)> {
+    let n = v.len();
+    let (a, b) = (v[(i + n - 1) % n], v[i]);
+    let (c, d) = (v[(i + 1) % n], v[(i + 2) % n]);
+    let (e, f) = (b - a, d - c);
+    let turn = cross(e, f);
+    if turn <= 1e-9 * e.norm() * f.norm() {
+        return None;
+    }
+    let t = cross(c - b, f) / turn;
+    let corner = b + e * t;
+    (t >= 0.0).then(|| (corner, 0.5 * cross(corner - b, c - b).abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::direction;
+    use crate::geometry::outer_disc;
+
+    #[test]
+    fn nothing_of_the_set_is_lost() {
+        for n in [3, 4, 5, 8] {
+            let disc = outer_disc(50.0, 0.2);
+            let few = outer_simplified(&disc, n);
+            assert_eq!(few.vertices().len(), n);
+            for i in 0..200 {
+                let d = direction(f64::from(i) * 0.0315);
+                assert!(few.support(d) >= disc.support(d) - 1e-9);
+            }
+        }
+        let point = ConvexPolygon::point(Vector::new(1.0, 2.0));
+        assert_eq!(outer_simplified(&point, 4), point);
+    }
+}
