@@ -1,0 +1,444 @@
+//! The space-time graph: departures from the route, interceptions of moving vertices, returns, the end.
+//!
+//! Nodes and edges are made when the search asks for them. The graph decides on which side, in which
+//! order and whether to wait; `refinement` finds the numbers.
+
+use std::cell::Cell;
+
+use super::hazard::{Hazard, first_contact};
+use super::heuristic::Heuristic;
+use super::interception::{Chase, Limits};
+use super::route::{Route, return_to_line};
+use crate::frame::{Pose, Side, heading_of};
+use crate::geometry::outer_simplified;
+use crate::obstacle::{MovingVertex, PolytopeObstacle};
+use crate::planner::cost::space_time_error;
+use crate::planner::{
+    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind, Problem, SearchKind,
+};
+use crate::search::{Fate, Search, Space};
+use crate::trajectory::Segment;
+
+/// Seconds before first contact at which a manoeuvre may begin, besides t = 0.
+const LEADS_S: [f64; 7] = [0.0, 5.0, 12.0, 20.0, 30.0, 45.0, 70.0];
+/// Seconds at the least or the greatest speed on the route, as manoeuvres of their own.
+const PACES_S: [f64; 4] = [15.0, 40.0, 80.0, 160.0];
+/// Angles at which the route is met again, radians.
+const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
+/// Radians. Larger turns toward a vertex are not offered.
+const MAX_TURN: f64 = 2.0;
+/// Seconds. Later meetings with a vertex are not offered.
+const MAX_CHASE_S: f64 = 240.0;
+/// Vertices met one after another.
+const MAX_CHAIN: u8 = 3;
+/// Vertices of the simplified sets whose moving vertices are nodes.
+const INITIAL_VERTICES: usize = 6;
+const VELOCITY_VERTICES: usize = 3;
+/// Metres. Obstacles farther than this from the undisturbed motion are not met.
+const RELEVANT_M: f64 = 300.0;
+
+/// A node with the motion that leads to it.
+#[derive(Debug, Clone)]
+pub(crate) struct State {
+    pub kind: NodeKind,
+    pub pose: Pose,
+    pub time: f64,
+    /// From the node before.
+    pub motion: Vec<Segment>,
+    chain: u8,
+    verdict: Cell<Option<(usize, f64)>>,
+}
+
+/// Vertices of one obstacle at which own ship may aim.
+#[derive(Debug)]
+struct Aims {
+    obstacle: usize,
+    vertices: Vec<MovingVertex>,
+}
+
+/// The graph of one problem.
+#[derive(Debug)]
+pub(crate) struct Graph<'a> {
+    problem: &'a Problem<'a>,
+    hazards: &'a [Hazard<'a>],
+    route: &'a Route,
+    undisturbed: &'a [Segment],
+    contacts: Vec<f64>,
+    aims: Vec<Aims>,
+    heuristic: Option<Heuristic<'a>>,
+}
+
+impl<'a> Graph<'a> {
+    /// `undisturbed` is the route followed from t = 0.
+    pub(crate) fn new(
+        problem: &'a Problem<'a>,
+        hazards: &'a [Hazard<'a>],
+        route: &'a Route,
+        undisturbed: &'a [Segment],
+    ) -> Self {
+        let mut contacts: Vec<f64> = hazards
+            .iter()
+            .filter_map(|h| undisturbed.iter().find_map(|s| h.first_contact(s)))
+            .collect();
+        contacts.sort_by(f64::total_cmp);
+        contacts.dedup_by(|a, b| *a - *b < LEADS_S[3]);
+        let aims = hazards
+            .iter()
+            .enumerate()
+            .filter(|(_, h)| {
+                undisturbed
+                    .iter()
+                    .any(|s| h.clearance_bound(s) < RELEVANT_M)
+            })
+            .map(|(obstacle, h)| {
+                let coarse = PolytopeObstacle::new(
+                    "",
+                    outer_simplified(h.body.initial(), INITIAL_VERTICES),
+                    outer_simplified(h.body.velocity(), VELOCITY_VERTICES),
+                );
+                Aims {
+                    obstacle,
+                    vertices: coarse.moving_vertices(),
+                }
+            })
+            .collect();
+        let heuristic = (problem.search == SearchKind::AStar).then(|| Heuristic {
+            desired: problem.desired,
+            time_weight: problem.time_weight,
+            max_speed: problem.own.max_speed(),
+            radius: problem.own.turning_radius,
+        });
+        Self {
+            problem,
+            hazards,
+            route,
+            undisturbed,
+            contacts,
+            aims,
+            heuristic,
+        }
+    }
+
+    /// Own ship at t = 0.
+    pub(crate) fn root(&self) -> State {
+        State {
+            kind: NodeKind::Start,
+            pose: self.problem.own.pose,
+            time: 0.0,
+            motion: Vec::new(),
+            chain: 0,
+            verdict: Cell::new(None),
+        }
+    }
+
+    /// First contacts of the undisturbed motion, one per obstacle that it meets, at least 20 s apart.
+    pub(crate) fn contacts(&self) -> &[f64] {
+        &self.contacts
+    }
+
+    fn push(
+        &self,
+        out: &mut Vec<(State, f64)>,
+        kind: NodeKind,
+        chain: u8,
+        motion: Vec<Segment>,
+        from: &State,
+    ) {
+        let (pose, time) = motion
+            .last()
+            .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
+        if time > self.problem.horizon {
+            return;
+        }
+        let cost = motion
+            .iter()
+            .map(|s| space_time_error(self.problem.desired, s, self.problem.time_weight))
+            .sum();
+        out.push((
+            State {
+                kind,
+                pose,
+                time,
+                motion,
+                chain,
+                verdict: Cell::new(None),
+            },
+            cost,
+        ));
+    }
+
+    fn moving_speeds(&self) -> impl Iterator<Item = f64> + '_ {
+        self.problem.own.speeds.iter().copied().filter(|u| *u > 0.0)
+    }
+
+    /// Departures along the undisturbed motion, and the ways that never leave the route.
+    fn departures(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        self.push(out, NodeKind::End, 0, self.undisturbed.to_vec(), from);
+        if self.contacts.is_empty() {
+            return;
+        }
+        let mut times: Vec<f64> = self
+            .contacts
+            .iter()
+            .flat_map(|c| LEADS_S.iter().map(move |lead| c - lead).chain([c * 0.5]))
+            .filter(|t| *t > 0.0)
+            .collect();
+        times.push(0.0);
+        times.sort_by(f64::total_cmp);
+        times.dedup_by(|a, b| *a - *b < 2.0);
+        for &time in &times {
+            let motion: Vec<Segment> = self
+                .undisturbed
+                .iter()
+                .filter(|s| s.start_time < time)
+                .map(|s| s.between(s.start_time, time))
+                .collect();
+            let distance: f64 = motion.iter().map(Segment::length).sum();
+            for speed in [self.problem.own.min_speed(), self.problem.own.max_speed()] {
+                for pace in PACES_S {
+                    let mut paced = motion.clone();
+                    let time = paced.last().map_or(0.0, Segment::end_time);
+                    let at = self.paced(distance, time, pace, speed, &mut paced);
+                    let time = paced.last().map_or(0.0, Segment::end_time);
+                    self.route.follow(at, time, &mut paced);
+                    self.push(out, NodeKind::End, 0, paced, from);
+                }
+            }
+            self.push(out, NodeKind::Departure, 0, motion, from);
+        }
+    }
+
+    /// Keeps one speed on the route for some seconds; a wait where it is zero.
+    fn paced(
+        &self,
+        distance: f64,
+        time: f64,
+        pace: f64,
+        speed: f64,
+        out: &mut Vec<Segment>,
+    ) -> f64 {
+        if speed > 0.0 {
+            return self.route.run(distance, time, pace * speed, speed, out);
+        }
+        let (start, _) = self.route.pose_at(distance);
+        out.push(Segment {
+            start,
+            start_time: time,
+            duration: pace,
+            speed,
+            turn_rate: 0.0,
+        });
+        distance
+    }
+
+    fn interceptions(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let radius = self.problem.own.turning_radius;
+        let limits = Limits {
+            turn: MAX_TURN,
+            time: (from.time + MAX_CHASE_S).min(self.problem.horizon),
+        };
+        for aims in &self.aims {
+            for vertex in &aims.vertices {
+                let kind = NodeKind::Vertex {
+                    obstacle: aims.obstacle,
+                    initial: vertex.indices.0,
+                    velocity: vertex.indices.1,
+                };
+                if from.kind == kind {
+                    continue;
+                }
+                for speed in self.moving_speeds() {
+                    for side in Side::BOTH {
+                        let chase = Chase {
+                            pose: from.pose,
+                            time: from.time,
+                            speed,
+                            radius,
+                            side,
+                        };
+                        let Some(meeting) = chase.intercept(vertex.origin, vertex.velocity, limits)
+                        else {
+                            continue;
+                        };
+                        let motion = turn_and_line(
+                            from,
+                            side,
+                            meeting.turn * radius,
+                            meeting.line,
+                            speed,
+                            radius,
+                        );
+                        self.push(out, kind, from.chain + 1, motion, from);
+                    }
+                }
+            }
+        }
+    }
+
+    fn returns(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let (own, desired) = (self.problem.own, self.problem.desired);
+        let radius = own.turning_radius;
+        let near = desired.nearest(from.pose.position, from.time, 0.0).leg;
+        for leg in near..desired.legs().len().min(near + 2) {
+            let Some(stretch) = self.route.stretch(leg, desired) else {
+                continue;
+            };
+            let l = &desired.legs()[leg];
+            let heading = heading_of(l.direction);
+            for angle in RETURN_ANGLES {
+                let Some(back) = return_to_line(&from.pose, l.start, heading, radius, angle) else {
+                    continue;
+                };
+                for speed in self.moving_speeds() {
+                    let mut motion = Vec::with_capacity(6);
+                    let mut at = (from.pose, from.time);
+                    for (length, bend) in
+                        [(back.first, true), (back.line, false), (back.last, true)]
+                    {
+                        append(&mut motion, &mut at, length, bend, speed, radius);
+                    }
+                    let along = l.direction.dot(&(at.0.position - l.start));
+                    if along < stretch.from || along > stretch.to {
+                        continue;
+                    }
+                    self.route
+                        .follow(stretch.distance + along - stretch.from, at.1, &mut motion);
+                    self.push(out, NodeKind::End, from.chain, motion, from);
+                }
+            }
+        }
+        for side in Side::BOTH {
+            for speed in self.moving_speeds() {
+                let chase = Chase {
+                    pose: from.pose,
+                    time: from.time,
+                    speed,
+                    radius,
+                    side,
+                };
+                let Some((turn, line)) = chase.way_to(desired.end()) else {
+                    continue;
+                };
+                if turn <= MAX_TURN {
+                    let motion = turn_and_line(from, side, turn * radius, line, speed, radius);
+                    self.push(out, NodeKind::End, from.chain, motion, from);
+                }
+            }
+        }
+    }
+
+    /// Everything that a search made, with what is known of each edge.
+    pub(crate) fn explored(search: &Search<State>) -> ExploredGraph {
+        let mut graph = ExploredGraph::with_capacity(search.nodes().len(), search.nodes().len());
+        for node in search.nodes() {
+            let state = &node.state;
+            let index = graph.add_node(ExploredNode {
+                kind: state.kind,
+                pose: state.pose,
+                time: state.time,
+                cost: node.cost,
+                expanded: node.fate == Fate::Expanded,
+            });
+            let Some(parent) = node.parent else { continue };
+            let verdict = match (node.fate, state.verdict.get()) {
+                (_, Some((obstacle, time))) => EdgeVerdict::Blocked { obstacle, time },
+                (Fate::Queued | Fate::Rejected, None) => EdgeVerdict::Untested,
+                (Fate::Expanded | Fate::Goal, None) => EdgeVerdict::Free,
+            };
+            graph.add_edge(
+                petgraph::graph::NodeIndex::new(parent),
+                index,
+                ExploredEdge {
+                    segments: state.motion.clone(),
+                    cost: node.cost - search.nodes()[parent].cost,
+                    verdict,
+                },
+            );
+        }
+        graph
+    }
+}
+
+impl Space for Graph<'_> {
+    type State = State;
+
+    fn successors(&mut self, state: &State, out: &mut Vec<(State, f64)>) {
+        match state.kind {
+            NodeKind::Start => self.departures(state, out),
+            NodeKind::Departure => self.interceptions(state, out),
+            NodeKind::Vertex { .. } => {
+                if state.chain < MAX_CHAIN {
+                    self.interceptions(state, out);
+                }
+                self.returns(state, out);
+            }
+            NodeKind::End => {}
+        }
+    }
+
+    fn bound(&mut self, state: &State) -> f64 {
+        match (&self.heuristic, state.kind) {
+            (None, _) | (_, NodeKind::End) => 0.0,
+            (Some(heuristic), _) => heuristic.cost_to_go(&state.pose, state.time),
+        }
+    }
+
+    fn is_goal(&self, state: &State) -> bool {
+        state.kind == NodeKind::End
+    }
+
+    fn admits(&mut self, state: &State) -> bool {
+        let contact = first_contact(self.hazards, &state.motion);
+        state.verdict.set(contact);
+        contact.is_none()
+    }
+}
+
+fn turn_and_line(
+    from: &State,
+    side: Side,
+    arc: f64,
+    line: f64,
+    speed: f64,
+    radius: f64,
+) -> Vec<Segment> {
+    let mut motion = Vec::with_capacity(2);
+    let mut at = (from.pose, from.time);
+    append(
+        &mut motion,
+        &mut at,
+        arc * side.turn_sign(),
+        true,
+        speed,
+        radius,
+    );
+    append(&mut motion, &mut at, line, false, speed, radius);
+    motion
+}
+
+/// Appends an arc (signed length, to port positive) or a line, unless it has no length.
+pub(crate) fn append(
+    motion: &mut Vec<Segment>,
+    at: &mut (Pose, f64),
+    length: f64,
+    bend: bool,
+    speed: f64,
+    radius: f64,
+) {
+    if length.abs() <= crate::tolerance::LENGTH_M {
+        return;
+    }
+    let segment = Segment {
+        start: at.0,
+        start_time: at.1,
+        duration: length.abs() / speed,
+        speed,
+        turn_rate: if bend {
+            speed * length.signum() / radius
+        } else {
+            0.0
+        },
+    };
+    *at = (segment.end(), segment.end_time());
+    motion.push(segment);
+}
