@@ -83,13 +83,19 @@ pub enum NoPlan {
         /// Seconds.
         horizon: f64,
     },
+    /// The waypoints and own ship's pose cannot be joined by a path.
+    #[error("no path joins own ship and the waypoints: a coordinate is out of range")]
+    NoRoute,
     /// No candidate is clear of every set.
     #[error(
-        "no trajectory of the graph and its refinement is clear of every set until arrival; {closest}"
+        "no trajectory of the graph or its refinement is clear of every set until arrival; held on the desired \
+         trajectory, own ship meets the set of '{target}' after {time:.1} s"
     )]
     NoCandidate {
-        /// What blocks the undisturbed trajectory first.
-        closest: String,
+        /// Name of the obstacle that the undisturbed motion meets first.
+        target: String,
+        /// Seconds.
+        time: f64,
     },
 }
 

@@ -9,6 +9,7 @@ use super::hazard::{Hazard, first_contact};
 use super::heuristic::Heuristic;
 use super::interception::{Chase, Limits};
 use super::route::{Route, return_to_line};
+use super::template::Ending;
 use crate::frame::{Pose, Side, heading_of};
 use crate::geometry::outer_simplified;
 use crate::obstacle::{MovingVertex, PolytopeObstacle};
@@ -45,6 +46,8 @@ pub(crate) struct State {
     pub time: f64,
     /// From the node before.
     pub motion: Vec<Segment>,
+    /// How a way to the end ends; of no meaning elsewhere.
+    pub ending: Ending,
     chain: u8,
     verdict: Cell<Option<(usize, f64)>>,
 }
@@ -126,6 +129,7 @@ impl<'a> Graph<'a> {
             pose: self.problem.own.pose,
             time: 0.0,
             motion: Vec::new(),
+            ending: Ending::Follow,
             chain: 0,
             verdict: Cell::new(None),
         }
@@ -140,7 +144,7 @@ impl<'a> Graph<'a> {
         &self,
         out: &mut Vec<(State, f64)>,
         kind: NodeKind,
-        chain: u8,
+        ending: Ending,
         motion: Vec<Segment>,
         from: &State,
     ) {
@@ -154,12 +158,14 @@ impl<'a> Graph<'a> {
             .iter()
             .map(|s| space_time_error(self.problem.desired, s, self.problem.time_weight))
             .sum();
+        let chain = from.chain + u8::from(matches!(kind, NodeKind::Vertex { .. }));
         out.push((
             State {
                 kind,
                 pose,
                 time,
                 motion,
+                ending,
                 chain,
                 verdict: Cell::new(None),
             },
@@ -173,7 +179,13 @@ impl<'a> Graph<'a> {
 
     /// Departures along the undisturbed motion, and the ways that never leave the route.
     fn departures(&self, from: &State, out: &mut Vec<(State, f64)>) {
-        self.push(out, NodeKind::End, 0, self.undisturbed.to_vec(), from);
+        self.push(
+            out,
+            NodeKind::End,
+            Ending::Follow,
+            self.undisturbed.to_vec(),
+            from,
+        );
         if self.contacts.is_empty() {
             return;
         }
@@ -201,10 +213,10 @@ impl<'a> Graph<'a> {
                     let at = self.paced(distance, time, pace, speed, &mut paced);
                     let time = paced.last().map_or(0.0, Segment::end_time);
                     self.route.follow(at, time, &mut paced);
-                    self.push(out, NodeKind::End, 0, paced, from);
+                    self.push(out, NodeKind::End, Ending::Follow, paced, from);
                 }
             }
-            self.push(out, NodeKind::Departure, 0, motion, from);
+            self.push(out, NodeKind::Departure, Ending::Follow, motion, from);
         }
     }
 
@@ -268,7 +280,7 @@ impl<'a> Graph<'a> {
                             speed,
                             radius,
                         );
-                        self.push(out, kind, from.chain + 1, motion, from);
+                        self.push(out, kind, Ending::Follow, motion, from);
                     }
                 }
             }
@@ -303,7 +315,13 @@ impl<'a> Graph<'a> {
                     }
                     self.route
                         .follow(stretch.distance + along - stretch.from, at.1, &mut motion);
-                    self.push(out, NodeKind::End, from.chain, motion, from);
+                    self.push(
+                        out,
+                        NodeKind::End,
+                        Ending::Return { leg, speed },
+                        motion,
+                        from,
+                    );
                 }
             }
         }
@@ -321,7 +339,13 @@ impl<'a> Graph<'a> {
                 };
                 if turn <= MAX_TURN {
                     let motion = turn_and_line(from, side, turn * radius, line, speed, radius);
-                    self.push(out, NodeKind::End, from.chain, motion, from);
+                    self.push(
+                        out,
+                        NodeKind::End,
+                        Ending::Goal { side, speed },
+                        motion,
+                        from,
+                    );
                 }
             }
         }

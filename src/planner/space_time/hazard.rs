@@ -39,6 +39,19 @@ impl<'a> Hazard<'a> {
         apart.norm() - closing - self.radius - self.growth * segment.end_time()
     }
 
+    /// Position and velocity relative to the middle of the obstacle.
+    pub(crate) fn relative(
+        &self,
+        position: Vector,
+        velocity: Vector,
+        time: f64,
+    ) -> (Vector, Vector) {
+        (
+            position - self.centre - self.drift * time,
+            velocity - self.drift,
+        )
+    }
+
     /// The first instant at which the segment is inside, deeper than touching.
     pub(crate) fn first_contact(&self, segment: &Segment) -> Option<f64> {
         if self.clearance_bound(segment) > 0.0 {

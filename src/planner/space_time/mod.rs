@@ -1,28 +1,55 @@
 //! The space-time planner: a graph of Dubins segments that hug the bodies' edges, searched for the
 //! least space-time error, then refined.
+//!
+//! ```text
+//! route ─► undisturbed motion ─► graph (A*, k best) ─► seeds ─► refinement (SQP) ─► exact contact test ─► plan
+//! ```
+//!
+//! The graph decides the side, the order and whether to wait; the refinement finds the numbers, speeds
+//! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
+//! plan is one of the candidates.
 
 mod graph;
 mod hazard;
 mod heuristic;
 mod interception;
+mod model;
+mod quadratic;
+mod refinement;
 mod route;
+mod seeds;
+mod selection;
+mod template;
 
 use std::time::Instant;
 
-use super::cost::space_time_error;
 use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
 use crate::search::{Search, Stop};
 use crate::trajectory::{Segment, Trajectory};
-use graph::{Graph, State};
+use graph::Graph;
 use hazard::{Hazard, TOUCH_M, first_contact};
+use model::Scene;
 use route::Route;
+use selection::Selection;
 
 /// Expansions of one search at most: the bound on its memory. Typical searches need a hundredth.
 const MAX_EXPANDED: usize = 20_000;
 
+/// Plans of the graph that are refined, each passing the targets on other sides.
+const MAX_SIGNATURES: usize = 4;
+
+/// Expansions beyond the graph's best plan, to find such others.
+const FURTHER_EXPANDED: usize = 40;
+
 /// Plans one problem.
+///
+/// The plan is clear of every obstacle to rounding (deeper than 1e-7 m nowhere), keeps the turning
+/// radius, sails only at the given speeds, and ends at the last waypoint before the horizon. It is the
+/// cheapest of the candidates, not proven the cheapest of all: see the docs on its quality. The same
+/// problem gives the same plan unless the deadline strikes.
 pub fn plan(problem: &Problem) -> Planned {
     let started = Instant::now();
+    let out_of_time = || started.elapsed() >= problem.deadline;
     let refuse = |reason| Planned {
         outcome: Outcome::Infeasible(reason),
         stats: SearchStats::default(),
@@ -40,13 +67,12 @@ pub fn plan(problem: &Problem) -> Planned {
         }
     }
     let Some(route) = Route::new(problem) else {
-        return refuse(NoPlan::NoCandidate {
-            closest: "no path joins the waypoints".to_owned(),
-        });
+        return refuse(NoPlan::NoRoute);
     };
     let mut undisturbed = Vec::new();
     route.follow(0.0, 0.0, &mut undisturbed);
     let arrival = undisturbed.last().map_or(0.0, Segment::end_time);
+    // negated on purpose: a NaN is too late
     if !(arrival <= problem.horizon) {
         return refuse(NoPlan::HorizonTooShort {
             earliest: arrival,
@@ -56,10 +82,39 @@ pub fn plan(problem: &Problem) -> Planned {
     let hazards: Vec<Hazard> = problem.obstacles.iter().map(Hazard::new).collect();
     let mut graph = Graph::new(problem, &hazards, &route, &undisturbed);
     let mut search = Search::new(graph.root());
-    let out_of_time = || started.elapsed() >= problem.deadline;
-    let mut seed = None;
-    if let Stop::Goal(node) = search.next_goal(&mut graph, MAX_EXPANDED) {
-        seed = Some(node);
+    let scene = Scene {
+        problem,
+        route: &route,
+        hazards: &hazards,
+    };
+    let mut selection = Selection::new(scene);
+    let mut budget = MAX_EXPANDED;
+    let mut timed_out = false;
+    while selection.signatures() < MAX_SIGNATURES {
+        // a slice at a time, so that the deadline is seen
+        let slice = (search.counts().expanded + 50).min(budget);
+        match search.next_goal(&mut graph, slice) {
+            Stop::Goal(node) => {
+                let way = search.way_to(node);
+                let states: Vec<_> = way[1..].iter().map(|i| &search.nodes()[*i].state).collect();
+                selection.offer(search.nodes()[node].cost, &states);
+                if states.len() == 1 {
+                    break;
+                }
+                budget = budget.min(search.counts().expanded + FURTHER_EXPANDED);
+            }
+            Stop::Exhausted => break,
+            Stop::Budget if search.counts().expanded >= budget => break,
+            Stop::Budget => {}
+        }
+        if out_of_time() {
+            timed_out = true;
+            break;
+        }
+    }
+    let contact = first_contact(&hazards, &undisturbed);
+    if let Some((_, contact)) = contact {
+        timed_out |= selection.refine(graph.contacts(), contact, &out_of_time);
     }
     let counts = search.counts();
     let stats = SearchStats {
@@ -67,27 +122,24 @@ pub fn plan(problem: &Problem) -> Planned {
         generated: counts.generated,
         edges_checked: counts.tested,
     };
-    let motion = |node: usize| -> Vec<Segment> {
-        search
-            .way_to(node)
-            .iter()
-            .flat_map(|i| search.nodes()[*i].state.motion.iter().copied())
-            .collect()
-    };
-    let outcome = match seed.and_then(|n| Trajectory::new(motion(n)).ok().map(|t| (n, t))) {
-        Some((node, trajectory)) => {
-            let cost = search.nodes()[node].cost;
-            Outcome::Solved(Plan {
-                trajectory,
-                cost,
-                graph_cost: Some(cost),
-            })
-        }
-        None => Outcome::Infeasible(NoPlan::NoCandidate {
-            closest: String::new(),
+    let graph_cost = selection.graph_cost();
+    let plan = selection.cheapest().and_then(|(motion, cost)| {
+        let trajectory = Trajectory::new(motion).ok()?;
+        Some(Plan {
+            trajectory,
+            cost,
+            graph_cost,
+        })
+    });
+    let outcome = match (plan, timed_out) {
+        (plan, true) => Outcome::Deadline(plan),
+        (Some(plan), false) => Outcome::Solved(plan),
+        (None, false) => Outcome::Infeasible(NoPlan::NoCandidate {
+            target: contact
+                .map_or_else(String::new, |(i, _)| problem.obstacles[i].name().to_owned()),
+            time: contact.map_or(0.0, |(_, t)| t),
         }),
     };
-    let _ = (out_of_time, first_contact, space_time_error);
     Planned {
         outcome,
         stats,

@@ -1,0 +1,387 @@
+//! A small dense convex quadratic programme by the dual active-set method of Goldfarb & Idnani
+//! (doi:10.1007/BF02591962).
+
+/// Most variables of a programme: fixed, so that no step allocates.
+pub(crate) const MAX_VARIABLES: usize = 32;
+
+/// A row of numbers, one per variable.
+pub(crate) type Row = [f64; MAX_VARIABLES];
+
+/// A square matrix.
+pub(crate) type Matrix = [Row; MAX_VARIABLES];
+
+/// `coefficients . x >= bound`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Constraint {
+    pub coefficients: Row,
+    pub bound: f64,
+}
+
+/// `minimise x'Hx/2 + g'x` subject to box and rows.
+#[derive(Debug)]
+pub(crate) struct Programme<'a> {
+    pub size: usize,
+    /// Positive definite.
+    pub hessian: &'a Matrix,
+    pub gradient: &'a Row,
+    pub low: &'a Row,
+    pub high: &'a Row,
+    pub rows: &'a [Constraint],
+}
+
+/// Where the minimum is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Solution {
+    pub x: Row,
+    /// The largest multiplier of a row: the least weight of an exact penalty.
+    pub largest_multiplier: f64,
+}
+
+/// Steps before giving up; a programme of this size needs about as many as it has constraints.
+const MAX_STEPS: usize = 400;
+
+/// Relative violation that is none.
+const SATISFIED: f64 = 1e-9;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Low(usize),
+    High(usize),
+    Row(usize),
+}
+
+impl Programme<'_> {
+    /// The minimum; rows that cannot be met together with the box and earlier rows are left out, one
+    /// at a time (the caller's merit function sees what is violated). `None` when the Hessian is not
+    /// positive definite or a number is not finite.
+    pub(crate) fn solve(&self) -> Option<Solution> {
+        let mut ignored = vec![false; self.rows.len()];
+        loop {
+            match self.attempt(&ignored) {
+                Ok(solution) => return Some(solution),
+                Err(Some(row)) => ignored[row] = true,
+                Err(None) => return None,
+            }
+        }
+    }
+
+    fn normal(&self, kind: Kind) -> Row {
+        let mut n = [0.0; MAX_VARIABLES];
+        match kind {
+            Kind::Low(i) => n[i] = 1.0,
+            Kind::High(i) => n[i] = -1.0,
+            Kind::Row(r) => n = self.rows[r].coefficients,
+        }
+        n
+    }
+
+    fn value(&self, kind: Kind, x: &Row) -> f64 {
+        match kind {
+            Kind::Low(i) => x[i] - self.low[i],
+            Kind::High(i) => self.high[i] - x[i],
+            Kind::Row(r) => dot(&self.rows[r].coefficients, x, self.size) - self.rows[r].bound,
+        }
+    }
+
+    /// The most violated constraint that is not active.
+    fn violated(&self, x: &Row, active: &[Kind], ignored: &[bool]) -> Option<Kind> {
+        let mut worst = (-SATISFIED, None);
+        let mut look = |kind: Kind, scale: f64| {
+            let v = self.value(kind, x) / scale;
+            if v < worst.0 && !active.contains(&kind) {
+                worst = (v, Some(kind));
+            }
+        };
+        for i in 0..self.size {
+            look(Kind::Low(i), 1.0 + self.low[i].abs());
+            look(Kind::High(i), 1.0 + self.high[i].abs());
+        }
+        for (r, row) in self.rows.iter().enumerate() {
+            if !ignored[r] {
+                let norm = dot(&row.coefficients, &row.coefficients, self.size).sqrt();
+                look(Kind::Row(r), (1.0 + row.bound.abs()).max(norm));
+            }
+        }
+        worst.1
+    }
+
+    fn attempt(&self, ignored: &[bool]) -> Result<Solution, Option<usize>> {
+        let n = self.size;
+        let mut j = inverse_transposed_factor(self.hessian, n).ok_or(None)?;
+        let mut x = [0.0; MAX_VARIABLES];
+        let mut y = [0.0; MAX_VARIABLES];
+        for k in 0..n {
+            y[k] = -(0..n).map(|i| j[i][k] * self.gradient[i]).sum::<f64>();
+        }
+        for i in 0..n {
+            x[i] = dot(&j[i], &y, n);
+        }
+        let mut r: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+        let mut active: Vec<Kind> = Vec::with_capacity(n);
+        let mut u = [0.0; MAX_VARIABLES + 1];
+        let mut steps = 0;
+        while let Some(entering) = self.violated(&x, &active, ignored) {
+            let normal = self.normal(entering);
+            let mut multiplier = 0.0;
+            loop {
+                steps += 1;
+                if steps > MAX_STEPS || !x[..n].iter().all(|v| v.is_finite()) {
+                    return Err(None);
+                }
+                let q = active.len();
+                let mut d = [0.0; MAX_VARIABLES];
+                for (i, c) in normal.iter().enumerate().take(n) {
+                    if *c != 0.0 {
+                        for k in 0..n {
+                            d[k] += j[i][k] * c;
+                        }
+                    }
+                }
+                let mut z = [0.0; MAX_VARIABLES];
+                for i in 0..n {
+                    z[i] = (q..n).map(|k| j[i][k] * d[k]).sum();
+                }
+                let mut back = [0.0; MAX_VARIABLES];
+                for i in (0..q).rev() {
+                    let sum: f64 = (i + 1..q).map(|k| r[i][k] * back[k]).sum();
+                    back[i] = (d[i] - sum) / r[i][i];
+                }
+                let (mut dual_step, mut leaving) = (f64::INFINITY, None);
+                for i in 0..q {
+                    if back[i] > 1e-14 && u[i] / back[i] < dual_step {
+                        dual_step = u[i] / back[i];
+                        leaving = Some(i);
+                    }
+                }
+                let slope = dot(&z, &normal, n);
+                let free: f64 = (q..n).map(|k| d[k] * d[k]).sum();
+                let all: f64 = (0..n).map(|k| d[k] * d[k]).sum();
+                let primal_step = if free > 1e-16 * all && slope > 0.0 {
+                    -self.value(entering, &x) / slope
+                } else {
+                    f64::INFINITY
+                };
+                let step = dual_step.min(primal_step);
+                if step.is_infinite() {
+                    return Err(match entering {
+                        Kind::Row(row) => Some(row),
+                        // a bound that contradicts active rows: leave out one of those
+                        _ => active.iter().rev().find_map(|k| match k {
+                            Kind::Row(row) => Some(*row),
+                            _ => None,
+                        }),
+                    });
+                }
+                for i in 0..q {
+                    u[i] -= step * back[i];
+                }
+                multiplier += step;
+                if primal_step.is_finite() {
+                    for i in 0..n {
+                        x[i] += step * z[i];
+                    }
+                }
+                if primal_step <= dual_step {
+                    add(&mut j, &mut r, &mut d, q, n);
+                    u[q] = multiplier;
+                    active.push(entering);
+                    break;
+                }
+                if let Some(i) = leaving {
+                    remove(&mut j, &mut r, &mut u, i, q, n);
+                    active.remove(i);
+                }
+            }
+        }
+        let largest_multiplier = active
+            .iter()
+            .zip(&u)
+            .filter(|(k, _)| matches!(k, Kind::Row(_)))
+            .map(|(_, u)| *u)
+            .fold(0.0, f64::max);
+        Ok(Solution {
+            x,
+            largest_multiplier,
+        })
+    }
+}
+
+fn dot(a: &Row, b: &Row, n: usize) -> f64 {
+    a[..n].iter().zip(&b[..n]).map(|(x, y)| x * y).sum()
+}
+
+/// `L^-T` for `H = L L'`.
+fn inverse_transposed_factor(h: &Matrix, n: usize) -> Option<Matrix> {
+    let mut l: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+    for i in 0..n {
+        for k in 0..=i {
+            let sum = h[i][k] - dot(&l[i], &l[k], k);
+            if i == k {
+                // negated on purpose: a NaN is not positive
+                if !(sum > 0.0) {
+                    return None;
+                }
+                l[i][i] = sum.sqrt();
+            } else {
+                l[i][k] = sum / l[k][k];
+            }
+        }
+    }
+    let mut inverse: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+    // column c of L^-1 is row c of its transpose
+    for c in 0..n {
+        inverse[c][c] = 1.0 / l[c][c];
+        for i in c + 1..n {
+            let sum: f64 = (c..i).map(|k| l[i][k] * inverse[c][k]).sum();
+            inverse[c][i] = -sum / l[i][i];
+        }
+    }
+    Some(inverse)
+}
+
+/// Rotates `d` below `q` to zero and appends it to `R`.
+fn add(j: &mut Matrix, r: &mut Matrix, d: &mut Row, q: usize, n: usize) {
+    for k in (q + 1..n).rev() {
+        if d[k] == 0.0 {
+            continue;
+        }
+        let h = d[k - 1].hypot(d[k]);
+        let (c, s) = (d[k - 1] / h, d[k] / h);
+        (d[k - 1], d[k]) = (h, 0.0);
+        for row in j.iter_mut().take(n) {
+            let (a, b) = (row[k - 1], row[k]);
+            row[k - 1] = c * a + s * b;
+            row[k] = c * b - s * a;
+        }
+    }
+    for i in 0..=q {
+        r[i][q] = d[i];
+    }
+}
+
+/// Drops active constraint `i` of `q`.
+fn remove(j: &mut Matrix, r: &mut Matrix, u: &mut [f64], i: usize, q: usize, n: usize) {
+    for k in i..q - 1 {
+        u[k] = u[k + 1];
+        for row in r.iter_mut().take(q) {
+            row[k] = row[k + 1];
+        }
+    }
+    for k in i..q - 1 {
+        let h = r[k][k].hypot(r[k + 1][k]);
+        if h == 0.0 {
+            continue;
+        }
+        let (c, s) = (r[k][k] / h, r[k + 1][k] / h);
+        for m in k..q - 1 {
+            let (a, b) = (r[k][m], r[k + 1][m]);
+            r[k][m] = c * a + s * b;
+            r[k + 1][m] = c * b - s * a;
+        }
+        for row in j.iter_mut().take(n) {
+            let (a, b) = (row[k], row[k + 1]);
+            row[k] = c * a + s * b;
+            row[k + 1] = c * b - s * a;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+
+    /// Projected gradient on the exact penalty is slow; the optimality conditions are the definition.
+    #[test]
+    fn solutions_are_feasible_and_no_feasible_direction_descends() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(41);
+        for _ in 0..400 {
+            let n = rng.random_range(2..14);
+            let mut root: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+            let mut hessian = root;
+            let mut gradient = [0.0; MAX_VARIABLES];
+            for i in 0..n {
+                gradient[i] = rng.random_range(-5.0..5.0);
+                for k in 0..n {
+                    root[i][k] = rng.random_range(-1.0..1.0);
+                }
+            }
+            for i in 0..n {
+                for k in 0..n {
+                    hessian[i][k] = dot(&root[i], &root[k], n) + if i == k { 0.05 } else { 0.0 };
+                }
+            }
+            let (low, high) = ([-1.0; MAX_VARIABLES], [2.0; MAX_VARIABLES]);
+            let rows: Vec<Constraint> = (0..rng.random_range(0..6))
+                .map(|_| {
+                    let mut coefficients = [0.0; MAX_VARIABLES];
+                    coefficients[..n]
+                        .iter_mut()
+                        .for_each(|c| *c = rng.random_range(-1.0..1.0));
+                    // the origin satisfies every row: the programme is feasible
+                    Constraint {
+                        coefficients,
+                        bound: rng.random_range(-1.0..0.0),
+                    }
+                })
+                .collect();
+            let programme = Programme {
+                size: n,
+                hessian: &hessian,
+                gradient: &gradient,
+                low: &low,
+                high: &high,
+                rows: &rows,
+            };
+            let x = programme.solve().expect("positive definite").x;
+            let feasible = |p: &Row| {
+                (0..n).all(|i| p[i] >= -1.0 - 1e-7 && p[i] <= 2.0 + 1e-7)
+                    && rows
+                        .iter()
+                        .all(|r| dot(&r.coefficients, p, n) >= r.bound - 1e-7)
+            };
+            let value = |p: &Row| {
+                (0..n)
+                    .map(|i| p[i] * (0.5 * dot(&hessian[i], p, n) + gradient[i]))
+                    .sum::<f64>()
+            };
+            assert!(feasible(&x), "{x:?}");
+            let best = value(&x);
+            for _ in 0..300 {
+                let scale = 10f64.powf(rng.random_range(-4.0..0.5));
+                let mut p = x;
+                p[..n]
+                    .iter_mut()
+                    .for_each(|v| *v += scale * rng.random_range(-1.0..1.0));
+                p[..n].iter_mut().for_each(|v| *v = v.clamp(-1.0, 2.0));
+                if feasible(&p) {
+                    assert!(value(&p) >= best - 1e-6, "{} {best}", value(&p));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn contradicting_rows_are_left_out() {
+        let mut hessian: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+        hessian[0][0] = 1.0;
+        let row = |c: f64, bound: f64| {
+            let mut coefficients = [0.0; MAX_VARIABLES];
+            coefficients[0] = c;
+            Constraint {
+                coefficients,
+                bound,
+            }
+        };
+        let programme = Programme {
+            size: 1,
+            hessian: &hessian,
+            gradient: &[0.0; MAX_VARIABLES],
+            low: &[-9.0; MAX_VARIABLES],
+            high: &[9.0; MAX_VARIABLES],
+            rows: &[row(1.0, 2.0), row(-1.0, 5.0)],
+        };
+        let x = programme.solve().expect("solvable").x[0];
+        assert!((x - 2.0).abs() < 1e-9 || (x + 5.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,172 @@
+//! Finds the lengths of a manoeuvre: sequential quadratic programming with an L1 merit.
+
+use super::model::{Model, Scene};
+use super::quadratic::{MAX_VARIABLES, Programme, Row};
+use super::template::{Slot, Template};
+
+/// Metres by which one step may change a length, at first, at most, at least.
+const FIRST_RADIUS_M: f64 = 30.0;
+const LARGEST_RADIUS_M: f64 = 400.0;
+const SMALLEST_RADIUS_M: f64 = 0.02;
+
+/// Steps of one refinement at most.
+pub(crate) const MAX_STEPS: usize = 30;
+
+/// Radians. Longest turn of one slot.
+const LONGEST_ARC: f64 = 2.0;
+
+/// Relative decrease that is no progress.
+const STALLED: f64 = 5e-4;
+
+/// A manoeuvre to begin from.
+#[derive(Debug, Clone)]
+pub(crate) struct Seed {
+    pub template: Template,
+    pub lengths: Row,
+}
+
+/// A manoeuvre clear of every set, with the margin, as far as its contact rows tell.
+#[derive(Debug, Clone)]
+pub(crate) struct Refined {
+    pub model: Model,
+}
+
+/// A refinement under way.
+#[derive(Debug)]
+pub(crate) struct Refinement {
+    template: Template,
+    lengths: Row,
+    model: Model,
+    best: Option<Refined>,
+    penalty: f64,
+    radius: f64,
+    stalled: usize,
+    steps: usize,
+    finished: bool,
+}
+
+impl Refinement {
+    /// `None` when the seed's ending does not fit.
+    pub(crate) fn new(scene: &Scene, seed: Seed) -> Option<Self> {
+        let model = scene.model(&seed.template, &seed.lengths)?;
+        let mut refinement = Self {
+            template: seed.template,
+            lengths: seed.lengths,
+            model,
+            best: None,
+            penalty: 1.0,
+            radius: FIRST_RADIUS_M,
+            stalled: 0,
+            steps: 0,
+            finished: false,
+        };
+        refinement.keep();
+        Some(refinement)
+    }
+
+    pub(crate) fn is_finished(&self) -> bool {
+        self.finished
+    }
+
+    pub(crate) fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// The cheapest clear manoeuvre so far.
+    pub(crate) fn best(&self) -> Option<&Refined> {
+        self.best.as_ref()
+    }
+
+    /// Cost of the manoeuvre at hand, clear or not, m².
+    pub(crate) fn cost(&self) -> f64 {
+        self.model.cost
+    }
+
+    /// Gives up: another one is ahead.
+    pub(crate) fn stop(&mut self) {
+        self.finished = true;
+    }
+
+    fn keep(&mut self) {
+        let clear = self.model.least_slack >= 0.0;
+        let better = self
+            .best
+            .as_ref()
+            .is_none_or(|b| self.model.cost < b.model.cost);
+        if clear && better {
+            self.best = Some(Refined {
+                model: self.model.clone(),
+            });
+        }
+    }
+
+    /// One step.
+    pub(crate) fn step(&mut self, scene: &Scene) {
+        self.steps += 1;
+        if self.steps > MAX_STEPS || !self.advance(scene) {
+            self.finished = true;
+        }
+    }
+
+    fn advance(&mut self, scene: &Scene) -> bool {
+        let n = self.template.free();
+        let (mut low, mut high) = ([0.0; MAX_VARIABLES], [0.0; MAX_VARIABLES]);
+        let longest = LONGEST_ARC * scene.problem.own.turning_radius;
+        for i in 0..n {
+            low[i] = (-self.radius).max(-self.lengths[i]);
+            high[i] = self.radius;
+            if matches!(self.template.slots[i], Slot::Arc { .. }) {
+                high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
+            }
+        }
+        let mut hessian = self.model.hessian;
+        let floor = 1e-5 * self.model.cost.max(20.0);
+        for (i, row) in hessian.iter_mut().enumerate().take(n) {
+            row[i] += floor;
+        }
+        let programme = Programme {
+            size: n,
+            hessian: &hessian,
+            gradient: &self.model.gradient,
+            low: &low,
+            high: &high,
+            rows: &self.model.rows,
+        };
+        let Some(solution) = programme.solve() else {
+            return false;
+        };
+        self.penalty = self.penalty.max(1.5 * solution.largest_multiplier);
+        let step = solution.x;
+        let mut trial = self.lengths;
+        for i in 0..n {
+            trial[i] = (trial[i] + step[i]).max(0.0);
+        }
+        let largest = step[..n].iter().fold(0.0_f64, |m, s| m.max(s.abs()));
+        let linear: f64 = (0..n).map(|i| step[i] * self.model.gradient[i]).sum();
+        let bent: f64 = (0..n)
+            .map(|i| step[i] * (0..n).map(|k| hessian[i][k] * step[k]).sum::<f64>())
+            .sum();
+        let predicted = -(linear + 0.5 * bent) + self.penalty * self.model.violation;
+        let merit = self.model.cost + self.penalty * self.model.violation;
+        let Some(model) = scene.model(&self.template, &trial) else {
+            return self.shrink(largest);
+        };
+        let gained = merit - model.cost - self.penalty * model.violation;
+        if !(gained > 0.0 && gained >= 0.05 * predicted) {
+            return self.shrink(largest);
+        }
+        let settled = gained < STALLED * model.cost.max(1.0) && model.violation < 1e-3;
+        self.stalled = if settled { self.stalled + 1 } else { 0 };
+        (self.lengths, self.model) = (trial, model);
+        self.keep();
+        if gained > 0.6 * predicted && largest > 0.9 * self.radius {
+            self.radius = (1.7 * self.radius).min(LARGEST_RADIUS_M);
+        }
+        self.stalled < 2
+    }
+
+    fn shrink(&mut self, largest: f64) -> bool {
+        self.radius = 0.4 * largest.min(self.radius);
+        self.radius >= SMALLEST_RADIUS_M
+    }
+}

@@ -1,0 +1,260 @@
+//! Manoeuvres from which the refinement begins: the graph's plans, and canonical ones on both sides.
+
+use super::graph::State;
+use super::quadratic::{MAX_VARIABLES, Row};
+use super::refinement::Seed;
+use super::route::Route;
+use super::template::{Ending, Slot, Template};
+use crate::frame::Side;
+use crate::planner::{NodeKind, Problem};
+use crate::trajectory::Segment;
+
+/// Speeds of the templates: the finite set's extremes, and the desired one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Paces {
+    pub slow: f64,
+    pub normal: f64,
+    pub fast: f64,
+}
+
+impl Paces {
+    /// The least and the greatest moving speed, and the one nearest to the desired.
+    pub(crate) fn of(problem: &Problem) -> Self {
+        let moving: Vec<f64> = problem
+            .own
+            .speeds
+            .iter()
+            .copied()
+            .filter(|u| *u > 0.0)
+            .collect();
+        let desired = problem.desired.length() / problem.desired.duration();
+        let nearest = moving
+            .iter()
+            .copied()
+            .min_by(|a, b| (a - desired).abs().total_cmp(&(b - desired).abs()));
+        let fast = problem.own.max_speed();
+        Self {
+            slow: moving.first().copied().unwrap_or(fast),
+            normal: nearest.unwrap_or(fast),
+            fast,
+        }
+    }
+}
+
+/// A canonical manoeuvre: leave the route `lead` seconds before first contact, after `run` metres at
+/// the least speed; turn; a line; turn back; a line; return.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Canonical {
+    pub lead: f64,
+    pub run: f64,
+    pub turn: f64,
+    pub out: f64,
+    pub along: f64,
+    /// The turn out at the least speed, not at the greatest.
+    pub slow: bool,
+}
+
+/// Slots and lengths while they are put together.
+#[derive(Debug, Default)]
+struct Draft {
+    slots: Vec<Slot>,
+    lengths: Vec<f64>,
+}
+
+impl Draft {
+    fn push(&mut self, slot: Slot, length: f64) {
+        self.slots.push(slot);
+        self.lengths.push(length);
+    }
+
+    fn runs(&mut self, paces: &Paces, normal: f64, fast: f64, slow: f64) {
+        self.push(
+            Slot::Run {
+                speed: paces.normal,
+            },
+            normal,
+        );
+        self.push(Slot::Run { speed: paces.fast }, fast);
+        self.push(Slot::Run { speed: paces.slow }, slow);
+    }
+
+    fn seed(self, ending: Ending) -> Option<Seed> {
+        if self.slots.len() + 2 > MAX_VARIABLES {
+            return None;
+        }
+        let mut lengths: Row = [0.0; MAX_VARIABLES];
+        lengths[..self.lengths.len()].copy_from_slice(&self.lengths);
+        Some(Seed {
+            template: Template {
+                slots: self.slots,
+                ending,
+            },
+            lengths,
+        })
+    }
+}
+
+impl Canonical {
+    /// The seed on one side of the route, around a contact that begins at `contact` seconds.
+    pub(crate) fn seed(
+        &self,
+        problem: &Problem,
+        route: &Route,
+        side: Side,
+        contact: f64,
+        leg: usize,
+    ) -> Option<Seed> {
+        let paces = Paces::of(problem);
+        let arc = self.turn * problem.own.turning_radius;
+        let lead = ((contact - self.lead).max(0.0) * paces.normal).min(route.length());
+        let (slow, fast) = (paces.slow, paces.fast);
+        let mut draft = Draft::default();
+        draft.runs(&paces, lead, 0.0, self.run);
+        let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
+        draft.push(Slot::Arc { side, speed: fast }, fast_arc);
+        draft.push(Slot::Arc { side, speed: slow }, slow_arc);
+        draft.push(Slot::Line { speed: slow }, self.out);
+        draft.push(Slot::Line { speed: fast }, 0.0);
+        let back = side.opposite();
+        draft.push(
+            Slot::Arc {
+                side: back,
+                speed: slow,
+            },
+            0.0,
+        );
+        draft.push(
+            Slot::Arc {
+                side: back,
+                speed: fast,
+            },
+            arc,
+        );
+        draft.push(Slot::Line { speed: slow }, 0.0);
+        draft.push(Slot::Line { speed: fast }, self.along);
+        draft.push(
+            Slot::Arc {
+                side: back,
+                speed: fast,
+            },
+            0.4 * problem.own.turning_radius,
+        );
+        draft.seed(Ending::Return { leg, speed: fast })
+    }
+}
+
+/// Keeping to the route: on schedule until `at` seconds, then `slow` and `fast` metres.
+pub(crate) fn paced(
+    problem: &Problem,
+    route: &Route,
+    at: f64,
+    fast: f64,
+    slow: f64,
+) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let mut draft = Draft::default();
+    draft.runs(
+        &paces,
+        (at.max(0.0) * paces.normal).min(route.length()),
+        fast,
+        slow,
+    );
+    draft.seed(Ending::Follow)
+}
+
+/// A plan of the graph as a seed: its arcs and lines in its own order, each with the other speeds beside
+/// it, and an empty turn back where it has one turn only. `way` are the states after the root.
+pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (last, before) = way.split_last()?;
+    let (departure, vertices) = before.split_first()?;
+    if departure.kind != NodeKind::Departure || vertices.is_empty() {
+        return None;
+    }
+    let mut draft = Draft::default();
+    let along: f64 = departure.motion.iter().map(Segment::length).sum();
+    draft.runs(&paces, along, 0.0, 0.0);
+    let mut side = None;
+    for vertex in vertices {
+        let turn = vertex.motion.iter().find(|s| s.is_arc());
+        let line = vertex.motion.iter().find(|s| !s.is_arc());
+        side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
+        group(
+            &mut draft,
+            &paces,
+            side.unwrap_or(Side::Starboard),
+            turn,
+            line,
+        );
+    }
+    let back = side.unwrap_or(Side::Starboard).opposite();
+    if vertices.len() == 1 {
+        group(&mut draft, &paces, back, None, None);
+    }
+    match last.ending {
+        Ending::Return { leg, .. } => {
+            let first = last.motion.first().filter(|s| s.is_arc());
+            let side = first
+                .and_then(|s| Side::of_turn(s.turn_rate))
+                .unwrap_or(back);
+            let length = first.map_or(0.0, Segment::length);
+            draft.push(
+                Slot::Arc {
+                    side,
+                    speed: paces.fast,
+                },
+                length,
+            );
+            draft.seed(Ending::Return {
+                leg,
+                speed: paces.fast,
+            })
+        }
+        Ending::Goal { side, speed } => draft.seed(Ending::Goal { side, speed }),
+        Ending::Follow => None,
+    }
+}
+
+fn group(
+    draft: &mut Draft,
+    paces: &Paces,
+    side: Side,
+    turn: Option<&Segment>,
+    line: Option<&Segment>,
+) {
+    let at = |segment: Option<&Segment>, speed: f64| {
+        segment
+            .filter(|s| (s.speed - speed).abs() < 1e-9)
+            .map_or(0.0, Segment::length)
+    };
+    let mut speeds = vec![paces.slow, paces.normal, paces.fast];
+    speeds.dedup();
+    // a speed of its own goes to the nearest
+    let nearest = |segment: Option<&Segment>| {
+        segment.map(|s| {
+            let speed = speeds
+                .iter()
+                .copied()
+                .min_by(|a, b| (a - s.speed).abs().total_cmp(&(b - s.speed).abs()))
+                .unwrap_or(s.speed);
+            Segment {
+                speed,
+                duration: s.length() / speed,
+                ..*s
+            }
+        })
+    };
+    let (turn, line) = (nearest(turn), nearest(line));
+    for speed in &speeds {
+        draft.push(
+            Slot::Arc {
+                side,
+                speed: *speed,
+            },
+            at(turn.as_ref(), *speed),
+        );
+    }
+    for speed in &speeds {
+        draft.push(Slot::Line { speed: *speed }, at(line.as_ref(), *speed));
+    }
+}

@@ -1,0 +1,207 @@
+//! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
+
+use super::graph::State;
+use super::hazard::first_contact;
+use super::model::Scene;
+use super::refinement::{MAX_STEPS, Refinement, Seed};
+use super::seeds::{Canonical, from_graph, paced};
+use crate::frame::{Side, cross};
+use crate::planner::cost::space_time_error;
+use crate::trajectory::Segment;
+
+/// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin.
+const CANONICAL: [Canonical; 4] = [
+    Canonical {
+        lead: 20.0,
+        run: 0.0,
+        turn: 0.7,
+        out: 40.0,
+        along: 80.0,
+        slow: false,
+    },
+    Canonical {
+        lead: 60.0,
+        run: 0.0,
+        turn: 0.8,
+        out: 80.0,
+        along: 400.0,
+        slow: false,
+    },
+    Canonical {
+        lead: 12.0,
+        run: 20.0,
+        turn: 1.0,
+        out: 20.0,
+        along: 500.0,
+        slow: true,
+    },
+    Canonical {
+        lead: 30.0,
+        run: 20.0,
+        turn: 1.2,
+        out: 60.0,
+        along: 100.0,
+        slow: true,
+    },
+];
+
+/// Steps after which a refinement may be overtaken.
+const RACE_FROM: usize = 6;
+
+/// Relative excess over the best that a refinement may still have at first.
+const RACE_SLACK: f64 = 0.5;
+
+/// A clear trajectory.
+#[derive(Debug, Clone)]
+struct Candidate {
+    motion: Vec<Segment>,
+    cost: f64,
+}
+
+/// What is known so far.
+#[derive(Debug)]
+pub(crate) struct Selection<'a> {
+    scene: Scene<'a>,
+    signatures: Vec<Vec<bool>>,
+    seeds: Vec<Seed>,
+    best: Option<Candidate>,
+    graph_cost: Option<f64>,
+}
+
+impl<'a> Selection<'a> {
+    pub(crate) fn new(scene: Scene<'a>) -> Self {
+        Self {
+            scene,
+            signatures: Vec::new(),
+            seeds: Vec::new(),
+            best: None,
+            graph_cost: None,
+        }
+    }
+
+    /// Ways around the targets seen so far.
+    pub(crate) fn signatures(&self) -> usize {
+        self.signatures.len()
+    }
+
+    /// Cost of the graph's best plan, m².
+    pub(crate) fn graph_cost(&self) -> Option<f64> {
+        self.graph_cost
+    }
+
+    /// Takes a plan of the graph: the states after the root, already tested.
+    pub(crate) fn offer(&mut self, cost: f64, way: &[&State]) {
+        let motion: Vec<Segment> = way.iter().flat_map(|s| s.motion.iter().copied()).collect();
+        let signature = self.signature(&motion);
+        self.graph_cost.get_or_insert(cost);
+        if self.signatures.contains(&signature) {
+            return;
+        }
+        self.signatures.push(signature);
+        self.seeds.extend(from_graph(self.scene.problem, way));
+        self.consider(motion);
+    }
+
+    /// On which side each target is passed: the sign of its relative bearing rate at the least distance
+    /// of the middles.
+    fn signature(&self, motion: &[Segment]) -> Vec<bool> {
+        self.scene
+            .hazards
+            .iter()
+            .map(|h| {
+                let mut nearest = (f64::INFINITY, false);
+                for s in motion {
+                    for k in 0..=4 {
+                        let t = s.start_time + s.duration * f64::from(k) / 4.0;
+                        let (r, w) = h.relative(s.pose_at(t).position, s.velocity_at(t), t);
+                        if r.norm() < nearest.0 {
+                            nearest = (r.norm(), cross(w, r) > 0.0);
+                        }
+                    }
+                }
+                nearest.1
+            })
+            .collect()
+    }
+
+    /// Refines the graph's plans and the canonical ones; true when the time ran out.
+    pub(crate) fn refine(
+        &mut self,
+        contacts: &[f64],
+        first: f64,
+        out_of_time: &dyn Fn() -> bool,
+    ) -> bool {
+        let scene = self.scene;
+        let (problem, route) = (scene.problem, scene.route);
+        let mut seeds = std::mem::take(&mut self.seeds);
+        let leg = problem.desired.legs().len() - 1;
+        for canonical in CANONICAL {
+            for side in Side::BOTH {
+                seeds.extend(canonical.seed(problem, route, side, first, leg));
+            }
+        }
+        for contact in contacts.iter().take(2) {
+            seeds.extend(paced(problem, route, contact - 80.0, 0.0, 200.0));
+            seeds.extend(paced(problem, route, contact - 80.0, 200.0, 0.0));
+        }
+        let mut running: Vec<Refinement> = seeds
+            .into_iter()
+            .filter_map(|s| Refinement::new(&scene, s))
+            .collect();
+        let mut best = f64::INFINITY;
+        for round in 0..MAX_STEPS {
+            for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
+                if out_of_time() {
+                    self.collect(&running);
+                    return true;
+                }
+                refinement.step(&scene);
+                if let Some(found) = refinement.best() {
+                    best = best.min(found.model.cost);
+                }
+            }
+            let allowed = best * (1.0 + RACE_SLACK * (1.0 - round as f64 / MAX_STEPS as f64)) + 1.0;
+            for refinement in running.iter_mut().filter(|r| r.steps() >= RACE_FROM) {
+                if refinement.cost() > allowed {
+                    refinement.stop();
+                }
+            }
+        }
+        self.collect(&running);
+        false
+    }
+
+    /// Tests what the refinements found, cheapest first, until one passes.
+    fn collect(&mut self, running: &[Refinement]) {
+        let mut found: Vec<_> = running.iter().filter_map(Refinement::best).collect();
+        found.sort_by(|a, b| a.model.cost.total_cmp(&b.model.cost));
+        for refined in found {
+            if self.consider(refined.model.sailed.motion()) {
+                return;
+            }
+        }
+    }
+
+    /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
+    fn consider(&mut self, motion: Vec<Segment>) -> bool {
+        let problem = self.scene.problem;
+        let cost: f64 = motion
+            .iter()
+            .map(|s| space_time_error(problem.desired, s, problem.time_weight))
+            .sum();
+        let in_time = motion
+            .last()
+            .is_some_and(|s| s.end_time() <= problem.horizon);
+        let clear =
+            in_time && cost.is_finite() && first_contact(self.scene.hazards, &motion).is_none();
+        if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
+            self.best = Some(Candidate { motion, cost });
+        }
+        clear
+    }
+
+    /// The cheapest clear trajectory and its cost, m².
+    pub(crate) fn cheapest(self) -> Option<(Vec<Segment>, f64)> {
+        self.best.map(|c| (c.motion, c.cost))
+    }
+}
