@@ -1,1 +1,266 @@
-//! Shapes of the initial set.
+//! Shapes of the initial set: where a target's ship may be, with what own ship is to keep of her
+//! folded in, and what the rules of the road add to it (`colregs.md` 3.2-3.3).
+
+use super::encounter::{Risk, Role, offset_from_wake, risk_distance};
+use crate::frame::{Pose, Vector, direction, to_port};
+use crate::geometry::{ConvexPolygon, outer_disc};
+use crate::target::{DomainKind, ShipTrack};
+use crate::tolerance;
+use crate::vessel::OwnShip;
+
+/// How much the sweep exceeds what the design inequality needs: covers a planner that does not find
+/// the exact optimum.
+const SWEEP_EXCESS: f64 = 0.1;
+
+/// Standard deviations of the position that the sets cover.
+const POSITION_SIGMAS: f64 = 3.0;
+
+/// Radians. Own ship this far off the wake of the ship that she overtakes passes on that side (5°).
+const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
+
+/// A bevelled box about a ship, in her lengths: how far it reaches, and the fraction of the side reach
+/// to which it is bevelled at the bow and at the stern.
+struct BevelledBox {
+    fore: f64,
+    aft: f64,
+    port: f64,
+    starboard: f64,
+    bow: f64,
+    stern: f64,
+}
+
+impl BevelledBox {
+    /// The symmetric base of the "colregs" domain: two lengths ahead and astern, one and a half
+    /// abeam. The bevel leans by a multiple of 22.5°, like the sides of the disc that is added: the
+    /// sum has 16 edges instead of 20. The safety margin is not in here, it is in that disc.
+    fn symmetric() -> Self {
+        let (along, abeam) = (2.0, 1.5);
+        let bevel = 1.0 - (std::f64::consts::PI / 8.0).tan() * (along / 2.0) / abeam;
+        Self {
+            fore: along,
+            aft: along,
+            port: abeam,
+            starboard: abeam,
+            bow: bevel,
+            stern: bevel,
+        }
+    }
+
+    /// The "paper" domain: a large forbidden region in front and to starboard.
+    fn one_size() -> Self {
+        Self {
+            fore: 6.0,
+            aft: 2.0,
+            port: 1.5,
+            starboard: 4.0,
+            bow: 0.5,
+            stern: 0.5,
+        }
+    }
+
+    /// `P(f, a, p, s, kf, ka)` of `colregs.md` 3.3, `(ahead, to port)` in units of `length`.
+    fn corners(&self, length: f64) -> [Vector; 8] {
+        [
+            (self.fore, -self.bow * self.starboard),
+            (self.fore, self.bow * self.port),
+            (self.fore / 2.0, self.port),
+            (-self.aft / 2.0, self.port),
+            (-self.aft, self.stern * self.port),
+            (-self.aft, -self.stern * self.starboard),
+            (-self.aft / 2.0, -self.starboard),
+            (self.fore / 2.0, -self.starboard),
+        ]
+        .map(|(ahead, port)| Vector::new(ahead, port) * length)
+    }
+}
+
+/// The two initial sets of one target, for own ship's centre, metres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shapes {
+    /// Hull, own ship on any heading, safety margin, position uncertainty: safety is claimed on this.
+    pub hard: ConvexPolygon,
+    /// `hard` and the domain around it; contains `hard`.
+    pub shaped: ConvexPolygon,
+    /// Metres by which the shape was drawn back to let own ship start outside: the largest distance
+    /// of a point of the full shape from the one used. 0 when it was not.
+    pub reduced: f64,
+}
+
+/// The initial sets of a tracked ship, `colregs.md` 3.3:
+///
+/// - hard = hull ⊕ disc(own half-diagonal + safety margin + three standard deviations);
+/// - shaped = (conv(base ∪ hull) ⊕ `[0, e]`) ⊕ the same disc.
+///
+/// The disc is an outer 16-gon aligned with the target. The base holds the hull before it is swept, so
+/// that the shape contains the hard set by construction and, the base being symmetric, its asymmetry
+/// is exactly `e . n_bad`, hull or not. The base is sized by the target's length alone; margin and own
+/// size enter once, with the disc. `risk` is the first instant of risk, for the "colregs" domain only:
+/// its `e` is [`sweep`]. A target without risk, at rest, or to be stood on for, keeps the bare base.
+///
+/// Where the shape, but not the hard set, contains own ship's start, it is drawn back just enough to
+/// leave her [`tolerance::START_M`] outside: first `e` shrinks, then the base toward the hull. A
+/// start inside the hard set changes nothing: there is no plan to be had. A value that is not finite makes
+/// the set the origin; checked input has none.
+pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes {
+    let around = outer_disc(
+        own.hull.half_diagonal() + own.safety_margin + POSITION_SIGMAS * target.position_std,
+        target.pose.heading,
+    );
+    let hull = target.hull.polygon(&target.pose);
+    let hard = hull.minkowski_sum(&around);
+    if target.domain == DomainKind::Hull {
+        return Shapes {
+            shaped: hard.clone(),
+            hard,
+            reduced: 0.0,
+        };
+    }
+    let shape = Shape {
+        base: base(target, &hull),
+        sweep: match (target.domain, risk) {
+            (DomainKind::Colregs, Some(risk)) => sweep(own, target, risk),
+            _ => Vector::zeros(),
+        },
+        hull,
+        around,
+    };
+    let shaped = shape.at(1.0, 1.0);
+    let start = own.pose.position;
+    let clear = |set: &ConvexPolygon| set.signed_distance(start) >= tolerance::START_M;
+    if shaped.signed_distance(start) > 0.0 || hard.contains(start) {
+        return Shapes {
+            hard,
+            shaped,
+            reduced: 0.0,
+        };
+    }
+    let used = if clear(&shape.at(1.0, 0.0)) {
+        shape.at(1.0, largest(|swept| clear(&shape.at(1.0, swept))))
+    } else {
+        shape.at(largest(|grown| clear(&shape.at(grown, 0.0))), 0.0)
+    };
+    let reduced = shaped
+        .vertices()
+        .iter()
+        .map(|p| used.signed_distance(*p))
+        .fold(0.0, f64::max);
+    Shapes {
+        hard,
+        shaped: used,
+        reduced,
+    }
+}
+
+/// `e` of `colregs.md` 3.3, metres: which way, and how far, the base is swept. Passing on the side that
+/// the rules forbid then costs `|e| = 2 (1 + 0.1)` risk distances more of displacement than on the other,
+/// so that the cheaper side is the compliant one for every miss distance that is a risk (3.2).
+///
+/// The direction is the normal of the relative velocity at the first instant of risk on the bad side:
+/// the target's starboard side in a head-on or port-to-port meeting; ahead of her when giving way; when
+/// overtaking her starboard side, unless own ship is more than 5° to starboard of her wake, then her
+/// port side. Zero for every other role.
+pub fn sweep(own: &OwnShip, target: &ShipTrack, risk: &Risk) -> Vector {
+    let ahead = direction(target.pose.heading);
+    let port = to_port(ahead);
+    // the bad side, and what decides when the normal has no part in it
+    let (bad, otherwise) = match risk.role {
+        Role::HeadOn | Role::PortToPort => (-port, ahead),
+        Role::GiveWay => (ahead, -port),
+        Role::Overtaking if offset_from_wake(risk) > OFF_THE_WAKE => (port, ahead),
+        Role::Overtaking => (-port, ahead),
+        Role::StandOn | Role::Overtaken | Role::BothGiveWay | Role::Static | Role::None => {
+            return Vector::zeros();
+        }
+    };
+    let relative = risk.own.velocity() - risk.target.velocity();
+    let Some(along) = relative.try_normalize(0.0) else {
+        return Vector::zeros();
+    };
+    let normal = to_port(along);
+    let toward = match normal.dot(&bad) {
+        0.0 => normal.dot(&otherwise),
+        part => part,
+    };
+    normal * toward.signum() * (2.0 * (1.0 + SWEEP_EXCESS) * risk_distance(own, target))
+}
+
+/// What a shape is made of, in the plane.
+struct Shape {
+    base: ConvexPolygon,
+    hull: ConvexPolygon,
+    sweep: Vector,
+    around: ConvexPolygon,
+}
+
+impl Shape {
+    /// The shape with the base grown from the hull (0) to its full size (1), and the given fraction of
+    /// the sweep. Nested: more of either contains less of it.
+    fn at(&self, grown: f64, swept: f64) -> ConvexPolygon {
+        let body = if grown < 1.0 {
+            let (base, hull) = (self.base.scaled(grown), self.hull.scaled(1.0 - grown));
+            base.minkowski_sum(&hull)
+        } else {
+            self.base.clone()
+        };
+        let way = [Vector::zeros(), self.sweep * swept];
+        let way = hull_or_origin(&way);
+        body.minkowski_sum(&way).minkowski_sum(&self.around)
+    }
+}
+
+/// conv(base ∪ hull) in the world.
+fn base(target: &ShipTrack, hull: &ConvexPolygon) -> ConvexPolygon {
+    let (length, half_length, half_beam) = (
+        target.hull.length,
+        target.hull.length / 2.0,
+        target.hull.beam / 2.0,
+    );
+    let mut points: Vec<Vector> = match target.domain {
+        DomainKind::Hull => Vec::new(),
+        DomainKind::Colregs => BevelledBox::symmetric().corners(length).to_vec(),
+        DomainKind::Paper => BevelledBox::one_size().corners(length).to_vec(),
+        DomainKind::Custom {
+            fore,
+            aft,
+            port,
+            starboard,
+        } => {
+            let (fore, aft) = (half_length + fore, -half_length - aft);
+            let (port, starboard) = (half_beam + port, -half_beam - starboard);
+            [
+                (fore, starboard),
+                (fore, port),
+                (aft, port),
+                (aft, starboard),
+            ]
+            .map(|(ahead, port)| Vector::new(ahead, port))
+            .to_vec()
+        }
+    };
+    let pose: &Pose = &target.pose;
+    for p in &mut points {
+        *p = pose.world_coordinates(*p);
+    }
+    points.extend_from_slice(hull.vertices());
+    hull_or_origin(&points)
+}
+
+fn hull_or_origin(points: &[Vector]) -> ConvexPolygon {
+    ConvexPolygon::hull(points).unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()))
+}
+
+/// The largest fraction in `[0, 1]` that satisfies a condition which, once lost, stays lost; by
+/// bisection to rounding. 0 when none does.
+fn largest(holds: impl Fn(f64) -> bool) -> f64 {
+    const STEPS: usize = 40;
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..STEPS {
+        let middle = 0.5 * (low + high);
+        if holds(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}

@@ -3,4 +3,7 @@
 mod domain;
 mod encounter;
 
-pub use encounter::{Encounter, Role};
+pub use domain::{Shapes, shapes};
+pub use encounter::{
+    Encounter, Risk, Role, SteadyShip, encounter, first_risk, raw_role, risk_distance,
+};
