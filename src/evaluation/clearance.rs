@@ -156,3 +156,140 @@ impl Body {
         best
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ConvexPolygon;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn polygon(rng: &mut ChaCha8Rng, extent: f64) -> ConvexPolygon {
+        let points: Vec<Vector> = (0..rng.random_range(1..7))
+            .map(|_| {
+                let p = Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
+                let p = if rng.random_bool(0.3) {
+                    p.map(f64::round)
+                } else {
+                    p
+                };
+                p * extent
+            })
+            .collect();
+        ConvexPolygon::hull(&points).expect("finite")
+    }
+
+    fn segment(rng: &mut ChaCha8Rng) -> Segment {
+        let position = Vector::new(rng.random_range(-60.0..60.0), rng.random_range(-60.0..60.0));
+        let turn_rate = if rng.random_bool(0.5) {
+            rng.random_range(-0.3..0.3)
+        } else {
+            0.0
+        };
+        Segment {
+            start: Pose::new(position, rng.random_range(-3.0..3.0)),
+            start_time: rng.random_range(0.0..5.0),
+            duration: rng.random_range(0.0..15.0),
+            speed: rng.random_range(0.0..8.0),
+            turn_rate,
+        }
+    }
+
+    #[test]
+    fn least_distances_match_a_dense_scan() {
+        let mut rng = ChaCha8Rng::seed_from_u64(21);
+        let hull = Hull {
+            length: 12.0,
+            beam: 4.0,
+        };
+        for case in 0..400 {
+            let (initial, velocity) = (polygon(&mut rng, 15.0), polygon(&mut rng, 2.0));
+            let set = MovingSet::new(&initial, &velocity);
+            let s = segment(&mut rng);
+            let whole = case % 2 == 0;
+            let body = if whole {
+                Body::hull(&hull)
+            } else {
+                Body::POINT
+            };
+            let found = least_distance(&[s], body, &set);
+            let at = |time: f64| {
+                let section = initial.minkowski_sum(&velocity.scaled(time));
+                let pose = s.pose_at(time);
+                if whole {
+                    hull.polygon(&pose).separation(&section)
+                } else {
+                    section.signed_distance(pose.position)
+                }
+            };
+            let scan = (0..=2000)
+                .map(|i| at(s.start_time + s.duration * f64::from(i) / 2000.0))
+                .fold(f64::INFINITY, f64::min);
+            assert!(found.certified);
+            assert!((at(found.time) - found.value).abs() < 1e-9, "{found:?}");
+            assert!(found.value <= scan + 1e-7, "{found:?} {scan}");
+            assert!(scan - found.value < 0.1, "{found:?} {scan}");
+        }
+    }
+
+    #[test]
+    fn sliding_along_a_face_costs_few_probes() {
+        let square = |r: f64| {
+            ConvexPolygon::hull(&[
+                Vector::new(-r, -r),
+                Vector::new(r, -r),
+                Vector::new(r, r),
+                Vector::new(-r, r),
+            ])
+            .expect("finite")
+        };
+        let set = MovingSet::new(&square(10.0), &square(0.5));
+        // along the growing upper face, then around a corner of a set at rest
+        let slide = Segment {
+            start: Pose::new(Vector::new(-8.0, 10.0), 0.5),
+            start_time: 0.0,
+            duration: 60.0,
+            speed: 0.5 / 0.5_f64.sin(),
+            turn_rate: 0.0,
+        };
+        let found = least_distance(&[slide], Body::POINT, &set);
+        assert!(
+            found.certified && found.value.abs() < 1e-9 && found.probes < 10,
+            "{found:?}"
+        );
+        let rest = MovingSet::new(&square(10.0), &ConvexPolygon::point(Vector::zeros()));
+        let round = Segment {
+            start: Pose::new(Vector::new(10.0, -40.0), std::f64::consts::FRAC_PI_2),
+            turn_rate: 0.05,
+            speed: 2.5,
+            ..slide
+        };
+        let corner = Segment {
+            start: Pose::new(
+                Vector::new(10.0, 10.0) - round.pose_after(20.0).position,
+                0.0,
+            ),
+            ..round
+        };
+        let touching = Segment {
+            start: Pose::new(
+                corner.start.position + round.start.position,
+                round.start.heading,
+            ),
+            ..round
+        };
+        let found = least_distance(&[touching], Body::POINT, &rest);
+        assert!(found.certified && found.probes < 300, "{found:?}");
+    }
+
+    #[test]
+    fn a_point_that_is_not_a_number_has_no_distance() {
+        let set = MovingSet::new(
+            &ConvexPolygon::point(Vector::zeros()),
+            &ConvexPolygon::point(Vector::zeros()),
+        );
+        let mut s = segment(&mut ChaCha8Rng::seed_from_u64(1));
+        s.start.position.x = f64::NAN;
+        assert!(least_distance(&[s], Body::POINT, &set).value.is_nan());
+    }
+}

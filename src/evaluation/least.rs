@@ -23,7 +23,8 @@ pub(super) struct Least {
     pub time: f64,
     /// False when the budget ran out before the bound was proven.
     pub certified: bool,
-    probes: usize,
+    /// Probes spent.
+    pub probes: usize,
 }
 
 impl Least {

@@ -236,3 +236,6 @@ fn passage(
     };
     (passage, clearance)
 }
+
+#[cfg(test)]
+mod tests;
