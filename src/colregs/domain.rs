@@ -1,78 +1,17 @@
 //! Shapes of the initial set: where a target's ship may be, with what own ship is to keep of her
 //! folded in, and what the rules of the road add to it (`colregs.md` 3.2-3.3).
 
-use super::encounter::{Risk, Role, offset_from_wake, risk_distance};
-use crate::frame::{Pose, Vector, direction, to_port};
+use super::bevelled_box::BevelledBox;
+use super::encounter::Risk;
+use super::sweep::sweep;
+use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, outer_disc};
 use crate::target::{DomainKind, ShipTrack};
 use crate::tolerance;
 use crate::vessel::OwnShip;
 
-/// How much the sweep exceeds what the design inequality needs: covers a planner that does not find
-/// the exact optimum.
-const SWEEP_EXCESS: f64 = 0.1;
-
 /// Standard deviations of the position that the sets cover.
 const POSITION_SIGMAS: f64 = 3.0;
-
-/// Radians. Own ship this far off the wake of the ship that she overtakes passes on that side (5°).
-const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
-
-/// A bevelled box about a ship, in her lengths: how far it reaches, and the fraction of the side reach
-/// to which it is bevelled at the bow and at the stern.
-struct BevelledBox {
-    fore: f64,
-    aft: f64,
-    port: f64,
-    starboard: f64,
-    bow: f64,
-    stern: f64,
-}
-
-impl BevelledBox {
-    /// The symmetric base of the "colregs" domain: two lengths ahead and astern, one and a half
-    /// abeam. The bevel leans by a multiple of 22.5°, like the sides of the disc that is added: the
-    /// sum has 16 edges instead of 20. The safety margin is not in here, it is in that disc.
-    fn symmetric() -> Self {
-        let (along, abeam) = (2.0, 1.5);
-        let bevel = 1.0 - (std::f64::consts::PI / 8.0).tan() * (along / 2.0) / abeam;
-        Self {
-            fore: along,
-            aft: along,
-            port: abeam,
-            starboard: abeam,
-            bow: bevel,
-            stern: bevel,
-        }
-    }
-
-    /// The "paper" domain: a large forbidden region in front and to starboard.
-    fn one_size() -> Self {
-        Self {
-            fore: 6.0,
-            aft: 2.0,
-            port: 1.5,
-            starboard: 4.0,
-            bow: 0.5,
-            stern: 0.5,
-        }
-    }
-
-    /// `P(f, a, p, s, kf, ka)` of `colregs.md` 3.3, `(ahead, to port)` in units of `length`.
-    fn corners(&self, length: f64) -> [Vector; 8] {
-        [
-            (self.fore, -self.bow * self.starboard),
-            (self.fore, self.bow * self.port),
-            (self.fore / 2.0, self.port),
-            (-self.aft / 2.0, self.port),
-            (-self.aft, self.stern * self.port),
-            (-self.aft, -self.stern * self.starboard),
-            (-self.aft / 2.0, -self.starboard),
-            (self.fore / 2.0, -self.starboard),
-        ]
-        .map(|(ahead, port)| Vector::new(ahead, port) * length)
-    }
-}
 
 /// The two initial sets of one target, for own ship's centre, metres.
 #[derive(Debug, Clone, PartialEq)]
@@ -149,39 +88,6 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
         shaped: used,
         reduced,
     }
-}
-
-/// `e` of `colregs.md` 3.3, metres: which way, and how far, the base is swept. Passing on the side that
-/// the rules forbid then costs `|e| = 2 (1 + 0.1)` risk distances more of displacement than on the other,
-/// so that the cheaper side is the compliant one for every miss distance that is a risk (3.2).
-///
-/// The direction is the normal of the relative velocity at the first instant of risk on the bad side:
-/// the target's starboard side in a head-on or port-to-port meeting; ahead of her when giving way; when
-/// overtaking her starboard side, unless own ship is more than 5° to starboard of her wake, then her
-/// port side. Zero for every other role.
-pub fn sweep(own: &OwnShip, target: &ShipTrack, risk: &Risk) -> Vector {
-    let ahead = direction(target.pose.heading);
-    let port = to_port(ahead);
-    // the bad side, and what decides when the normal has no part in it
-    let (bad, otherwise) = match risk.role {
-        Role::HeadOn | Role::PortToPort => (-port, ahead),
-        Role::GiveWay => (ahead, -port),
-        Role::Overtaking if offset_from_wake(risk) > OFF_THE_WAKE => (port, ahead),
-        Role::Overtaking => (-port, ahead),
-        Role::StandOn | Role::Overtaken | Role::BothGiveWay | Role::Static | Role::None => {
-            return Vector::zeros();
-        }
-    };
-    let relative = risk.own.velocity() - risk.target.velocity();
-    let Some(along) = relative.try_normalize(0.0) else {
-        return Vector::zeros();
-    };
-    let normal = to_port(along);
-    let toward = match normal.dot(&bad) {
-        0.0 => normal.dot(&otherwise),
-        part => part,
-    };
-    normal * toward.signum() * (2.0 * (1.0 + SWEEP_EXCESS) * risk_distance(own, target))
 }
 
 /// What a shape is made of, in the plane.
@@ -268,8 +174,8 @@ fn largest(holds: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colregs::{SteadyShip, raw_role};
-    use crate::frame::{Side, to_starboard};
+    use crate::colregs::{Role, SteadyShip, raw_role, risk_distance};
+    use crate::frame::{direction, to_port, to_starboard};
     use crate::vessel::Hull;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -513,6 +419,5 @@ mod tests {
         target.domain = DomainKind::Paper;
         let set = shapes(&own, &target, None).shaped;
         assert!(set.support(Vector::new(1.0, 0.0)) > set.support(Vector::new(-1.0, 0.0)));
-        assert_eq!(Side::BOTH[0], Side::Starboard);
     }
 }
