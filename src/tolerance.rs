@@ -29,3 +29,21 @@ pub const TIME_S: f64 = 1e-9;
 
 /// Relative. A turning radius, a speed or a curvature may differ from its limit by this fraction.
 pub const LIMIT: f64 = 1e-9;
+
+/// Metres. A plan has arrived when it ends this near to the last waypoint: the rounding of a chain of
+/// some hundred segments.
+pub const ARRIVAL_M: f64 = 1e-6;
+
+/// Metres. A shape that is drawn back to let own ship start outside leaves her this much room.
+pub const START_M: f64 = 1e-3;
+
+/// Metres. The checker's least distances to a set are exact to this; a tenth of [`DEPTH_M`], so that
+/// it decides on the depth and not on its own error.
+pub const MARGIN_M: f64 = 1e-7;
+
+/// Seconds. The checker does not look between two instants this close: two ships that close at 50 m/s
+/// move by half of [`DEPTH_M`] meanwhile.
+pub const INSTANT_S: f64 = 1e-8;
+
+/// Relative. Accuracy of integrals along a trajectory.
+pub const QUADRATURE: f64 = 1e-10;

@@ -1,35 +1,358 @@
-//! Roles of two ships that meet.
+//! Encounters, judged once along the undisturbed desired trajectory: `colregs.md` 1.3, "when planning once".
 
-/// What own ship is to a target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Role {
-    /// Rule 14.
-    HeadOn,
-    /// Rule 15, the other on own starboard side.
-    GiveWay,
-    /// Rule 17.
-    StandOn,
-    /// Rule 13, own ship overtakes.
-    Overtaking,
-    /// Rule 13, own ship is overtaken.
-    Overtaken,
-    /// Each on the other's starboard side: both keep clear.
-    BothGiveWay,
-    /// Each on the other's port side: treated like head-on.
-    PortToPort,
-    /// The target does not move: no role.
-    Static,
-    /// No risk of collision.
-    None,
-}
+use super::role::{Role, SteadyShip, raw_role};
+use crate::frame::{Pose, Vector, cross, heading_of, relative_bearing, wrap};
+use crate::geometry::ConvexPolygon;
+use crate::target::{Motion, ShipTrack, Target};
+use crate::trajectory::{DesiredLeg, DesiredTrajectory};
+use crate::vessel::OwnShip;
+
+/// m/s. Below this relative speed two ships keep their distance.
+const NO_RELATIVE_SPEED: f64 = 1e-9;
 
 /// A target as own ship meets it, judged from two motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Encounter {
     /// Own ship's role.
     pub role: Role,
-    /// Least distance of the hulls along the undisturbed desired trajectory, metres.
+    /// Least distance of the hulls along the undisturbed desired trajectory, metres; negative in overlap.
     pub undisturbed_dcpa: f64,
     /// And when, seconds.
     pub undisturbed_tcpa: f64,
+}
+
+/// The first instant at which Rule 7 sees risk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Risk {
+    /// Own ship's role then; never [`Role::None`] unless she is at rest.
+    pub role: Role,
+    /// Seconds.
+    pub time: f64,
+    /// Own ship on the desired trajectory then.
+    pub own: SteadyShip,
+    /// The target on its nominal track then.
+    pub target: SteadyShip,
+}
+
+/// Metres. Two centres that will pass nearer than this are at risk: twice the longer ship, or half of
+/// own safety margin where that is more (`colregs.md` 1.3).
+pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
+    (2.0 * own.hull.length.max(target.hull.length)).max(0.5 * own.safety_margin)
+}
+
+/// The first instant of risk along the undisturbed desired trajectory against the nominal track, for
+/// planning once (`colregs.md` 1.3): the distance shrinks, and two ships that held course and speed
+/// from that instant would pass within [`risk_distance`] and `horizon` seconds. Looked for from 0 to
+/// the horizon or the desired arrival, whichever is first. Own ship is where the desired trajectory
+/// has her, wherever she starts.
+///
+/// Closed form: on a leg the relative velocity is constant, hence also the distance at CPA. O(legs).
+/// A leg with a value that is not finite has no risk: the sets, not the role, carry safety.
+pub fn first_risk(
+    own: &OwnShip,
+    desired: &DesiredTrajectory,
+    target: &ShipTrack,
+    horizon: f64,
+) -> Option<Risk> {
+    let allowed = risk_distance(own, target);
+    desired.legs().iter().find_map(|leg| {
+        let from = leg.start_time;
+        let until = leg.end_time().min(horizon);
+        let relative = leg.direction * leg.speed - target.velocity();
+        let speed = relative.norm();
+        if !(speed > NO_RELATIVE_SPEED && from < until) {
+            return None;
+        }
+        let offset = target.pose_at(from).position - leg.start;
+        let closest = from + offset.dot(&relative) / (speed * speed);
+        let distance = cross(relative, offset).abs() / speed;
+        let time = from.max(closest - horizon);
+        if !(time < closest && time < until && distance <= allowed) {
+            return None;
+        }
+        let own = steady_on(leg, time);
+        let target = SteadyShip {
+            pose: target.pose_at(time),
+            speed: target.speed,
+        };
+        raw_role(&own, &target).map(|role| Risk {
+            role,
+            time,
+            own,
+            target,
+        })
+    })
+}
+
+/// The encounter of own ship on the undisturbed desired trajectory with one target. Explicit sets
+/// have no ship in them and so no role; the distance is then from own position to the set.
+pub fn encounter(
+    own: &OwnShip,
+    desired: &DesiredTrajectory,
+    target: &Target,
+    horizon: f64,
+) -> Encounter {
+    let risk = target
+        .ship()
+        .and_then(|ship| first_risk(own, desired, ship, horizon));
+    let mut found = Encounter {
+        role: risk.map_or(Role::None, |risk| risk.role),
+        undisturbed_dcpa: f64::INFINITY,
+        undisturbed_tcpa: 0.0,
+    };
+    for leg in desired.legs() {
+        let (from, until) = (leg.start_time, leg.end_time().min(horizon));
+        if !(from <= until) {
+            break;
+        }
+        let position = |time: f64| leg.start + leg.direction * (leg.speed * (time - from));
+        let closest = match &target.motion {
+            Motion::Ship(ship) => {
+                // the hulls keep their headings: their difference only translates
+                let heading = Pose::new(Vector::zeros(), heading_of(leg.direction));
+                let other = Pose::new(Vector::zeros(), ship.pose.heading);
+                let both = ship
+                    .hull
+                    .polygon(&other)
+                    .minkowski_sum(&own.hull.polygon(&heading).negated());
+                least(from, until, |time| {
+                    both.signed_distance(position(time) - ship.pose_at(time).position)
+                })
+            }
+            Motion::Sets { initial, velocity } => least(from, until, |time| {
+                section(initial, velocity, time).signed_distance(position(time))
+            }),
+        };
+        if closest.distance < found.undisturbed_dcpa {
+            found.undisturbed_dcpa = closest.distance;
+            found.undisturbed_tcpa = closest.time;
+        }
+    }
+    found
+}
+
+/// The angle in `[-pi, pi]` by which own ship lies off the target's wake, positive to the target's
+/// starboard side.
+pub(super) fn offset_from_wake(risk: &Risk) -> f64 {
+    let aspect = relative_bearing(&risk.target.pose, risk.own.pose.position);
+    -wrap(aspect - std::f64::consts::PI)
+}
+
+fn steady_on(leg: &DesiredLeg, time: f64) -> SteadyShip {
+    SteadyShip {
+        pose: Pose::new(
+            leg.start + leg.direction * (leg.speed * (time - leg.start_time)),
+            heading_of(leg.direction),
+        ),
+        speed: leg.speed,
+    }
+}
+
+fn section(initial: &ConvexPolygon, velocity: &ConvexPolygon, time: f64) -> ConvexPolygon {
+    initial.minkowski_sum(&velocity.scaled(time))
+}
+
+struct Closest {
+    distance: f64,
+    time: f64,
+}
+
+/// The least value of a convex function on an interval by golden section, to about 1e-9 of it; of
+/// equal values the first that was seen. The distance of two convex sets that move steadily is convex
+/// in time, overlap included.
+fn least(from: f64, until: f64, distance: impl Fn(f64) -> f64) -> Closest {
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    const STEPS: usize = 48;
+    let at = |time: f64| Closest {
+        distance: distance(time),
+        time,
+    };
+    let (mut low, mut high) = (from, until);
+    let mut left = at(high - GOLDEN * (high - low));
+    let mut right = at(low + GOLDEN * (high - low));
+    for _ in 0..STEPS {
+        if left.distance <= right.distance {
+            high = right.time;
+            right = left;
+            left = at(high - GOLDEN * (high - low));
+        } else {
+            low = left.time;
+            left = right;
+            right = at(low + GOLDEN * (high - low));
+        }
+    }
+    let mut best = at(from);
+    for candidate in [left, right, at(until)] {
+        if candidate.distance < best.distance {
+            best = candidate;
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::role::tests::{fixtures, ship};
+    use super::*;
+    use crate::target::DomainKind;
+    use crate::vessel::Hull;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use std::f64::consts::PI;
+
+    fn track(s: &SteadyShip, length: f64) -> ShipTrack {
+        ShipTrack {
+            pose: s.pose,
+            speed: s.speed,
+            hull: Hull { length, beam: 10.0 },
+            position_std: 0.0,
+            speed_spread: 0.0,
+            course_spread: 0.0,
+            domain: DomainKind::Colregs,
+        }
+    }
+
+    fn own_ship() -> OwnShip {
+        OwnShip {
+            pose: Pose::new(Vector::zeros(), 0.0),
+            speed: 6.0,
+            hull: Hull {
+                length: 50.0,
+                beam: 10.0,
+            },
+            turning_radius: 100.0,
+            speeds: vec![3.0, 6.0],
+            safety_margin: 20.0,
+        }
+    }
+
+    fn line(points: &[(f64, f64)], speed: f64) -> DesiredTrajectory {
+        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+        DesiredTrajectory::new(&points, &vec![speed; points.len() - 1]).expect("valid")
+    }
+
+    fn named(track: ShipTrack) -> Target {
+        Target {
+            name: "other".to_owned(),
+            motion: Motion::Ship(track),
+        }
+    }
+
+    #[test]
+    fn the_fixtures_collide_after_120_seconds() {
+        let (own, desired) = (own_ship(), line(&[(0.0, 0.0), (2000.0, 0.0)], 6.0));
+        for (other, role, _) in fixtures() {
+            let found = encounter(&own, &desired, &named(track(&other, 50.0)), 400.0);
+            assert_eq!(found.role, role);
+            // the hulls overlap most when the centres meet
+            assert!(found.undisturbed_dcpa <= -10.0 + 1e-6, "{found:?}");
+            assert!((found.undisturbed_tcpa - 120.0).abs() < 14.0, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn risk_matches_a_dense_scan_of_its_definition() {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let own = own_ship();
+        let mut found_some = 0;
+        for _ in 0..1500 {
+            let mut within = |r: f64| rng.random_range(-r..r);
+            let points = [(0.0, 0.0), (700.0, within(300.0)), (1200.0, within(600.0))];
+            let desired = line(&points, 6.0);
+            let other = track(
+                &ship(
+                    within(1500.0),
+                    within(1500.0),
+                    within(PI),
+                    5.0 + within(4.0),
+                ),
+                50.0,
+            );
+            let horizon = 200.0;
+            let risk = first_risk(&own, &desired, &other, horizon);
+            let scan = (0..20_000)
+                .map(|i| f64::from(i) * 0.01)
+                .take_while(|t| *t < desired.duration())
+                .find(|t| {
+                    let leg = &desired.legs()[usize::from(*t >= desired.legs()[1].start_time)];
+                    let x = leg.start + leg.direction * (leg.speed * (t - leg.start_time));
+                    let r = other.pose_at(*t).position - x;
+                    let w = leg.direction * leg.speed - other.velocity();
+                    let tcpa = r.dot(&w) / w.dot(&w);
+                    tcpa > 0.0 && tcpa <= horizon && (r - w * tcpa).norm() <= 100.0
+                });
+            match (risk, scan) {
+                (None, None) => {}
+                (Some(risk), Some(scan)) => {
+                    found_some += 1;
+                    assert!((risk.time - scan).abs() <= 0.011, "{risk:?} {scan}");
+                    assert!(
+                        (risk.own.pose.position - desired.position_at(risk.time)).norm() < 1e-9
+                    );
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+        assert!(found_some > 50);
+    }
+
+    #[test]
+    fn the_undisturbed_distance_matches_a_dense_scan() {
+        let mut rng = ChaCha8Rng::seed_from_u64(6);
+        let own = own_ship();
+        let desired = line(&[(0.0, 0.0), (600.0, 100.0), (1200.0, -100.0)], 6.0);
+        for _ in 0..60 {
+            let mut within = |r: f64| rng.random_range(-r..r);
+            let other = track(
+                &ship(
+                    within(1500.0),
+                    within(1500.0),
+                    within(PI),
+                    5.0 + within(4.0),
+                ),
+                80.0,
+            );
+            let found = encounter(&own, &desired, &named(other.clone()), 150.0);
+            let scan = (0..=15_000)
+                .map(|i| {
+                    let t = f64::from(i) * 0.01;
+                    let leg = &desired.legs()[usize::from(t >= desired.legs()[1].start_time)];
+                    let pose = Pose::new(desired.position_at(t), heading_of(leg.direction));
+                    let hull = other.hull.polygon(&other.pose_at(t));
+                    own.hull.polygon(&pose).separation(&hull)
+                })
+                .fold(f64::INFINITY, f64::min);
+            assert!(
+                found.undisturbed_dcpa <= scan + 1e-6 && scan - found.undisturbed_dcpa < 0.2,
+                "{found:?} {scan}"
+            );
+        }
+    }
+
+    #[test]
+    fn explicit_sets_have_no_role_and_a_distance_to_the_set() {
+        let square = |r: f64| {
+            ConvexPolygon::hull(&[
+                Vector::new(-r, -r),
+                Vector::new(r, -r),
+                Vector::new(r, r),
+                Vector::new(-r, r),
+            ])
+            .expect("finite")
+        };
+        let target = Target {
+            name: "box".to_owned(),
+            motion: Motion::Sets {
+                initial: square(10.0).translated(Vector::new(300.0, 100.0)),
+                velocity: square(0.5),
+            },
+        };
+        let desired = line(&[(0.0, 0.0), (600.0, 0.0)], 6.0);
+        let found = encounter(&own_ship(), &desired, &target, 400.0);
+        assert_eq!(found.role, Role::None);
+        // past its growing corner, which comes nearer still: own way relative to the corner is a line
+        let (way, corner) = (Vector::new(5.5, 0.5), Vector::new(310.0, 90.0));
+        let exact = cross(way, corner) / way.norm();
+        assert!((found.undisturbed_dcpa - exact).abs() < 1e-6, "{found:?}");
+    }
 }

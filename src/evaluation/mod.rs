@@ -1,6 +1,27 @@
 //! Judges any trajectory, sharing no collision code with the planners.
 
-use crate::frame::Side;
+mod clearance;
+mod cost;
+mod least;
+mod motion;
+mod quadrature;
+mod space_time_set;
+
+pub use space_time_set::SpaceTimeSet;
+
+use clearance::{Body, least_distance};
+use least::Least;
+use space_time_set::MovingSet;
+
+use crate::frame::{Side, relative_bearing};
+use crate::geometry::{ConvexPolygon, outer_disc};
+use crate::target::{Motion, Target};
+use crate::tolerance;
+use crate::trajectory::{DesiredTrajectory, Segment};
+use crate::vessel::OwnShip;
+
+/// Standard deviations of the position that the worst-case hull covers.
+const POSITION_SIGMAS: f64 = 3.0;
 
 /// One violated requirement.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,15 +35,18 @@ pub struct Violation {
 /// A target as it was met along the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {
-    /// Least distance between own hull and the target's nominal hull, metres.
+    /// Least distance between own hull and the target's nominal hull, metres; negative in overlap.
+    /// For explicit sets: from own position to the set.
     pub dcpa: f64,
     /// And when, seconds.
     pub tcpa: f64,
-    /// Side of own ship on which the target lies then.
+    /// Side of own ship on which the target lies then; dead ahead and astern count as starboard.
     pub passing_side: Side,
     /// Least distance between own hull and any hull the target may have, metres; negative in overlap.
+    /// For explicit sets: from own position to the set.
     pub min_clearance: f64,
     /// Least signed distance to the set the plan was made against, metres, and when, seconds.
+    /// Infinite for a target without a set.
     pub min_margin: f64,
     /// Seconds.
     pub min_margin_time: f64,
@@ -55,3 +79,163 @@ impl Evaluation {
         self.violations.is_empty()
     }
 }
+
+/// What is to be judged, and by what.
+#[derive(Debug, Clone)]
+pub struct Request<'a> {
+    /// The trajectory's segments as they are, right or wrong.
+    pub segments: &'a [Segment],
+    /// Own ship and her limits; of no size where the sets already contain her.
+    pub own: &'a OwnShip,
+    /// Where she was meant to be, and when.
+    pub desired: &'a DesiredTrajectory,
+    /// The others.
+    pub targets: &'a [Target],
+    /// The sets that the plan was made against; several may bear one target's name.
+    pub sets: &'a [SpaceTimeSet],
+    /// Seconds: arrival must not be later.
+    pub horizon: f64,
+    /// `q` of eq. (30), m²/s².
+    pub time_weight: f64,
+}
+
+/// Judges a trajectory: start, joints, turning radius, speeds and arrival; every set in continuous time,
+/// to [`tolerance::DEPTH_M`]; every hull that a target may have, whatever the sets say; and the figures.
+///
+/// Distances are certified least values ([`tolerance::MARGIN_M`]); the costs are integrated by quadrature
+/// of their own. A segment that is not a number is a violation, and the figures are then NaN.
+pub fn evaluate(request: &Request) -> Evaluation {
+    let segments = request.segments;
+    let mut violations = motion::check(segments, request.own, request.desired, request.horizon);
+    let judged = !segments.is_empty() && segments.iter().all(Segment::is_valid);
+    let segments = if judged { segments } else { &[] };
+    let margins: Vec<Least> = request
+        .sets
+        .iter()
+        .map(|set| {
+            let moving = MovingSet::new(&set.initial, &set.velocity);
+            let least = least_distance(segments, Body::POINT, &moving);
+            if judged {
+                let label = format!("set of '{}'", set.name);
+                violations.extend(collision(&label, &least, moving.has_interior()));
+            }
+            least
+        })
+        .collect();
+    let mut passages = Vec::with_capacity(request.targets.len());
+    for target in request.targets {
+        let mut margin = Least::new();
+        for (set, least) in request.sets.iter().zip(&margins) {
+            if set.name == target.name {
+                margin.see(least.value, least.time);
+            }
+        }
+        let (passage, clearance) = passage(request.own, segments, target, &margin);
+        // explicit sets are judged above, as sets
+        if judged && target.ship().is_some() {
+            let label = format!("hull of '{}'", target.name);
+            violations.extend(collision(&label, &clearance, true));
+        }
+        passages.push(passage);
+    }
+    let end = segments.last().map_or(f64::NAN, Segment::end_time);
+    let or_nan = |value: f64| if judged { value } else { f64::NAN };
+    Evaluation {
+        violations,
+        space_time_error: or_nan(cost::space_time_error(
+            segments,
+            request.desired,
+            request.time_weight,
+        )),
+        arc_length_error: or_nan(cost::arc_length_error(
+            segments,
+            request.desired,
+            request.time_weight,
+        )),
+        duration: end - segments.first().map_or(f64::NAN, |s| s.start_time),
+        length: or_nan(segments.iter().map(Segment::length).sum()),
+        delay: end - request.desired.duration(),
+        min_clearance: or_nan(
+            passages
+                .iter()
+                .map(|p| p.min_clearance)
+                .fold(f64::INFINITY, f64::min),
+        ),
+        passages,
+    }
+}
+
+/// The violation of a set by a least distance, if there is one. A set without interior has no depth:
+/// there, nearer than the tolerance is a violation.
+fn collision(label: &str, least: &Least, has_interior: bool) -> Option<Violation> {
+    let allowed = if has_interior {
+        -tolerance::DEPTH_M
+    } else {
+        tolerance::DEPTH_M
+    };
+    let what = if !(least.value >= allowed) {
+        format!(
+            "{label}: distance {:.6e} m, allowed {allowed:.0e}",
+            least.value
+        )
+    } else if !least.certified {
+        format!("{label}: clearance not proven within the budget of the check")
+    } else {
+        return None;
+    };
+    Some(Violation {
+        what,
+        time: least.time,
+    })
+}
+
+/// How a target is met, and its least clearance as found.
+fn passage(
+    own: &OwnShip,
+    segments: &[Segment],
+    target: &Target,
+    margin: &Least,
+) -> (Passage, Least) {
+    let (closest, clearance) = match &target.motion {
+        Motion::Ship(ship) => {
+            let body = Body::hull(&own.hull);
+            let hull = ship.hull.polygon(&ship.pose);
+            let nominal = MovingSet::new(&hull, &ConvexPolygon::point(ship.velocity()));
+            let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
+            let worst = MovingSet::new(&hull.minkowski_sum(&unknown), &ship.outer_velocity_set());
+            (
+                least_distance(segments, body, &nominal),
+                least_distance(segments, body, &worst),
+            )
+        }
+        Motion::Sets { initial, velocity } => {
+            let set = MovingSet::new(initial, velocity);
+            let least = least_distance(segments, Body::POINT, &set);
+            (least, least)
+        }
+    };
+    let passing_side = segments
+        .iter()
+        .find(|s| closest.time <= s.end_time())
+        .map_or(Side::Starboard, |s| {
+            let bearing =
+                relative_bearing(&s.pose_at(closest.time), target.position_at(closest.time));
+            if bearing < 0.0 && bearing > -std::f64::consts::PI {
+                Side::Port
+            } else {
+                Side::Starboard
+            }
+        });
+    let passage = Passage {
+        dcpa: closest.value,
+        tcpa: closest.time,
+        passing_side,
+        min_clearance: clearance.value,
+        min_margin: margin.value,
+        min_margin_time: margin.time,
+    };
+    (passage, clearance)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,295 @@
+//! Roles of two ships that meet: `colregs.md` 1.3.
+
+use crate::frame::{Pose, Vector, relative_bearing};
+
+/// Radians. Both relative bearings within this of ahead: head-on (10°).
+const HEAD_ON: f64 = std::f64::consts::PI / 18.0;
+
+/// Radians. More than 22.5° abaft the beam, the sector of the sternlight (112.5°), Rule 13b.
+const ABAFT_THE_BEAM: f64 = std::f64::consts::PI * 0.625;
+
+/// m/s. A slower ship is at rest: she has no course to judge.
+const AT_REST: f64 = 0.2;
+
+/// m/s. Overtaking needs the distance to shrink at least this fast.
+const CLOSING: f64 = 0.1;
+
+/// Radians. A bearing this close to ahead or astern has no side of its own.
+const SIDE: f64 = 1e-9;
+
+/// What own ship is to a target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Role {
+    /// Rule 14.
+    HeadOn,
+    /// Rule 15, the other on own starboard side.
+    GiveWay,
+    /// Rule 17.
+    StandOn,
+    /// Rule 13, own ship overtakes.
+    Overtaking,
+    /// Rule 13, own ship is overtaken.
+    Overtaken,
+    /// Each on the other's starboard side: both keep clear.
+    BothGiveWay,
+    /// Each on the other's port side: treated like head-on.
+    PortToPort,
+    /// The target does not move: no role.
+    Static,
+    /// No risk of collision.
+    None,
+}
+
+/// A ship on a steady course: the sectors of the rules are taken on the heading, and there is no drift.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteadyShip {
+    /// Hull centre and heading.
+    pub pose: Pose,
+    /// m/s, ahead.
+    pub speed: f64,
+}
+
+impl SteadyShip {
+    /// m/s.
+    pub fn velocity(&self) -> Vector {
+        self.pose.ahead() * self.speed
+    }
+
+    fn is_finite(&self) -> bool {
+        let Pose { position, heading } = self.pose;
+        [position.x, position.y, heading, self.speed]
+            .iter()
+            .all(|v| v.is_finite())
+    }
+}
+
+/// The role that the geometry alone gives `own` toward `target`, whether or not there is risk:
+/// `raw(own, obs)` of `colregs.md` 1.3, an ordered list, so that every state has one role and the two
+/// ships agree: head-on/head-on, give-way/stand-on, overtaking/overtaken, both-give-way twice,
+/// port-to-port twice.
+///
+/// `None` when a number is not finite or the two centres coincide (no bearing): the caller must claim
+/// nothing. An own ship at rest has no duty of Rules 13-17: [`Role::None`].
+pub fn raw_role(own: &SteadyShip, target: &SteadyShip) -> Option<Role> {
+    let offset = target.pose.position - own.pose.position;
+    let range = offset.norm();
+    if !(own.is_finite() && target.is_finite() && range > 0.0 && range.is_finite()) {
+        return None;
+    }
+    if target.speed < AT_REST {
+        return Some(Role::Static);
+    }
+    if own.speed < AT_REST {
+        return Some(Role::None);
+    }
+    let bearing = relative_bearing(&own.pose, target.pose.position);
+    let aspect = relative_bearing(&target.pose, own.pose.position);
+    let closing = offset.dot(&(own.velocity() - target.velocity())) / range > CLOSING;
+    let overtaking = closing && aspect.abs() > ABAFT_THE_BEAM;
+    let overtaken = closing && bearing.abs() > ABAFT_THE_BEAM;
+    // two ships astern of each other open; the tie is decided all the same, so that the list is total
+    let lead = own
+        .speed
+        .total_cmp(&target.speed)
+        .then(aspect.abs().total_cmp(&bearing.abs()));
+    match (overtaking, overtaken, lead) {
+        (true, true, std::cmp::Ordering::Equal) => return Some(Role::None),
+        (true, true, std::cmp::Ordering::Less) | (false, true, _) => return Some(Role::Overtaken),
+        (true, ..) => return Some(Role::Overtaking),
+        (false, false, _) => {}
+    }
+    if bearing.abs().max(aspect.abs()) <= HEAD_ON {
+        return Some(Role::HeadOn);
+    }
+    // dead ahead: the other's view decides
+    let to_starboard = |angle: f64, other: f64| {
+        if angle.abs() > SIDE {
+            angle > 0.0
+        } else {
+            other < 0.0
+        }
+    };
+    Some(
+        match (to_starboard(bearing, aspect), to_starboard(aspect, bearing)) {
+            (true, false) => Role::GiveWay,
+            (false, true) => Role::StandOn,
+            (true, true) => Role::BothGiveWay,
+            (false, false) => Role::PortToPort,
+        },
+    )
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::frame::{direction, heading_of};
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    pub fn ship(x: f64, y: f64, heading: f64, speed: f64) -> SteadyShip {
+        SteadyShip {
+            pose: Pose::new(Vector::new(x, y), heading),
+            speed,
+        }
+    }
+
+    fn mirrored(s: &SteadyShip) -> SteadyShip {
+        ship(
+            s.pose.position.x,
+            -s.pose.position.y,
+            -s.pose.heading,
+            s.speed,
+        )
+    }
+
+    /// `colregs.md` 0.1.
+    pub fn fixtures() -> [(SteadyShip, Role, Role); 5] {
+        [
+            (ship(1440.0, 0.0, PI, 6.0), Role::HeadOn, Role::HeadOn),
+            (
+                ship(720.0, -720.0, FRAC_PI_2, 6.0),
+                Role::GiveWay,
+                Role::StandOn,
+            ),
+            (
+                ship(720.0, 720.0, -FRAC_PI_2, 6.0),
+                Role::StandOn,
+                Role::GiveWay,
+            ),
+            (
+                ship(432.0, 0.0, 0.0, 2.4),
+                Role::Overtaking,
+                Role::Overtaking,
+            ),
+            (
+                ship(-432.0, 0.0, 0.0, 9.6),
+                Role::Overtaken,
+                Role::Overtaken,
+            ),
+        ]
+    }
+
+    #[test]
+    fn the_fixtures_and_their_mirrors_have_their_roles() {
+        let own = ship(0.0, 0.0, 0.0, 6.0);
+        for (other, role, in_the_mirror) in fixtures() {
+            assert_eq!(raw_role(&own, &other), Some(role));
+            assert_eq!(raw_role(&own, &mirrored(&other)), Some(in_the_mirror));
+        }
+    }
+
+    #[test]
+    fn every_state_has_one_role_and_both_ships_agree() {
+        let mut rng = ChaCha8Rng::seed_from_u64(13);
+        let mut seen = std::collections::BTreeSet::new();
+        for i in 0..100_000 {
+            let grid = i % 2 == 0;
+            let mut angle = || {
+                let a: f64 = rng.random_range(-PI..PI);
+                if grid {
+                    (a * 6.0 / PI).round() * PI / 6.0
+                } else {
+                    a
+                }
+            };
+            let (bearing, own_heading, heading) = (angle(), angle(), angle());
+            let p = direction(bearing) * rng.random_range(1.0..5000.0);
+            let own = ship(0.0, 0.0, own_heading, rng.random_range(0.0..12.0));
+            let other = ship(p.x, p.y, heading, rng.random_range(0.0..12.0));
+            let here = raw_role(&own, &other).expect("finite");
+            let there = raw_role(&other, &own).expect("finite");
+            seen.insert(here);
+            let pair = if here <= there {
+                (here, there)
+            } else {
+                (there, here)
+            };
+            let consistent = matches!(
+                pair,
+                (Role::HeadOn, Role::HeadOn)
+                    | (Role::GiveWay, Role::StandOn)
+                    | (Role::Overtaking, Role::Overtaken)
+                    | (Role::BothGiveWay, Role::BothGiveWay)
+                    | (Role::PortToPort, Role::PortToPort)
+            );
+            // a ship at rest has no role, and the other sees one at rest
+            let resting = matches!(pair, (Role::Static, Role::Static | Role::None));
+            let at_rest = own.speed < AT_REST || other.speed < AT_REST;
+            assert!(
+                if at_rest { resting } else { consistent },
+                "{own:?} {other:?}: {pair:?}"
+            );
+            let mirror = raw_role(&mirrored(&own), &mirrored(&other)).expect("finite");
+            let expected = match here {
+                Role::GiveWay => Role::StandOn,
+                Role::StandOn => Role::GiveWay,
+                Role::BothGiveWay => Role::PortToPort,
+                Role::PortToPort => Role::BothGiveWay,
+                same => same,
+            };
+            // bearings of exactly 180° are to starboard on both sides of the mirror
+            let astern = |a: &SteadyShip, b: &SteadyShip| {
+                relative_bearing(&a.pose, b.pose.position).abs() > PI - 1e-9
+            };
+            if !astern(&own, &other) && !astern(&other, &own) {
+                assert_eq!(mirror, expected, "{own:?} {other:?}");
+            }
+        }
+        assert_eq!(seen.len(), 9, "{seen:?}");
+    }
+
+    #[test]
+    fn the_sectors_end_where_the_rules_say() {
+        let own = ship(0.0, 0.0, 0.0, 6.0);
+        // own on the target's quarter: 112.5° and a hair on either side
+        for (beyond, role) in [(1e-9, Role::Overtaking), (-1e-9, Role::GiveWay)] {
+            // bearing 45° to starboard, own on the port side of the target
+            let p = direction(-PI / 4.0) * 500.0;
+            let heading = heading_of(-p) - (ABAFT_THE_BEAM + beyond);
+            let other = ship(p.x, p.y, heading, 2.0);
+            assert_eq!(raw_role(&own, &other), Some(role));
+        }
+        for (beyond, role) in [(-1e-9, Role::HeadOn), (1e-9, Role::StandOn)] {
+            let p = direction(HEAD_ON + beyond) * 500.0;
+            assert_eq!(
+                raw_role(&own, &ship(p.x, p.y, heading_of(-p), 6.0)),
+                Some(role)
+            );
+        }
+        // dead ahead, crossing: the other's view decides
+        assert_eq!(
+            raw_role(&own, &ship(500.0, 0.0, FRAC_PI_2, 3.0)),
+            Some(Role::GiveWay)
+        );
+        assert_eq!(
+            raw_role(&own, &ship(500.0, 0.0, -FRAC_PI_2, 3.0)),
+            Some(Role::StandOn)
+        );
+        assert_eq!(
+            raw_role(&own, &ship(500.0, 0.0, PI, 0.19)),
+            Some(Role::Static)
+        );
+        assert_eq!(
+            raw_role(&ship(0.0, 0.0, 0.0, 0.19), &ship(500.0, 0.0, PI, 5.0)),
+            Some(Role::None)
+        );
+    }
+
+    #[test]
+    fn what_is_not_a_number_has_no_role() {
+        let own = ship(0.0, 0.0, 0.0, 6.0);
+        for bad in [f64::NAN, f64::INFINITY] {
+            for other in [
+                ship(bad, 0.0, 0.0, 1.0),
+                ship(9.0, bad, 0.0, 1.0),
+                ship(9.0, 0.0, bad, 1.0),
+                ship(9.0, 0.0, 0.0, bad),
+            ] {
+                assert_eq!(raw_role(&own, &other), None);
+                assert_eq!(raw_role(&other, &own), None);
+            }
+        }
+        assert_eq!(raw_role(&own, &own), None);
+    }
+}

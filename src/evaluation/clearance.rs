@@ -1,0 +1,295 @@
+//! Distances in continuous time between own ship, a rectangle or a point, and a moving set.
+
+use super::least::{Least, Probe};
+use super::space_time_set::{Face, MovingSet, nearest_on};
+use crate::frame::{Pose, Vector, to_port};
+use crate::trajectory::Segment;
+use crate::vessel::Hull;
+
+/// The least signed distance between own hull and a moving set along a chain of segments: negative in
+/// overlap, minus the shortest translation that separates the two. Exact to
+/// [`crate::tolerance::MARGIN_M`] and certified: between two probes the distance is bounded from below
+/// by supporting lines, which separate the two for as long as they do. About a hundred probes a segment
+/// near the minimum and one far from it, each linear in the vertices.
+pub(super) fn least_distance(segments: &[Segment], own: Body, set: &MovingSet) -> Least {
+    let mut least = Least::new();
+    for s in segments {
+        for time in [s.start_time, s.end_time()] {
+            least.see(own.probe(s, set, time, 0.0).value, time);
+        }
+    }
+    for s in segments {
+        least.search(s.start_time, s.end_time(), |time, half| {
+            own.probe(s, set, time, half)
+        });
+    }
+    least
+}
+
+/// Own ship's shape about her position: a rectangle, or a point of no size.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Body {
+    half_length: f64,
+    half_beam: f64,
+}
+
+/// A corner: where it is, and how it moves.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    position: Vector,
+    velocity: Vector,
+}
+
+impl Body {
+    /// The position alone.
+    pub const POINT: Self = Self {
+        half_length: 0.0,
+        half_beam: 0.0,
+    };
+
+    /// The hull at own heading.
+    pub fn hull(hull: &Hull) -> Self {
+        Self {
+            half_length: hull.length / 2.0,
+            half_beam: hull.beam / 2.0,
+        }
+    }
+
+    fn is_point(&self) -> bool {
+        self.half_length == 0.0 && self.half_beam == 0.0
+    }
+
+    /// The distance at `time`, and its lower bound within `half` seconds.
+    fn probe(&self, segment: &Segment, set: &MovingSet, time: f64, half: f64) -> Probe {
+        let pose = segment.pose_at(time);
+        // minima and maxima below lose a NaN, so it is caught here
+        if !(pose.position.x.is_finite() && pose.position.y.is_finite() && time.is_finite()) {
+            return Probe {
+                value: f64::NAN,
+                lower: f64::NAN,
+            };
+        }
+        let corners = self.corners(&pose, segment.velocity_at(time), segment.turn_rate);
+        let corners = if self.is_point() {
+            &corners[..1]
+        } else {
+            &corners[..]
+        };
+        // a corner leaves its tangent by at most half of its acceleration times the time squared
+        let bend = 0.5
+            * half
+            * half
+            * segment.turn_rate.abs()
+            * (segment.speed + segment.turn_rate.abs() * self.half_length.hypot(self.half_beam));
+        // how far the body is beyond a face now, and at least within the time asked for
+        let beyond = |face: &Face| {
+            let mut gap = Probe {
+                value: f64::INFINITY,
+                lower: f64::INFINITY,
+            };
+            for corner in corners {
+                let value = face.normal.dot(&corner.position) - face.support(time);
+                let rate = face.normal.dot(&corner.velocity) - face.rate;
+                gap.value = gap.value.min(value);
+                gap.lower = gap.lower.min(value - rate.abs() * half - bend);
+            }
+            gap
+        };
+        let mut best = Probe {
+            value: f64::NEG_INFINITY,
+            lower: f64::NEG_INFINITY,
+        };
+        let mut keep = |gap: Probe| {
+            best.value = best.value.max(gap.value);
+            best.lower = best.lower.max(gap.lower);
+        };
+        set.faces.iter().for_each(|face| keep(beyond(face)));
+        if !self.is_point() {
+            let ahead = pose.ahead();
+            let port = to_port(ahead);
+            for normal in [ahead, port, -ahead, -port] {
+                keep(beyond(&set.face(normal)));
+            }
+        }
+        if best.value > 0.0 {
+            let apart = self.shortest(&pose, corners, set, time);
+            best.value = apart.norm();
+            if let Some(normal) = apart.try_normalize(0.0) {
+                best.lower = best.lower.max(beyond(&set.face(normal)).lower);
+            }
+        }
+        best
+    }
+
+    fn corners(&self, pose: &Pose, velocity: Vector, turn_rate: f64) -> [Corner; 4] {
+        let (l, b) = (self.half_length, self.half_beam);
+        [(l, -b), (l, b), (-l, b), (-l, -b)].map(|(ahead, port)| {
+            let position = pose.world_coordinates(Vector::new(ahead, port));
+            Corner {
+                position,
+                velocity: velocity + to_port(position - pose.position) * turn_rate,
+            }
+        })
+    }
+
+    /// The shortest vector from the set to the body, the two being apart.
+    fn shortest(&self, pose: &Pose, corners: &[Corner], set: &MovingSet, time: f64) -> Vector {
+        let mut best = Vector::repeat(f64::INFINITY);
+        let mut keep = |apart: Vector| {
+            if apart.norm_squared() < best.norm_squared() {
+                best = apart;
+            }
+        };
+        for edge in set.edges_at(time) {
+            for corner in corners {
+                keep(corner.position - nearest_on(edge, corner.position));
+            }
+            if !self.is_point() {
+                let p = pose.body_coordinates(edge.0);
+                let on_hull = Vector::new(
+                    p.x.clamp(-self.half_length, self.half_length),
+                    p.y.clamp(-self.half_beam, self.half_beam),
+                );
+                keep(pose.world_coordinates(on_hull) - edge.0);
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ConvexPolygon;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn polygon(rng: &mut ChaCha8Rng, extent: f64) -> ConvexPolygon {
+        let points: Vec<Vector> = (0..rng.random_range(1..7))
+            .map(|_| {
+                let p = Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
+                let p = if rng.random_bool(0.3) {
+                    p.map(f64::round)
+                } else {
+                    p
+                };
+                p * extent
+            })
+            .collect();
+        ConvexPolygon::hull(&points).expect("finite")
+    }
+
+    fn segment(rng: &mut ChaCha8Rng) -> Segment {
+        let position = Vector::new(rng.random_range(-60.0..60.0), rng.random_range(-60.0..60.0));
+        let turn_rate = if rng.random_bool(0.5) {
+            rng.random_range(-0.3..0.3)
+        } else {
+            0.0
+        };
+        Segment {
+            start: Pose::new(position, rng.random_range(-3.0..3.0)),
+            start_time: rng.random_range(0.0..5.0),
+            duration: rng.random_range(0.0..15.0),
+            speed: rng.random_range(0.0..8.0),
+            turn_rate,
+        }
+    }
+
+    #[test]
+    fn least_distances_match_a_dense_scan() {
+        let mut rng = ChaCha8Rng::seed_from_u64(21);
+        let hull = Hull {
+            length: 12.0,
+            beam: 4.0,
+        };
+        for case in 0..400 {
+            let (initial, velocity) = (polygon(&mut rng, 15.0), polygon(&mut rng, 2.0));
+            let set = MovingSet::new(&initial, &velocity);
+            let s = segment(&mut rng);
+            let whole = case % 2 == 0;
+            let body = if whole {
+                Body::hull(&hull)
+            } else {
+                Body::POINT
+            };
+            let found = least_distance(&[s], body, &set);
+            let at = |time: f64| {
+                let section = initial.minkowski_sum(&velocity.scaled(time));
+                let pose = s.pose_at(time);
+                if whole {
+                    hull.polygon(&pose).separation(&section)
+                } else {
+                    section.signed_distance(pose.position)
+                }
+            };
+            let scan = (0..=2000)
+                .map(|i| at(s.start_time + s.duration * f64::from(i) / 2000.0))
+                .fold(f64::INFINITY, f64::min);
+            assert!(found.certified);
+            assert!((at(found.time) - found.value).abs() < 1e-9, "{found:?}");
+            assert!(found.value <= scan + 1e-7, "{found:?} {scan}");
+            assert!(scan - found.value < 0.1, "{found:?} {scan}");
+        }
+    }
+
+    #[test]
+    fn sliding_along_a_face_costs_few_probes() {
+        let square = |r: f64| {
+            ConvexPolygon::hull(&[
+                Vector::new(-r, -r),
+                Vector::new(r, -r),
+                Vector::new(r, r),
+                Vector::new(-r, r),
+            ])
+            .expect("finite")
+        };
+        let set = MovingSet::new(&square(10.0), &square(0.5));
+        // along the growing upper face, then around a corner of a set at rest
+        let slide = Segment {
+            start: Pose::new(Vector::new(-8.0, 10.0), 0.5),
+            start_time: 0.0,
+            duration: 60.0,
+            speed: 0.5 / 0.5_f64.sin(),
+            turn_rate: 0.0,
+        };
+        let found = least_distance(&[slide], Body::POINT, &set);
+        assert!(
+            found.certified && found.value.abs() < 1e-9 && found.probes < 10,
+            "{found:?}"
+        );
+        let rest = MovingSet::new(&square(10.0), &ConvexPolygon::point(Vector::zeros()));
+        let round = Segment {
+            start: Pose::new(Vector::new(10.0, -40.0), std::f64::consts::FRAC_PI_2),
+            turn_rate: 0.05,
+            speed: 2.5,
+            ..slide
+        };
+        let corner = Segment {
+            start: Pose::new(
+                Vector::new(10.0, 10.0) - round.pose_after(20.0).position,
+                0.0,
+            ),
+            ..round
+        };
+        let touching = Segment {
+            start: Pose::new(
+                corner.start.position + round.start.position,
+                round.start.heading,
+            ),
+            ..round
+        };
+        let found = least_distance(&[touching], Body::POINT, &rest);
+        assert!(found.certified && found.probes < 300, "{found:?}");
+    }
+
+    #[test]
+    fn a_point_that_is_not_a_number_has_no_distance() {
+        let set = MovingSet::new(
+            &ConvexPolygon::point(Vector::zeros()),
+            &ConvexPolygon::point(Vector::zeros()),
+        );
+        let mut s = segment(&mut ChaCha8Rng::seed_from_u64(1));
+        s.start.position.x = f64::NAN;
+        assert!(least_distance(&[s], Body::POINT, &set).value.is_nan());
+    }
+}

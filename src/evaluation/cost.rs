@@ -1,0 +1,204 @@
+//! The two figures for how far a plan strays, formulas section 7, by quadrature of their own.
+
+use super::quadrature::{adaptive, smooth};
+use crate::trajectory::{DesiredTrajectory, Segment};
+
+/// Radians. Arcs are cut to this before a rule is put on them.
+const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
+
+/// The space-time error `J = (1 / T_d) ∫ e² dt` in m², formulas section 7, `q` in m²/s². Accurate to
+/// 1e-9 of itself; corners of `e²`, where the nearest leg changes, are closed in on by halving.
+pub(super) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
+    let integral: f64 = segments
+        .iter()
+        .map(|s| {
+            let pieces = pieces(s);
+            let joints: Vec<f64> = (0..=pieces)
+                .map(|k| s.start_time + s.duration * k as f64 / pieces as f64)
+                .collect();
+            adaptive(&joints, &|time| {
+                desired.nearest(s.pose_at(time).position, time, q).error
+            })
+        })
+        .sum();
+    integral / desired.duration()
+}
+
+/// Eq. (30) read literally, m²: both curves by their own fraction `s` of their own length,
+/// `∫ |x(s) - x_d(s)|² + q (t(s) - t_d(s))² ds` over `[0, 1]`. Cut where either curve has a joint, arcs
+/// to pi/4, then one Gauss-Legendre rule per piece: accurate to rounding. A wait has no length and is a
+/// jump of `t(s)`. NaN for a trajectory of no length.
+pub(super) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
+    let length: f64 = segments.iter().map(Segment::length).sum();
+    // negated on purpose: a NaN has no length either
+    if !(length > 0.0) {
+        return f64::NAN;
+    }
+    let mut cuts = vec![0.0, 1.0];
+    let mut starts = Vec::with_capacity(segments.len());
+    let mut run = 0.0;
+    for s in segments {
+        starts.push(run / length);
+        let pieces = pieces(s);
+        cuts.extend((0..pieces).map(|k| (run + s.length() * k as f64 / pieces as f64) / length));
+        run += s.length();
+    }
+    cuts.extend(
+        desired
+            .legs()
+            .iter()
+            .map(|leg| leg.start_distance / desired.length()),
+    );
+    cuts.sort_by(f64::total_cmp);
+    cuts.windows(2)
+        .filter(|w| w[0] < w[1])
+        .map(|w| {
+            let middle = 0.5 * (w[0] + w[1]);
+            // of segments that start at one fraction the last one moves, the others wait
+            let index = starts.partition_point(|s| *s <= middle).max(1) - 1;
+            let (own, own_start) = (&segments[index], starts[index]);
+            let legs = desired.legs();
+            let begun = legs.partition_point(|leg| leg.start_distance <= middle * desired.length());
+            let leg = &legs[begun.max(1) - 1];
+            smooth(w[0], w[1], &|s| {
+                let elapsed = (s - own_start) * length / own.speed;
+                let along = s * desired.length() - leg.start_distance;
+                let apart = own.pose_after(elapsed).position - leg.start - leg.direction * along;
+                let late = own.start_time + elapsed - leg.start_time - along / leg.speed;
+                apart.norm_squared() + q * late * late
+            })
+        })
+        .sum()
+}
+
+/// How many rules a segment needs: one per [`ARC_PIECE`] of turn.
+fn pieces(segment: &Segment) -> usize {
+    let turn = (segment.turn_rate * segment.duration).abs();
+    (turn / ARC_PIECE).ceil().clamp(1.0, 1e4) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Vector, direction};
+
+    fn chain(start: Pose, parts: &[(f64, f64, f64)]) -> Vec<Segment> {
+        let (mut pose, mut time) = (start, 0.0);
+        parts
+            .iter()
+            .map(|&(duration, speed, turn_rate)| {
+                let s = Segment {
+                    start: pose,
+                    start_time: time,
+                    duration,
+                    speed,
+                    turn_rate,
+                };
+                pose = s.end();
+                time = s.end_time();
+                s
+            })
+            .collect()
+    }
+
+    fn desired(points: &[(f64, f64)], speeds: &[f64]) -> DesiredTrajectory {
+        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+        DesiredTrajectory::new(&points, speeds).expect("valid")
+    }
+
+    #[test]
+    fn running_late_on_a_straight_leg_has_a_closed_form() {
+        // 100 s at 4 m/s where 5 m/s is desired: late by 1 m per second, then along at 5 m/s
+        let own = chain(
+            Pose::new(Vector::zeros(), 0.0),
+            &[(100.0, 4.0, 0.0), (60.0, 5.0, 0.0)],
+        );
+        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)], &[5.0]);
+        let q = 25.0;
+        let kappa = q / (q + 25.0);
+        let exact = kappa * (100.0_f64.powi(3) / 3.0 + 60.0 * 100.0_f64.powi(2)) / 200.0;
+        let found = space_time_error(&own, &wish, q);
+        assert!((found - exact).abs() < 1e-9 * exact, "{found} {exact}");
+    }
+
+    #[test]
+    fn the_integral_matches_a_dense_sum_on_polylines_and_arcs() {
+        let wish = desired(
+            &[(0.0, 0.0), (300.0, 0.0), (300.0, 200.0), (100.0, 250.0)],
+            &[5.0, 4.0, 3.0],
+        );
+        let own = chain(
+            Pose::new(Vector::new(-20.0, 30.0), 0.3),
+            &[
+                (30.0, 5.0, -0.02),
+                (10.0, 0.0, 0.0),
+                (50.0, 6.0, 0.045),
+                (60.0, 2.5, 0.0),
+            ],
+        );
+        for q in [0.0, 1.0, 25.0] {
+            let found = space_time_error(&own, &wish, q);
+            let mut sum = 0.0;
+            for s in &own {
+                let n = 400_000;
+                let e = |i: i32| {
+                    let t = s.start_time + s.duration * f64::from(i) / f64::from(n);
+                    wish.nearest(s.pose_at(t).position, t, q).error
+                };
+                let inner: f64 = (1..n).map(e).sum();
+                sum += (inner + 0.5 * (e(0) + e(n))) * s.duration / f64::from(n);
+            }
+            let dense = sum / wish.duration();
+            assert!((found - dense).abs() < 1e-8 * dense, "{found} {dense}");
+        }
+    }
+
+    #[test]
+    fn the_arc_length_reading_matches_a_dense_sum() {
+        let wish = desired(&[(0.0, 0.0), (300.0, 0.0), (300.0, 200.0)], &[5.0, 4.0]);
+        let own = chain(
+            Pose::new(Vector::new(-20.0, 30.0), 0.3),
+            &[
+                (0.0, 5.0, 0.0),
+                (30.0, 5.0, -0.02),
+                (10.0, 0.0, 0.0),
+                (50.0, 6.0, 0.045),
+            ],
+        );
+        let found = arc_length_error(&own, &wish, 25.0);
+        let total: f64 = own.iter().map(Segment::length).sum();
+        let n = 400_000;
+        let sum: f64 = (0..n)
+            .map(|i| {
+                let s = (f64::from(i) + 0.5) / f64::from(n);
+                let (mut run, mut k) = (0.0, 0);
+                while run + own[k].length() < s * total {
+                    run += own[k].length();
+                    k += 1;
+                }
+                let elapsed = (s * total - run) / own[k].speed;
+                let x = own[k].pose_after(elapsed).position;
+                let t = own[k].start_time + elapsed;
+                let d = s * wish.length();
+                let (xd, td) = if d < 300.0 {
+                    (direction(0.0) * d, d / 5.0)
+                } else {
+                    (Vector::new(300.0, d - 300.0), 60.0 + (d - 300.0) / 4.0)
+                };
+                (x - xd).norm_squared() + 25.0 * (t - td) * (t - td)
+            })
+            .sum();
+        let dense = sum / f64::from(n);
+        // the wait is a jump, which the dense sum places to one part of n only
+        assert!((found - dense).abs() < 1e-6 * dense, "{found} {dense}");
+        assert!(arc_length_error(&own[..1], &wish, 25.0).is_nan());
+    }
+
+    #[test]
+    fn the_desired_trajectory_itself_costs_nothing() {
+        let wish = desired(&[(0.0, 0.0), (300.0, 0.0)], &[5.0]);
+        let own = chain(Pose::new(Vector::zeros(), 0.0), &[(60.0, 5.0, 0.0)]);
+        assert!(space_time_error(&own, &wish, 25.0).abs() < 1e-12);
+        assert!(arc_length_error(&own, &wish, 25.0).abs() < 1e-12);
+    }
+}

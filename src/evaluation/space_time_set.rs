@@ -1,0 +1,154 @@
+//! A moving set as the checker sees it: sections from matched vertices, faces from supports.
+
+use crate::frame::{Vector, to_starboard};
+use crate::geometry::ConvexPolygon;
+
+/// A set that a plan was made against: every position in `initial + t velocity`, `t >= 0`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpaceTimeSet {
+    /// The target's name.
+    pub name: String,
+    /// `O_0`, metres.
+    pub initial: ConvexPolygon,
+    /// `V`, m/s.
+    pub velocity: ConvexPolygon,
+}
+
+/// A vertex of the section: `initial + t velocity`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct MovingVertex {
+    initial: Vector,
+    velocity: Vector,
+}
+
+impl MovingVertex {
+    /// Where it is at `time`.
+    pub fn at(&self, time: f64) -> Vector {
+        self.initial + self.velocity * time
+    }
+}
+
+/// A face: `normal . x <= initial + t rate`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Face {
+    /// Unit, outward.
+    pub normal: Vector,
+    /// Metres at t = 0.
+    pub initial: f64,
+    /// m/s outward.
+    pub rate: f64,
+}
+
+impl Face {
+    /// Where the face is along its normal at `time`.
+    pub fn support(&self, time: f64) -> f64 {
+        self.initial + self.rate * time
+    }
+}
+
+/// [`SpaceTimeSet`] prepared for distances: for `t > 0` each vertex of the section is one vertex of
+/// `O_0` that moves with one vertex of `V`, and each face moves along its normal.
+#[derive(Debug, Clone)]
+pub(super) struct MovingSet {
+    initial: ConvexPolygon,
+    velocity: ConvexPolygon,
+    /// Counter-clockwise.
+    pub vertices: Vec<MovingVertex>,
+    /// By the angle of their normals.
+    pub faces: Vec<Face>,
+}
+
+impl MovingSet {
+    /// Matches vertices by asking both sets for their extreme point between each two neighbouring
+    /// normals. O((n + m)²).
+    pub fn new(initial: &ConvexPolygon, velocity: &ConvexPolygon) -> Self {
+        let mut normals: Vec<Vector> = initial.normals();
+        normals.extend(velocity.normals());
+        normals.sort_by(|a, b| a.y.atan2(a.x).total_cmp(&b.y.atan2(b.x)));
+        let faces: Vec<Face> = normals
+            .iter()
+            .map(|&normal| Face {
+                normal,
+                initial: initial.support(normal),
+                rate: velocity.support(normal),
+            })
+            .collect();
+        let mut vertices: Vec<MovingVertex> = (0..normals.len())
+            .map(|i| {
+                let between = between(normals[i], normals[(i + 1) % normals.len()]);
+                MovingVertex {
+                    initial: extreme(initial, between),
+                    velocity: extreme(velocity, between),
+                }
+            })
+            .collect();
+        vertices.dedup();
+        while vertices.len() > 1 && vertices[0] == vertices[vertices.len() - 1] {
+            vertices.pop();
+        }
+        Self {
+            initial: initial.clone(),
+            velocity: velocity.clone(),
+            vertices,
+            faces,
+        }
+    }
+
+    /// The supporting line in any unit direction.
+    pub fn face(&self, normal: Vector) -> Face {
+        Face {
+            normal,
+            initial: self.initial.support(normal),
+            rate: self.velocity.support(normal),
+        }
+    }
+
+    /// False when the sections are points or segments at every time.
+    pub fn has_interior(&self) -> bool {
+        self.vertices.len() > 2
+    }
+
+    /// Directed edges of the section, each as its two ends; one point to itself for a point.
+    pub fn edges_at(&self, time: f64) -> impl Iterator<Item = (Vector, Vector)> + '_ {
+        let n = self.vertices.len();
+        (0..n).map(move |i| {
+            (
+                self.vertices[i].at(time),
+                self.vertices[(i + 1) % n].at(time),
+            )
+        })
+    }
+}
+
+/// A direction in the counter-clockwise gap between two unit vectors, the gap at most half a turn.
+fn between(a: Vector, b: Vector) -> Vector {
+    let sum = a + b;
+    if sum.norm() > 1e-6 {
+        sum
+    } else {
+        // opposite normals: half-way is a quarter turn to port of the first
+        -to_starboard(a)
+    }
+}
+
+/// The vertex farthest in a direction; of equal ones the first.
+fn extreme(set: &ConvexPolygon, along: Vector) -> Vector {
+    let mut best = set.vertices()[0];
+    for p in set.vertices() {
+        if along.dot(p) > along.dot(&best) {
+            best = *p;
+        }
+    }
+    best
+}
+
+/// The point of a segment nearest to `p`.
+pub(super) fn nearest_on(edge: (Vector, Vector), p: Vector) -> Vector {
+    let along = edge.1 - edge.0;
+    let length = along.norm_squared();
+    if length > 0.0 {
+        edge.0 + along * ((p - edge.0).dot(&along) / length).clamp(0.0, 1.0)
+    } else {
+        edge.0
+    }
+}

@@ -1,0 +1,321 @@
+//! A valid plan, and every way to spoil it: each must be found, and nothing else.
+
+use super::*;
+use crate::frame::{Pose, Vector};
+use crate::target::{DomainKind, ShipTrack};
+use crate::vessel::Hull;
+
+const RADIUS: f64 = 100.0;
+
+fn own() -> OwnShip {
+    OwnShip {
+        pose: Pose::new(Vector::zeros(), 0.0),
+        speed: 5.0,
+        hull: Hull {
+            length: 30.0,
+            beam: 8.0,
+        },
+        turning_radius: RADIUS,
+        speeds: vec![2.5, 5.0, 6.0],
+        safety_margin: 20.0,
+    }
+}
+
+fn desired() -> DesiredTrajectory {
+    DesiredTrajectory::new(&[Vector::zeros(), Vector::new(1500.0, 0.0)], &[5.0]).expect("valid")
+}
+
+/// Follows on with a piece of `length` metres, turning by `turn` radians.
+fn follow(segments: &mut Vec<Segment>, length: f64, speed: f64, turn: f64) {
+    let (start, start_time) = segments
+        .last()
+        .map_or((own().pose, 0.0), |s| (s.end(), s.end_time()));
+    let duration = length / speed;
+    segments.push(Segment {
+        start,
+        start_time,
+        duration,
+        speed,
+        turn_rate: turn / duration,
+    });
+}
+
+/// 200 m ahead, a dip to starboard and back, ahead to the end.
+fn plan() -> Vec<Segment> {
+    let mut s = Vec::new();
+    let turn = 0.6;
+    follow(&mut s, 200.0, 5.0, 0.0);
+    follow(&mut s, turn * RADIUS, 5.0, -turn);
+    follow(&mut s, 150.0, 6.0, 0.0);
+    follow(&mut s, 2.0 * turn * RADIUS, 6.0, 2.0 * turn);
+    follow(&mut s, 150.0, 6.0, 0.0);
+    follow(&mut s, turn * RADIUS, 5.0, -turn);
+    let left = 1500.0 - s[5].end().position.x;
+    follow(&mut s, left, 5.0, 0.0);
+    s
+}
+
+/// The lowest point of [`plan`].
+fn lowest() -> f64 {
+    plan()[3].pose_after(plan()[3].duration / 2.0).position.y
+}
+
+/// A set whose upper side stays where it is while its ends move.
+fn below(upper: f64) -> SpaceTimeSet {
+    let corners = [
+        (200.0, -900.0),
+        (1200.0, -900.0),
+        (1200.0, upper),
+        (200.0, upper),
+    ];
+    let speeds = [(-0.5, 0.0), (1.0, 0.0), (0.0, -1.0)];
+    let set = |points: &[(f64, f64)]| {
+        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+        ConvexPolygon::hull(&points).expect("finite")
+    };
+    SpaceTimeSet {
+        name: "below".to_owned(),
+        initial: set(&corners),
+        velocity: set(&speeds),
+    }
+}
+
+fn ship(y: f64, speed: f64) -> Target {
+    Target {
+        name: "other".to_owned(),
+        motion: Motion::Ship(ShipTrack {
+            pose: Pose::new(Vector::new(1500.0, y), std::f64::consts::PI),
+            speed,
+            hull: Hull {
+                length: 60.0,
+                beam: 12.0,
+            },
+            position_std: 2.0,
+            speed_spread: 0.5,
+            course_spread: 0.02,
+            domain: DomainKind::Hull,
+        }),
+    }
+}
+
+fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Evaluation {
+    evaluate(&Request {
+        segments,
+        own: &own(),
+        desired: &desired(),
+        targets,
+        sets,
+        horizon: 400.0,
+        time_weight: 25.0,
+    })
+}
+
+/// What is wrong, by the first word of each violation.
+fn faults(segments: &[Segment]) -> Vec<String> {
+    words(&judge(
+        segments,
+        &[below(lowest() - 1e-3)],
+        &[ship(300.0, 5.0)],
+    ))
+}
+
+fn words(found: &Evaluation) -> Vec<String> {
+    let mut words: Vec<String> = found
+        .violations
+        .iter()
+        .map(|v| v.what.split(' ').next().unwrap_or_default().to_owned())
+        .collect();
+    words.dedup();
+    words
+}
+
+#[test]
+fn a_valid_plan_passes_with_its_figures() {
+    let found = judge(&plan(), &[below(lowest() - 1e-3)], &[ship(300.0, 5.0)]);
+    assert!(found.verified(), "{:?}", found.violations);
+    let straight = 1500.0 - (plan()[5].end().position.x - 200.0);
+    let length = straight + 4.0 * 0.6 * RADIUS + 300.0;
+    assert!((found.length - length).abs() < 1e-9);
+    let duration: f64 = plan().iter().map(|s| s.duration).sum();
+    assert!((found.duration - duration).abs() < 1e-9);
+    assert!((found.delay - (duration - 300.0)).abs() < 1e-9);
+    assert!(found.space_time_error > 0.0 && found.arc_length_error > 0.0);
+    let passage = found.passages[0];
+    assert_eq!(passage.passing_side, Side::Port);
+    // meets near the middle of the dip: own hull nearly level there
+    assert!(passage.dcpa > 290.0 && passage.dcpa < 300.0 - lowest());
+    assert!(passage.min_clearance < passage.dcpa - 6.0);
+    assert_eq!(found.min_clearance, passage.min_clearance);
+    assert_eq!(passage.min_margin, f64::INFINITY);
+}
+
+#[test]
+fn a_plan_in_another_place_or_time_is_found() {
+    let shifted = |change: fn(&mut Segment)| {
+        let mut s = plan();
+        s.iter_mut().for_each(change);
+        faults(&s)
+    };
+    assert_eq!(
+        shifted(|s| s.start.position.y += 2e-6),
+        ["start", "arrival:"]
+    );
+    assert_eq!(shifted(|s| s.start_time += 1e-6), ["start"]);
+    assert_eq!(shifted(|s| s.start_time += 200.0), ["start", "arrival"]);
+    let mut s = plan();
+    s[0].start.heading += 1e-8;
+    assert_eq!(faults(&s)[0], "start");
+}
+
+#[test]
+fn a_cut_plan_does_not_arrive() {
+    let mut s = plan();
+    s.pop();
+    assert_eq!(faults(&s), ["arrival:"]);
+    let mut s = plan();
+    s[6].duration -= 1e-6;
+    assert_eq!(faults(&s), ["arrival:"]);
+    assert_eq!(faults(&[]), ["segments:"]);
+}
+
+#[test]
+fn speeds_outside_the_set_are_found() {
+    let mut s = plan();
+    let factor = 1.0 + 1e-6;
+    // the same way, faster: only the speed is wrong
+    s[6].speed *= factor;
+    s[6].duration /= factor;
+    assert_eq!(faults(&s), ["speed"]);
+}
+
+#[test]
+fn a_tightened_turn_is_found() {
+    let mut s = plan();
+    s[5].turn_rate *= 1.0 + 1e-6;
+    assert_eq!(faults(&s), ["position", "heading", "turn"]);
+    // a turn on the spot
+    let mut s = plan();
+    let (pose, time) = (s[6].end(), s[6].end_time());
+    s.push(Segment {
+        start: pose,
+        start_time: time,
+        duration: 1.0,
+        speed: 0.0,
+        turn_rate: 0.1,
+    });
+    assert_eq!(faults(&s), ["turn", "speed"]);
+}
+
+#[test]
+fn jumps_in_position_heading_and_time_are_found() {
+    let mut s = plan();
+    s[2].start.position += Vector::new(0.0, 2e-6);
+    assert_eq!(faults(&s), ["position"]);
+    let mut s = plan();
+    s[6].start.heading += 1e-8;
+    // the last leg is long: it ends elsewhere, too
+    assert_eq!(faults(&s), ["heading", "arrival:"]);
+    let mut s = plan();
+    s[3].start_time += 1e-6;
+    assert_eq!(faults(&s), ["time"]);
+    // a piece left out
+    let mut s = plan();
+    s.remove(4);
+    assert_eq!(faults(&s), ["position", "time"]);
+}
+
+#[test]
+fn the_depth_decides_on_an_arc() {
+    let depth = |d: f64| words(&judge(&plan(), &[below(lowest() + d)], &[]));
+    assert_eq!(depth(0.0), Vec::<String>::new());
+    assert_eq!(depth(5e-7), Vec::<String>::new());
+    assert_eq!(depth(2e-6), ["set"]);
+    assert_eq!(depth(1e-5), ["set"]);
+    assert_eq!(depth(10.0), ["set"]);
+    let found = judge(&plan(), &[below(lowest() + 1e-5)], &[]);
+    let bottom = plan()[3].start_time + plan()[3].duration / 2.0;
+    assert!((found.violations[0].time - bottom).abs() < 0.1);
+}
+
+#[test]
+fn a_set_crossed_between_any_two_samples_is_found() {
+    // a needle that own ship meets for a hundredth of a second
+    let at = plan()[0].pose_at(17.0).position;
+    let thin = |half: f64| SpaceTimeSet {
+        name: "needle".to_owned(),
+        initial: ConvexPolygon::hull(&[
+            at + Vector::new(-half, 30.0),
+            at + Vector::new(half, 30.0),
+            at + Vector::new(half, -30.0),
+            at + Vector::new(-half, -30.0),
+        ])
+        .expect("finite"),
+        velocity: ConvexPolygon::point(Vector::zeros()),
+    };
+    for half in [0.025, 1e-4, 2e-6, 0.0] {
+        assert_eq!(
+            words(&judge(&plan(), &[thin(half)], &[])),
+            ["set"],
+            "{half}"
+        );
+    }
+}
+
+#[test]
+fn the_hulls_are_judged_whatever_the_sets_say() {
+    let found = judge(&plan(), &[], &[ship(0.0, 5.0)]);
+    assert_eq!(words(&found), ["hull"]);
+    assert!(found.min_clearance < 0.0);
+    // nominally she passes, but she may be anywhere near
+    let near = judge(&plan(), &[], &[ship(17.0, 0.0)]);
+    assert!(near.passages[0].dcpa > 3.0 && near.min_clearance < 0.0);
+    assert_eq!(words(&near), ["hull"]);
+}
+
+#[test]
+fn what_is_not_a_number_is_never_verified() {
+    for index in 0..7 {
+        for field in 0..7 {
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut s = plan();
+                let it = &mut s[index];
+                *match field {
+                    0 => &mut it.start.position.x,
+                    1 => &mut it.start.position.y,
+                    2 => &mut it.start.heading,
+                    3 => &mut it.start_time,
+                    4 => &mut it.duration,
+                    5 => &mut it.speed,
+                    _ => &mut it.turn_rate,
+                } = bad;
+                assert_eq!(faults(&s), ["values:"], "{index} {field} {bad}");
+                let found = judge(&s, &[], &[]);
+                assert!(found.space_time_error.is_nan() && found.min_clearance.is_nan());
+            }
+        }
+    }
+    let mut limits = own();
+    limits.turning_radius = f64::NAN;
+    limits.pose.heading = f64::NAN;
+    let found = evaluate(&Request {
+        segments: &plan(),
+        own: &limits,
+        desired: &desired(),
+        targets: &[],
+        sets: &[],
+        horizon: f64::NAN,
+        time_weight: 25.0,
+    });
+    assert_eq!(words(&found), ["start", "turn", "arrival"]);
+}
+
+#[test]
+fn margins_go_to_the_target_of_their_name() {
+    let mut set = below(lowest() - 3.0);
+    set.name = "other".to_owned();
+    let found = judge(&plan(), &[below(-800.0), set], &[ship(300.0, 5.0)]);
+    let passage = found.passages[0];
+    assert!((passage.min_margin - 3.0).abs() < 1e-6, "{passage:?}");
+    let bottom = plan()[3].start_time + plan()[3].duration / 2.0;
+    assert!((passage.min_margin_time - bottom).abs() < 0.1);
+}
