@@ -16,6 +16,12 @@ use crate::trajectory::Trajectory;
 /// The name of the plan document's format.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
 
+/// The outcome of a file that is no scenario.
+pub const UNREADABLE: &str = "unreadable";
+
+/// The outcome of a run that ended in a fault of the program.
+pub const INTERNAL_FAULT: &str = "internal-fault";
+
 /// Seconds between two samples of a trajectory.
 const SAMPLE_STEP: f64 = 1.0;
 
@@ -302,7 +308,7 @@ pub struct SuiteDocument {
     pub summary: SuiteSummaryDocument,
 }
 
-/// One run of a suite. Where there was none, `outcome` is "unreadable" or "internal-fault", `error`
+/// One run of a suite. Where there was none, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`], `error`
 /// says why, and the keys that have no meaning are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(
@@ -341,6 +347,47 @@ pub struct SuiteSummaryDocument {
     pub internal_faults: usize,
     /// Plans in which the independent checker found nothing wrong.
     pub verified: usize,
+}
+
+impl SuiteDocument {
+    /// The document of these runs, with their summary.
+    pub fn of(runs: Vec<SuiteRunDocument>) -> Self {
+        let ended = |word: &str| runs.iter().filter(|run| run.outcome == word).count();
+        let summary = SuiteSummaryDocument {
+            scenarios: runs.len(),
+            solved: ended(Verdict::Solved.word()),
+            relaxed: ended(Verdict::Relaxed.word()),
+            infeasible: ended(Verdict::Infeasible.word()),
+            deadline: ended(Verdict::Deadline.word()),
+            unreadable: ended(UNREADABLE),
+            internal_faults: ended(INTERNAL_FAULT),
+            verified: runs.iter().filter(|run| run.verified).count(),
+        };
+        Self { runs, summary }
+    }
+}
+
+impl std::fmt::Display for SuiteSummaryDocument {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let plural = if self.scenarios == 1 { "" } else { "s" };
+        write!(
+            f,
+            "{} scenario{plural}: {} solved",
+            self.scenarios, self.solved
+        )?;
+        for (count, name) in [
+            (self.relaxed, "relaxed"),
+            (self.infeasible, "infeasible"),
+            (self.deadline, "out of time"),
+            (self.unreadable, UNREADABLE),
+            (self.internal_faults, "failed inside"),
+        ] {
+            if count > 0 {
+                write!(f, ", {count} {name}")?;
+            }
+        }
+        write!(f, "; {} verified", self.verified)
+    }
 }
 
 impl SuiteRunDocument {

@@ -1,6 +1,6 @@
 //! File → [`Scenario`], noting every fault.
 
-use super::file::{Entry, Source, Word};
+use super::file::{Entry, Source, TEXT, Word};
 use super::section::Section;
 use super::targets::targets;
 use super::{Compliance, Scenario, limits};
@@ -18,9 +18,7 @@ const DEFAULT_DEADLINE: f64 = 5.0;
 /// The scenario of a file's outermost table. `None` only when a fault was noted; a scenario that
 /// comes with faults is of no use.
 pub(super) fn scenario(mut root: Section) -> Option<Scenario> {
-    let title = root
-        .require("title", "a text")
-        .and_then(|entry| entry.text());
+    let title = root.require("title", TEXT).and_then(|entry| entry.text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
     root.not_built("origin");
     root.not_built("map");
@@ -155,18 +153,18 @@ fn own_speeds(section: &mut Section, speed: Option<f64>) -> Option<Vec<f64>> {
 
 fn mission(mut section: Section, own_speed: Option<f64>) -> Option<DesiredTrajectory> {
     section.not_built("alternatives");
-    let waypoints = section
+    let entries = section
         .require("waypoints", "a list of at least 2 positions")
-        .and_then(|entry| waypoints(&entry));
-    let legs = waypoints.as_ref().map(|points| points.len() - 1);
+        .and_then(|entry| entry.list(2, "positions"));
+    let legs = entries.as_ref().map(|entries| entries.len() - 1);
+    let waypoints = entries.and_then(|entries| waypoints(&entries));
     let speeds = leg_speeds(&mut section, legs, own_speed);
     section.finish();
     // every leg is long and fast enough by now
     DesiredTrajectory::new(&waypoints?, &speeds?).ok()
 }
 
-fn waypoints(entry: &Entry) -> Option<Vec<Vector>> {
-    let entries = entry.list(2, "positions")?;
+fn waypoints(entries: &[Entry]) -> Option<Vec<Vector>> {
     let points: Vec<Option<Vector>> = entries.iter().map(position).collect();
     let mut sound = true;
     for (pair, entry) in points.windows(2).zip(&entries[1..]) {

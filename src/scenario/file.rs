@@ -10,9 +10,14 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::fault::Fault;
-use super::limits;
 use super::section::Section;
 use crate::frame::Vector;
+
+/// What [`Entry::text`] takes.
+pub(super) const TEXT: &str = "a text of 1 to 200 characters on one line";
+
+/// Characters of a text.
+const TEXT_CHARS: usize = 200;
 
 /// Which numbers are allowed. A NaN never is.
 #[derive(Debug, Clone, Copy)]
@@ -160,14 +165,11 @@ impl<'a, 'i> Entry<'a, 'i> {
             Some(text)
                 if !text.trim().is_empty()
                     && !text.chars().any(char::is_control)
-                    && text.chars().count() <= limits::TEXT_CHARS =>
+                    && text.chars().count() <= TEXT_CHARS =>
             {
                 Some(text.to_owned())
             }
-            _ => self.refuse(format_args!(
-                "a text of 1 to {} characters on one line",
-                limits::TEXT_CHARS
-            )),
+            _ => self.refuse(TEXT),
         }
     }
 

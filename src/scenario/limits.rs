@@ -8,9 +8,6 @@ use crate::frame::mps_from_knots;
 /// Bytes of a scenario file.
 pub(super) const FILE_BYTES: u64 = 16 * 1024 * 1024;
 
-/// Characters of a title or a name.
-pub(super) const TEXT_CHARS: usize = 200;
-
 /// Metres east or north of the origin.
 pub(super) const COORDINATE: Range = Range::within(1e7);
 /// Metres: lengths, beams, turning radii, legs.
@@ -34,12 +31,12 @@ pub(super) const COURSE_SPREAD: Range = Range::between(0.0, 180.0);
 /// m²/s², the weight of time.
 pub(super) const TIME_WEIGHT: Range = Range::between(0.0, 1e6);
 
-/// The same limits for a number in knots.
+/// Limits for a number in knots: round ones, just inside those in m/s.
 pub(super) fn in_knots(range: Range) -> Range {
     let knot = mps_from_knots(1.0);
     Range {
-        low: range.low / knot,
-        high: range.high / knot,
+        low: (range.low / knot * 1e3).ceil() / 1e3,
+        high: (range.high / knot).floor(),
         ..range
     }
 }

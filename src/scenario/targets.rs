@@ -1,7 +1,7 @@
 //! The targets of a file.
 
 use super::check::{hull, pose};
-use super::file::{Entry, Range, Word};
+use super::file::{Entry, Range, TEXT, Word};
 use super::limits;
 use super::section::Section;
 use crate::frame::{Vector, radians_from_deg};
@@ -57,7 +57,7 @@ pub(super) fn targets(root: &mut Section) -> Option<Vec<Target>> {
             targets.push(None);
             continue;
         };
-        let name = section.require("name", "a text");
+        let name = section.require("name", TEXT);
         let text = name.as_ref().and_then(|name| name.text());
         if let (Some(name), Some(text)) = (&name, &text)
             && let Some(first) = names.iter().position(|other| other.as_ref() == Some(text))
