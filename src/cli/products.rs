@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use searoom::pipeline::Run;
 use searoom::report::document::PlanDocument;
 use searoom::report::write_atomically;
@@ -89,7 +89,9 @@ impl Products {
         }
         if let Some(folder) = &self.plans {
             let file = folder.join(format!("{stem}.json"));
-            write_atomically(&file, json(&PlanDocument::of(run))?.as_bytes())?;
+            let document = json(&PlanDocument::of(run))?;
+            // the message names its cause already
+            write_atomically(&file, document.as_bytes()).map_err(|error| anyhow!("{error}"))?;
         }
         Ok(())
     }
@@ -102,8 +104,8 @@ fn make(folder: &Path) -> anyhow::Result<()> {
 
 #[cfg(feature = "recording")]
 fn record(run: &Run, file: &Path) -> anyhow::Result<()> {
-    searoom::recording::write(run, file)
-        .with_context(|| format!("{}: no recording", file.display()))
+    // the message names its cause already
+    searoom::recording::write(run, file).map_err(|error| anyhow!("{error}"))
 }
 
 #[cfg(not(feature = "recording"))]
