@@ -10,17 +10,18 @@ use crate::planner::Outcome;
 /// Targets of one scenario that a row names; the rest is counted.
 const NAMED: usize = 3;
 
+/// Units below the names, so that the table fits a terminal.
 const HEADER: [&str; 11] = [
     "scenario",
     "outcome",
     "encounter",
     "turn",
-    "target at CPA",
-    "J [m²]",
-    "delay [s]",
-    "clearance [m]",
-    "expanded",
-    "time [ms]",
+    "passing",
+    "J\n[m²]",
+    "delay\n[s]",
+    "clearance\n[m]",
+    "nodes\nexpanded",
+    "time\n[ms]",
     "verified",
 ];
 
@@ -135,7 +136,8 @@ fn turn(summary: &Summary) -> String {
     }
 }
 
-/// The side on which the target is passed, and in a crossing whether ahead or astern of her.
+/// The side of own ship on which the target lies at the closest approach, and in a crossing whether
+/// own ship cuts her track ahead or astern of her.
 fn passing(meeting: &Meeting) -> String {
     let side = match meeting.side {
         Some(Side::Port) => "port",
@@ -143,8 +145,8 @@ fn passing(meeting: &Meeting) -> String {
         None => return "–".to_owned(),
     };
     match meeting.cuts_astern {
-        Some(true) => format!("{side}, cut astern"),
-        Some(false) => format!("{side}, cut ahead"),
+        Some(true) => format!("{side}, astern"),
+        Some(false) => format!("{side}, ahead"),
         None => side.to_owned(),
     }
 }
@@ -181,18 +183,23 @@ pub fn plan_text(run: &Run) -> String {
         say("encounter", "none".to_owned());
     }
     for meeting in &summary.meetings {
+        let undisturbed = if meeting.undisturbed_dcpa > 0.0 {
+            format!("{:.1} m", meeting.undisturbed_dcpa)
+        } else {
+            "collision".to_owned()
+        };
         say(
             "encounter",
             format!(
-                "{} with '{}': undisturbed {:.1} m at {:.0} s",
-                meeting.role, meeting.target, meeting.undisturbed_dcpa, meeting.undisturbed_tcpa
+                "{} with '{}': undisturbed {undisturbed} at {:.0} s",
+                meeting.role, meeting.target, meeting.undisturbed_tcpa
             ),
         );
         if let (Some(dcpa), Some(tcpa)) = (meeting.dcpa, meeting.tcpa) {
             say(
                 "",
                 format!(
-                    "planned {dcpa:.1} m at {tcpa:.0} s, she to {}",
+                    "planned {dcpa:.1} m at {tcpa:.0} s, passing {}",
                     passing(meeting)
                 ),
             );
