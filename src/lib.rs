@@ -7,6 +7,7 @@ pub mod geometry;
 pub mod obstacle;
 pub mod pipeline;
 pub mod planner;
+pub mod report;
 pub mod scenario;
 pub mod search;
 pub mod target;

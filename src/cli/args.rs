@@ -1,0 +1,127 @@
+//! The arguments.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use searoom::planner::SearchKind;
+use searoom::scenario::{Compliance, Scenario};
+
+/// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
+///
+/// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan, 2 bad input
+/// or usage, 3 a fault of the program; the highest of a run wins.
+#[derive(Debug, Parser)]
+#[command(name = "searoom", version, max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Reads and checks scenario files, plans nothing; reports every fault at once
+    Check(CheckArgs),
+    /// Plans one scenario, prints the verdict and the costs
+    Plan(PlanArgs),
+    /// Runs every scenario below the paths: one row each, a summary, one exit status
+    Suite(SuiteArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Scenario files, or folders of them
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub paths: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct PlanArgs {
+    /// A scenario file
+    #[arg(value_name = "SCENARIO")]
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub shared: Shared,
+}
+
+#[derive(Debug, Args)]
+pub struct SuiteArgs {
+    /// Scenario files, or folders that are searched for .toml files (hidden ones are left out)
+    #[arg(value_name = "PATH", default_value = "scenarios")]
+    pub paths: Vec<PathBuf>,
+    #[command(flatten)]
+    pub shared: Shared,
+    /// Write one plan document per scenario into this folder
+    #[arg(long, value_name = "DIR")]
+    pub plans: Option<PathBuf>,
+}
+
+/// What every planning command takes.
+#[derive(Debug, Args)]
+pub struct Shared {
+    /// Planner instead of the scenario's: space-time
+    #[arg(long, value_name = "KIND", value_parser = planner)]
+    pub planner: Option<PlannerKind>,
+    /// Search instead of the scenario's: a-star, dijkstra
+    #[arg(long, value_name = "KIND", value_parser = search)]
+    pub search: Option<SearchKind>,
+    /// Compliance instead of the scenario's: none (hulls only), shape (domains)
+    #[arg(long, value_name = "C", value_parser = compliance)]
+    pub compliance: Option<Compliance>,
+    /// Write a Rerun recording: a file ending in .rrd, or a folder
+    #[arg(long, value_name = "PATH")]
+    pub rrd: Option<PathBuf>,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Shared {
+    /// Puts what the command line says in the place of what the scenario says.
+    pub fn apply(&self, scenario: &mut Scenario) {
+        match self.planner {
+            // every scenario asks for it already
+            Some(PlannerKind::SpaceTime) | None => {}
+        }
+        if let Some(search) = self.search {
+            scenario.search = search;
+        }
+        if let Some(compliance) = self.compliance {
+            scenario.compliance = compliance;
+        }
+    }
+}
+
+/// Which planner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlannerKind {
+    SpaceTime,
+}
+
+fn planner(word: &str) -> Result<PlannerKind, String> {
+    match word {
+        "space-time" => Ok(PlannerKind::SpaceTime),
+        "path-time" | "optimal-control" => Err(unbuilt(word, "space-time")),
+        _ => Err("allowed: space-time".to_owned()),
+    }
+}
+
+fn search(word: &str) -> Result<SearchKind, String> {
+    match word {
+        "a-star" => Ok(SearchKind::AStar),
+        "dijkstra" => Ok(SearchKind::Dijkstra),
+        _ => Err("allowed: a-star, dijkstra".to_owned()),
+    }
+}
+
+fn compliance(word: &str) -> Result<Compliance, String> {
+    match word {
+        "none" => Ok(Compliance::None),
+        "shape" => Ok(Compliance::Shape),
+        "rules" => Err(unbuilt(word, "none, shape")),
+        _ => Err("allowed: none, shape".to_owned()),
+    }
+}
+
+fn unbuilt(word: &str, allowed: &str) -> String {
+    format!("{word} is not built yet; allowed: {allowed}")
+}

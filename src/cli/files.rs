@@ -1,0 +1,97 @@
+//! Which scenario files the paths of a command mean, and what their outputs are called.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+
+/// A scenario file that was asked for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    /// The file.
+    pub file: PathBuf,
+    /// Name of what is written for it, without an ending: its path relative to the argument with
+    /// "/" as "__".
+    pub stem: String,
+}
+
+/// The scenario files that `paths` mean, in the order of the arguments and sorted within each
+/// folder; for a path that cannot be searched, the reason.
+pub fn find(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+    let mut all = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            // a missing file is reported when it is read
+            all.push(Ok(Found {
+                file: path.clone(),
+                stem: stem(path.file_name().map(Path::new).unwrap_or(path)),
+            }));
+            continue;
+        }
+        let mut files = Vec::new();
+        match walk(path, &mut files) {
+            Ok(()) if files.is_empty() => all.push(Err((
+                path.clone(),
+                anyhow::anyhow!(
+                    "{}: a folder without scenarios (.toml files)",
+                    path.display()
+                ),
+            ))),
+            Ok(()) => all.extend(files.into_iter().map(|file| {
+                let relative = file.strip_prefix(path).unwrap_or(&file);
+                Ok(Found {
+                    stem: stem(relative),
+                    file,
+                })
+            })),
+            Err(error) => all.push(Err((path.clone(), error))),
+        }
+    }
+    all
+}
+
+fn stem(relative: &Path) -> String {
+    let parts: Vec<_> = relative
+        .with_extension("")
+        .components()
+        .map(|part| part.as_os_str().to_string_lossy().into_owned())
+        .collect();
+    parts.join("__")
+}
+
+/// Files ending in .toml, depth first in order of names. Hidden entries are left out; links to
+/// folders are not followed, so that a loop ends.
+fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+    let unread = || format!("{}: cannot be read", folder.display());
+    let mut entries = fs::read_dir(folder)
+        .and_then(|entries| entries.collect::<Result<Vec<_>, _>>())
+        .with_context(unread)?;
+    entries.sort_by_key(|entry| entry.file_name());
+    for entry in entries {
+        let path = entry.path();
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        if entry.file_type().with_context(unread)?.is_dir() {
+            walk(&path, files)?;
+        } else if path.extension().is_some_and(|ending| ending == "toml") && !path.is_dir() {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Fails when two scenarios would be written under one name.
+pub fn refuse_clashes(found: &[Found]) -> anyhow::Result<()> {
+    for (index, later) in found.iter().enumerate() {
+        if let Some(earlier) = found[..index].iter().find(|f| f.stem == later.stem) {
+            bail!(
+                "{} and {} would both be written as '{}'; give the folder above them, or one of them",
+                earlier.file.display(),
+                later.file.display(),
+                later.stem
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,39 @@
+//! The command line: one file per command; `output` is the only place that prints.
+
+mod args;
+mod check;
+mod files;
+mod output;
+mod plan;
+mod products;
+mod runner;
+mod status;
+mod suite;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use output::Output;
+use status::Status;
+
+/// Runs the program with the arguments of the process.
+pub fn main() -> ExitCode {
+    runner::keep_panics_quiet();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return output::usage(&error),
+    };
+    let output = Output::new();
+    let run = || match &arguments.command {
+        Command::Check(args) => check::check(args, &output),
+        Command::Plan(args) => plan::plan(args, &output),
+        Command::Suite(args) => suite::suite(args, &output),
+    };
+    let status = runner::guarded(run).unwrap_or_else(|fault| {
+        output.error(&fault);
+        Status::InternalFault
+    });
+    status.into()
+}

@@ -1,0 +1,87 @@
+//! The only place that prints: results to standard output, everything else to standard error.
+
+use std::fmt::Display;
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
+
+use super::status::Status;
+
+/// Standard output and standard error.
+#[derive(Debug)]
+pub struct Output {
+    /// True when results may be coloured.
+    pub colour: bool,
+}
+
+impl Output {
+    /// Colour only on a terminal, and not when `NO_COLOR` says no.
+    pub fn new() -> Self {
+        let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        Self {
+            colour: wanted && std::io::stdout().is_terminal(),
+        }
+    }
+
+    /// Prints a result. The status is bad when it cannot be printed; a reader that went away is no
+    /// fault of ours.
+    pub fn result(&self, text: &str) -> Status {
+        let mut stdout = std::io::stdout().lock();
+        match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+            Ok(()) => Status::Good,
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Status::Good,
+            Err(error) => {
+                self.error(&format_args!("standard output: {error}"));
+                Status::BadInput
+            }
+        }
+    }
+
+    /// Prints a document.
+    pub fn document(&self, document: &impl Serialize) -> Status {
+        match json(document) {
+            Ok(text) => self.result(text.trim_end()),
+            Err(error) => {
+                self.error(&format_args!("{error:#}"));
+                Status::InternalFault
+            }
+        }
+    }
+
+    /// Says what went wrong.
+    pub fn error(&self, error: &impl Display) {
+        // when standard error is gone there is nobody left to tell
+        let _ = writeln!(std::io::stderr(), "error: {error}");
+    }
+
+    /// A bar on standard error; hidden when that is no terminal.
+    pub fn progress(&self, steps: usize) -> ProgressBar {
+        let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());
+        match ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+}
+
+/// A document as text.
+pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
+    let mut text =
+        serde_json::to_string_pretty(document).context("a document cannot be written")?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// Prints help, the version or what is wrong with the arguments.
+pub fn usage(error: &clap::Error) -> ExitCode {
+    // when the stream is gone there is nobody left to tell
+    let _ = error.print();
+    if error.use_stderr() {
+        Status::BadInput.into()
+    } else {
+        Status::Good.into()
+    }
+}

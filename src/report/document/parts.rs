@@ -1,0 +1,181 @@
+//! What documents are made of: mirrors of what is written, nothing more.
+
+use serde::{Deserialize, Serialize};
+
+/// A point of the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct PositionDocument {
+    pub east_m: f64,
+    pub north_m: f64,
+}
+
+/// Own ship and her limits, in the keys of the scenario file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 1, says what each key means"
+)]
+pub struct OwnShipDocument {
+    pub position: PositionDocument,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+    pub length_m: f64,
+    pub beam_m: f64,
+    pub turning_radius_m: f64,
+    pub speeds_mps: Vec<f64>,
+    pub safety_margin_m: f64,
+}
+
+/// The desired trajectory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 1, says what each key means"
+)]
+pub struct MissionDocument {
+    pub waypoints: Vec<PositionDocument>,
+    pub leg_speeds_mps: Vec<f64>,
+    /// Desired end.
+    pub duration_s: f64,
+    pub length_m: f64,
+}
+
+/// Something that was given up.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 3, says what each key means"
+)]
+pub struct RelaxationDocument {
+    pub kind: String,
+    pub target: String,
+    pub amount: f64,
+    pub unit: String,
+}
+
+/// Something that the independent checker found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct ViolationDocument {
+    pub what: String,
+    pub t_s: Option<f64>,
+}
+
+/// The figures of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 3, says what each key means"
+)]
+pub struct CostDocument {
+    pub objective: f64,
+    pub space_time_error_m2: f64,
+    pub space_time_error_arc_length_m2: f64,
+    pub arrived: bool,
+    pub duration_s: f64,
+    pub length_m: f64,
+    pub delay_s: f64,
+    /// Zero for a plan that was found clear of its sets, null for one that was not.
+    pub max_risk: Option<f64>,
+    /// Null without targets.
+    pub min_clearance_m: Option<f64>,
+}
+
+/// What the search did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct SearchStatsDocument {
+    pub expanded: usize,
+    pub generated: usize,
+    pub edges_checked: usize,
+}
+
+/// The only figure that differs between two runs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the name says it")]
+pub struct TimingDocument {
+    pub plan_s: f64,
+}
+
+/// A pose at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct StartDocument {
+    pub t_s: f64,
+    pub east_m: f64,
+    pub north_m: f64,
+    pub course_deg: f64,
+}
+
+/// A line or an arc; starboard turns are positive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct SegmentDocument {
+    pub start: StartDocument,
+    pub duration_s: f64,
+    pub speed_mps: f64,
+    pub turn_rate_deg_per_s: f64,
+}
+
+/// A pose at a time, with the speed from then on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct SampleDocument {
+    pub t_s: f64,
+    pub east_m: f64,
+    pub north_m: f64,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+}
+
+/// A trajectory, exact and sampled: every second, and wherever a segment starts or ends.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct TrajectoryDocument {
+    pub segments: Vec<SegmentDocument>,
+    pub samples: Vec<SampleDocument>,
+}
+
+/// A convex set of positions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InitialSetDocument {
+    /// `[east, north]`, counter-clockwise.
+    pub vertices_m: Vec<[f64; 2]>,
+}
+
+/// A convex set of velocities.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VelocitySetDocument {
+    /// `[east, north]`, counter-clockwise.
+    pub vertices_mps: Vec<[f64; 2]>,
+}
+
+/// A space-time obstacle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 3, says what each key means"
+)]
+pub struct ObstacleDocument {
+    pub name: String,
+    pub valid_s: [f64; 2],
+    pub initial_set: InitialSetDocument,
+    pub velocity_set: VelocitySetDocument,
+}
+
+/// A target as it is met. Figures of the plan are null without one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 3, says what each key means"
+)]
+pub struct EncounterDocument {
+    pub target: String,
+    pub role: String,
+    pub dcpa_m: Option<f64>,
+    pub tcpa_s: Option<f64>,
+    pub undisturbed_dcpa_m: Option<f64>,
+    pub undisturbed_tcpa_s: Option<f64>,
+    pub passing_side: Option<String>,
+}

@@ -1,0 +1,270 @@
+//! The plan document, contract section 3.
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::{
+    CostDocument, EncounterDocument, InitialSetDocument, MissionDocument, ObstacleDocument,
+    OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument,
+    SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument, VelocitySetDocument,
+    ViolationDocument,
+};
+use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading};
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::PolytopeObstacle;
+use crate::pipeline::{Relaxation, Run};
+use crate::planner::{Outcome, Plan};
+use crate::report::summary::Verdict;
+use crate::report::words;
+use crate::trajectory::Trajectory;
+
+/// The name of the plan document's format.
+pub const PLAN_FORMAT: &str = "searoom-plan/1";
+
+/// Seconds between two samples of a trajectory.
+const SAMPLE_STEP: f64 = 1.0;
+
+/// One plan, alone: everything that is needed to check it again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 3, says what each key means"
+)]
+pub struct PlanDocument {
+    pub format: String,
+    pub scenario: String,
+    pub planner: String,
+    pub search: String,
+    pub compliance: String,
+    pub objective: String,
+    pub time_weight_m2_per_s2: f64,
+    pub horizon_s: f64,
+    pub own_ship: OwnShipDocument,
+    pub mission: MissionDocument,
+    pub land: Vec<Vec<[f64; 2]>>,
+    pub outcome: String,
+    /// Why there is no plan, or none that was finished.
+    pub reason: Option<String>,
+    pub relaxation: Option<RelaxationDocument>,
+    /// All of what was given up, the most important first.
+    pub relaxations: Vec<RelaxationDocument>,
+    pub verified: bool,
+    /// What the independent checker found wrong.
+    pub violations: Vec<ViolationDocument>,
+    pub cost: Option<CostDocument>,
+    pub search_stats: SearchStatsDocument,
+    pub timing: TimingDocument,
+    pub trajectory: Option<TrajectoryDocument>,
+    pub obstacles: Vec<ObstacleDocument>,
+    pub encounters: Vec<EncounterDocument>,
+}
+
+impl PlanDocument {
+    /// The document of a run.
+    pub fn of(run: &Run) -> Self {
+        let scenario = &run.scenario;
+        let verdict = Verdict::of(run);
+        let relaxations: Vec<_> = run.relaxations.iter().map(relaxation).collect();
+        Self {
+            format: PLAN_FORMAT.to_owned(),
+            scenario: scenario.title.clone(),
+            planner: words::PLANNER.to_owned(),
+            search: words::search(scenario.search).to_owned(),
+            compliance: scenario.compliance.word().to_owned(),
+            objective: words::OBJECTIVE.to_owned(),
+            time_weight_m2_per_s2: scenario.time_weight,
+            horizon_s: scenario.horizon,
+            own_ship: own_ship(run),
+            mission: mission(run),
+            land: Vec::new(),
+            outcome: verdict.word().to_owned(),
+            reason: match &run.planned.outcome {
+                Outcome::Infeasible(reason) => Some(reason.to_string()),
+                Outcome::Deadline(_) => {
+                    Some(format!("the budget of {} s ran out", scenario.deadline))
+                }
+                Outcome::Solved(_) => None,
+            },
+            relaxation: match verdict {
+                Verdict::Relaxed => relaxations.first().cloned(),
+                _ => None,
+            },
+            relaxations,
+            verified: verified(run),
+            violations: run
+                .evaluation
+                .iter()
+                .flat_map(|evaluation| &evaluation.violations)
+                .map(|violation| ViolationDocument {
+                    what: violation.what.clone(),
+                    t_s: finite(violation.time),
+                })
+                .collect(),
+            cost: cost(run),
+            search_stats: SearchStatsDocument {
+                expanded: run.planned.stats.expanded,
+                generated: run.planned.stats.generated,
+                edges_checked: run.planned.stats.edges_checked,
+            },
+            timing: timing(run),
+            trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
+            obstacles: run
+                .obstacles
+                .iter()
+                .map(|set| obstacle(set, scenario.horizon))
+                .collect(),
+            encounters: encounters(run),
+        }
+    }
+}
+
+fn plan(run: &Run) -> Option<&Plan> {
+    run.planned.outcome.plan()
+}
+
+pub(super) fn verified(run: &Run) -> bool {
+    run.evaluation.as_ref().is_some_and(|e| e.verified())
+}
+
+fn finite(value: f64) -> Option<f64> {
+    // +0.0 turns a negative zero into zero
+    value.is_finite().then_some(value + 0.0)
+}
+
+fn position(p: Vector) -> PositionDocument {
+    PositionDocument {
+        east_m: p.x + 0.0,
+        north_m: p.y + 0.0,
+    }
+}
+
+fn vertices(polygon: &ConvexPolygon) -> Vec<[f64; 2]> {
+    let plain = |p: &Vector| [p.x + 0.0, p.y + 0.0];
+    polygon.vertices().iter().map(plain).collect()
+}
+
+pub(super) fn timing(run: &Run) -> TimingDocument {
+    TimingDocument {
+        plan_s: run.plan_time.as_secs_f64(),
+    }
+}
+
+fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
+    match given_up {
+        Relaxation::Domain { target, amount } => RelaxationDocument {
+            kind: "domain".to_owned(),
+            target: target.clone(),
+            amount: *amount,
+            unit: "m".to_owned(),
+        },
+    }
+}
+
+fn own_ship(run: &Run) -> OwnShipDocument {
+    let own = &run.scenario.own_ship;
+    OwnShipDocument {
+        position: position(own.pose.position),
+        course_deg: course_deg_from_heading(own.pose.heading),
+        speed_mps: own.speed,
+        length_m: own.hull.length,
+        beam_m: own.hull.beam,
+        turning_radius_m: own.turning_radius,
+        speeds_mps: own.speeds.clone(),
+        safety_margin_m: own.safety_margin,
+    }
+}
+
+fn mission(run: &Run) -> MissionDocument {
+    let desired = &run.scenario.desired;
+    MissionDocument {
+        waypoints: desired.waypoints().into_iter().map(position).collect(),
+        leg_speeds_mps: desired.legs().iter().map(|leg| leg.speed).collect(),
+        duration_s: desired.duration(),
+        length_m: desired.length(),
+    }
+}
+
+pub(super) fn cost(run: &Run) -> Option<CostDocument> {
+    let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
+    Some(CostDocument {
+        objective: plan.cost,
+        space_time_error_m2: evaluation.space_time_error,
+        space_time_error_arc_length_m2: evaluation.arc_length_error,
+        arrived: true,
+        duration_s: evaluation.duration,
+        length_m: evaluation.length,
+        delay_s: evaluation.delay,
+        // outside of a set the risk is zero; inside it is not computed
+        max_risk: evaluation.verified().then_some(0.0),
+        min_clearance_m: finite(evaluation.min_clearance),
+    })
+}
+
+fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
+    let start = |pose: Pose, time: f64| StartDocument {
+        t_s: time,
+        east_m: pose.position.x + 0.0,
+        north_m: pose.position.y + 0.0,
+        course_deg: course_deg_from_heading(pose.heading),
+    };
+    TrajectoryDocument {
+        segments: trajectory
+            .segments()
+            .iter()
+            .map(|segment| SegmentDocument {
+                start: start(segment.start, segment.start_time),
+                duration_s: segment.duration,
+                speed_mps: segment.speed,
+                turn_rate_deg_per_s: clockwise_deg_per_s(segment.turn_rate),
+            })
+            .collect(),
+        samples: trajectory
+            .sample_times(SAMPLE_STEP)
+            .into_iter()
+            .map(|time| {
+                let at = start(trajectory.pose_at(time), time);
+                SampleDocument {
+                    t_s: at.t_s,
+                    east_m: at.east_m,
+                    north_m: at.north_m,
+                    course_deg: at.course_deg,
+                    speed_mps: trajectory.segment_at(time).speed,
+                }
+            })
+            .collect(),
+    }
+}
+
+fn obstacle(set: &PolytopeObstacle, horizon: f64) -> ObstacleDocument {
+    ObstacleDocument {
+        name: set.name().to_owned(),
+        valid_s: [0.0, horizon],
+        initial_set: InitialSetDocument {
+            vertices_m: vertices(set.initial()),
+        },
+        velocity_set: VelocitySetDocument {
+            vertices_mps: vertices(set.velocity()),
+        },
+    }
+}
+
+pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
+    let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
+    run.scenario
+        .targets
+        .iter()
+        .zip(&run.sets)
+        .enumerate()
+        .map(|(index, (target, sets))| {
+            let passage = passages.and_then(|passages| passages.get(index));
+            EncounterDocument {
+                target: target.name.clone(),
+                role: words::role(sets.encounter.role).to_owned(),
+                dcpa_m: passage.and_then(|p| finite(p.dcpa)),
+                tcpa_s: passage.and_then(|p| finite(p.tcpa)),
+                undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
+                undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
+                passing_side: passage.map(|p| p.passing_side.to_string()),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,142 @@
+//! The suite document, contract section 5.
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::{CostDocument, EncounterDocument, TimingDocument};
+use super::plan::{cost, encounters, timing, verified};
+use crate::pipeline::Run;
+use crate::report::summary::Verdict;
+use crate::report::words;
+
+/// The outcome of a file that is no scenario.
+pub const UNREADABLE: &str = "unreadable";
+
+/// The outcome of a run that ended in a fault of the program.
+pub const INTERNAL_FAULT: &str = "internal-fault";
+
+/// Many runs in one document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 5, says what each key means"
+)]
+pub struct SuiteDocument {
+    pub runs: Vec<SuiteRunDocument>,
+    pub summary: SuiteSummaryDocument,
+}
+
+/// One run of a suite. Where there was none, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`], `error`
+/// says why, and the keys that have no meaning are null.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "the contract, section 5, says what each key means"
+)]
+pub struct SuiteRunDocument {
+    pub file: String,
+    pub scenario: Option<String>,
+    pub planner: Option<String>,
+    pub outcome: String,
+    pub error: Option<String>,
+    pub verified: bool,
+    pub cost: Option<CostDocument>,
+    pub encounters: Vec<EncounterDocument>,
+    pub targets: Option<usize>,
+    pub timing: Option<TimingDocument>,
+}
+
+/// How many of which.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SuiteSummaryDocument {
+    /// All of them: the sum of the six outcomes below.
+    pub scenarios: usize,
+    /// Plans that give up nothing.
+    pub solved: usize,
+    /// Plans that give something up.
+    pub relaxed: usize,
+    /// No plan.
+    pub infeasible: usize,
+    /// Budget ran out.
+    pub deadline: usize,
+    /// Files that are no scenario.
+    pub unreadable: usize,
+    /// Runs that ended in a fault of the program.
+    pub internal_faults: usize,
+    /// Plans in which the independent checker found nothing wrong.
+    pub verified: usize,
+}
+
+impl SuiteDocument {
+    /// The document of these runs, with their summary.
+    pub fn of(runs: Vec<SuiteRunDocument>) -> Self {
+        let ended = |word: &str| runs.iter().filter(|run| run.outcome == word).count();
+        let summary = SuiteSummaryDocument {
+            scenarios: runs.len(),
+            solved: ended(Verdict::Solved.word()),
+            relaxed: ended(Verdict::Relaxed.word()),
+            infeasible: ended(Verdict::Infeasible.word()),
+            deadline: ended(Verdict::Deadline.word()),
+            unreadable: ended(UNREADABLE),
+            internal_faults: ended(INTERNAL_FAULT),
+            verified: runs.iter().filter(|run| run.verified).count(),
+        };
+        Self { runs, summary }
+    }
+}
+
+impl std::fmt::Display for SuiteSummaryDocument {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let plural = if self.scenarios == 1 { "" } else { "s" };
+        write!(
+            f,
+            "{} scenario{plural}: {} solved",
+            self.scenarios, self.solved
+        )?;
+        for (count, name) in [
+            (self.relaxed, "relaxed"),
+            (self.infeasible, "infeasible"),
+            (self.deadline, "out of time"),
+            (self.unreadable, UNREADABLE),
+            (self.internal_faults, "failed inside"),
+        ] {
+            if count > 0 {
+                write!(f, ", {count} {name}")?;
+            }
+        }
+        write!(f, "; {} verified", self.verified)
+    }
+}
+
+impl SuiteRunDocument {
+    /// The entry of a run.
+    pub fn of(file: String, run: &Run) -> Self {
+        Self {
+            file,
+            scenario: Some(run.scenario.title.clone()),
+            planner: Some(words::PLANNER.to_owned()),
+            outcome: Verdict::of(run).word().to_owned(),
+            error: None,
+            verified: verified(run),
+            cost: cost(run),
+            encounters: encounters(run),
+            targets: Some(run.scenario.targets.len()),
+            timing: Some(timing(run)),
+        }
+    }
+
+    /// The entry of a file that gave no run.
+    pub fn failed(file: String, outcome: &str, error: String) -> Self {
+        Self {
+            file,
+            scenario: None,
+            planner: None,
+            outcome: outcome.to_owned(),
+            error: Some(error),
+            verified: false,
+            cost: None,
+            encounters: Vec::new(),
+            targets: None,
+            timing: None,
+        }
+    }
+}

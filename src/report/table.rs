@@ -1,0 +1,245 @@
+//! Results for the eye: one row per scenario, or one scenario in a few aligned lines.
+
+use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets};
+
+use super::summary::{Meeting, Summary, Verdict};
+use crate::frame::Side;
+use crate::pipeline::Run;
+use crate::planner::Outcome;
+
+/// Targets of one scenario that a row names; the rest is counted.
+const NAMED: usize = 3;
+
+/// Units below the names, so that the table fits a terminal.
+const HEADER: [&str; 11] = [
+    "scenario",
+    "outcome",
+    "encounter",
+    "turn",
+    "passing",
+    "J\n[m²]",
+    "delay\n[s]",
+    "clearance\n[m]",
+    "nodes\nexpanded",
+    "time\n[ms]",
+    "verified",
+];
+
+/// Columns with numbers.
+const NUMBERS: std::ops::Range<usize> = 5..10;
+
+/// One line of a suite's table.
+#[derive(Debug, Clone)]
+pub enum Row {
+    /// A scenario that was run.
+    Run(Summary),
+    /// A file or folder that could not be.
+    Failed {
+        /// Which.
+        file: String,
+        /// In one word.
+        outcome: &'static str,
+    },
+}
+
+/// The table of a suite. Colour only when `colour`; never wider than the terminal when there is one.
+pub fn suite_table(rows: &[Row], colour: bool) -> String {
+    let mut table = Table::new();
+    table
+        .load_style(presets::UTF8_HORIZONTAL_ONLY)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(HEADER);
+    table.style_mut().row_separator = presets::NOTHING.row_separator;
+    if colour {
+        table.enforce_styling();
+    } else {
+        table.force_no_tty();
+    }
+    for index in NUMBERS {
+        if let Some(column) = table.column_mut(index) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    for row in rows {
+        table.add_row(match row {
+            Row::Run(summary) => cells(summary),
+            Row::Failed { file, outcome } => {
+                let mut cells = vec![Cell::new(file), Cell::new(outcome).fg(Color::Red)];
+                cells.resize_with(HEADER.len(), || Cell::new("–"));
+                cells
+            }
+        });
+    }
+    table.trim_fmt()
+}
+
+fn cells(summary: &Summary) -> Vec<Cell> {
+    let planned = summary.verified.is_some();
+    let text = |value: Option<String>| Cell::new(value.unwrap_or_else(|| "–".to_owned()));
+    vec![
+        Cell::new(&summary.title),
+        Cell::new(summary.verdict.word()).fg(match summary.verdict {
+            Verdict::Solved => Color::Green,
+            Verdict::Relaxed => Color::Yellow,
+            Verdict::Infeasible | Verdict::Deadline => Color::Red,
+        }),
+        Cell::new(encounters(summary)),
+        text(planned.then(|| turn(summary))),
+        text(planned.then(|| passings(summary))),
+        text(summary.space_time_error.map(square_metres)),
+        text(summary.delay.map(|delay| format!("{delay:+.1}"))),
+        text(summary.clearance.map(|metres| format!("{metres:.1}"))),
+        Cell::new(summary.expanded),
+        Cell::new(format!("{:.2}", summary.milliseconds)),
+        match summary.verified {
+            Some(true) => Cell::new("yes").fg(Color::Green),
+            Some(false) => Cell::new("NO").fg(Color::Red),
+            None => Cell::new("–"),
+        },
+    ]
+}
+
+fn square_metres(value: f64) -> String {
+    if value < 1000.0 {
+        format!("{value:.1}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
+fn encounters(summary: &Summary) -> String {
+    if summary.meetings.is_empty() {
+        return "none".to_owned();
+    }
+    per_target(summary, |meeting| meeting.role.to_owned())
+}
+
+fn passings(summary: &Summary) -> String {
+    if summary.meetings.is_empty() {
+        return "–".to_owned();
+    }
+    per_target(summary, passing)
+}
+
+fn per_target(summary: &Summary, say: impl Fn(&Meeting) -> String) -> String {
+    let mut lines: Vec<String> = summary.meetings.iter().take(NAMED).map(say).collect();
+    if summary.meetings.len() > NAMED {
+        lines.push(format!("+ {} more", summary.meetings.len() - NAMED));
+    }
+    lines.join("\n")
+}
+
+fn turn(summary: &Summary) -> String {
+    match summary.turn {
+        Some(turn) => format!("{} {:.0}°", turn.side, turn.degrees),
+        None => "none".to_owned(),
+    }
+}
+
+/// The side of own ship on which the target lies at the closest approach, and in a crossing whether
+/// own ship cuts her track ahead or astern of her.
+fn passing(meeting: &Meeting) -> String {
+    let side = match meeting.side {
+        Some(Side::Port) => "port",
+        Some(Side::Starboard) => "starboard",
+        None => return "–".to_owned(),
+    };
+    match meeting.cuts_astern {
+        Some(true) => format!("{side}, astern"),
+        Some(false) => format!("{side}, ahead"),
+        None => side.to_owned(),
+    }
+}
+
+/// The verdict and the costs of one run, aligned.
+pub fn plan_text(run: &Run) -> String {
+    let summary = Summary::of(run);
+    let verified = match summary.verified {
+        Some(true) => ", verified",
+        Some(false) => ", FAILED ITS VERIFICATION",
+        None => "",
+    };
+    let mut lines = vec![format!(
+        "{}: {}{verified}",
+        summary.title,
+        summary.verdict.word()
+    )];
+    let mut say = |name: &str, value: String| lines.push(format!("  {name:<13}{value}"));
+    match &run.planned.outcome {
+        Outcome::Infeasible(reason) => say("reason", reason.to_string()),
+        Outcome::Deadline(_) => say(
+            "reason",
+            format!("the budget of {} s ran out", run.scenario.deadline),
+        ),
+        Outcome::Solved(_) => {}
+    }
+    for crate::pipeline::Relaxation::Domain { target, amount } in &run.relaxations {
+        say(
+            "relaxed",
+            format!("the domain of '{target}' was drawn back by {amount:.1} m"),
+        );
+    }
+    if summary.meetings.is_empty() {
+        say("encounter", "none".to_owned());
+    }
+    for meeting in &summary.meetings {
+        let undisturbed = if meeting.undisturbed_dcpa > 0.0 {
+            format!("{:.1} m", meeting.undisturbed_dcpa)
+        } else {
+            "collision".to_owned()
+        };
+        say(
+            "encounter",
+            format!(
+                "{} with '{}': undisturbed {undisturbed} at {:.0} s",
+                meeting.role, meeting.target, meeting.undisturbed_tcpa
+            ),
+        );
+        if let (Some(dcpa), Some(tcpa)) = (meeting.dcpa, meeting.tcpa) {
+            say(
+                "",
+                format!(
+                    "planned {dcpa:.1} m at {tcpa:.0} s, passing {}",
+                    passing(meeting)
+                ),
+            );
+        }
+    }
+    if let Some(evaluation) = &run.evaluation {
+        say("turn", turn(&summary));
+        say(
+            "J",
+            format!(
+                "{} m² ({} m² by arc length)",
+                square_metres(evaluation.space_time_error),
+                square_metres(evaluation.arc_length_error)
+            ),
+        );
+        say(
+            "delay",
+            format!(
+                "{:+.1} s (arrives after {:.1} s and {:.0} m)",
+                evaluation.delay, evaluation.duration, evaluation.length
+            ),
+        );
+        if let Some(clearance) = summary.clearance {
+            say("clearance", format!("{clearance:.1} m"));
+        }
+        for violation in &evaluation.violations {
+            say(
+                "violation",
+                format!("{} (at {:.1} s)", violation.what, violation.time),
+            );
+        }
+    }
+    let stats = &run.planned.stats;
+    say(
+        "search",
+        format!(
+            "{} expanded, {} generated, {} edges checked",
+            stats.expanded, stats.generated, stats.edges_checked
+        ),
+    );
+    say("time", format!("{:.2} ms", summary.milliseconds));
+    lines.join("\n")
+}

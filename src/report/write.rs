@@ -1,0 +1,41 @@
+//! Files that are whole or not there.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// A file that could not be written.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: cannot be written: {source}", file.display())]
+pub struct WriteError {
+    /// The file.
+    pub file: PathBuf,
+    /// The system's answer.
+    pub source: std::io::Error,
+}
+
+/// Writes `contents` under a temporary name beside `file` and renames it, so that a crash leaves the
+/// old file or the new one, never half of it. The folder must exist.
+pub fn write_atomically(file: &Path, contents: &[u8]) -> Result<(), WriteError> {
+    let failed = |source| WriteError {
+        file: file.to_owned(),
+        source,
+    };
+    let folder = match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".searoom-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // a temporary file is private by default, a result is not; the umask still applies
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut temporary = builder.tempfile_in(folder).map_err(failed)?;
+    temporary.write_all(contents).map_err(failed)?;
+    temporary
+        .persist(file)
+        .map_err(|error| failed(error.error))?;
+    Ok(())
+}

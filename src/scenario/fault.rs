@@ -1,0 +1,59 @@
+//! What is wrong with a scenario file: every fault, each with its place.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// One thing wrong in a file: where, what was found, what is allowed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// The field, as in `targets[0].speed_mps`; empty when the file as a whole is meant.
+    pub path: String,
+    /// What the file says there.
+    pub found: String,
+    /// What it may say.
+    pub allowed: String,
+    /// Line in the file, from 1, where one can be named.
+    pub line: Option<usize>,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(line) = self.line {
+            write!(f, "line {line}: ")?;
+        }
+        if !self.path.is_empty() {
+            write!(f, "{}: ", self.path)?;
+        }
+        write!(f, "found {}; allowed: {}", self.found, self.allowed)
+    }
+}
+
+/// Why a file gives no scenario.
+#[derive(Debug, thiserror::Error)]
+pub enum ScenarioError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read: {source}", file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// The file was read and is wrong.
+    #[error("{}: {}", file.display(), listed(faults))]
+    Faults {
+        /// The file.
+        file: PathBuf,
+        /// Everything wrong with it, in order of lines. Never empty.
+        faults: Vec<Fault>,
+    },
+}
+
+fn listed(faults: &[Fault]) -> String {
+    let plural = if faults.len() == 1 { "" } else { "s" };
+    let mut text = format!("{} fault{plural}", faults.len());
+    for fault in faults {
+        text.push_str(&format!("\n  {fault}"));
+    }
+    text
+}

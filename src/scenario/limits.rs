@@ -1,0 +1,42 @@
+//! The numbers a scenario file may hold. The outer limits are far beyond any voyage and far inside
+//! what squares, products with the horizon and quotients of them can represent; lower limits above
+//! zero keep quotients finite.
+
+use super::file::Range;
+use crate::frame::mps_from_knots;
+
+/// Bytes of a scenario file.
+pub(super) const FILE_BYTES: u64 = 16 * 1024 * 1024;
+
+/// Metres east or north of the origin.
+pub(super) const COORDINATE: Range = Range::within(1e7);
+/// Metres: lengths, beams, turning radii, legs.
+pub(super) const LENGTH: Range = Range::between(1e-3, 1e6);
+/// Metres: margins, domains, standard deviations.
+pub(super) const DISTANCE: Range = Range::between(0.0, 1e6);
+/// Seconds: horizon, deadline.
+pub(super) const DURATION: Range = Range::between(1e-3, 1e6);
+/// m/s at which a leg is run.
+pub(super) const WAY: Range = Range::between(1e-3, 100.0);
+/// m/s, or standing still.
+pub(super) const SPEED: Range = Range::between(0.0, 100.0);
+/// m/s of the finite set: standing still, or a speed that makes way.
+pub(super) const CHOSEN_SPEED: Range = Range::zero_or_between(1e-3, 100.0);
+/// m/s, one component of a vertex of a velocity set.
+pub(super) const VELOCITY: Range = Range::within(100.0);
+/// Degrees; a course below 0 or above 360 is the one a full circle away.
+pub(super) const COURSE: Range = Range::within(360.0);
+/// Degrees, half a full circle to either side.
+pub(super) const COURSE_SPREAD: Range = Range::between(0.0, 180.0);
+/// m²/s², the weight of time.
+pub(super) const TIME_WEIGHT: Range = Range::between(0.0, 1e6);
+
+/// Limits for a number in knots: round ones, just inside those in m/s.
+pub(super) fn in_knots(range: Range) -> Range {
+    let knot = mps_from_knots(1.0);
+    Range {
+        low: (range.low / knot * 1e3).ceil() / 1e3,
+        high: (range.high / knot).floor(),
+        ..range
+    }
+}

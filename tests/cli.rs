@@ -1,0 +1,514 @@
+//! The program, run as a user runs it.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::{contains, is_empty};
+use serde_json::Value;
+
+const HEAD_ON: &str = include_str!("../scenarios/colregs/head-on.toml");
+
+fn searoom(args: &[&str]) -> Assert {
+    Command::new(env!("CARGO_BIN_EXE_searoom"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(args)
+        .assert()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a path that is text")
+}
+
+fn write(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> String {
+    let file = folder.join(name);
+    fs::create_dir_all(file.parent().expect("a folder")).expect("made");
+    fs::write(&file, contents).expect("written");
+    text(&file).to_owned()
+}
+
+fn stdout(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stdout.clone()).expect("text")
+}
+
+fn document(assert: &Assert) -> Value {
+    serde_json::from_str(&stdout(assert)).expect("one JSON document")
+}
+
+/// The document without its only wall-clock figures.
+fn untimed(mut document: Value) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                map.remove("timing");
+                map.values_mut().for_each(strip);
+            }
+            Value::Array(list) => list.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    strip(&mut document);
+    document
+}
+
+#[test]
+fn the_scenarios_of_the_project_are_good() {
+    searoom(&["check", "scenarios"])
+        .success()
+        .stderr(is_empty())
+        .stdout(contains("scenarios/colregs/head-on.toml: ok"));
+}
+
+#[test]
+fn every_fault_of_a_file_is_reported_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(
+        folder.path(),
+        "bad.toml",
+        HEAD_ON
+            .replace("horizon_s = 400.0", "horizon_s = -1")
+            .replace("course_deg = 90.0", "course_deg = \"east\"")
+            .replace("length_m = 30.0", "length_m = nan")
+            .replace("turning_radius_m = 100.0", "turning_radius_m = 0")
+            .replace("safety_margin_m", "safty_margin_m")
+            .replace(
+                "speed_spread_mps = 0.5",
+                "speed_spread_mps = -0.5\nspeed_kn = 3",
+            )
+            .replace(
+                "{ east_m = 1500.0, north_m = 0.0 }]",
+                "{ east_m = 0, north_m = 0 }]",
+            ),
+    );
+    let mut assert = searoom(&["check", &file]).code(2).stdout(is_empty());
+    for expected in [
+        "bad.toml: 8 faults",
+        "line 3: horizon_s: found -1; allowed: a number from 0.001 to 1000000",
+        "line 7: own_ship.course_deg: found the text \"east\"; allowed: a number from -360 to 360",
+        "own_ship.length_m: found nan",
+        "own_ship.turning_radius_m: found 0; allowed: a number from 0.001",
+        "own_ship.safty_margin_m: found an unknown key; allowed: did you mean 'safety_margin_m'?",
+        "mission.waypoints[1]: found the waypoint before it again",
+        "targets[0].speed_spread_mps: found -0.5; allowed: a number from 0 to 100",
+        "targets[0].speed_kn: found speed_kn beside speed_mps; allowed: one of the two, not both",
+    ] {
+        assert = assert.stderr(contains(expected));
+    }
+}
+
+#[test]
+fn what_is_not_built_is_refused_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sets = |name: &str, initial: &str, velocity: &str| {
+        format!("\n[[targets]]\nname = \"{name}\"\ninitial_set = {initial}\n{velocity}\n")
+    };
+    let vertices = "{ vertices_m = [[900, 900]] }";
+    let cases = [
+        (
+            "title",
+            "origin = { lat_deg = 63.4, lon_deg = 10.4 }\ntitle",
+            "origin",
+        ),
+        ("title", "map = \"land.geojson\"\ntitle", "map"),
+        (
+            "position = { east_m = 0.0, north_m = 0.0 }",
+            "position = { lat_deg = 63.4, lon_deg = 10.4 }",
+            "own_ship.position.lat_deg",
+        ),
+        (
+            "beam_m = 8.0",
+            "beam_m = 8.0\nland_margin_m = 5.0",
+            "own_ship.land_margin_m",
+        ),
+        (
+            "[mission]",
+            "[mission]\nalternatives = []",
+            "mission.alternatives",
+        ),
+        (
+            "[mission]",
+            "[planner]\nkind = \"path-time\"\n[mission]",
+            "planner.kind",
+        ),
+        (
+            "[mission]",
+            "[planner]\nkind = \"optimal-control\"\n[mission]",
+            "planner.kind",
+        ),
+        (
+            "[mission]",
+            "[planner]\nobjective = \"time\"\n[mission]",
+            "planner.objective",
+        ),
+        (
+            "[mission]",
+            "[planner]\nrisk_weight_m = 1.0\n[mission]",
+            "planner.risk_weight_m",
+        ),
+        (
+            "[mission]",
+            "[planner]\ncompliance = \"rules\"\n[mission]",
+            "planner.compliance",
+        ),
+        (
+            "[mission]",
+            "[planner]\nmax_risk = 0.1\n[mission]",
+            "planner.max_risk",
+        ),
+        (
+            "[mission]",
+            "[planner.optimal_control]\nintervals = 50\n[mission]",
+            "planner.optimal_control",
+        ),
+        (
+            "beam_m = 12.0",
+            "beam_m = 12.0\nturn_rate_deg_per_s = 0.5",
+            "targets[0].turn_rate_deg_per_s",
+        ),
+        (
+            "beam_m = 12.0",
+            "beam_m = 12.0\nrepresentation = \"ellipsoid\"",
+            "targets[0].representation",
+        ),
+    ];
+    for (from, to, path) in cases {
+        assert!(HEAD_ON.contains(from));
+        let file = write(folder.path(), "unbuilt.toml", HEAD_ON.replacen(from, to, 1));
+        searoom(&["plan", &file])
+            .code(2)
+            .stdout(is_empty())
+            .stderr(contains(path).and(contains("not built yet")));
+    }
+    let ellipsoid = "{ center_m = [900, 900], shape_m2 = [[9, 0], [0, 9]] }";
+    for (text, path) in [
+        (
+            sets("a", ellipsoid, "velocity_set = { vertices_mps = [[0, 0]] }"),
+            "targets[1].initial_set.shape_m2",
+        ),
+        (
+            sets(
+                "a",
+                vertices,
+                "velocity_sets = [{ vertices_mps = [[0, 0]] }]",
+            ),
+            "targets[1].velocity_sets",
+        ),
+    ] {
+        let file = write(folder.path(), "unbuilt.toml", format!("{HEAD_ON}{text}"));
+        searoom(&["check", &file])
+            .code(2)
+            .stderr(contains(path).and(contains("not built yet")));
+    }
+    for (option, value) in [
+        ("--planner", "path-time"),
+        ("--planner", "optimal-control"),
+        ("--compliance", "rules"),
+    ] {
+        searoom(&["suite", option, value])
+            .code(2)
+            .stdout(is_empty())
+            .stderr(contains(value).and(contains("not built yet")));
+    }
+}
+
+#[test]
+fn files_that_are_none_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let missing = text(&folder.path().join("missing.toml")).to_owned();
+    for command in ["check", "plan", "suite"] {
+        searoom(&[command, &missing])
+            .code(2)
+            .stderr(contains("missing.toml: cannot be read"));
+    }
+    searoom(&["suite", text(folder.path())])
+        .code(2)
+        .stderr(contains("a folder without scenarios"));
+    searoom(&["plan", text(folder.path())])
+        .code(2)
+        .stderr(contains("a folder").and(contains("suite")));
+    let bytes = write(folder.path(), "bytes.toml", [0x74, 0xff, 0x00]);
+    searoom(&["check", &bytes])
+        .code(2)
+        .stderr(contains("found bytes that are no text at byte 1"));
+    searoom(&["plan"]).code(2).stderr(contains("Usage"));
+    searoom(&["suite", "--json", "--figure", "x.svg"])
+        .code(2)
+        .stderr(contains("--figure"));
+}
+
+#[test]
+fn a_suite_goes_on_after_a_broken_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), "a/good.toml", HEAD_ON);
+    write(folder.path(), "a.toml", "title = 3");
+    write(folder.path(), "z.toml", HEAD_ON.replace("Head-on", "Last"));
+    write(folder.path(), ".hidden/x.toml", "");
+    write(folder.path(), "notes.txt", "");
+    let plans = tempfile::tempdir().expect("a folder");
+    let assert = searoom(&[
+        "suite",
+        text(folder.path()),
+        "--json",
+        "--plans",
+        text(plans.path()),
+    ])
+    .code(2)
+    .stderr(contains("a.toml: ").and(contains("title: found 3")));
+    let suite = document(&assert);
+    let runs = suite["runs"].as_array().expect("a list");
+    let files: Vec<_> = runs
+        .iter()
+        .map(|run| {
+            let file = Path::new(run["file"].as_str().expect("text"));
+            let relative = file.strip_prefix(folder.path()).expect("below the folder");
+            text(relative).to_owned()
+        })
+        .collect();
+    assert_eq!(files, ["a/good.toml", "a.toml", "z.toml"]);
+    assert_eq!(runs[0]["outcome"], "solved");
+    assert_eq!(runs[1]["outcome"], "unreadable");
+    assert_eq!(runs[2]["scenario"], "Last");
+    assert_eq!(suite["summary"]["scenarios"], 3);
+    assert_eq!(suite["summary"]["solved"], 2);
+    assert_eq!(suite["summary"]["unreadable"], 1);
+    assert_eq!(suite["summary"]["verified"], 2);
+    let mut written: Vec<_> = fs::read_dir(plans.path())
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name())
+        .collect();
+    written.sort();
+    assert_eq!(written, ["a__good.json", "z.json"]);
+    searoom(&["suite", text(folder.path())])
+        .code(2)
+        .stdout(contains("unreadable").and(contains("3 scenarios: 2 solved, 1 unreadable")));
+}
+
+#[test]
+fn two_results_never_share_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (a, b) = (
+        write(folder.path(), "a/same.toml", HEAD_ON),
+        write(folder.path(), "b/same.toml", HEAD_ON),
+    );
+    let plans = folder.path().join("plans");
+    searoom(&["suite", &a, &b, "--plans", text(&plans)])
+        .code(2)
+        .stdout(is_empty())
+        .stderr(contains("'same'"));
+    assert!(!plans.exists());
+}
+
+#[test]
+fn a_plan_document_has_what_the_contract_names() {
+    let plan = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
+    for (pointer, value) in [
+        ("/format", "searoom-plan/1"),
+        ("/scenario", "Head-on"),
+        ("/planner", "space-time"),
+        ("/search", "a-star"),
+        ("/compliance", "shape"),
+        ("/outcome", "solved"),
+        ("/encounters/0/target", "target"),
+        ("/encounters/0/role", "head-on"),
+        ("/encounters/0/passing_side", "port"),
+        ("/obstacles/0/name", "target"),
+    ] {
+        assert_eq!(
+            plan.pointer(pointer),
+            Some(&Value::from(value)),
+            "{pointer}"
+        );
+    }
+    for pointer in [
+        "/horizon_s",
+        "/own_ship/turning_radius_m",
+        "/own_ship/speeds_mps/2",
+        "/mission/waypoints/1/east_m",
+        "/mission/leg_speeds_mps/0",
+        "/cost/objective",
+        "/cost/space_time_error_m2",
+        "/cost/space_time_error_arc_length_m2",
+        "/cost/duration_s",
+        "/cost/length_m",
+        "/cost/delay_s",
+        "/cost/max_risk",
+        "/cost/min_clearance_m",
+        "/search_stats/expanded",
+        "/search_stats/generated",
+        "/search_stats/edges_checked",
+        "/timing/plan_s",
+        "/trajectory/segments/0/start/t_s",
+        "/trajectory/segments/0/start/course_deg",
+        "/trajectory/segments/0/duration_s",
+        "/trajectory/segments/0/speed_mps",
+        "/trajectory/segments/0/turn_rate_deg_per_s",
+        "/trajectory/samples/0/east_m",
+        "/trajectory/samples/0/speed_mps",
+        "/obstacles/0/valid_s/1",
+        "/obstacles/0/initial_set/vertices_m/0/1",
+        "/obstacles/0/velocity_set/vertices_mps/0/1",
+        "/encounters/0/dcpa_m",
+        "/encounters/0/tcpa_s",
+        "/encounters/0/undisturbed_dcpa_m",
+        "/encounters/0/undisturbed_tcpa_s",
+    ] {
+        let found = plan.pointer(pointer);
+        assert!(found.is_some_and(Value::is_number), "{pointer}: {found:?}");
+    }
+    assert_eq!(plan["verified"], true);
+    assert_eq!(plan["cost"]["arrived"], true);
+    assert_eq!(plan["relaxation"], Value::Null);
+    assert_eq!(plan["land"], Value::Array(Vec::new()));
+    assert_eq!(plan["encounters"][0].get("scores"), None);
+    // own ship goes east and turns to starboard first: positive, toward the south
+    let segments = plan["trajectory"]["segments"].as_array().expect("a list");
+    let rates = segments
+        .iter()
+        .filter_map(|s| s["turn_rate_deg_per_s"].as_f64());
+    let first = rates.into_iter().find(|rate| *rate != 0.0);
+    assert!(first.is_some_and(|rate| rate > 0.0), "{first:?}");
+    let samples = plan["trajectory"]["samples"].as_array().expect("a list");
+    let north = |s: &Value| s["north_m"].as_f64().expect("a number");
+    assert!(samples.iter().map(north).fold(0.0, f64::min) < -10.0);
+    let course = |s: &Value| s["course_deg"].as_f64().expect("a number");
+    assert!(samples.iter().map(course).fold(0.0, f64::max) > 95.0);
+}
+
+#[test]
+fn the_same_scenario_gives_the_same_document() {
+    let args = ["suite", "scenarios/colregs", "--json"];
+    let (one, two) = (searoom(&args).success(), searoom(&args).success());
+    assert_eq!(untimed(document(&one)), untimed(document(&two)));
+    let args = ["plan", "scenarios/colregs/give-way.toml", "--json"];
+    let lines = |assert: Assert| -> Vec<String> {
+        let untimed = |line: &&str| !line.contains("\"plan_s\"");
+        stdout(&assert)
+            .lines()
+            .filter(untimed)
+            .map(str::to_owned)
+            .collect()
+    };
+    assert_eq!(lines(searoom(&args)), lines(searoom(&args)));
+}
+
+#[test]
+fn the_four_scenarios_are_planned_and_verified() {
+    let assert = searoom(&["suite", "scenarios/colregs", "--json"]).success();
+    let suite = document(&assert);
+    assert_eq!(suite["summary"]["scenarios"], 4);
+    assert_eq!(suite["summary"]["verified"], 4);
+    let roles: Vec<_> = suite["runs"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|run| run["encounters"][0]["role"].as_str().expect("text"))
+        .collect();
+    assert_eq!(roles, ["give-way", "head-on", "overtaking", "stand-on"]);
+    searoom(&["suite", "scenarios/colregs"])
+        .success()
+        .stderr(is_empty())
+        .stdout(contains("4 scenarios: 4 solved; 4 verified"))
+        .stdout(contains("port, astern"))
+        .stdout(contains("\u{1b}").not());
+}
+
+#[test]
+fn options_replace_what_the_scenario_says() {
+    let file = "scenarios/colregs/head-on.toml";
+    let args = ["--json", "--search", "dijkstra", "--compliance", "none"];
+    let plan = document(&searoom(&[&["plan", file], args.as_slice()].concat()).success());
+    assert_eq!(plan["search"], "dijkstra");
+    assert_eq!(plan["compliance"], "none");
+    searoom(&["plan", file, "--search", "best"])
+        .code(2)
+        .stderr(contains("a-star, dijkstra"));
+}
+
+#[test]
+fn no_plan_is_an_answer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let inside = write(
+        folder.path(),
+        "inside.toml",
+        HEAD_ON.replace("position = { east_m = 1500.0", "position = { east_m = 30.0"),
+    );
+    let late = write(
+        folder.path(),
+        "late.toml",
+        HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 40.0"),
+    );
+    for file in [&inside, &late] {
+        let plan = document(&searoom(&["plan", file, "--json"]).code(1));
+        assert_eq!(plan["outcome"], "infeasible");
+        assert!(plan["cost"].is_null() && plan["trajectory"].is_null());
+        assert_eq!(plan["verified"], false);
+        assert!(plan["reason"].is_string());
+        assert!(plan["encounters"][0]["dcpa_m"].is_null());
+        searoom(&["plan", file])
+            .code(1)
+            .stdout(contains("infeasible"));
+    }
+    searoom(&["suite", &inside, "scenarios/colregs/head-on.toml"])
+        .code(1)
+        .stdout(contains("2 scenarios: 1 solved, 1 infeasible; 1 verified"));
+}
+
+#[test]
+fn without_targets_there_is_no_clearance() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let alone = HEAD_ON.split("[[targets]]").next().expect("a part");
+    let file = write(folder.path(), "alone.toml", alone);
+    let plan = document(&searoom(&["plan", &file, "--json"]).success());
+    assert!(plan["cost"]["min_clearance_m"].is_null());
+    assert_eq!(plan["encounters"], Value::Array(Vec::new()));
+    searoom(&["plan", &file]).success().stdout(contains("none"));
+}
+
+#[cfg(not(feature = "recording"))]
+#[test]
+fn recordings_need_their_feature() {
+    searoom(&["suite", "scenarios/colregs", "--rrd", "recordings"])
+        .code(2)
+        .stdout(is_empty())
+        .stderr(contains("built without recordings"));
+}
+
+#[cfg(feature = "recording")]
+#[test]
+fn recordings_are_named_after_their_scenarios() {
+    let folder = tempfile::tempdir().expect("a folder");
+    searoom(&["suite", "scenarios", "--rrd", text(folder.path())]).success();
+    let recording = folder.path().join("colregs__head-on.rrd");
+    assert!(fs::metadata(recording).expect("a recording").len() > 1000);
+    let file = folder.path().join("one.rrd");
+    searoom(&[
+        "plan",
+        "scenarios/colregs/head-on.toml",
+        "--rrd",
+        text(&file),
+    ])
+    .success();
+    assert!(file.is_file());
+    searoom(&["suite", "scenarios/colregs", "--rrd", text(&file)])
+        .code(2)
+        .stderr(contains("4 scenarios"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_goes_away_is_no_fault() {
+    use std::process::{Command, Stdio};
+    let mut child = Command::new(env!("CARGO_BIN_EXE_searoom"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(["plan", "scenarios/colregs/head-on.toml", "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("ended");
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stderr.is_empty());
+}
