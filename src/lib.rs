@@ -9,6 +9,7 @@ pub mod pipeline;
 pub mod planner;
 pub mod scenario;
 pub mod search;
+pub mod simulation;
 pub mod target;
 pub mod tolerance;
 pub mod trajectory;
