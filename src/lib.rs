@@ -10,6 +10,7 @@ pub mod planner;
 pub mod report;
 pub mod scenario;
 pub mod search;
+pub mod simulation;
 pub mod target;
 pub mod tolerance;
 pub mod trajectory;

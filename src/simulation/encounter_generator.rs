@@ -1,0 +1,387 @@
+//! Random encounters of a chosen kind: who meets whom, from where, and what is not known of them.
+
+use std::f64::consts::PI;
+use std::ops::RangeInclusive;
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
+use crate::geometry::outer_disc;
+use crate::planner::SearchKind;
+use crate::scenario::{Compliance, Scenario};
+use crate::target::{DomainKind, Motion, ShipTrack, Target};
+use crate::trajectory::{DesiredTrajectory, TrajectoryError};
+use crate::vessel::{Hull, OwnShip};
+
+/// m/s, own ship's desired speed.
+const OWN_SPEED: f64 = 5.0;
+/// m/s, the speeds she may choose.
+const OWN_SPEEDS: [f64; 3] = [2.5, 5.0, 6.0];
+/// Metres, the desired path, straight.
+const PATH_LENGTH: f64 = 1500.0;
+/// Metres, smallest turning radius.
+const TURNING_RADIUS: f64 = 100.0;
+/// Own hull.
+const OWN_HULL: Hull = Hull {
+    length: 30.0,
+    beam: 8.0,
+};
+/// Metres between hulls.
+const SAFETY_MARGIN: f64 = 20.0;
+/// Seconds.
+const HORIZON: f64 = 600.0;
+/// m²/s².
+const TIME_WEIGHT: f64 = 25.0;
+/// Seconds of computing that one plan may take. Far beyond need: outcomes must not depend on it.
+const DEADLINE: f64 = 60.0;
+
+/// Seconds from the start until the undisturbed ships are closest.
+const MEETING_TIME: RangeInclusive<f64> = 100.0..=220.0;
+/// Metres.
+const TARGET_LENGTH: RangeInclusive<f64> = 30.0..=120.0;
+/// Length over beam.
+const SLENDERNESS: RangeInclusive<f64> = 4.0..=7.0;
+/// Fraction of the target's length by which the undisturbed centres miss each other, either way.
+const MISS: RangeInclusive<f64> = -0.5..=0.5;
+/// m/s.
+const SPEED_SPREAD: RangeInclusive<f64> = 0.1..=0.6;
+/// Radians: 1° to 8°.
+const COURSE_SPREAD: RangeInclusive<f64> = PI / 180.0..=8.0 * PI / 180.0;
+/// Metres.
+const POSITION_STD: RangeInclusive<f64> = 0.0..=5.0;
+
+/// Radians, 10°: bearings within which two ships meet head-on, colregs.md section 1.3.
+const HEAD_ON: f64 = PI / 18.0;
+/// Radians, 112.5°: a ship abaft this bearing overtakes, Rule 13(b).
+const ABAFT: f64 = 0.625 * PI;
+/// Radians, 20° and 15°: bearing and course within which a ship ahead is drawn as overtaken.
+const OVERTAKEN_BEARING: f64 = PI / 9.0;
+const OVERTAKEN_COURSE: f64 = PI / 12.0;
+
+/// Seconds before the start at which the encounter is already of its kind.
+const EARLIER: f64 = 30.0;
+
+/// Draws of one target before the generator gives up on its kind.
+const MAX_DRAWS: usize = 10_000;
+
+/// What own ship is to the target that is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum EncounterKind {
+    /// Nearly reciprocal courses.
+    HeadOn,
+    /// The target crosses from starboard.
+    GiveWay,
+    /// The target crosses from port.
+    StandOn,
+    /// Own ship comes up from astern.
+    Overtaking,
+}
+
+impl EncounterKind {
+    /// Every kind.
+    pub const ALL: [Self; 4] = [Self::HeadOn, Self::GiveWay, Self::StandOn, Self::Overtaking];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::HeadOn => "head-on",
+            Self::GiveWay => "give-way",
+            Self::StandOn => "stand-on",
+            Self::Overtaking => "overtaking",
+        }
+    }
+
+    /// Relative bearings (clockwise, radians) at which the target is first seen.
+    fn bearings(self) -> RangeInclusive<f64> {
+        match self {
+            Self::HeadOn => -HEAD_ON..=HEAD_ON,
+            Self::GiveWay => HEAD_ON..=ABAFT,
+            Self::StandOn => -ABAFT..=-HEAD_ON,
+            Self::Overtaking => -OVERTAKEN_BEARING..=OVERTAKEN_BEARING,
+        }
+    }
+
+    /// Target speeds, m/s: half to one and a half of own speed; 1.5–3.2 m/s less when overtaken.
+    fn speeds(self) -> RangeInclusive<f64> {
+        match self {
+            Self::HeadOn | Self::GiveWay | Self::StandOn => 0.5 * OWN_SPEED..=1.5 * OWN_SPEED,
+            Self::Overtaking => OWN_SPEED - 3.2..=OWN_SPEED - 1.5,
+        }
+    }
+
+    /// The sectors of colregs.md section 1.3, first the one of Rule 13: whoever is abaft overtakes.
+    fn describes(self, own: &Pose, target: &Pose) -> bool {
+        let bearing = relative_bearing(own, target.position);
+        let aspect = relative_bearing(target, own.position);
+        if bearing.abs() > ABAFT {
+            return false;
+        }
+        if aspect.abs() > ABAFT {
+            let course = wrap(target.heading - own.heading);
+            return self == Self::Overtaking && course.abs() <= OVERTAKEN_COURSE;
+        }
+        let head_on = bearing.abs().max(aspect.abs()) <= HEAD_ON;
+        match self {
+            Self::HeadOn => head_on,
+            Self::GiveWay => !head_on && bearing > 0.0 && aspect < 0.0,
+            Self::StandOn => !head_on && bearing < 0.0 && aspect > 0.0,
+            Self::Overtaking => false,
+        }
+    }
+}
+
+/// Where the scene lies in the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Placement {
+    /// Own ship starts at the origin and steers east.
+    Origin,
+    /// Turned by any angle and moved by up to 10 km each way: the answer must not change.
+    Random,
+}
+
+/// A drawn scenario and what the drawing took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// Ready to be planned.
+    pub scenario: Scenario,
+    /// What own ship is to each target, in the scenario's order.
+    pub kinds: Vec<EncounterKind>,
+    /// Draws that were not of the intended kind or began inside a hard set, and were replaced.
+    pub rejected: usize,
+}
+
+/// Why no scene could be drawn.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GeneratorError {
+    /// Every draw was of another kind or began inside a hard set.
+    #[error("no {} encounter in {draws} draws", kind.name())]
+    Exhausted {
+        /// The intended kind.
+        kind: EncounterKind,
+        /// How often it was tried.
+        draws: usize,
+    },
+    /// Own ship's desired trajectory is not one.
+    #[error(transparent)]
+    Trajectory(#[from] TrajectoryError),
+}
+
+/// One own ship, one target. The target's bearing is uniform in the kind's sector, its speed in the
+/// kind's range; it starts where it would reach own ship's track at the meeting time and is then
+/// moved sideways by the miss distance (colregs.md section 4.3). Equal arguments give equal scenes.
+pub fn random_encounter(
+    kind: EncounterKind,
+    seed: u64,
+    placement: Placement,
+) -> Result<Drawn, GeneratorError> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(kind as u64);
+    let title = format!("{} {seed}", kind.name());
+    scene(title, vec![kind], placement, &mut rng)
+}
+
+/// One own ship and `count` targets of kinds drawn at random, each on its own collision course with
+/// the undisturbed own ship. Equal arguments give equal scenes.
+pub fn random_traffic(
+    count: usize,
+    seed: u64,
+    placement: Placement,
+) -> Result<Drawn, GeneratorError> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream((EncounterKind::ALL.len() + count) as u64);
+    let kinds = (0..count)
+        .map(|_| EncounterKind::ALL[rng.random_range(0..EncounterKind::ALL.len())])
+        .collect();
+    scene(
+        format!("{count} targets {seed}"),
+        kinds,
+        placement,
+        &mut rng,
+    )
+}
+
+fn scene(
+    title: String,
+    kinds: Vec<EncounterKind>,
+    placement: Placement,
+    rng: &mut ChaCha8Rng,
+) -> Result<Drawn, GeneratorError> {
+    let mut rejected = 0;
+    let mut ships = Vec::with_capacity(kinds.len());
+    for &kind in &kinds {
+        let exhausted = GeneratorError::Exhausted {
+            kind,
+            draws: MAX_DRAWS,
+        };
+        let (misses, ship) = (0..MAX_DRAWS)
+            .find_map(|misses| Some((misses, draw(kind, rng)?)))
+            .ok_or(exhausted)?;
+        rejected += misses;
+        ships.push(ship);
+    }
+    let origin = match placement {
+        Placement::Origin => Pose::new(Vector::zeros(), 0.0),
+        Placement::Random => {
+            let mut far = || rng.random_range(-10_000.0..10_000.0);
+            Pose::new(Vector::new(far(), far()), rng.random_range(-PI..PI))
+        }
+    };
+    let targets = ships.into_iter().enumerate().map(|(i, ship)| Target {
+        name: format!("target {}", i + 1),
+        motion: Motion::Ship(ShipTrack {
+            pose: Pose::new(
+                origin.world_coordinates(ship.pose.position),
+                wrap(origin.heading + ship.pose.heading),
+            ),
+            ..ship
+        }),
+    });
+    let waypoints = [Vector::zeros(), Vector::new(PATH_LENGTH, 0.0)];
+    let waypoints = waypoints.map(|w| origin.world_coordinates(w));
+    Ok(Drawn {
+        scenario: Scenario {
+            title,
+            horizon: HORIZON,
+            own_ship: OwnShip {
+                pose: origin,
+                speed: OWN_SPEED,
+                hull: OWN_HULL,
+                turning_radius: TURNING_RADIUS,
+                speeds: OWN_SPEEDS.to_vec(),
+                safety_margin: SAFETY_MARGIN,
+            },
+            desired: DesiredTrajectory::new(&waypoints, &[OWN_SPEED])?,
+            targets: targets.collect(),
+            search: SearchKind::AStar,
+            compliance: Compliance::Shape,
+            time_weight: TIME_WEIGHT,
+            deadline: DEADLINE,
+        },
+        kinds,
+        rejected,
+    })
+}
+
+/// One target in the frame of own ship's start, or `None` when the draw is not of the kind, now and
+/// while the ships were still apart, or begins inside the hard set.
+fn draw(kind: EncounterKind, rng: &mut ChaCha8Rng) -> Option<ShipTrack> {
+    let meeting_time = rng.random_range(MEETING_TIME);
+    let bearing = rng.random_range(kind.bearings());
+    let speed = rng.random_range(kind.speeds());
+    let length = rng.random_range(TARGET_LENGTH);
+    let hull = Hull {
+        length,
+        beam: length / rng.random_range(SLENDERNESS),
+    };
+    let miss = rng.random_range(MISS) * length;
+    let position_std = rng.random_range(POSITION_STD);
+    let speed_spread = rng.random_range(SPEED_SPREAD);
+    let course_spread = rng.random_range(COURSE_SPREAD);
+    let farther = rng.random_bool(0.5);
+
+    // the range at which the distance to the meeting point is what the target runs until then
+    let meeting_point = Vector::new(OWN_SPEED * meeting_time, 0.0);
+    let sight = direction(-bearing);
+    let half = sight.dot(&meeting_point);
+    let root = (half * half - meeting_point.norm_squared() + (speed * meeting_time).powi(2)).sqrt();
+    let range = if farther { half + root } else { half - root };
+    // negated on purpose: no real root is no draw
+    if !(range > 0.0) {
+        return None;
+    }
+    let velocity = (meeting_point - sight * range) / meeting_time;
+    let heading = heading_of(velocity);
+    let relative = Vector::new(OWN_SPEED, 0.0) - velocity;
+    let position = sight * range + to_port(relative.normalize()) * miss;
+    let ship = ShipTrack {
+        pose: Pose::new(position, heading),
+        speed,
+        hull,
+        position_std,
+        speed_spread,
+        course_spread,
+        domain: DomainKind::Colregs,
+    };
+    let own = |time: f64| Pose::new(Vector::new(OWN_SPEED * time, 0.0), 0.0);
+    let intended = [-EARLIER, 0.0]
+        .iter()
+        .all(|&t| kind.describes(&own(t), &ship.pose_at(t)));
+    let reach = OWN_HULL.half_diagonal() + SAFETY_MARGIN + 3.0 * position_std;
+    let clear =
+        hull.polygon(&ship.pose).signed_distance(Vector::zeros()) > outer_disc(reach, 0.0).reach();
+    (intended && clear).then_some(ship)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(count: u64) -> Vec<Drawn> {
+        let mut drawn = Vec::new();
+        for kind in EncounterKind::ALL {
+            for seed in 0..count {
+                drawn.push(random_encounter(kind, seed, Placement::Origin).expect("drawn"));
+            }
+        }
+        drawn
+    }
+
+    #[test]
+    fn undisturbed_ships_miss_by_at_most_half_a_length_at_the_meeting_time() {
+        for d in all(300) {
+            let own = &d.scenario.own_ship;
+            let ship = d.scenario.targets[0].ship().expect("a ship");
+            let relative = own.pose.ahead() * own.speed - ship.velocity();
+            let between = ship.pose.position - own.pose.position;
+            let tcpa = between.dot(&relative) / relative.norm_squared();
+            let dcpa = (between - relative * tcpa).norm();
+            assert!((100.0 - 1e-6..=220.0 + 1e-6).contains(&tcpa), "{tcpa}");
+            assert!(dcpa <= ship.hull.length / 2.0 + 1e-6, "{dcpa}");
+        }
+    }
+
+    #[test]
+    fn a_placed_scene_is_the_same_scene_moved() {
+        for seed in 0..50 {
+            let kind = EncounterKind::GiveWay;
+            let here = random_encounter(kind, seed, Placement::Origin).expect("drawn");
+            let there = random_encounter(kind, seed, Placement::Random).expect("drawn");
+            assert_eq!(
+                there,
+                random_encounter(kind, seed, Placement::Random).expect("drawn")
+            );
+            let ship = |d: &Drawn| d.scenario.targets[0].ship().expect("a ship").clone();
+            let pose = there.scenario.own_ship.pose;
+            let body = pose.body_coordinates(ship(&there).pose.position);
+            assert!((body - ship(&here).pose.position).norm() < 1e-8);
+            let turned = wrap(ship(&there).pose.heading - pose.heading);
+            assert!(wrap(turned - ship(&here).pose.heading).abs() < 1e-9);
+            assert!((pose.position - there.scenario.desired.legs()[0].start).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn every_kind_is_drawn_without_many_replacements_and_no_two_seeds_are_alike() {
+        for kind in EncounterKind::ALL {
+            let drawn: Vec<Drawn> = (0..300)
+                .map(|s| random_encounter(kind, s, Placement::Origin).expect("drawn"))
+                .collect();
+            let rejected: usize = drawn.iter().map(|d| d.rejected).sum();
+            assert!(rejected < 300 * 9, "{kind:?}: {rejected} rejected");
+            assert!(
+                drawn
+                    .windows(2)
+                    .all(|w| w[0].scenario.targets != w[1].scenario.targets)
+            );
+        }
+    }
+
+    #[test]
+    fn traffic_has_as_many_targets_as_asked_for() {
+        for count in [0, 2, 4, 10] {
+            let d = random_traffic(count, 3, Placement::Random).expect("drawn");
+            assert_eq!((d.scenario.targets.len(), d.kinds.len()), (count, count));
+        }
+    }
+}
