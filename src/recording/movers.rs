@@ -1,0 +1,184 @@
+//! The chart that moves with the cursor: ships and the sections of their sets.
+
+use rerun::{
+    AsComponents, Color, LineStrips2D, Points2D, Quaternion, Radius, RecordingStream,
+    RecordingStreamResult, TimeColumn, Transform3D,
+};
+
+use super::chart::{Lines, Strip};
+use super::scene::{Motion, Scene, flat, round_down};
+use super::{MAP, TIMELINE, path, style};
+use crate::frame::{Pose, Vector};
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::PolytopeObstacle;
+use crate::target::{ShipTrack, Target};
+use crate::vessel::Hull;
+
+/// The hard set is drawn strong, the shaped one thin and weak.
+pub const HARD_RADIUS: Radius = Radius(rerun::datatypes::Float32(-1.6));
+/// See [`HARD_RADIUS`].
+pub const SHAPED_RADIUS: Radius = Radius(rerun::datatypes::Float32(-0.7));
+
+/// Colour of the outline of a shaped set.
+pub fn shaped_color(index: usize) -> Color {
+    style::toward_background(style::target(index), 0.75)
+}
+
+/// Everything on the chart that moves.
+pub fn log_movers(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    for (index, sets) in scene.run.sets.iter().enumerate() {
+        let name = sets.hard.name();
+        if sets.shaped != sets.hard {
+            let look = (shaped_color(index), SHAPED_RADIUS);
+            log_sections(rec, scene, path(&[MAP, "shaped_sets", name]), &sets.shaped, look)?;
+        }
+        let look = (style::target(index), HARD_RADIUS);
+        log_sections(rec, scene, path(&[MAP, "hard_sets", name]), &sets.hard, look)?;
+    }
+    for (index, target) in scene.run.scenario.targets.iter().enumerate() {
+        log_target(rec, scene, index, target)?;
+    }
+    log_own_ship(rec, scene)
+}
+
+/// The outline of the section at every moment.
+fn log_sections(
+    rec: &RecordingStream,
+    scene: &Scene,
+    entity: rerun::EntityPath,
+    set: &PolytopeObstacle,
+    (color, radius): (Color, Radius),
+) -> RecordingStreamResult<()> {
+    let look = LineStrips2D::update_fields()
+        .with_colors([color])
+        .with_radii([radius]);
+    rec.log_static(entity.clone(), &look)?;
+    let outlines = scene.moments.iter().map(|&t| outline(&set.section(t)));
+    let columns = LineStrips2D::update_fields()
+        .with_strips(outlines)
+        .columns_of_unit_batches()?;
+    rec.send_columns(entity, [scene.moment_column()], columns)
+}
+
+/// The closed boundary of a polygon.
+pub fn outline(polygon: &ConvexPolygon) -> Strip {
+    let mut strip: Strip = polygon.vertices().iter().copied().map(flat).collect();
+    strip.extend(strip.first().copied());
+    strip
+}
+
+fn log_target(
+    rec: &RecordingStream,
+    scene: &Scene,
+    index: usize,
+    target: &Target,
+) -> RecordingStreamResult<()> {
+    let entity = path(&[MAP, "targets", &target.name]);
+    let color = style::target(index);
+    let heading = target.ship().map_or(0.0, |ship| ship.pose.heading);
+    let mut lines = Lines::default();
+    if let Some(ShipTrack { hull, speed, .. }) = target.ship() {
+        lines.add(hull_outline(hull), color, style::points(1.0));
+        let tip = speed * vector_seconds(scene);
+        lines.add(vec![[0.0, 0.0], [tip as f32, 0.0]], color, style::points(0.8));
+    }
+    let lines = lines.archetype();
+    let mark = mark(color, &target.name);
+    let turned = Transform3D::update_fields().with_quaternion(rotation(heading));
+    let parts: [&dyn AsComponents; 3] = [&lines, &mark, &turned];
+    rec.log_static(entity.clone(), &parts)?;
+    let places = scene.moments.iter().map(|&t| target.position_at(t));
+    let columns = Transform3D::update_fields()
+        .with_many_translation(places.map(raised))
+        .columns_of_unit_batches()?;
+    rec.send_columns(entity, [scene.moment_column()], columns)
+}
+
+fn log_own_ship(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let own = &scene.run.scenario.own_ship;
+    let entity = path(&[MAP, "own_ship"]);
+    let mut lines = Lines::default();
+    if own.hull.half_diagonal() > 0.0 {
+        lines.add(hull_outline(&own.hull), style::own_ship(), style::points(1.2));
+    }
+    let lines = lines.archetype();
+    let label = if scene.motion.is_planned() {
+        "Own ship"
+    } else {
+        "Own ship, had she no plan"
+    };
+    let mark = mark(style::own_ship(), label);
+    let parts: [&dyn AsComponents; 2] = [&lines, &mark];
+    rec.log_static(entity.clone(), &parts)?;
+    let poses: Vec<Pose> = scene
+        .moments
+        .iter()
+        .map(|&t| scene.motion.pose_at(t))
+        .collect();
+    let columns = Transform3D::update_fields()
+        .with_many_translation(poses.iter().map(|p| raised(p.position)))
+        .with_many_quaternion(poses.iter().map(|p| rotation(p.heading)))
+        .columns_of_unit_batches()?;
+    rec.send_columns(entity, [scene.moment_column()], columns)?;
+    log_own_vector(rec, scene)
+}
+
+/// Own ship's speed vector, logged where the speed changes.
+fn log_own_vector(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let entity = path(&[MAP, "own_ship", "vector"]);
+    let look = LineStrips2D::update_fields()
+        .with_colors([style::own_ship()])
+        .with_radii([style::points(0.8)]);
+    rec.log_static(entity.clone(), &look)?;
+    let mut times = match scene.motion {
+        Motion::Planned(trajectory) => trajectory.segments().iter().map(|s| s.start_time).collect(),
+        Motion::Undisturbed(desired) => desired.legs().iter().map(|l| l.start_time).collect(),
+    };
+    dedup_increasing(&mut times);
+    let strips = times.iter().map(|&t| {
+        let tip = scene.motion.speed_at(t) * vector_seconds(scene);
+        [[0.0, 0.0], [tip as f32, 0.0]]
+    });
+    let columns = LineStrips2D::update_fields()
+        .with_strips(strips)
+        .columns_of_unit_batches()?;
+    rec.send_columns(
+        entity,
+        [TimeColumn::new_duration_secs(TIMELINE, times.iter().copied())],
+        columns,
+    )
+}
+
+/// Segments of no duration share their start with the next.
+fn dedup_increasing(times: &mut Vec<f64>) {
+    times.dedup_by(|later, earlier| *later <= *earlier);
+}
+
+/// Seconds that a speed vector reaches ahead.
+pub fn vector_seconds(scene: &Scene) -> f64 {
+    round_down(scene.end / 6.0)
+}
+
+/// A dot that stays visible at any zoom, with the name.
+fn mark(color: Color, label: &str) -> Points2D {
+    Points2D::new([[0.0, 0.0]])
+        .with_colors([color])
+        .with_radii([style::points(4.5)])
+        .with_labels([label])
+        .with_show_labels(true)
+}
+
+fn hull_outline(hull: &Hull) -> Strip {
+    outline(&hull.polygon(&Pose::new(Vector::zeros(), 0.0)))
+}
+
+/// About the vertical, counter-clockwise seen from above.
+fn rotation(heading: f64) -> Quaternion {
+    let (sin, cos) = (heading / 2.0).sin_cos();
+    Quaternion::from_xyzw([0.0, 0.0, sin as f32, cos as f32])
+}
+
+fn raised(position: Vector) -> [f32; 3] {
+    let [east, north] = flat(position);
+    [east, north, 0.0]
+}
