@@ -6,17 +6,19 @@ use rerun::blueprint::{
 };
 use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, VisualBounds2D,
+    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis,
+    VisibleTimeRanges, VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
 };
+use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
 use super::chart::legend_height;
 use super::curves::{CLEARANCE, COURSE, MARGIN, SPEED};
 use super::scene::Scene;
-use super::{APPLICATION, CHART, MAP, SUMMARY, TIMELINE, VOLUME, style};
+use super::{APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VOLUME, style};
 use crate::frame::{Vector, direction, to_starboard};
 
 /// Seconds in which the whole run is played.
@@ -75,6 +77,28 @@ fn hidden() -> Box<dyn AsComponents> {
     Box::new(EntityBehavior::new().with_visible(false))
 }
 
+/// Everything logged so far stays visible.
+fn up_to_cursor() -> VisibleTimeRanges {
+    VisibleTimeRanges::new([VisibleTimeRange {
+        timeline: TIMELINE.into(),
+        range: TimeRange {
+            start: TimeRangeBoundary::Infinite,
+            end: TimeRangeBoundary::CursorRelative(0.into()),
+        },
+    }])
+}
+
+/// From the start to the end, with a little air.
+fn whole_time(scene: &Scene) -> TimeRange {
+    let nanoseconds = |seconds: f64| {
+        TimeRangeBoundary::Absolute(((seconds * 1e9).round() as i64).into())
+    };
+    TimeRange {
+        start: nanoseconds(-0.02 * scene.end),
+        end: nanoseconds(1.02 * scene.end),
+    }
+}
+
 fn chart_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
     let (low, high) = (scene.bounds.low, scene.bounds.high);
     // the view's own axis points down: north is negative there
@@ -82,14 +106,15 @@ fn chart_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
         x_range: [low.x, high.x].into(),
         y_range: [-high.y, -low.y + legend_height(scene)].into(),
     };
-    let graph = format!("ViewContents/overrides/{MAP}/explored");
+    let behavior = |entity| format!("ViewContents/overrides/{entity}/visualizers");
     with(
         Spatial2DView::new("Chart, north up").with_origin(CHART),
         properties,
         vec![
             ("VisualBounds2D", Box::new(VisualBounds2D::new(shown))),
             ("Background", plain_background()),
-            (&graph, hidden()),
+            (&behavior(EXPLORED), hidden()),
+            (&behavior(TRAILS), Box::new(up_to_cursor())),
         ],
     )
 }
@@ -146,7 +171,9 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4]
     ];
     views.map(|(name, origin, reach)| {
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-        let mut added: Vec<(&str, Box<dyn AsComponents>)> = vec![("PlotLegend", Box::new(legend))];
+        let times = TimeAxis::new().with_view_range(whole_time(scene));
+        let mut added: Vec<(&str, Box<dyn AsComponents>)> =
+            vec![("PlotLegend", Box::new(legend)), ("TimeAxis", Box::new(times))];
         if let Some(reach) = reach {
             let range = rerun::datatypes::Range1D([-0.1 * reach, reach]);
             added.push(("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))));

@@ -2,7 +2,7 @@
 
 use rerun::{Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult};
 
-use super::scene::{Scene, desired_leg, flat, round_down};
+use super::scene::{Bounds, Scene, desired_leg, flat, round_down};
 use super::style::{self, Pace};
 use super::{MAP, path};
 use crate::frame::{KNOT_MPS, Vector};
@@ -54,7 +54,7 @@ pub fn log_chart(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<
 
 /// Lines every round number of metres, the scale named at one of them, and north.
 fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let (low, high) = (scene.bounds.low, scene.bounds.high);
+    let Bounds { low, high } = scene.bounds.grown(0.6 * scene.bounds.extent());
     let spacing = grid_spacing(scene);
     let mut lines = Lines::default();
     for east in multiples(low.x, high.x, spacing) {
@@ -76,8 +76,9 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     rec.log_static(path(&[MAP, "grid"]), &lines.archetype())?;
 
     let unit = scene.bounds.extent() / 100.0;
-    let foot = Vector::new(low.x + 2.5 * unit, high.y - 9.0 * unit);
-    let head = foot + Vector::new(0.0, 6.0 * unit);
+    let corner = Vector::new(scene.bounds.low.x, scene.bounds.high.y);
+    let foot = corner + Vector::new(2.5, -9.0) * unit;
+    let head = foot + Vector::new(0.0, 5.0 * unit);
     let barbs = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
     let mut north = Lines::default();
     for strip in [vec![foot, head], vec![barbs[0], head, barbs[1]]] {
@@ -87,7 +88,7 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
             style::points(1.0),
         );
     }
-    let name = Points2D::new([flat(head + Vector::new(0.0, unit))])
+    let name = Points2D::new([flat(head + Vector::new(0.0, 4.0 * unit))])
         .with_colors([style::chart_text()])
         .with_radii([style::points(0.5)])
         .with_labels(["N"])

@@ -15,8 +15,9 @@
 //! | `chart/map/tracks/<target>` | the target's expected track with the same time marks |
 //! | `chart/map/closest_points` | own ship and each target at their CPA, joined |
 //! | `chart/map/violations` | where the independent check found something wrong |
-//! | `chart/map/own_ship`, `own_ship/vector` | hull and speed vector at the cursor |
-//! | `chart/map/targets/<target>` | expected hull and speed vector at the cursor |
+//! | `chart/map/own_ship`, with `name`, `hull`, `hull/vector` | own ship's place, hull and speed vector at the cursor |
+//! | `chart/map/targets/<target>`, with `name` | expected place, hull and speed vector at the cursor |
+//! | `chart/map/trails` | where the ships have been up to the cursor |
 //! | `chart/map/hard_sets/<target>`, `shaped_sets/<target>` | sections of the sets at the cursor; the shaped one only where it differs |
 //! | `chart/map/explored/free`, `blocked` | edges that the search tested; hidden until asked for |
 //! | `space_time/axes` | the sea at t = 0, the time axis (upward) |
@@ -46,6 +47,7 @@ mod summary;
 
 use std::path::{Path, PathBuf};
 
+use rerun::external::re_log_encoding::Encoder;
 use rerun::{EntityPath, EntityPathPart, RecordingStreamBuilder, RecordingStreamResult};
 
 use crate::pipeline::Run;
@@ -56,6 +58,8 @@ const TIMELINE: &str = "sim_time";
 const SUMMARY: &str = "summary";
 const CHART: &str = "chart";
 const MAP: &str = "chart/map";
+const TRAILS: &str = "chart/map/trails";
+const EXPLORED: &str = "chart/map/explored";
 const VOLUME: &str = "space_time";
 
 /// Why there is no recording.
@@ -102,7 +106,12 @@ fn encode(run: &Run) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>
     rec.set_log_time_enabled(false);
     rec.set_log_tick_enabled(false);
     log_run(&rec, &Scene::new(run))?;
-    Ok(store.drain_as_bytes()?)
+    // the footer is an index for files too large to be read whole; here it would be 40 % of the file
+    let mut encoder = Encoder::local()?;
+    encoder.do_not_emit_footer();
+    encoder.extend(store.take().into_iter().map(Ok))?;
+    encoder.finish()?;
+    Ok(encoder.into_inner()?)
 }
 
 fn log_run(rec: &rerun::RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {

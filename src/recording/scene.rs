@@ -77,7 +77,7 @@ impl Bounds {
         bounds
     }
 
-    fn grown(self, by: f64) -> Self {
+    pub fn grown(self, by: f64) -> Self {
         Self {
             low: self.low.add_scalar(-by),
             high: self.high.add_scalar(by),

@@ -117,7 +117,7 @@ impl Pace {
     pub fn name(self) -> &'static str {
         match self {
             Self::Slow => "slower",
-            Self::Desired => "planned, at desired speed",
+            Self::Desired => "planned",
             Self::Fast => "faster",
         }
     }

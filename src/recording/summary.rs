@@ -201,13 +201,9 @@ fn targets_table(scene: &Scene) -> String {
 fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
     let graph = plan.graph_cost.map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
     format!(
-        "| cost | value |\n|---|---|\n\
-         | J, space-time error | {:.1} m² (graph alone: {graph}) |\n\
-         | the same over arc length | {:.1} m² |\n\
-         | delay | {:+.1} s |\n\
-         | duration | {:.1} s |\n\
-         | length | {:.0} m |\n\
-         | least worst-case clearance | {:.1} m |",
+        "| J, space-time error | graph alone | over arc length | delay | duration | length | worst-case clearance |\n\
+         |---|---|---|---|---|---|---|\n\
+         | {:.1} m² | {graph} | {:.1} m² | {:+.1} s | {:.1} s | {:.0} m | {:.1} m |",
         evaluation.space_time_error,
         evaluation.arc_length_error,
         evaluation.delay,
