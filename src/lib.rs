@@ -7,6 +7,8 @@ pub mod geometry;
 pub mod obstacle;
 pub mod pipeline;
 pub mod planner;
+#[cfg(feature = "recording")]
+pub mod recording;
 pub mod report;
 pub mod scenario;
 pub mod search;

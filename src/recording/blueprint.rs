@@ -1,0 +1,231 @@
+//! How the viewer opens the recording: chart at left, volume, curves, and the verdict in words.
+
+use rerun::blueprint::{
+    Blueprint, BlueprintPanel, ContainerLike, Grid, Horizontal, SelectionPanel, Spatial2DView,
+    Spatial3DView, TextDocumentView, TimePanel, TimeSeriesView, Vertical,
+};
+use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis,
+    VisibleTimeRanges, VisualBounds2D,
+};
+use rerun::external::re_sdk_types::blueprint::components::{
+    BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
+};
+use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
+use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
+
+use super::chart::legend_height;
+use super::curves::{CLEARANCE, COURSE, MARGIN, SPEED};
+use super::scene::Scene;
+use super::{APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VOLUME, style};
+use crate::frame::{Vector, direction, to_starboard};
+
+/// Seconds in which the whole run is played.
+const PLAY_S: f64 = 25.0;
+
+/// Properties of views, with the path they are logged at.
+type Properties = Vec<(String, Box<dyn AsComponents>)>;
+
+/// Lays out all views and makes that the recording's blueprint.
+pub fn send_blueprint(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let mut properties = Properties::new();
+    let chart = chart_view(scene, &mut properties);
+    let volume = volume_view(scene, &mut properties);
+    let summary = TextDocumentView::new("Verdict").with_origin(SUMMARY).into();
+    let curves = curve_views(scene, &mut properties);
+    let left = Vertical::new([chart, summary]).with_row_shares(vec![0.66, 0.34]);
+    let right = Vertical::new([volume, Grid::new(curves).with_grid_columns(2).into()])
+        .with_row_shares(vec![0.5, 0.5]);
+    let root = Horizontal::new([left.into(), right.into()]).with_column_shares(vec![0.54, 0.46]);
+    let blueprint = Blueprint::new(root)
+        .with_auto_views(false)
+        .with_auto_layout(false)
+        .with_blueprint_panel(BlueprintPanel::from_state(PanelState::Hidden))
+        .with_selection_panel(SelectionPanel::from_state(PanelState::Hidden))
+        .with_time_panel(
+            TimePanel::new()
+                .with_state(PanelState::Collapsed)
+                .with_timeline(TIMELINE)
+                .with_playback_speed((scene.end / PLAY_S).round().max(1.0))
+                .with_play_state(PlayState::Paused)
+                .with_loop_mode(LoopMode::All),
+        );
+    send(rec, blueprint, &properties)
+}
+
+/// Adds a property to a view and returns the view.
+fn with(
+    view: impl Into<ContainerLike>,
+    properties: &mut Properties,
+    added: Vec<(&str, Box<dyn AsComponents>)>,
+) -> ContainerLike {
+    let view = view.into();
+    if let ContainerLike::View(inner) = &view {
+        for (name, property) in added {
+            properties.push((format!("{}/{name}", inner.blueprint_path()), property));
+        }
+    }
+    view
+}
+
+fn plain_background() -> Box<dyn AsComponents> {
+    Box::new(Background::new(BackgroundKind::SolidColor).with_color(style::background()))
+}
+
+fn hidden() -> Box<dyn AsComponents> {
+    Box::new(EntityBehavior::new().with_visible(false))
+}
+
+/// Everything logged so far stays visible.
+fn up_to_cursor() -> VisibleTimeRanges {
+    VisibleTimeRanges::new([VisibleTimeRange {
+        timeline: TIMELINE.into(),
+        range: TimeRange {
+            start: TimeRangeBoundary::Infinite,
+            end: TimeRangeBoundary::CursorRelative(0.into()),
+        },
+    }])
+}
+
+/// From the start to the end, with a little air.
+fn whole_time(scene: &Scene) -> TimeRange {
+    let nanoseconds = |seconds: f64| {
+        TimeRangeBoundary::Absolute(((seconds * 1e9).round() as i64).into())
+    };
+    TimeRange {
+        start: nanoseconds(-0.02 * scene.end),
+        end: nanoseconds(1.02 * scene.end),
+    }
+}
+
+fn chart_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
+    let (low, high) = (scene.bounds.low, scene.bounds.high);
+    // the view's own axis points down: north is negative there
+    let shown = rerun::datatypes::Range2D {
+        x_range: [low.x, high.x].into(),
+        y_range: [-high.y, -low.y + legend_height(scene)].into(),
+    };
+    let behavior = |entity| format!("ViewContents/overrides/{entity}/visualizers");
+    with(
+        Spatial2DView::new("Chart, north up").with_origin(CHART),
+        properties,
+        vec![
+            ("VisualBounds2D", Box::new(VisualBounds2D::new(shown))),
+            ("Background", plain_background()),
+            (&behavior(EXPLORED), hidden()),
+            (&behavior(TRAILS), Box::new(up_to_cursor())),
+        ],
+    )
+}
+
+fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
+    let size = scene.bounds.extent();
+    let middle = scene.lifted(scene.bounds.center(), 0.42 * scene.end);
+    // from starboard and somewhat astern: own ship runs from left to right and upward
+    let desired = &scene.run.scenario.desired;
+    let ahead = desired.end() - desired.waypoints()[0];
+    let ahead = if ahead.norm() > 0.0 {
+        ahead.normalize()
+    } else {
+        direction(scene.motion.pose_at(0.0).heading)
+    };
+    let side: Vector = to_starboard(ahead) * 1.25 - ahead * 0.55;
+    let eye = [
+        middle[0] + (side.x * size) as f32,
+        middle[1] + (side.y * size) as f32,
+        middle[2] + (0.62 * size) as f32,
+    ];
+    with(
+        Spatial3DView::new("Space-time: time upward").with_origin(VOLUME),
+        properties,
+        vec![
+            (
+                "EyeControls3D",
+                Box::new(
+                    EyeControls3D::new()
+                        .with_position(eye)
+                        .with_look_target(middle)
+                        .with_eye_up([0.0, 0.0, 1.0]),
+                ),
+            ),
+            ("LineGrid3D", Box::new(LineGrid3D::new().with_visible(false))),
+            ("Background", plain_background()),
+        ],
+    )
+}
+
+fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4] {
+    let nearest = scene
+        .run
+        .evaluation
+        .as_ref()
+        .map_or(0.0, |e| e.min_clearance.clamp(0.0, 1e6));
+    let margin = scene.run.scenario.own_ship.safety_margin;
+    let reach = (3.0 * nearest).max(10.0 * margin).max(100.0);
+    let views = [
+        ("Clearance between hulls (m)", CLEARANCE, Some(reach)),
+        ("Margin to the sets (m)", MARGIN, Some(reach)),
+        ("Speed (kn)", SPEED, None),
+        ("Course (deg)", COURSE, None),
+    ];
+    views.map(|(name, origin, reach)| {
+        let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
+        let times = TimeAxis::new().with_view_range(whole_time(scene));
+        let mut added: Vec<(&str, Box<dyn AsComponents>)> =
+            vec![("PlotLegend", Box::new(legend)), ("TimeAxis", Box::new(times))];
+        if let Some(reach) = reach {
+            let range = rerun::datatypes::Range1D([-0.1 * reach, reach]);
+            added.push(("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))));
+        }
+        with(
+            TimeSeriesView::new(name).with_origin(origin),
+            properties,
+            added,
+        )
+    })
+}
+
+/// The API has no setters for most properties of views: they are logged into the blueprint's own
+/// store, before one activation.
+fn send(
+    rec: &RecordingStream,
+    blueprint: Blueprint,
+    properties: &Properties,
+) -> RecordingStreamResult<()> {
+    let (_stream, store) = RecordingStreamBuilder::new(APPLICATION)
+        .enabled(true)
+        .with_blueprint(blueprint)
+        .memory()?;
+    let mut messages: Vec<LogMsg> = store
+        .take()
+        .into_iter()
+        .filter(|m| m.store_id().kind() == StoreKind::Blueprint)
+        .filter(|m| !matches!(m, LogMsg::BlueprintActivationCommand(_)))
+        .collect();
+    let Some(id) = messages.first().map(|m| m.store_id().clone()) else {
+        return Ok(());
+    };
+    let (extra, store) = RecordingStreamBuilder::new(APPLICATION)
+        .enabled(true)
+        .recording_id(id.recording_id().clone())
+        .blueprint()
+        .memory()?;
+    extra.set_log_time_enabled(false);
+    extra.set_log_tick_enabled(false);
+    extra.set_time_sequence("blueprint", 0);
+    for (path, property) in properties {
+        extra.log(path.as_str(), property.as_ref())?;
+    }
+    let only_data = |m: &LogMsg| matches!(m, LogMsg::ArrowMsg(..));
+    messages.extend(store.take().into_iter().filter(only_data));
+    rec.send_blueprint(
+        messages,
+        BlueprintActivationCommand {
+            blueprint_id: id,
+            make_active: true,
+            make_default: true,
+        },
+    );
+    Ok(())
+}

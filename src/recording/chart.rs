@@ -1,0 +1,335 @@
+//! The chart that stands still: grid, legend, desired and planned trajectory, closest points.
+
+use rerun::{Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult};
+
+use super::scene::{Bounds, Scene, desired_leg, flat, round_down};
+use super::style::{self, Pace};
+use super::{MAP, path};
+use crate::frame::{KNOT_MPS, Vector};
+use crate::target::Target;
+
+/// Degrees of turn between two drawn points of an arc, radians.
+const ARC_STEP: f64 = std::f64::consts::PI / 60.0;
+
+/// A line of the chart.
+pub type Strip = Vec<[f32; 2]>;
+
+/// Lines, each with its look.
+#[derive(Debug, Default)]
+pub struct Lines {
+    strips: Vec<Strip>,
+    colors: Vec<Color>,
+    radii: Vec<Radius>,
+}
+
+impl Lines {
+    pub fn add(&mut self, strip: Strip, color: Color, radius: Radius) {
+        self.strips.push(strip);
+        self.colors.push(color);
+        self.radii.push(radius);
+    }
+
+    pub fn archetype(self) -> LineStrips2D {
+        LineStrips2D::new(self.strips)
+            .with_colors(self.colors)
+            .with_radii(self.radii)
+    }
+}
+
+/// Everything of the chart that does not move.
+pub fn log_chart(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    // views of Rerun are y-down: this turns north up for everything below
+    rec.log_static(MAP, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
+    log_grid(rec, scene)?;
+    log_legend(rec, scene)?;
+    log_desired(rec, scene)?;
+    log_planned(rec, scene)?;
+    log_time_marks(rec, scene)?;
+    for (index, target) in scene.run.scenario.targets.iter().enumerate() {
+        log_track(rec, scene, index, target)?;
+    }
+    log_closest_points(rec, scene)?;
+    log_violations(rec, scene)
+}
+
+/// Lines every round number of metres, the scale named at one of them, and north.
+fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = scene.bounds.grown(0.6 * scene.bounds.extent());
+    let spacing = grid_spacing(scene);
+    let mut lines = Lines::default();
+    for east in multiples(low.x, high.x, spacing) {
+        let ends = [Vector::new(east, low.y), Vector::new(east, high.y)];
+        lines.add(
+            ends.map(flat).to_vec(),
+            style::grid(),
+            style::points(0.5),
+        );
+    }
+    for north in multiples(low.y, high.y, spacing) {
+        let ends = [Vector::new(low.x, north), Vector::new(high.x, north)];
+        lines.add(
+            ends.map(flat).to_vec(),
+            style::grid(),
+            style::points(0.5),
+        );
+    }
+    rec.log_static(path(&[MAP, "grid"]), &lines.archetype())?;
+
+    let unit = scene.bounds.extent() / 100.0;
+    let corner = Vector::new(scene.bounds.low.x, scene.bounds.high.y);
+    let foot = corner + Vector::new(2.5, -9.0) * unit;
+    let head = foot + Vector::new(0.0, 5.0 * unit);
+    let barbs = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
+    let mut north = Lines::default();
+    for strip in [vec![foot, head], vec![barbs[0], head, barbs[1]]] {
+        north.add(
+            strip.into_iter().map(flat).collect(),
+            style::chart_text(),
+            style::points(1.0),
+        );
+    }
+    let name = Points2D::new([flat(head + Vector::new(0.0, 4.0 * unit))])
+        .with_colors([style::chart_text()])
+        .with_radii([style::points(0.5)])
+        .with_labels(["N"])
+        .with_show_labels(true);
+    rec.log_static(
+        path(&[MAP, "north"]),
+        &[&north.archetype() as &dyn rerun::AsComponents, &name],
+    )
+}
+
+/// Metres between two lines of the grid.
+pub fn grid_spacing(scene: &Scene) -> f64 {
+    round_down(scene.bounds.extent() / 4.0)
+}
+
+/// Multiples of `step` within the interval.
+pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
+    let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+    (first..=last).map(move |i| step * i as f64)
+}
+
+/// Samples of the line styles with their meaning, below the sea that is shown.
+fn log_legend(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let mut entries: Vec<(String, Color, Radius)> = vec![(
+        "desired".into(),
+        style::desired(),
+        style::points(0.8),
+    )];
+    for pace in shown_paces(scene) {
+        entries.push((pace.name().into(), pace.color(), pace.radius()));
+    }
+    if let Some(set) = scene.run.sets.first() {
+        entries.push((
+            "hard set".into(),
+            style::target(0),
+            super::movers::HARD_RADIUS,
+        ));
+        if set.hard != set.shaped {
+            entries.push((
+                "shaped set".into(),
+                super::movers::shaped_color(0),
+                super::movers::SHAPED_RADIUS,
+            ));
+        }
+    }
+    entries.push((
+        format!("{:.0} m", grid_spacing(scene)),
+        style::chart_text(),
+        style::points(1.0),
+    ));
+    let bounds = scene.bounds;
+    let width = bounds.size().x / entries.len() as f64;
+    let north = bounds.low.y - 0.25 * legend_height(scene);
+    let mut lines = Lines::default();
+    let mut labels = Vec::new();
+    for (index, (label, color, radius)) in entries.into_iter().enumerate() {
+        let west = bounds.low.x + width * (index as f64 + 0.2);
+        let ends = [Vector::new(west, north), Vector::new(west + 0.6 * width, north)];
+        lines.add(ends.map(flat).to_vec(), color, radius);
+        labels.push(label);
+    }
+    rec.log_static(
+        path(&[MAP, "legend"]),
+        &lines
+            .archetype()
+            .with_labels(labels)
+            .with_show_labels(true),
+    )
+}
+
+/// Metres below the sea that is shown, for the legend.
+pub fn legend_height(scene: &Scene) -> f64 {
+    0.1 * scene.bounds.extent()
+}
+
+fn shown_paces(scene: &Scene) -> Vec<Pace> {
+    let all = [Pace::Slow, Pace::Desired, Pace::Fast];
+    let used: Vec<Pace> = planned_strips(scene).into_iter().map(|(p, _)| p).collect();
+    all.into_iter().filter(|pace| used.contains(pace)).collect()
+}
+
+/// Dashed: where own ship is meant to be.
+fn log_desired(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let dash = scene.bounds.extent() / 120.0;
+    let mut lines = Lines::default();
+    for leg in scene.run.scenario.desired.legs() {
+        let mut along = 0.0;
+        while along < leg.length {
+            let ends = [along, (along + dash).min(leg.length)];
+            lines.add(
+                ends.map(|s| flat(leg.start + leg.direction * s)).to_vec(),
+                style::desired(),
+                style::points(0.8),
+            );
+            along += 2.0 * dash;
+        }
+    }
+    rec.log_static(path(&[MAP, "desired"]), &lines.archetype())
+}
+
+/// The plan, one line per segment, by its speed against the desired one.
+fn log_planned(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    if !scene.motion.is_planned() {
+        return Ok(());
+    }
+    let mut lines = Lines::default();
+    for (pace, points) in planned_strips(scene) {
+        let strip = points.into_iter().map(|(p, _)| flat(p)).collect();
+        lines.add(strip, pace.color(), pace.radius());
+    }
+    rec.log_static(path(&[MAP, "planned"]), &lines.archetype())
+}
+
+/// The plan's segments as polylines through `(position, time)`. Empty without a plan.
+pub fn planned_strips(scene: &Scene) -> Vec<(Pace, Vec<(Vector, f64)>)> {
+    let super::scene::Motion::Planned(trajectory) = scene.motion else {
+        return Vec::new();
+    };
+    trajectory
+        .segments()
+        .iter()
+        .filter(|segment| segment.duration > 0.0)
+        .map(|segment| {
+            let desired = desired_leg(&scene.run.scenario.desired, segment.start_time).speed;
+            (Pace::of(segment.speed, desired), polyline(segment))
+        })
+        .collect()
+}
+
+/// Points of a segment with their times: an arc every 3° at most.
+pub fn polyline(segment: &crate::trajectory::Segment) -> Vec<(Vector, f64)> {
+    let turn = (segment.turn_rate * segment.duration).abs();
+    let pieces = (turn / ARC_STEP).ceil().clamp(1.0, 1e3) as usize;
+    (0..=pieces)
+        .map(|i| {
+            let time = segment.start_time + segment.duration * i as f64 / pieces as f64;
+            (segment.pose_at(time).position, time)
+        })
+        .collect()
+}
+
+/// Seconds between two time marks on the tracks.
+pub fn mark_step(scene: &Scene) -> f64 {
+    round_down(scene.end / 4.0)
+}
+
+/// Own ship's position every round number of seconds, with the time.
+fn log_time_marks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let times: Vec<f64> = multiples(0.0, scene.end, mark_step(scene)).skip(1).collect();
+    let points = times
+        .iter()
+        .map(|&t| flat(scene.motion.pose_at(t).position));
+    rec.log_static(
+        path(&[MAP, "time_marks"]),
+        &Points2D::new(points)
+            .with_colors([style::own_ship()])
+            .with_radii([style::points(3.0)])
+            .with_labels(times.iter().map(|t| format!("{t:.0} s")))
+            .with_show_labels(true),
+    )
+}
+
+/// Where a target is expected, with the same time marks.
+fn log_track(
+    rec: &RecordingStream,
+    scene: &Scene,
+    index: usize,
+    target: &Target,
+) -> RecordingStreamResult<()> {
+    let color = style::toward_background(style::target(index), 0.6);
+    let ends = [0.0, scene.end].map(|t| flat(target.position_at(t)));
+    let marks = multiples(0.0, scene.end, mark_step(scene))
+        .skip(1)
+        .map(|t| flat(target.position_at(t)));
+    let line = LineStrips2D::new([ends])
+        .with_colors([color])
+        .with_radii([style::points(0.6)]);
+    let marks = Points2D::new(marks)
+        .with_colors([color])
+        .with_radii([style::points(3.0)]);
+    rec.log_static(
+        path(&[MAP, "tracks", &target.name]),
+        &[&line as &dyn rerun::AsComponents, &marks],
+    )
+}
+
+/// A line between own ship and each target at their closest, with distance and time.
+fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let Some(evaluation) = &scene.run.evaluation else {
+        return Ok(());
+    };
+    let mut lines = Lines::default();
+    let mut labels = Vec::new();
+    for (target, passage) in scene.run.scenario.targets.iter().zip(&evaluation.passages) {
+        let own = scene.motion.pose_at(passage.tcpa).position;
+        let ends = [own, target.position_at(passage.tcpa)];
+        lines.add(
+            ends.map(flat).to_vec(),
+            style::chart_text(),
+            style::points(0.8),
+        );
+        labels.push(format!(
+            "CPA {:.0} m at {:.0} s",
+            passage.dcpa, passage.tcpa
+        ));
+    }
+    if labels.is_empty() {
+        return Ok(());
+    }
+    rec.log_static(
+        path(&[MAP, "closest_points"]),
+        &lines
+            .archetype()
+            .with_labels(labels)
+            .with_show_labels(true),
+    )
+}
+
+/// Where the independent check found something wrong.
+fn log_violations(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let Some(evaluation) = &scene.run.evaluation else {
+        return Ok(());
+    };
+    if evaluation.violations.is_empty() {
+        return Ok(());
+    }
+    let points = evaluation
+        .violations
+        .iter()
+        .map(|v| flat(scene.motion.pose_at(v.time).position));
+    rec.log_static(
+        path(&[MAP, "violations"]),
+        &Points2D::new(points)
+            .with_colors([style::alarm()])
+            .with_radii([style::points(7.0)])
+            .with_labels(evaluation.violations.iter().map(|v| v.what.clone()))
+            .with_show_labels(true),
+    )
+}
+
+/// Knots from m/s.
+pub fn knots(speed: f64) -> f64 {
+    speed / KNOT_MPS
+}

@@ -1,0 +1,140 @@
+//! Run → `.rrd`: one planned and judged scenario as a Rerun recording that explains itself.
+//!
+//! The only timeline is `sim_time`: seconds from the scenario's start, as a duration. Positions are
+//! metres, east and north. What does not move is static. Without a plan the desired motion is shown in
+//! its place and named so.
+//!
+//! | entity | what it is |
+//! | --- | --- |
+//! | `summary` | verdict, manoeuvre, encounters, costs, claims, as markdown |
+//! | `chart/map` | turns north up (views of Rerun are y-down); everything below is east, north |
+//! | `chart/map/grid`, `north`, `legend` | scale and line styles |
+//! | `chart/map/desired` | the desired trajectory, dashed |
+//! | `chart/map/planned` | the plan, one line per segment: thin and blue below the desired speed, white at it, thick and yellow above it |
+//! | `chart/map/time_marks` | own ship every round number of seconds |
+//! | `chart/map/tracks/<target>` | the target's expected track with the same time marks |
+//! | `chart/map/closest_points` | own ship and each target at their CPA, joined |
+//! | `chart/map/violations` | where the independent check found something wrong |
+//! | `chart/map/own_ship`, with `name`, `hull`, `hull/vector` | own ship's place, hull and speed vector at the cursor |
+//! | `chart/map/targets/<target>`, with `name` | expected place, hull and speed vector at the cursor |
+//! | `chart/map/trails` | where the ships have been up to the cursor |
+//! | `chart/map/hard_sets/<target>`, `shaped_sets/<target>` | sections of the sets at the cursor; the shaped one only where it differs |
+//! | `chart/map/explored/free`, `blocked` | edges that the search tested; hidden until asked for |
+//! | `space_time/axes` | the sea at t = 0, the time axis (upward) |
+//! | `space_time/desired`, `planned`, `targets` | the motions as lines; the plan's shadow lies on the sea |
+//! | `space_time/hard_sets/<target>`, `shaped_sets/<target>` | the bodies, translucent, from t = 0 to the end |
+//! | `space_time/now`, `ships` | the plane of the cursor and the ships in it |
+//! | `space_time/explored/free`, `blocked` | edges that the search tested |
+//! | `curves/clearance_m/<target>` | metres between own hull and the expected hull |
+//! | `curves/margin_m/hard`, `shaped` | metres from own ship's centre to the nearest set of the kind, negative inside |
+//! | `curves/speed_kn/own_ship`, `desired` | knots |
+//! | `curves/course_deg/own_ship`, `desired` | degrees clockwise from true north, continuous |
+//!
+//! The blueprint, a store of its own in the same file, lays this out. Two recordings of one run differ
+//! in their bytes (row ids are clock readings) and compare equal with `rerun rrd compare`.
+
+mod blueprint;
+mod body;
+mod chart;
+mod curves;
+mod explored;
+mod file;
+mod movers;
+mod scene;
+mod space_time;
+mod style;
+mod summary;
+
+use std::path::{Path, PathBuf};
+
+use rerun::external::re_log_encoding::Encoder;
+use rerun::{EntityPath, EntityPathPart, RecordingStreamBuilder, RecordingStreamResult};
+
+use crate::pipeline::Run;
+use scene::Scene;
+
+const APPLICATION: &str = "searoom";
+const TIMELINE: &str = "sim_time";
+const SUMMARY: &str = "summary";
+const CHART: &str = "chart";
+const MAP: &str = "chart/map";
+const TRAILS: &str = "chart/map/trails";
+const EXPLORED: &str = "chart/map/explored";
+const VOLUME: &str = "space_time";
+
+/// Why there is no recording.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The run could not be turned into a recording.
+    #[error("cannot encode the recording {}: {source}", path.display())]
+    Encode {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What Rerun says.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// The file could not be written; nothing was left of it.
+    #[error("cannot write the recording {}: {source}", path.display())]
+    Write {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
+
+/// Writes `run` as a recording with its blueprint to `path`, in full or not at all: to a temporary name
+/// in the same folder first, then renamed. Missing parent folders are made, an older file is replaced.
+/// The size is about 100 to 300 kB for one to four targets.
+pub fn write(run: &Run, path: &Path) -> Result<(), RecordingError> {
+    let bytes = encode(run).map_err(|source| RecordingError::Encode {
+        path: path.to_owned(),
+        source,
+    })?;
+    file::write_whole(path, &bytes).map_err(|source| RecordingError::Write {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn encode(run: &Run) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
+    let (rec, store) = RecordingStreamBuilder::new(APPLICATION)
+        .recording_name(run.scenario.title.clone())
+        // whatever the environment says of other programs' recordings
+        .enabled(true)
+        .memory()?;
+    rec.set_log_time_enabled(false);
+    rec.set_log_tick_enabled(false);
+    log_run(&rec, &Scene::new(run))?;
+    // the footer is an index for files too large to be read whole; here it would be 40 % of the file
+    let mut encoder = Encoder::local()?;
+    encoder.do_not_emit_footer();
+    encoder.extend(store.take().into_iter().map(Ok))?;
+    encoder.finish()?;
+    Ok(encoder.into_inner()?)
+}
+
+fn log_run(rec: &rerun::RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    blueprint::send_blueprint(rec, scene)?;
+    chart::log_chart(rec, scene)?;
+    movers::log_movers(rec, scene)?;
+    space_time::log_volume(rec, scene)?;
+    let drawn = explored::log_explored(rec, scene)?;
+    curves::log_curves(rec, scene)?;
+    summary::log_summary(rec, scene, drawn)
+}
+
+/// An entity path whose first part may hold slashes (ours do) and whose others are taken literally:
+/// targets may be called anything.
+fn path(parts: &[&str]) -> EntityPath {
+    let (first, others) = parts.split_first().map_or(("", &[][..]), |(f, o)| (*f, o));
+    let root = first.split('/').filter(|part| !part.is_empty());
+    let parts: Vec<EntityPathPart> = root
+        .map(EntityPathPart::new)
+        .chain(others.iter().map(|part| EntityPathPart::new(*part)))
+        .collect();
+    EntityPath::from(parts)
+}
+
+#[cfg(test)]
+mod tests;

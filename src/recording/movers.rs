@@ -1,0 +1,225 @@
+//! The chart that moves with the cursor: ships and the sections of their sets.
+
+use rerun::{
+    AsComponents, Color, LineStrips2D, Points2D, Quaternion, Radius, RecordingStream,
+    RecordingStreamResult, TimeColumn, Transform3D,
+};
+
+use super::chart::{Lines, Strip};
+use super::scene::{Motion, Scene, flat, round_down};
+use super::{MAP, TIMELINE, TRAILS, path, style};
+use crate::frame::{Pose, Vector};
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::PolytopeObstacle;
+use crate::target::Target;
+
+/// The hard set is drawn strong, the shaped one thin and weak.
+pub const HARD_RADIUS: Radius = Radius(rerun::datatypes::Float32(-1.6));
+/// See [`HARD_RADIUS`].
+pub const SHAPED_RADIUS: Radius = Radius(rerun::datatypes::Float32(-0.7));
+
+/// Colour of the outline of a shaped set.
+pub fn shaped_color(index: usize) -> Color {
+    style::toward_background(style::target(index), 0.75)
+}
+
+/// Everything on the chart that moves.
+pub fn log_movers(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    for (index, sets) in scene.run.sets.iter().enumerate() {
+        let name = sets.hard.name();
+        if sets.shaped != sets.hard {
+            let look = (shaped_color(index), SHAPED_RADIUS);
+            log_sections(rec, scene, path(&[MAP, "shaped_sets", name]), &sets.shaped, look)?;
+        }
+        let look = (style::target(index), HARD_RADIUS);
+        log_sections(rec, scene, path(&[MAP, "hard_sets", name]), &sets.hard, look)?;
+    }
+    for (index, target) in scene.run.scenario.targets.iter().enumerate() {
+        log_target(rec, scene, index, target)?;
+    }
+    log_own_ship(rec, scene)?;
+    log_trails(rec, scene)
+}
+
+/// The outline of the section at every moment.
+fn log_sections(
+    rec: &RecordingStream,
+    scene: &Scene,
+    entity: rerun::EntityPath,
+    set: &PolytopeObstacle,
+    (color, radius): (Color, Radius),
+) -> RecordingStreamResult<()> {
+    let look = LineStrips2D::update_fields()
+        .with_colors([color])
+        .with_radii([radius]);
+    rec.log_static(entity.clone(), &look)?;
+    let outlines = scene.moments.iter().map(|&t| outline(&set.section(t)));
+    let columns = LineStrips2D::update_fields()
+        .with_strips(outlines)
+        .columns_of_unit_batches()?;
+    rec.send_columns(entity, [scene.moment_column()], columns)
+}
+
+/// The closed boundary of a polygon.
+pub fn outline(polygon: &ConvexPolygon) -> Strip {
+    let mut strip: Strip = polygon.vertices().iter().copied().map(flat).collect();
+    strip.extend(strip.first().copied());
+    strip
+}
+
+/// A target's hull and speed vector do not turn: they are drawn turned and only move.
+fn log_target(
+    rec: &RecordingStream,
+    scene: &Scene,
+    index: usize,
+    target: &Target,
+) -> RecordingStreamResult<()> {
+    let entity = path(&[MAP, "targets", &target.name]);
+    let color = style::target(index);
+    let mut lines = Lines::default();
+    if let Some(ship) = target.ship() {
+        let here = Pose::new(Vector::zeros(), ship.pose.heading);
+        lines.add(outline(&ship.hull.polygon(&here)), color, style::points(1.0));
+        let tip = ship.velocity() * vector_seconds(scene);
+        lines.add(vec![[0.0, 0.0], flat(tip)], color, style::points(0.8));
+    }
+    let lines = lines.archetype();
+    let parts: [&dyn AsComponents; 2] = [&lines, &mark(color)];
+    rec.log_static(entity.clone(), &parts)?;
+    let name = label(scene, color, &target.name);
+    rec.log_static(path(&[MAP, "targets", &target.name, "name"]), &name)?;
+    let places = scene.moments.iter().map(|&t| target.position_at(t));
+    log_places(rec, scene, entity, places)
+}
+
+fn log_own_ship(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let color = style::own_ship();
+    let entity = path(&[MAP, "own_ship"]);
+    rec.log_static(entity.clone(), &mark(color))?;
+    let name = if scene.motion.is_planned() {
+        "Own ship"
+    } else {
+        "Own ship, had she no plan"
+    };
+    rec.log_static(
+        path(&[MAP, "own_ship", "name"]),
+        &label(scene, color, name),
+    )?;
+    let poses: Vec<Pose> = scene
+        .moments
+        .iter()
+        .map(|&t| scene.motion.pose_at(t))
+        .collect();
+    log_places(rec, scene, entity, poses.iter().map(|p| p.position))?;
+
+    let hull = path(&[MAP, "own_ship", "hull"]);
+    let shape = scene.run.scenario.own_ship.hull;
+    if shape.half_diagonal() > 0.0 {
+        let here = Pose::new(Vector::zeros(), 0.0);
+        let lines = LineStrips2D::new([outline(&shape.polygon(&here))])
+            .with_colors([color])
+            .with_radii([style::points(1.2)]);
+        rec.log_static(hull.clone(), &lines)?;
+    }
+    let turns = Transform3D::update_fields()
+        .with_many_quaternion(poses.iter().map(|p| rotation(p.heading)))
+        .columns_of_unit_batches()?;
+    rec.send_columns(hull, [scene.moment_column()], turns)?;
+    log_own_vector(rec, scene)
+}
+
+fn log_places(
+    rec: &RecordingStream,
+    scene: &Scene,
+    entity: rerun::EntityPath,
+    places: impl Iterator<Item = Vector>,
+) -> RecordingStreamResult<()> {
+    let raised = places.map(|p| [p.x as f32, p.y as f32, 0.0]);
+    let columns = Transform3D::update_fields()
+        .with_many_translation(raised)
+        .columns_of_unit_batches()?;
+    rec.send_columns(entity, [scene.moment_column()], columns)
+}
+
+/// A dot per ship and moment; the blueprint shows those up to the cursor.
+fn log_trails(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let targets = &scene.run.scenario.targets;
+    let entity = path(&[TRAILS]);
+    let colors = std::iter::once(style::own_ship()).chain((0..targets.len()).map(style::target));
+    let look = Points2D::update_fields()
+        .with_colors(colors)
+        .with_radii([style::points(2.2)]);
+    rec.log_static(entity.clone(), &look)?;
+    let mut dots = Vec::new();
+    for &time in &scene.moments {
+        dots.push(flat(scene.motion.pose_at(time).position));
+        dots.extend(targets.iter().map(|t| flat(t.position_at(time))));
+    }
+    let lengths = vec![1 + targets.len(); scene.moments.len()];
+    rec.send_columns(
+        entity,
+        [scene.moment_column()],
+        Points2D::update_fields()
+            .with_positions(dots)
+            .columns(lengths)?,
+    )
+}
+
+/// Own ship's speed vector, logged where the speed changes.
+fn log_own_vector(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let entity = path(&[MAP, "own_ship", "hull", "vector"]);
+    let look = LineStrips2D::update_fields()
+        .with_colors([style::own_ship()])
+        .with_radii([style::points(0.8)]);
+    rec.log_static(entity.clone(), &look)?;
+    let mut times = match scene.motion {
+        Motion::Planned(trajectory) => trajectory.segments().iter().map(|s| s.start_time).collect(),
+        Motion::Undisturbed(desired) => desired.legs().iter().map(|l| l.start_time).collect(),
+    };
+    dedup_increasing(&mut times);
+    let strips = times.iter().map(|&t| {
+        let tip = scene.motion.speed_at(t) * vector_seconds(scene);
+        [[0.0, 0.0], [tip as f32, 0.0]]
+    });
+    let columns = LineStrips2D::update_fields()
+        .with_strips(strips)
+        .columns_of_unit_batches()?;
+    rec.send_columns(
+        entity,
+        [TimeColumn::new_duration_secs(TIMELINE, times.iter().copied())],
+        columns,
+    )
+}
+
+/// Segments of no duration share their start with the next.
+fn dedup_increasing(times: &mut Vec<f64>) {
+    times.dedup_by(|later, earlier| *later <= *earlier);
+}
+
+/// Seconds that a speed vector reaches ahead.
+pub fn vector_seconds(scene: &Scene) -> f64 {
+    round_down(scene.end / 6.0)
+}
+
+/// A dot that stays visible at any zoom.
+fn mark(color: Color) -> Points2D {
+    Points2D::new([[0.0, 0.0]])
+        .with_colors([color])
+        .with_radii([style::points(4.0)])
+}
+
+/// A name north of the ship: the time marks have theirs south of the track.
+fn label(scene: &Scene, color: Color, name: &str) -> Points2D {
+    let off = scene.bounds.extent() / 22.0;
+    Points2D::new([[0.0, off as f32]])
+        .with_colors([color])
+        .with_radii([style::points(0.0)])
+        .with_labels([name])
+        .with_show_labels(true)
+}
+
+/// About the vertical, counter-clockwise seen from above.
+fn rotation(heading: f64) -> Quaternion {
+    let (sin, cos) = (heading / 2.0).sin_cos();
+    Quaternion::from_xyzw([0.0, 0.0, sin as f32, cos as f32])
+}

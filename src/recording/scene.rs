@@ -1,0 +1,223 @@
+//! What all pictures of one run share: whose motion is shown, until when, at which moments, and how
+//! much of the sea is seen.
+
+use rerun::TimeColumn;
+
+use super::TIMELINE;
+use crate::frame::{Pose, Vector, heading_of};
+use crate::pipeline::Run;
+use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
+
+/// Bytes that the moving sections of all sets may take; the step of the cursor follows.
+const SECTION_BYTES: f64 = 96e3;
+
+/// Seconds between two moments of the cursor.
+const MOMENT_STEP_S: (f64, f64) = (2.0, 5.0);
+
+/// Most samples of one curve.
+const CURVE_SAMPLES: f64 = 400.0;
+
+/// The motion that the pictures show.
+#[derive(Debug, Clone, Copy)]
+pub enum Motion<'a> {
+    /// The plan.
+    Planned(&'a Trajectory),
+    /// Without a plan: own ship as if she followed the desired trajectory, so that the picture shows
+    /// what stands in her way.
+    Undisturbed(&'a DesiredTrajectory),
+}
+
+impl Motion<'_> {
+    pub fn is_planned(&self) -> bool {
+        matches!(self, Self::Planned(_))
+    }
+
+    pub fn pose_at(&self, time: f64) -> Pose {
+        match self {
+            Self::Planned(trajectory) => trajectory.pose_at(time),
+            Self::Undisturbed(desired) => Pose::new(
+                desired.position_at(time),
+                heading_of(desired_leg(desired, time).direction),
+            ),
+        }
+    }
+
+    pub fn speed_at(&self, time: f64) -> f64 {
+        match self {
+            Self::Planned(trajectory) => trajectory.segment_at(time).speed,
+            Self::Undisturbed(desired) => desired_leg(desired, time).speed,
+        }
+    }
+}
+
+/// The leg that is to be run at `time`.
+pub fn desired_leg(desired: &DesiredTrajectory, time: f64) -> &DesiredLeg {
+    let legs = desired.legs();
+    let index = legs.partition_point(|leg| leg.end_time() <= time);
+    &legs[index.min(legs.len() - 1)]
+}
+
+/// A box in the plane, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    pub low: Vector,
+    pub high: Vector,
+}
+
+impl Bounds {
+    fn of(points: impl IntoIterator<Item = Vector>) -> Self {
+        let mut bounds = Self {
+            low: Vector::repeat(f64::INFINITY),
+            high: Vector::repeat(f64::NEG_INFINITY),
+        };
+        for p in points {
+            bounds.low = bounds.low.inf(&p);
+            bounds.high = bounds.high.sup(&p);
+        }
+        bounds
+    }
+
+    pub fn grown(self, by: f64) -> Self {
+        Self {
+            low: self.low.add_scalar(-by),
+            high: self.high.add_scalar(by),
+        }
+    }
+
+    pub fn size(&self) -> Vector {
+        self.high - self.low
+    }
+
+    pub fn center(&self) -> Vector {
+        (self.low + self.high) / 2.0
+    }
+
+    /// The longer side.
+    pub fn extent(&self) -> f64 {
+        self.size().max()
+    }
+}
+
+/// One run, prepared for drawing.
+#[derive(Debug)]
+pub struct Scene<'a> {
+    pub run: &'a Run,
+    pub motion: Motion<'a>,
+    /// Seconds: arrival, or the end of the desired trajectory if that is later. Nothing is claimed
+    /// after arrival, and the sets only grow.
+    pub end: f64,
+    /// Seconds: every position of the cursor at which something moves.
+    pub moments: Vec<f64>,
+    /// Seconds: where the curves are sampled.
+    pub samples: Vec<f64>,
+    /// What the pictures show.
+    pub bounds: Bounds,
+    /// Metres of height per second in the space-time volume.
+    pub metres_per_second: f64,
+}
+
+impl<'a> Scene<'a> {
+    pub fn new(run: &'a Run) -> Self {
+        let desired = &run.scenario.desired;
+        let motion = match run.planned.outcome.plan() {
+            Some(plan) => Motion::Planned(&plan.trajectory),
+            None => Motion::Undisturbed(desired),
+        };
+        let end = match motion {
+            Motion::Planned(trajectory) => trajectory.end_time().max(desired.duration()),
+            Motion::Undisturbed(_) => desired.duration(),
+        }
+        .min(run.scenario.horizon);
+        let moments = steps(end, moment_step(run, end));
+        let samples = steps(end, (end / CURVE_SAMPLES).ceil().max(1.0));
+        let bounds = bounds(run, motion, &moments);
+        Self {
+            run,
+            motion,
+            end,
+            moments,
+            samples,
+            bounds,
+            metres_per_second: round_down(0.7 * bounds.extent() / end),
+        }
+    }
+
+    /// The index column of everything that moves.
+    pub fn moment_column(&self) -> TimeColumn {
+        TimeColumn::new_duration_secs(TIMELINE, self.moments.iter().copied())
+    }
+
+    /// The point of the space-time volume, metres.
+    pub fn lifted(&self, position: Vector, time: f64) -> [f32; 3] {
+        let [east, north] = flat(position);
+        [east, north, (time * self.metres_per_second) as f32]
+    }
+}
+
+/// The point of the chart, metres.
+pub fn flat(position: Vector) -> [f32; 2] {
+    [position.x as f32, position.y as f32]
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is not larger than `value`.
+pub fn round_down(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let lead = value / power;
+    let rounded = if lead >= 5.0 {
+        5.0
+    } else if lead >= 2.0 {
+        2.0
+    } else {
+        1.0
+    };
+    rounded * power
+}
+
+/// 0, every `step`, and `end`.
+fn steps(end: f64, step: f64) -> Vec<f64> {
+    let count = (end / step).ceil() as usize;
+    let mut times: Vec<f64> = (0..count).map(|i| step * i as f64).collect();
+    times.push(end);
+    times
+}
+
+fn moment_step(run: &Run, end: f64) -> f64 {
+    let corners: usize = run
+        .sets
+        .iter()
+        .map(|s| s.hard.faces().len() + s.shaped.faces().len() + 2)
+        .sum();
+    let rows = SECTION_BYTES / (8.0 * corners.max(1) as f64);
+    (end / rows)
+        .ceil()
+        .clamp(MOMENT_STEP_S.0, MOMENT_STEP_S.1)
+        .max(end / 1000.0)
+}
+
+/// The desired and the planned trajectory, and every target while it is near own ship.
+fn bounds(run: &Run, motion: Motion, moments: &[f64]) -> Bounds {
+    let desired = &run.scenario.desired;
+    let near = 0.6 * desired.length();
+    let mut points = desired.waypoints();
+    points.push(run.scenario.own_ship.pose.position);
+    for &time in moments {
+        let own = motion.pose_at(time).position;
+        points.push(own);
+        points.extend(
+            run.scenario
+                .targets
+                .iter()
+                .map(|target| target.position_at(time))
+                .filter(|p| (p - own).norm() < near),
+        );
+    }
+    let bounds = Bounds::of(points);
+    let bounds = bounds.grown(0.06 * bounds.extent());
+    // a straight run is a line: leave sea on both sides of it
+    let short = 0.45 * bounds.extent();
+    let missing = bounds.size().map(|side| (short - side).max(0.0) / 2.0);
+    Bounds {
+        low: bounds.low - missing,
+        high: bounds.high + missing,
+    }
+}

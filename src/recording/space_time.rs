@@ -1,0 +1,221 @@
+//! The space-time volume: east, north and, upward, time.
+
+use rerun::{
+    AsComponents, Color, LineStrips3D, Points3D, Radius, RecordingStream, RecordingStreamResult,
+    Transform3D, ViewCoordinates,
+};
+
+use super::body::{mesh, moving_vertices};
+use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
+use super::scene::{Bounds, Scene};
+use super::{VOLUME, path, style};
+use crate::frame::Vector;
+use crate::obstacle::PolytopeObstacle;
+
+/// Of the sides of a shaped body.
+const SHAPED_ALPHA: u8 = 26;
+/// Of the sides of a hard body.
+const HARD_ALPHA: u8 = 60;
+
+/// Lines in space-time, each with its look.
+#[derive(Debug, Default)]
+struct Lines {
+    strips: Vec<Vec<[f32; 3]>>,
+    colors: Vec<Color>,
+    radii: Vec<Radius>,
+}
+
+impl Lines {
+    fn add(&mut self, strip: Vec<[f32; 3]>, color: Color, radius: f32) {
+        self.strips.push(strip);
+        self.colors.push(color);
+        self.radii.push(style::points(radius));
+    }
+
+    fn archetype(self) -> LineStrips3D {
+        LineStrips3D::new(self.strips)
+            .with_colors(self.colors)
+            .with_radii(self.radii)
+    }
+}
+
+/// The whole volume.
+pub fn log_volume(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    rec.log_static(VOLUME, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
+    log_axes(rec, scene)?;
+    for (index, sets) in scene.run.sets.iter().enumerate() {
+        let name = sets.hard.name();
+        if sets.shaped != sets.hard {
+            let entity = path(&[VOLUME, "shaped_sets", name]);
+            log_body(rec, scene, entity, &sets.shaped, (index, SHAPED_ALPHA))?;
+        }
+        let entity = path(&[VOLUME, "hard_sets", name]);
+        log_body(rec, scene, entity, &sets.hard, (index, HARD_ALPHA))?;
+    }
+    log_motions(rec, scene)?;
+    log_now(rec, scene)
+}
+
+/// The sea at t = 0 as a grid, the time axis with its ticks.
+fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = scene.bounds;
+    let spacing = grid_spacing(scene);
+    let mut lines = Lines::default();
+    let ground = |east: f64, north: f64| scene.lifted(Vector::new(east, north), 0.0);
+    for east in multiples(low.x, high.x, spacing) {
+        lines.add(vec![ground(east, low.y), ground(east, high.y)], style::grid(), 0.5);
+    }
+    for north in multiples(low.y, high.y, spacing) {
+        lines.add(vec![ground(low.x, north), ground(high.x, north)], style::grid(), 0.5);
+    }
+    let text = style::chart_text();
+    let axis = axis_corner(scene);
+    let axis_line = [0.0, scene.end].map(|t| scene.lifted(axis, t));
+    lines.add(axis_line.to_vec(), text, 1.0);
+    let mut places = Vec::new();
+    let mut labels = Vec::new();
+    for time in multiples(0.0, scene.end, mark_step(scene)) {
+        places.push(scene.lifted(axis, time));
+        labels.push(if time == 0.0 {
+            "t = 0 s".to_owned()
+        } else {
+            format!("{time:.0} s")
+        });
+    }
+    let middle = scene.bounds.center();
+    for (place, name) in [
+        (Vector::new(high.x, middle.y), "east"),
+        (Vector::new(middle.x, high.y), "north"),
+    ] {
+        places.push(scene.lifted(place, 0.0));
+        labels.push(name.to_owned());
+    }
+    let ticks = Points3D::new(places)
+        .with_colors([text])
+        .with_radii([style::points(2.0)])
+        .with_labels(labels)
+        .with_show_labels(true);
+    let lines = lines.archetype();
+    let parts: [&dyn AsComponents; 2] = [&lines, &ticks];
+    rec.log_static(path(&[VOLUME, "axes"]), &parts)
+}
+
+/// Where the time axis stands: the corner of the sea nearest to own ship's start, out of the way.
+fn axis_corner(scene: &Scene) -> Vector {
+    let Bounds { low, high } = scene.bounds;
+    let start = scene.motion.pose_at(0.0).position;
+    let nearer = |value: f64, low: f64, high: f64| {
+        if value - low < high - value { low } else { high }
+    };
+    Vector::new(nearer(start.x, low.x, high.x), nearer(start.y, low.y, high.y))
+}
+
+/// The translucent body, its edges and its last section.
+fn log_body(
+    rec: &RecordingStream,
+    scene: &Scene,
+    entity: rerun::EntityPath,
+    set: &PolytopeObstacle,
+    (index, alpha): (usize, u8),
+) -> RecordingStreamResult<()> {
+    let color = style::target(index);
+    let body = mesh(scene, set).with_albedo_factor(style::translucent(color, alpha).0);
+    let vertices = moving_vertices(set);
+    let strength = f32::from(alpha) / 100.0;
+    let faint = style::toward_background(color, strength);
+    let mut lines = Lines::default();
+    for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * scene.end) {
+        let mut ring: Vec<_> = vertices.iter().map(|v| scene.lifted(v.at(time), time)).collect();
+        ring.extend(ring.first().copied());
+        lines.add(ring, faint, 0.6);
+    }
+    let lines = lines.archetype();
+    let parts: [&dyn AsComponents; 2] = [&body, &lines];
+    rec.log_static(entity, &parts)
+}
+
+/// Planned, desired and expected motions, and the plan's shadow on the sea.
+fn log_motions(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let desired = &scene.run.scenario.desired;
+    let mut lines = Lines::default();
+    let mut strip: Vec<_> = desired
+        .legs()
+        .iter()
+        .map(|l| scene.lifted(l.start, l.start_time))
+        .collect();
+    strip.push(scene.lifted(desired.end(), desired.duration()));
+    lines.add(strip, style::desired(), 0.9);
+    rec.log_static(path(&[VOLUME, "desired"]), &lines.archetype())?;
+
+    if scene.motion.is_planned() {
+        let mut lines = Lines::default();
+        let shadow = style::toward_background(style::own_ship(), 0.35);
+        for (pace, points) in planned_strips(scene) {
+            let risen = points.iter().map(|&(p, t)| scene.lifted(p, t)).collect();
+            lines.add(risen, pace.color(), 2.0);
+            let fallen = points.iter().map(|&(p, _)| scene.lifted(p, 0.0)).collect();
+            lines.add(fallen, shadow, 0.8);
+        }
+        rec.log_static(path(&[VOLUME, "planned"]), &lines.archetype())?;
+    }
+    if scene.run.scenario.targets.is_empty() {
+        return Ok(());
+    }
+    let mut lines = Lines::default();
+    for (index, target) in scene.run.scenario.targets.iter().enumerate() {
+        let ends = [0.0, scene.end].map(|t| scene.lifted(target.position_at(t), t));
+        lines.add(ends.to_vec(), style::target(index), 1.0);
+    }
+    rec.log_static(path(&[VOLUME, "targets"]), &lines.archetype())
+}
+
+/// The plane of the cursor, and where the ships are in it.
+fn log_now(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = scene.bounds;
+    let frame = [
+        [low.x, low.y],
+        [high.x, low.y],
+        [high.x, high.y],
+        [low.x, high.y],
+        [low.x, low.y],
+    ]
+    .map(|[east, north]| scene.lifted(Vector::new(east, north), 0.0));
+    let frame = LineStrips3D::new([frame])
+        .with_colors([style::toward_background(style::own_ship(), 0.5)])
+        .with_radii([style::points(0.6)]);
+    let entity = path(&[VOLUME, "now"]);
+    rec.log_static(entity.clone(), &frame)?;
+    let heights = scene.moments.iter().map(|&t| scene.lifted(Vector::zeros(), t));
+    rec.send_columns(
+        entity,
+        [scene.moment_column()],
+        Transform3D::update_fields()
+            .with_many_translation(heights)
+            .columns_of_unit_batches()?,
+    )?;
+
+    let targets = &scene.run.scenario.targets;
+    let colors = std::iter::once(style::own_ship())
+        .chain((0..targets.len()).map(style::target));
+    let names = std::iter::once("Own ship").chain(targets.iter().map(|t| t.name.as_str()));
+    let entity = path(&[VOLUME, "ships"]);
+    let look = Points3D::update_fields()
+        .with_colors(colors)
+        .with_radii([style::points(5.0)])
+        .with_labels(names)
+        .with_show_labels(true);
+    rec.log_static(entity.clone(), &look)?;
+    let mut places = Vec::new();
+    for &time in &scene.moments {
+        places.push(scene.lifted(scene.motion.pose_at(time).position, time));
+        places.extend(targets.iter().map(|t| scene.lifted(t.position_at(time), time)));
+    }
+    let lengths = vec![1 + targets.len(); scene.moments.len()];
+    rec.send_columns(
+        entity,
+        [scene.moment_column()],
+        Points3D::update_fields()
+            .with_positions(places)
+            .columns(lengths)?,
+    )
+}

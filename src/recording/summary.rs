@@ -1,0 +1,261 @@
+//! The verdict in words and figures, markdown.
+
+use std::fmt::Write;
+
+use rerun::{MediaType, RecordingStream, RecordingStreamResult, TextDocument};
+
+use super::SUMMARY;
+use super::chart::knots;
+use super::explored::Drawn;
+use super::movers::vector_seconds;
+use super::scene::{Motion, Scene};
+use crate::colregs::Role;
+use crate::evaluation::Evaluation;
+use crate::frame::{Side, deg_from_radians};
+use crate::pipeline::Relaxation;
+use crate::planner::{Outcome, Plan};
+use crate::scenario::Compliance;
+use crate::trajectory::Trajectory;
+
+/// Writes the text once, for all times.
+pub fn log_summary(
+    rec: &RecordingStream,
+    scene: &Scene,
+    drawn: Drawn,
+) -> RecordingStreamResult<()> {
+    rec.log_static(
+        SUMMARY,
+        &TextDocument::new(text(scene, drawn)).with_media_type(MediaType::MARKDOWN),
+    )
+}
+
+fn text(scene: &Scene, drawn: Drawn) -> String {
+    let run = scene.run;
+    let mut parts = vec![format!("# {}: {}", run.scenario.title, verdict(scene))];
+    match (run.planned.outcome.plan(), &run.evaluation) {
+        (Some(plan), evaluation) => {
+            parts.push(manoeuvre(scene, plan));
+            parts.extend(evaluation.iter().flat_map(violations));
+        }
+        (None, _) => parts.push(reason(&run.planned.outcome)),
+    }
+    parts.extend(run.relaxations.iter().map(relaxation));
+    parts.push(targets_table(scene));
+    if let (Some(plan), Some(evaluation)) = (run.planned.outcome.plan(), &run.evaluation) {
+        parts.push(cost_table(plan, evaluation));
+    }
+    parts.push(search(scene, drawn));
+    parts.push(claim(scene));
+    parts.push(key(scene));
+    parts.retain(|part| !part.is_empty());
+    parts.join("\n\n")
+}
+
+fn verdict(scene: &Scene) -> &'static str {
+    let run = scene.run;
+    match (&run.planned.outcome, &run.evaluation) {
+        (Outcome::Infeasible(_), _) => "NO PLAN",
+        (Outcome::Deadline(None), _) => "NO PLAN before the deadline",
+        (_, None) => "planned, not judged",
+        (_, Some(e)) if !e.verified() => "planned, but REJECTED by the independent check",
+        (Outcome::Deadline(Some(_)), _) => "best plan at the deadline, verified",
+        _ if run.relaxations.is_empty() => "planned and verified",
+        _ => "planned with a relaxation, verified",
+    }
+}
+
+/// What a navigator would say of the plan.
+fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
+    let trajectory = &plan.trajectory;
+    let mut said = Vec::new();
+    match first_turn(trajectory) {
+        Some(turn) => said.push(format!(
+            "alters course {:.0}° to {} at {:.0} s",
+            deg_from_radians(turn.angle),
+            turn.side,
+            turn.time
+        )),
+        None => said.push("keeps her course".to_owned()),
+    }
+    let speeds = || trajectory.segments().iter().filter(|s| s.duration > 0.0).map(|s| s.speed);
+    let slowest = speeds().fold(f64::INFINITY, f64::min);
+    let fastest = speeds().fold(0.0, f64::max);
+    said.push(if slowest < fastest {
+        format!("runs {:.1} to {:.1} kn", knots(slowest), knots(fastest))
+    } else {
+        format!("keeps {:.1} kn", knots(fastest))
+    });
+    let arrival = trajectory.end_time();
+    let delay = arrival - scene.run.scenario.desired.duration();
+    said.push(if delay.abs() < 0.05 {
+        format!("arrives on time at {arrival:.0} s")
+    } else {
+        let word = if delay > 0.0 { "late" } else { "early" };
+        format!("arrives at {arrival:.0} s, {:.1} s {word}", delay.abs())
+    });
+    format!("**Own ship {}.**", said.join(", "))
+}
+
+/// The first alteration of course.
+struct Turn {
+    side: Side,
+    /// Radians, positive.
+    angle: f64,
+    /// Seconds.
+    time: f64,
+}
+
+/// Turning segments to one side, one after another, are one alteration.
+fn first_turn(trajectory: &Trajectory) -> Option<Turn> {
+    let mut moving = trajectory.segments().iter().filter(|s| s.length() > 0.0);
+    let first = moving.find(|s| Side::of_turn(s.turn_rate).is_some())?;
+    let side = Side::of_turn(first.turn_rate)?;
+    let angle = |s: &crate::trajectory::Segment| (s.turn_rate * s.duration).abs();
+    let more: f64 = moving
+        .take_while(|s| Side::of_turn(s.turn_rate) == Some(side))
+        .map(angle)
+        .sum();
+    Some(Turn {
+        side,
+        angle: angle(first) + more,
+        time: first.start_time,
+    })
+}
+
+fn reason(outcome: &Outcome) -> String {
+    match outcome {
+        Outcome::Infeasible(why) => format!(
+            "**{why}.** The pictures and curves show own ship as if she followed the desired trajectory."
+        ),
+        Outcome::Deadline(None) => "**The deadline passed before a plan was found.** The pictures and \
+            curves show own ship as if she followed the desired trajectory."
+            .to_owned(),
+        Outcome::Solved(_) | Outcome::Deadline(Some(_)) => String::new(),
+    }
+}
+
+fn violations(evaluation: &Evaluation) -> Vec<String> {
+    evaluation
+        .violations
+        .iter()
+        .map(|v| format!("- **Violation at {:.1} s:** {}", v.time, v.what))
+        .collect()
+}
+
+fn relaxation(relaxation: &Relaxation) -> String {
+    match relaxation {
+        Relaxation::Domain { target, amount } => format!(
+            "- **Relaxed:** the shape around {target} was drawn back by {amount:.1} m, because own ship \
+             starts inside it."
+        ),
+    }
+}
+
+/// Own ship's role to a target, as the rules name it.
+fn role_name(role: Role) -> &'static str {
+    match role {
+        Role::HeadOn => "head-on",
+        Role::GiveWay => "give-way",
+        Role::StandOn => "stand-on",
+        Role::Overtaking => "overtaking",
+        Role::Overtaken => "overtaken",
+        Role::BothGiveWay => "both-give-way",
+        Role::PortToPort => "port-to-port",
+        Role::Static => "static",
+        Role::None => "none",
+    }
+}
+
+fn targets_table(scene: &Scene) -> String {
+    let run = scene.run;
+    if run.sets.is_empty() {
+        return "No targets.".to_owned();
+    }
+    let mut table = String::from(
+        "| target | own ship is | CPA undisturbed | CPA planned | passes to | worst-case clearance | margin to set |\n\
+         |---|---|---|---|---|---|---|",
+    );
+    for (index, sets) in run.sets.iter().enumerate() {
+        let encounter = &sets.encounter;
+        let _ = write!(
+            table,
+            "\n| {} | {} | {:.0} m at {:.0} s |",
+            sets.hard.name(),
+            role_name(encounter.role),
+            encounter.undisturbed_dcpa,
+            encounter.undisturbed_tcpa
+        );
+        let passage = run.evaluation.as_ref().and_then(|e| e.passages.get(index));
+        let _ = match passage {
+            Some(p) => write!(
+                table,
+                " {:.0} m at {:.0} s | {} | {:.1} m | {:.1} m |",
+                p.dcpa, p.tcpa, p.passing_side, p.min_clearance, p.min_margin
+            ),
+            None => write!(table, " – | – | – | – |"),
+        };
+    }
+    table
+}
+
+fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
+    let graph = plan.graph_cost.map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
+    format!(
+        "| J, space-time error | graph alone | over arc length | delay | duration | length | worst-case clearance |\n\
+         |---|---|---|---|---|---|---|\n\
+         | {:.1} m² | {graph} | {:.1} m² | {:+.1} s | {:.1} s | {:.0} m | {:.1} m |",
+        evaluation.space_time_error,
+        evaluation.arc_length_error,
+        evaluation.delay,
+        evaluation.duration,
+        evaluation.length,
+        evaluation.min_clearance,
+    )
+}
+
+fn search(scene: &Scene, drawn: Drawn) -> String {
+    let stats = scene.run.planned.stats;
+    let graph = if drawn.edges < drawn.tested {
+        format!("{} of {} tested edges are in the recording", drawn.edges, drawn.tested)
+    } else {
+        format!("all {} tested edges are in the recording", drawn.tested)
+    };
+    format!(
+        "Search: {} nodes expanded, {} made, {} edges tested; {graph}, hidden on the chart (`explored`).",
+        stats.expanded, stats.generated, stats.edges_checked
+    )
+}
+
+/// What is claimed, and on what assumptions.
+fn claim(scene: &Scene) -> String {
+    let run = scene.run;
+    let judged = run.evaluation.as_ref().is_some_and(Evaluation::verified);
+    let Motion::Planned(trajectory) = scene.motion else {
+        return String::new();
+    };
+    if !judged {
+        return "Nothing is claimed.".to_owned();
+    }
+    let kept = match run.scenario.compliance {
+        Compliance::Shape => "the shaped sets, which hold the hard sets and the rules' side",
+        Compliance::None => "the hard sets",
+    };
+    format!(
+        "Claimed: until arrival at {:.0} s own ship stays out of {kept}. So {:.0} m are kept between the \
+         hulls wherever a target starts in its initial set and whatever velocities of its velocity set \
+         it takes, changing ones included. Nothing is claimed after arrival, nor for a target that \
+         leaves its sets.",
+        trajectory.end_time(),
+        run.scenario.own_ship.safety_margin
+    )
+}
+
+/// How to read the chart.
+fn key(scene: &Scene) -> String {
+    format!(
+        "Chart: own ship white; thin lines ahead of ships are speed vectors of {:.0} s; dots on the tracks \
+         every {:.0} s. Sets are for own ship's centre: her hull and the margin are folded in.",
+        vector_seconds(scene),
+        super::chart::mark_step(scene)
+    )
+}
