@@ -4,6 +4,7 @@ use rerun::blueprint::{
     Blueprint, BlueprintPanel, ContainerLike, Grid, Horizontal, SelectionPanel, Spatial2DView,
     Spatial3DView, TextDocumentView, TimePanel, TimeSeriesView, Vertical,
 };
+use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis,
@@ -12,7 +13,6 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
 };
-use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
 use super::chart::legend_height;
@@ -90,9 +90,8 @@ fn up_to_cursor() -> VisibleTimeRanges {
 
 /// From the start to the end, with a little air.
 fn whole_time(scene: &Scene) -> TimeRange {
-    let nanoseconds = |seconds: f64| {
-        TimeRangeBoundary::Absolute(((seconds * 1e9).round() as i64).into())
-    };
+    let nanoseconds =
+        |seconds: f64| TimeRangeBoundary::Absolute(((seconds * 1e9).round() as i64).into());
     TimeRange {
         start: nanoseconds(-0.02 * scene.end),
         end: nanoseconds(1.02 * scene.end),
@@ -149,7 +148,10 @@ fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
                         .with_eye_up([0.0, 0.0, 1.0]),
                 ),
             ),
-            ("LineGrid3D", Box::new(LineGrid3D::new().with_visible(false))),
+            (
+                "LineGrid3D",
+                Box::new(LineGrid3D::new().with_visible(false)),
+            ),
             ("Background", plain_background()),
         ],
     )
@@ -172,8 +174,10 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4]
     views.map(|(name, origin, reach)| {
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
         let times = TimeAxis::new().with_view_range(whole_time(scene));
-        let mut added: Vec<(&str, Box<dyn AsComponents>)> =
-            vec![("PlotLegend", Box::new(legend)), ("TimeAxis", Box::new(times))];
+        let mut added: Vec<(&str, Box<dyn AsComponents>)> = vec![
+            ("PlotLegend", Box::new(legend)),
+            ("TimeAxis", Box::new(times)),
+        ];
         if let Some(reach) = reach {
             let range = rerun::datatypes::Range1D([-0.1 * reach, reach]);
             added.push(("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))));

@@ -43,7 +43,10 @@ fn log_curve(
     rec.log_static(entity.clone(), &look)?;
     rec.send_columns(
         entity,
-        [TimeColumn::new_duration_secs(TIMELINE, times.iter().copied())],
+        [TimeColumn::new_duration_secs(
+            TIMELINE,
+            times.iter().copied(),
+        )],
         Scalars::update_fields()
             .with_scalars(values)
             .columns_of_unit_batches()?,
@@ -106,7 +109,13 @@ fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
         log_curve(rec, path(&[MARGIN, "shaped"]), look, &scene.samples, values)?;
     }
     let look = ("contact", style::alarm(), 1.0);
-    log_curve(rec, path(&[MARGIN, "contact"]), look, &[0.0, scene.end], vec![0.0; 2])
+    log_curve(
+        rec,
+        path(&[MARGIN, "contact"]),
+        look,
+        &[0.0, scene.end],
+        vec![0.0; 2],
+    )
 }
 
 /// Metres from own ship's centre to the nearest of the sets at every sample; negative inside.
@@ -161,14 +170,29 @@ fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
     let start = course_deg_from_heading(scene.motion.pose_at(0.0).heading);
     let values = continuous_courses(start, scene.samples.iter().map(|&t| wanted(t)));
     let look = ("desired", style::desired(), 1.0);
-    log_curve(rec, path(&[COURSE, "desired"]), look, &scene.samples, values)?;
+    log_curve(
+        rec,
+        path(&[COURSE, "desired"]),
+        look,
+        &scene.samples,
+        values,
+    )?;
     if !scene.motion.is_planned() {
         return Ok(());
     }
-    let headings = scene.samples.iter().map(|&t| scene.motion.pose_at(t).heading);
+    let headings = scene
+        .samples
+        .iter()
+        .map(|&t| scene.motion.pose_at(t).heading);
     let values = continuous_courses(start, headings);
     let look = ("own ship", style::own_ship(), 2.0);
-    log_curve(rec, path(&[COURSE, "own_ship"]), look, &scene.samples, values)
+    log_curve(
+        rec,
+        path(&[COURSE, "own_ship"]),
+        look,
+        &scene.samples,
+        values,
+    )
 }
 
 /// Courses in degrees without jumps at north, the first one within half a circle of `near`.

@@ -77,7 +77,13 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
         )),
         None => said.push("keeps her course".to_owned()),
     }
-    let speeds = || trajectory.segments().iter().filter(|s| s.duration > 0.0).map(|s| s.speed);
+    let speeds = || {
+        trajectory
+            .segments()
+            .iter()
+            .filter(|s| s.duration > 0.0)
+            .map(|s| s.speed)
+    };
     let slowest = speeds().fold(f64::INFINITY, f64::min);
     let fastest = speeds().fold(0.0, f64::max);
     said.push(if slowest < fastest {
@@ -127,9 +133,11 @@ fn reason(outcome: &Outcome) -> String {
         Outcome::Infeasible(why) => format!(
             "**{why}.** The pictures and curves show own ship as if she followed the desired trajectory."
         ),
-        Outcome::Deadline(None) => "**The deadline passed before a plan was found.** The pictures and \
+        Outcome::Deadline(None) => {
+            "**The deadline passed before a plan was found.** The pictures and \
             curves show own ship as if she followed the desired trajectory."
-            .to_owned(),
+                .to_owned()
+        }
         Outcome::Solved(_) | Outcome::Deadline(Some(_)) => String::new(),
     }
 }
@@ -199,7 +207,9 @@ fn targets_table(scene: &Scene) -> String {
 }
 
 fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
-    let graph = plan.graph_cost.map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
+    let graph = plan
+        .graph_cost
+        .map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
     format!(
         "| J, space-time error | graph alone | over arc length | delay | duration | length | worst-case clearance |\n\
          |---|---|---|---|---|---|---|\n\
@@ -216,7 +226,10 @@ fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
 fn search(scene: &Scene, drawn: Drawn) -> String {
     let stats = scene.run.planned.stats;
     let graph = if drawn.edges < drawn.tested {
-        format!("{} of {} tested edges are in the recording", drawn.edges, drawn.tested)
+        format!(
+            "{} of {} tested edges are in the recording",
+            drawn.edges, drawn.tested
+        )
     } else {
         format!("all {} tested edges are in the recording", drawn.tested)
     };

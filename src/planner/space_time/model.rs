@@ -479,3 +479,113 @@ fn least_on(
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Side};
+    use crate::geometry::outer_disc;
+    use crate::obstacle::PolytopeObstacle;
+    use crate::planner::SearchKind;
+    use crate::planner::space_time::seeds::Canonical;
+    use crate::planner::space_time::template::Slot;
+    use crate::trajectory::DesiredTrajectory;
+    use crate::vessel::{Hull, OwnShip};
+
+    /// Every rate against central differences, at a manoeuvre with all slots open and a near target.
+    #[test]
+    fn rates_match_differences() {
+        let own = OwnShip {
+            pose: Pose::new(Vector::new(0.0, 0.0), 0.0),
+            speed: 5.0,
+            hull: Hull {
+                length: 30.0,
+                beam: 8.0,
+            },
+            turning_radius: 100.0,
+            speeds: vec![2.5, 5.0, 6.0],
+            safety_margin: 20.0,
+        };
+        let points = [(0.0, 0.0), (2500.0, 0.0)].map(|(x, y)| Vector::new(x, y));
+        let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
+        let velocity = crate::geometry::ConvexPolygon::hull(&[
+            Vector::new(-4.0, 0.3),
+            Vector::new(-5.0, -0.4),
+        ]);
+        let obstacles = [PolytopeObstacle::new(
+            "x",
+            outer_disc(60.0, 0.1).translated(Vector::new(1300.0, -10.0)),
+            velocity.expect("finite"),
+        )];
+        let problem = Problem {
+            own: &own,
+            desired: &desired,
+            obstacles: &obstacles,
+            horizon: 900.0,
+            time_weight: 25.0,
+            search: SearchKind::AStar,
+            deadline: std::time::Duration::from_secs(5),
+        };
+        let route = Route::new(&problem).expect("a route");
+        let hazards = [Hazard::new(&obstacles[0])];
+        let scene = Scene {
+            problem: &problem,
+            route: &route,
+            hazards: &hazards,
+        };
+        let canonical = Canonical {
+            lead: 40.0,
+            run: 20.0,
+            turn: 0.7,
+            out: 30.0,
+            along: 90.0,
+            slow: false,
+        };
+        for (side, goal) in [
+            (Side::Starboard, false),
+            (Side::Port, false),
+            (Side::Port, true),
+        ] {
+            let mut seed = canonical
+                .seed(&problem, &route, side, 140.0, 0)
+                .expect("a seed");
+            if goal {
+                seed.template.ending = Ending::Goal { side, speed: 6.0 };
+            }
+            for (i, slot) in seed.template.slots.iter().enumerate() {
+                seed.lengths[i] += if matches!(slot, Slot::Arc { .. }) {
+                    7.0
+                } else {
+                    11.0
+                } + i as f64;
+            }
+            let here = scene.model(&seed.template, &seed.lengths).expect("fits");
+            let contact_rows = here.rows.len() - 2;
+            assert!(contact_rows > 0);
+            let step = 1e-4;
+            for i in 0..seed.template.free() {
+                let at = |d: f64| {
+                    let mut lengths = seed.lengths;
+                    lengths[i] += d;
+                    scene.model(&seed.template, &lengths).expect("fits")
+                };
+                let (less, more) = (at(-step), at(step));
+                let rate = (more.cost - less.cost) / (2.0 * step);
+                let scale = 1.0 + rate.abs();
+                assert!(
+                    (here.gradient[i] - rate).abs() < 2e-4 * scale,
+                    "slot {i}: {} {rate}",
+                    here.gradient[i]
+                );
+                for k in 0..here.rows.len() {
+                    let rate = (less.rows[k].bound - more.rows[k].bound) / (2.0 * step);
+                    let found = here.rows[k].coefficients[i];
+                    assert!(
+                        (found - rate).abs() < 2e-3 * (1.0 + rate.abs()),
+                        "{side} row {k} slot {i}: {found} {rate}"
+                    );
+                }
+            }
+        }
+    }
+}
