@@ -208,3 +208,45 @@ fn cuts_astern(trajectory: &Trajectory, target: &Target, tcpa: f64) -> Option<bo
     }
     nearest.map(|(_, astern)| astern)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Vector};
+    use crate::trajectory::Segment;
+
+    /// Degrees to starboard per segment of ten seconds.
+    fn trajectory(turns: &[f64]) -> Trajectory {
+        let mut start = Pose::new(Vector::zeros(), 0.3);
+        let mut segments = Vec::new();
+        for (index, degrees) in turns.iter().enumerate() {
+            let segment = Segment {
+                start,
+                start_time: 10.0 * index as f64,
+                duration: 10.0,
+                speed: 5.0,
+                turn_rate: -degrees.to_radians() / 10.0,
+            };
+            start = segment.end();
+            segments.push(segment);
+        }
+        Trajectory::new(segments).expect("continuous")
+    }
+
+    #[test]
+    fn the_first_turn_is_the_first_that_can_be_seen() {
+        use Side::{Port, Starboard};
+        for (turns, expected) in [
+            (vec![0.0], None),
+            (vec![0.2, 0.0, -0.3], None),
+            (vec![0.0, 30.0, -60.0], Some((Starboard, 30.0))),
+            (vec![-30.0, -15.0, 0.0, -5.0], Some((Port, 45.0))),
+            (vec![0.1, -20.0], Some((Port, 20.0))),
+            (vec![0.0, 40.0], Some((Starboard, 40.0))),
+        ] {
+            let found = Turn::first_of(&trajectory(&turns));
+            let found = found.map(|turn| (turn.side, (turn.degrees * 1e6).round() / 1e6));
+            assert_eq!(found, expected, "{turns:?}");
+        }
+    }
+}

@@ -87,7 +87,7 @@ fn cells(summary: &Summary) -> Vec<Cell> {
         text(planned.then(|| turn(summary))),
         text(planned.then(|| passings(summary))),
         text(summary.space_time_error.map(square_metres)),
-        text(summary.delay.map(|delay| format!("{delay:+.1}"))),
+        text(summary.delay.map(signed)),
         text(summary.clearance.map(|metres| format!("{metres:.1}"))),
         Cell::new(summary.expanded),
         Cell::new(format!("{:.2}", summary.milliseconds)),
@@ -105,6 +105,11 @@ fn square_metres(value: f64) -> String {
     } else {
         format!("{value:.0}")
     }
+}
+
+/// With a sign and one decimal; what rounds to zero is not late and not early.
+fn signed(value: f64) -> String {
+    format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
 }
 
 fn encounters(summary: &Summary) -> String {
@@ -218,8 +223,10 @@ pub fn plan_text(run: &Run) -> String {
         say(
             "delay",
             format!(
-                "{:+.1} s (arrives after {:.1} s and {:.0} m)",
-                evaluation.delay, evaluation.duration, evaluation.length
+                "{} s (arrives after {:.1} s and {:.0} m)",
+                signed(evaluation.delay),
+                evaluation.duration,
+                evaluation.length
             ),
         );
         if let Some(clearance) = summary.clearance {
@@ -242,4 +249,51 @@ pub fn plan_text(run: &Run) -> String {
     );
     say("time", format!("{:.2} ms", summary.milliseconds));
     lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn summary(meetings: usize) -> Summary {
+        let meeting = Meeting {
+            target: "t".to_owned(),
+            role: "give-way",
+            undisturbed_tcpa: 100.0,
+            undisturbed_dcpa: -1.0,
+            side: Some(Side::Port),
+            dcpa: Some(100.0),
+            tcpa: Some(90.0),
+            cuts_astern: Some(true),
+        };
+        Summary {
+            title: "Busy".to_owned(),
+            verdict: Verdict::Relaxed,
+            verified: Some(true),
+            meetings: vec![meeting; meetings],
+            targets: 9,
+            turn: None,
+            space_time_error: Some(12345.6),
+            delay: Some(-0.04),
+            clearance: None,
+            expanded: 7,
+            milliseconds: 1.234,
+        }
+    }
+
+    #[test]
+    fn rows_name_a_few_targets_and_count_the_rest() {
+        let table = suite_table(&[Row::Run(summary(5))], false);
+        assert_eq!(table.matches("port, astern").count(), NAMED);
+        assert!(table.contains("+ 2 more"), "{table}");
+        assert!(table.contains("12346") && table.contains("+0.0") && table.contains("none"));
+        assert!(!table.contains('\u{1b}'));
+        assert!(suite_table(&[Row::Run(summary(1))], true).contains('\u{1b}'));
+        let failed = Row::Failed {
+            file: "x.toml".to_owned(),
+            outcome: "unreadable",
+        };
+        let both = suite_table(&[failed, Row::Run(summary(0))], false);
+        assert!(both.find("x.toml") < both.find("Busy"));
+    }
 }

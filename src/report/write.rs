@@ -39,3 +39,23 @@ pub fn write_atomically(file: &Path, contents: &[u8]) -> Result<(), WriteError> 
         .map_err(|error| failed(error.error))?;
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_whole_and_a_failure_leaves_nothing() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("plan.json");
+        write_atomically(&file, b"one").expect("written");
+        write_atomically(&file, b"two").expect("replaced");
+        assert_eq!(std::fs::read(&file).expect("there"), b"two");
+        let taken = folder.path().join("taken");
+        std::fs::create_dir_all(taken.join("inside")).expect("made");
+        let error = write_atomically(&taken, b"three").expect_err("a folder is in the way");
+        assert!(error.to_string().contains("taken"));
+        assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 2);
+        assert!(write_atomically(&folder.path().join("no/such"), b"").is_err());
+    }
+}

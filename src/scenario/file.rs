@@ -69,17 +69,18 @@ pub(super) enum Word<T> {
     NotBuilt,
 }
 
-/// The text of a file, and what is wrong with it so far.
+/// Where the lines of a file are, and what is wrong with it so far.
 #[derive(Debug)]
-pub(super) struct Source<'i> {
-    text: &'i str,
+pub(super) struct Source {
+    /// Byte of every line's end, increasing.
+    line_ends: Vec<usize>,
     faults: RefCell<Vec<Fault>>,
 }
 
-impl<'i> Source<'i> {
-    pub(super) fn new(text: &'i str) -> Self {
+impl Source {
+    pub(super) fn new(text: &str) -> Self {
         Self {
-            text,
+            line_ends: text.match_indices('\n').map(|(at, _)| at).collect(),
             faults: RefCell::default(),
         }
     }
@@ -92,12 +93,11 @@ impl<'i> Source<'i> {
         found: impl Display,
         allowed: impl Display,
     ) {
-        let before = offset.and_then(|end| self.text.as_bytes().get(..end));
         self.faults.borrow_mut().push(Fault {
             path: path.to_owned(),
             found: found.to_string(),
             allowed: allowed.to_string(),
-            line: before.map(|bytes| 1 + bytes.iter().filter(|b| **b == b'\n').count()),
+            line: offset.map(|at| 1 + self.line_ends.partition_point(|end| *end < at)),
         });
     }
 
@@ -112,18 +112,14 @@ impl<'i> Source<'i> {
 /// A value and its place.
 #[derive(Debug, Clone)]
 pub(super) struct Entry<'a, 'i> {
-    source: &'a Source<'i>,
+    source: &'a Source,
     path: String,
     value: &'a Spanned<DeValue<'i>>,
 }
 
 impl<'a, 'i> Entry<'a, 'i> {
     /// A value at a path.
-    pub(super) fn new(
-        source: &'a Source<'i>,
-        path: String,
-        value: &'a Spanned<DeValue<'i>>,
-    ) -> Self {
+    pub(super) fn new(source: &'a Source, path: String, value: &'a Spanned<DeValue<'i>>) -> Self {
         Self {
             source,
             path,

@@ -15,7 +15,7 @@ const SIMILAR: f64 = 0.8;
 /// missed.
 #[derive(Debug)]
 pub(super) struct Section<'a, 'i> {
-    source: &'a Source<'i>,
+    source: &'a Source,
     path: String,
     offset: Option<usize>,
     table: &'a DeTable<'i>,
@@ -26,7 +26,7 @@ pub(super) struct Section<'a, 'i> {
 impl<'a, 'i> Section<'a, 'i> {
     /// A table at a path; the file's outermost has an empty one.
     pub(super) fn new(
-        source: &'a Source<'i>,
+        source: &'a Source,
         path: String,
         offset: Option<usize>,
         table: &'a DeTable<'i>,

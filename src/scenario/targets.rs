@@ -1,5 +1,7 @@
 //! The targets of a file.
 
+use std::collections::BTreeMap;
+
 use super::check::{hull, pose};
 use super::file::{Entry, Range, TEXT, Word};
 use super::limits;
@@ -49,18 +51,18 @@ pub(super) fn targets(root: &mut Section) -> Option<Vec<Target>> {
         return Some(Vec::new());
     };
     let entries = entry.list(0, "tables")?;
-    let mut names: Vec<Option<String>> = Vec::with_capacity(entries.len());
+    let mut names: BTreeMap<String, usize> = BTreeMap::new();
     let mut targets = Vec::with_capacity(entries.len());
-    for entry in &entries {
+    for (index, entry) in entries.iter().enumerate() {
         let Some(mut section) = entry.section("a table") else {
-            names.push(None);
             targets.push(None);
             continue;
         };
         let name = section.require("name", TEXT);
         let text = name.as_ref().and_then(|name| name.text());
         if let (Some(name), Some(text)) = (&name, &text)
-            && let Some(first) = names.iter().position(|other| other.as_ref() == Some(text))
+            && let first = *names.entry(text.clone()).or_insert(index)
+            && first != index
         {
             name.fault(
                 format_args!("{text:?}, the name of targets[{first}] too"),
@@ -69,7 +71,6 @@ pub(super) fn targets(root: &mut Section) -> Option<Vec<Target>> {
         }
         let motion = motion(&mut section);
         section.finish();
-        names.push(text.clone());
         targets.push(
             text.zip(motion)
                 .map(|(name, motion)| Target { name, motion }),
