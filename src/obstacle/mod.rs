@@ -2,5 +2,7 @@
 
 pub mod contact;
 mod polytope;
+mod projection;
 
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
+pub use projection::{PathTime, along_path};

@@ -12,7 +12,7 @@ use super::route::{Route, return_to_line};
 use super::template::Ending;
 use crate::frame::{Pose, Side, heading_of};
 use crate::geometry::outer_simplified;
-use crate::obstacle::{MovingVertex, PolytopeObstacle};
+use crate::obstacle::{MovingVertex, PolytopeObstacle, along_path};
 use crate::planner::cost::space_time_error;
 use crate::planner::{
     EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind, Problem, SearchKind,
@@ -22,8 +22,6 @@ use crate::trajectory::Segment;
 
 /// Seconds before first contact at which a manoeuvre may begin, besides t = 0.
 const LEADS_S: [f64; 7] = [0.0, 5.0, 12.0, 20.0, 30.0, 45.0, 70.0];
-/// Seconds at the least or the greatest speed on the route, as manoeuvres of their own.
-const PACES_S: [f64; 4] = [15.0, 40.0, 80.0, 160.0];
 /// Angles at which the route is met again, radians.
 const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
 /// Radians. Larger turns toward a vertex are not offered.
@@ -135,11 +133,6 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// First contacts of the undisturbed motion, one per obstacle that it meets, at least 20 s apart.
-    pub(crate) fn contacts(&self) -> &[f64] {
-        &self.contacts
-    }
-
     fn push(
         &self,
         out: &mut Vec<(State, f64)>,
@@ -198,49 +191,93 @@ impl<'a> Graph<'a> {
         times.push(0.0);
         times.sort_by(f64::total_cmp);
         times.dedup_by(|a, b| *a - *b < 2.0);
+        self.paced(from, out);
         for &time in &times {
-            let motion: Vec<Segment> = self
-                .undisturbed
-                .iter()
-                .filter(|s| s.start_time < time)
-                .map(|s| s.between(s.start_time, time))
-                .collect();
-            let distance: f64 = motion.iter().map(Segment::length).sum();
-            for speed in [self.problem.own.min_speed(), self.problem.own.max_speed()] {
-                for pace in PACES_S {
-                    let mut paced = motion.clone();
-                    let time = paced.last().map_or(0.0, Segment::end_time);
-                    let at = self.paced(distance, time, pace, speed, &mut paced);
-                    let time = paced.last().map_or(0.0, Segment::end_time);
-                    self.route.follow(at, time, &mut paced);
-                    self.push(out, NodeKind::End, Ending::Follow, paced, from);
-                }
-            }
+            let motion = self.until(time);
             self.push(out, NodeKind::Departure, Ending::Follow, motion, from);
         }
     }
 
-    /// Keeps one speed on the route for some seconds; a wait where it is zero.
-    fn paced(
-        &self,
-        distance: f64,
-        time: f64,
-        pace: f64,
-        speed: f64,
-        out: &mut Vec<Segment>,
-    ) -> f64 {
-        if speed > 0.0 {
-            return self.route.run(distance, time, pace * speed, speed, out);
+    /// Ways that never leave the route: on schedule, then at the least or the greatest speed so as to
+    /// touch a corner of a path-time obstacle, then on to the schedule.
+    fn paced(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let (own, desired) = (self.problem.own, self.problem.desired);
+        for (hazard, (index, leg)) in self
+            .hazards
+            .iter()
+            .filter(|h| {
+                self.undisturbed
+                    .iter()
+                    .any(|s| h.first_contact(s).is_some())
+            })
+            .flat_map(|h| desired.legs().iter().enumerate().map(move |l| (h, l)))
+        {
+            let Some(stretch) = self.route.stretch(index, desired) else {
+                continue;
+            };
+            let start = leg.start + leg.direction * stretch.from;
+            let length = stretch.to - stretch.from;
+            let corners = along_path(
+                hazard.body,
+                start,
+                leg.direction,
+                length,
+                self.problem.horizon,
+            );
+            for corner in corners {
+                let goal = stretch.distance + corner.distance;
+                for speed in [own.min_speed(), own.max_speed()] {
+                    let Some(departure) = self.leave_schedule(goal, corner.time, speed) else {
+                        continue;
+                    };
+                    let mut motion = self.until(departure);
+                    let at: f64 = motion.iter().map(Segment::length).sum();
+                    let (pose, _) = self.route.pose_at(at);
+                    if speed > 0.0 {
+                        self.route.run(at, departure, goal - at, speed, &mut motion);
+                    } else {
+                        motion.push(Segment {
+                            start: pose,
+                            start_time: departure,
+                            duration: corner.time - departure,
+                            speed,
+                            turn_rate: 0.0,
+                        });
+                    }
+                    self.route.follow(
+                        if speed > 0.0 { goal } else { at },
+                        corner.time,
+                        &mut motion,
+                    );
+                    self.push(out, NodeKind::End, Ending::Follow, motion, from);
+                }
+            }
         }
-        let (start, _) = self.route.pose_at(distance);
-        out.push(Segment {
-            start,
-            start_time: time,
-            duration: pace,
-            speed,
-            turn_rate: 0.0,
-        });
-        distance
+    }
+
+    /// The time at which the undisturbed motion is to be left for a constant speed, to be at a distance
+    /// along the route at a time.
+    fn leave_schedule(&self, distance: f64, time: f64, speed: f64) -> Option<f64> {
+        let mut at = 0.0;
+        for s in self.undisturbed {
+            // at + s.speed (t - s.start_time) + speed (time - t) = distance
+            let gap = distance - at + s.speed * s.start_time - speed * time;
+            let t = gap / (s.speed - speed);
+            if t.is_finite() && t >= s.start_time && t <= s.end_time() && t < time {
+                return Some(t);
+            }
+            at += s.length();
+        }
+        None
+    }
+
+    /// The undisturbed motion up to a time.
+    fn until(&self, time: f64) -> Vec<Segment> {
+        self.undisturbed
+            .iter()
+            .filter(|s| s.start_time < time)
+            .map(|s| s.between(s.start_time, time))
+            .collect()
     }
 
     fn interceptions(&self, from: &State, out: &mut Vec<(State, f64)>) {

@@ -39,6 +39,16 @@ impl<'a> Hazard<'a> {
         apart.norm() - closing - self.radius - self.growth * segment.end_time()
     }
 
+    /// Metres from a point inside to the boundary of the section in a direction.
+    pub(crate) fn way_out(&self, position: Vector, time: f64, toward: Vector) -> f64 {
+        self.body
+            .faces()
+            .iter()
+            .filter(|f| f.normal.dot(&toward) > 1e-9)
+            .map(|f| (-f.slack(position, time)).max(0.0) / f.normal.dot(&toward))
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Position and velocity relative to the middle of the obstacle.
     pub(crate) fn relative(
         &self,

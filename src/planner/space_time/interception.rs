@@ -43,7 +43,7 @@ pub(crate) struct Interception {
 const MEETING_M: f64 = 1e-7;
 
 /// Radians. A turn this close to a full circle is none.
-const DEAD_AHEAD_RAD: f64 = 1e-9;
+const DEAD_AHEAD_RAD: f64 = 1e-12;
 
 /// Iterations of a root; Newton on a concave piece needs about five.
 const MAX_ITERATIONS: usize = 60;

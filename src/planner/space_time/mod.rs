@@ -30,6 +30,7 @@ use graph::Graph;
 use hazard::{Hazard, TOUCH_M, first_contact};
 use model::Scene;
 use route::Route;
+use seeds::Conflict;
 use selection::Selection;
 
 /// Expansions of one search at most: the bound on its memory. Typical searches need a hundredth.
@@ -113,8 +114,13 @@ pub fn plan(problem: &Problem) -> Planned {
         }
     }
     let contact = first_contact(&hazards, &undisturbed);
-    if let Some((_, contact)) = contact {
-        timed_out |= selection.refine(graph.contacts(), contact, &out_of_time);
+    if contact.is_some() {
+        let mut conflicts: Vec<Conflict> = hazards
+            .iter()
+            .filter_map(|h| Conflict::of(h, &undisturbed))
+            .collect();
+        conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
+        timed_out |= selection.refine(&conflicts, &out_of_time);
     }
     let counts = search.counts();
     let stats = SearchStats {

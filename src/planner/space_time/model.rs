@@ -487,7 +487,7 @@ mod tests {
     use crate::geometry::outer_disc;
     use crate::obstacle::PolytopeObstacle;
     use crate::planner::SearchKind;
-    use crate::planner::space_time::seeds::Canonical;
+    use crate::planner::space_time::seeds::{Canonical, Conflict};
     use crate::planner::space_time::template::Slot;
     use crate::trajectory::DesiredTrajectory;
     use crate::vessel::{Hull, OwnShip};

@@ -2,7 +2,7 @@
 
 use super::model::{Model, Scene};
 use super::quadratic::{MAX_VARIABLES, Programme, Row};
-use super::template::{Slot, Template};
+use super::template::{Ending, Slot, Template};
 
 /// Metres by which one step may change a length, at first, at most, at least.
 const FIRST_RADIUS_M: f64 = 30.0;
@@ -14,6 +14,14 @@ pub(crate) const MAX_STEPS: usize = 30;
 
 /// Radians. Longest turn of one slot.
 const LONGEST_ARC: f64 = 2.0;
+
+/// The merit's weight of a missing metre, m²/m: at first a multiple of the seed's cost, which a plan
+/// loses over some tens of metres; later at least the multipliers.
+const LEAST_PENALTY: f64 = 10.0;
+const PENALTY_PER_COST: f64 = 0.05;
+
+/// Share of what the box allows that an unmet row asks for.
+const REACHABLE: f64 = 0.8;
 
 /// Relative decrease that is no progress.
 const STALLED: f64 = 5e-4;
@@ -46,15 +54,50 @@ pub(crate) struct Refinement {
 }
 
 impl Refinement {
+    /// Begins from the seed, or, where its return does not fit before the end of the leg, from one with
+    /// shorter lines or that steers for the last waypoint.
+    pub(crate) fn fitting(scene: &Scene, seed: Seed) -> Option<Self> {
+        let mut shorter = seed.clone();
+        for _ in 0..4 {
+            if let Some(refinement) = Self::new(scene, shorter.clone()) {
+                return Some(refinement);
+            }
+            for (slot, length) in shorter.template.slots.iter().zip(&mut shorter.lengths) {
+                if matches!(slot, Slot::Line { .. }) {
+                    *length *= 0.6;
+                }
+            }
+        }
+        let last = seed.template.slots.iter().rev().find_map(|s| match s {
+            Slot::Arc { side, speed } => Some((*side, *speed)),
+            _ => None,
+        });
+        let mut onward = seed;
+        for _ in 0..4 {
+            let (side, speed) = last?;
+            onward.template.ending = Ending::Goal { side, speed };
+            if let Some(refinement) = Self::new(scene, onward.clone()) {
+                return Some(refinement);
+            }
+            for (slot, length) in onward.template.slots.iter().zip(&mut onward.lengths) {
+                if matches!(slot, Slot::Line { .. }) {
+                    *length *= 0.6;
+                }
+            }
+        }
+        None
+    }
+
     /// `None` when the seed's ending does not fit.
-    pub(crate) fn new(scene: &Scene, seed: Seed) -> Option<Self> {
+    fn new(scene: &Scene, seed: Seed) -> Option<Self> {
         let model = scene.model(&seed.template, &seed.lengths)?;
+        let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
         let mut refinement = Self {
             template: seed.template,
             lengths: seed.lengths,
             model,
             best: None,
-            penalty: 1.0,
+            penalty,
             radius: FIRST_RADIUS_M,
             stalled: 0,
             steps: 0,
@@ -62,6 +105,41 @@ impl Refinement {
         };
         refinement.keep();
         Some(refinement)
+    }
+
+    pub(crate) fn debug(&self) -> String {
+        format!(
+            "J {:.1} viol {:.3} least {:.3} best {:?} steps {} radius {:.3} pen {:.2} rows {} {:?} {:?}",
+            self.model.cost,
+            self.model.violation,
+            self.model.least_slack,
+            self.best.as_ref().map(|b| b.model.cost),
+            self.steps,
+            self.radius,
+            self.penalty,
+            self.model.rows.len(),
+            self.template.ending,
+            self.template
+                .slots
+                .iter()
+                .zip(&self.lengths)
+                .map(|(s, l)| format!(
+                    "{}{:.0}@{}",
+                    match s {
+                        Slot::Run { .. } => "R",
+                        Slot::Arc {
+                            side: crate::frame::Side::Port,
+                            ..
+                        } => "P",
+                        Slot::Arc { .. } => "S",
+                        Slot::Line { .. } => "L",
+                    },
+                    l,
+                    s.speed()
+                ))
+                .collect::<Vec<_>>()
+                .join(" ")
+        )
     }
 
     pub(crate) fn is_finished(&self) -> bool {
@@ -124,13 +202,21 @@ impl Refinement {
         for (i, row) in hessian.iter_mut().enumerate().take(n) {
             row[i] += floor;
         }
+        // a row that the box cannot meet asks for what it can: otherwise it would be left out
+        let mut rows = self.model.rows.clone();
+        for row in &mut rows {
+            let reach: f64 = (0..n)
+                .map(|i| (row.coefficients[i] * low[i]).max(row.coefficients[i] * high[i]))
+                .sum();
+            row.bound = row.bound.min(REACHABLE * reach);
+        }
         let programme = Programme {
             size: n,
             hessian: &hessian,
             gradient: &self.model.gradient,
             low: &low,
             high: &high,
-            rows: &self.model.rows,
+            rows: &rows,
         };
         let Some(solution) = programme.solve() else {
             return false;

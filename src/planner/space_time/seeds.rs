@@ -1,11 +1,12 @@
 //! Manoeuvres from which the refinement begins: the graph's plans, and canonical ones on both sides.
 
 use super::graph::State;
+use super::hazard::Hazard;
 use super::quadratic::{MAX_VARIABLES, Row};
 use super::refinement::Seed;
 use super::route::Route;
 use super::template::{Ending, Slot, Template};
-use crate::frame::Side;
+use crate::frame::{Side, to_port};
 use crate::planner::{NodeKind, Problem};
 use crate::trajectory::Segment;
 
@@ -41,15 +42,61 @@ impl Paces {
     }
 }
 
-/// A canonical manoeuvre: leave the route `lead` seconds before first contact, after `run` metres at
-/// the least speed; turn; a line; turn back; a line; return.
+/// A stretch of the undisturbed motion inside a set, and what it takes to pass beside it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Conflict {
+    /// Seconds at which the contact begins and ends.
+    pub from: f64,
+    pub to: f64,
+    /// Metres to starboard and to port that clear the set throughout.
+    pub offsets: [f64; 2],
+}
+
+impl Conflict {
+    /// Metres to a side.
+    pub(crate) fn offset(&self, side: Side) -> f64 {
+        self.offsets[usize::from(side == Side::Port)]
+    }
+
+    /// The contact of one hazard with the undisturbed motion, from first to last instant.
+    pub(crate) fn of(hazard: &Hazard, undisturbed: &[Segment]) -> Option<Self> {
+        let from = undisturbed.iter().find_map(|s| hazard.first_contact(s))?;
+        let end = undisturbed.last()?.end_time();
+        let mut conflict = Self {
+            from,
+            to: from,
+            offsets: [0.0; 2],
+        };
+        for k in 0..=CONFLICT_SAMPLES {
+            let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
+            let segment = undisturbed.iter().find(|s| s.end_time() >= time)?;
+            let pose = segment.pose_at(time);
+            if hazard.body.slack(pose.position, time).value > 0.0 {
+                continue;
+            }
+            conflict.to = time;
+            for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
+                let beam = to_port(pose.ahead()) * side.turn_sign();
+                *offset = offset.max(hazard.way_out(pose.position, time, beam));
+            }
+        }
+        Some(conflict)
+    }
+}
+
+/// Instants at which a conflict's width is taken.
+const CONFLICT_SAMPLES: usize = 24;
+
+/// A canonical manoeuvre: turn, a line out to the offset that clears the set, turn back, a line until
+/// the set is passed, return.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Canonical {
-    pub lead: f64,
-    pub run: f64,
+    /// Radians.
     pub turn: f64,
-    pub out: f64,
-    pub along: f64,
+    /// Share of the way out that is to be sailed before the contact begins.
+    pub lead: f64,
+    /// Share of the offset that is aimed at.
+    pub reach: f64,
     /// The turn out at the least speed, not at the greatest.
     pub slow: bool,
 }
@@ -95,26 +142,41 @@ impl Draft {
 }
 
 impl Canonical {
-    /// The seed on one side of the route, around a contact that begins at `contact` seconds.
+    /// The seed on one side of the route.
     pub(crate) fn seed(
         &self,
         problem: &Problem,
         route: &Route,
         side: Side,
-        contact: f64,
+        conflict: &Conflict,
         leg: usize,
     ) -> Option<Seed> {
         let paces = Paces::of(problem);
-        let arc = self.turn * problem.own.turning_radius;
-        let lead = ((contact - self.lead).max(0.0) * paces.normal).min(route.length());
+        let radius = problem.own.turning_radius;
         let (slow, fast) = (paces.slow, paces.fast);
+        let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
+        // two arcs alone reach twice the versine
+        let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
+        let turn = self.turn.min(needed.max(0.1));
+        let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
+        let arc = turn * radius;
+        let way_out = (2.0 * arc + out) / if self.slow { paces.normal } else { fast };
+        let departure = (conflict.from - self.lead * way_out).max(0.0);
+        let along = ((conflict.to - departure - way_out) * fast).max(0.0);
+        let lead = (departure * paces.normal).min(route.length());
         let mut draft = Draft::default();
-        draft.runs(&paces, lead, 0.0, self.run);
+        draft.runs(&paces, lead, 0.0, 0.0);
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         draft.push(Slot::Arc { side, speed: fast }, fast_arc);
         draft.push(Slot::Arc { side, speed: slow }, slow_arc);
-        draft.push(Slot::Line { speed: slow }, self.out);
-        draft.push(Slot::Line { speed: fast }, 0.0);
+        draft.push(
+            Slot::Line { speed: slow },
+            if self.slow { out } else { 0.0 },
+        );
+        draft.push(
+            Slot::Line { speed: fast },
+            if self.slow { 0.0 } else { out },
+        );
         let back = side.opposite();
         draft.push(
             Slot::Arc {
@@ -131,35 +193,16 @@ impl Canonical {
             arc,
         );
         draft.push(Slot::Line { speed: slow }, 0.0);
-        draft.push(Slot::Line { speed: fast }, self.along);
+        draft.push(Slot::Line { speed: fast }, along);
         draft.push(
             Slot::Arc {
                 side: back,
                 speed: fast,
             },
-            0.4 * problem.own.turning_radius,
+            0.4_f64.min(needed.max(0.1)) * radius,
         );
         draft.seed(Ending::Return { leg, speed: fast })
     }
-}
-
-/// Keeping to the route: on schedule until `at` seconds, then `slow` and `fast` metres.
-pub(crate) fn paced(
-    problem: &Problem,
-    route: &Route,
-    at: f64,
-    fast: f64,
-    slow: f64,
-) -> Option<Seed> {
-    let paces = Paces::of(problem);
-    let mut draft = Draft::default();
-    draft.runs(
-        &paces,
-        (at.max(0.0) * paces.normal).min(route.length()),
-        fast,
-        slow,
-    );
-    draft.seed(Ending::Follow)
 }
 
 /// A plan of the graph as a seed: its arcs and lines in its own order, each with the other speeds beside

@@ -4,7 +4,7 @@ use super::graph::State;
 use super::hazard::first_contact;
 use super::model::Scene;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
-use super::seeds::{Canonical, from_graph, paced};
+use super::seeds::{Canonical, Conflict, from_graph};
 use crate::frame::{Side, cross};
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
@@ -12,38 +12,33 @@ use crate::trajectory::Segment;
 /// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin.
 const CANONICAL: [Canonical; 4] = [
     Canonical {
-        lead: 20.0,
-        run: 0.0,
-        turn: 0.7,
-        out: 40.0,
-        along: 80.0,
+        turn: 0.5,
+        lead: 0.9,
+        reach: 1.0,
         slow: false,
     },
     Canonical {
-        lead: 60.0,
-        run: 0.0,
-        turn: 0.8,
-        out: 80.0,
-        along: 400.0,
+        turn: 0.9,
+        lead: 0.6,
+        reach: 0.8,
         slow: false,
     },
     Canonical {
-        lead: 12.0,
-        run: 20.0,
         turn: 1.0,
-        out: 20.0,
-        along: 500.0,
+        lead: 0.9,
+        reach: 0.9,
         slow: true,
     },
     Canonical {
-        lead: 30.0,
-        run: 20.0,
-        turn: 1.2,
-        out: 60.0,
-        along: 100.0,
+        turn: 1.4,
+        lead: 0.5,
+        reach: 0.6,
         slow: true,
     },
 ];
+
+/// Conflicts that get manoeuvres of their own, earliest first.
+const MAX_CONFLICTS: usize = 2;
 
 /// Steps after which a refinement may be overtaken.
 const RACE_FROM: usize = 6;
@@ -127,26 +122,23 @@ impl<'a> Selection<'a> {
     /// Refines the graph's plans and the canonical ones; true when the time ran out.
     pub(crate) fn refine(
         &mut self,
-        contacts: &[f64],
-        first: f64,
+        conflicts: &[Conflict],
         out_of_time: &dyn Fn() -> bool,
     ) -> bool {
         let scene = self.scene;
         let (problem, route) = (scene.problem, scene.route);
         let mut seeds = std::mem::take(&mut self.seeds);
         let leg = problem.desired.legs().len() - 1;
-        for canonical in CANONICAL {
-            for side in Side::BOTH {
-                seeds.extend(canonical.seed(problem, route, side, first, leg));
+        for conflict in conflicts.iter().take(MAX_CONFLICTS) {
+            for canonical in CANONICAL {
+                for side in Side::BOTH {
+                    seeds.extend(canonical.seed(problem, route, side, conflict, leg));
+                }
             }
-        }
-        for contact in contacts.iter().take(2) {
-            seeds.extend(paced(problem, route, contact - 80.0, 0.0, 200.0));
-            seeds.extend(paced(problem, route, contact - 80.0, 200.0, 0.0));
         }
         let mut running: Vec<Refinement> = seeds
             .into_iter()
-            .filter_map(|s| Refinement::new(&scene, s))
+            .filter_map(|s| Refinement::fitting(&scene, s))
             .collect();
         let mut best = f64::INFINITY;
         for round in 0..MAX_STEPS {
@@ -165,6 +157,11 @@ impl<'a> Selection<'a> {
                 if refinement.cost() > allowed {
                     refinement.stop();
                 }
+            }
+        }
+        if std::env::var("DEV").is_ok() {
+            for r in &running {
+                eprintln!("{}", r.debug());
             }
         }
         self.collect(&running);
