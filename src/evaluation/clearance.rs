@@ -107,8 +107,14 @@ impl Body {
         if !self.is_point() {
             let ahead = pose.ahead();
             let port = to_port(ahead);
-            for normal in [ahead, port, -ahead, -port] {
-                keep(beyond(&set.face(normal)));
+            let sides = [
+                (ahead, self.half_length),
+                (-ahead, self.half_length),
+                (port, self.half_beam),
+                (-port, self.half_beam),
+            ];
+            for (normal, reach) in sides {
+                keep(beyond_side(segment, &pose, normal, reach, set, time, half));
             }
         }
         if best.value > 0.0 {
@@ -155,6 +161,40 @@ impl Body {
         }
         best
     }
+}
+
+/// How far a set is beyond one of own ship's sides now, and at least within `half` seconds. The side turns
+/// with her: a fixed line through it would lose a distance of first order in time at its ends.
+fn beyond_side(
+    segment: &Segment,
+    pose: &Pose,
+    normal: Vector,
+    reach: f64,
+    set: &MovingSet,
+    time: f64,
+    half: f64,
+) -> Probe {
+    let (turn, speed) = (segment.turn_rate.abs(), segment.speed);
+    let velocity = segment.velocity_at(time);
+    let turning = to_port(normal) * segment.turn_rate;
+    let mut gap = Probe {
+        value: f64::INFINITY,
+        lower: f64::INFINITY,
+    };
+    for vertex in &set.vertices {
+        let offset = vertex.at(time) - pose.position;
+        let relative = vertex.velocity - velocity;
+        let value = normal.dot(&offset) - reach;
+        let rate = normal.dot(&relative) + turning.dot(&offset);
+        // of n . (p - x): the largest that the second derivative can be within the time asked for
+        let fastest = vertex.velocity.norm() + speed;
+        let bend = turn * (turn * (offset.norm() + fastest * half) + 2.0 * fastest + speed);
+        gap.value = gap.value.min(value);
+        gap.lower = gap
+            .lower
+            .min(value - rate.abs() * half - 0.5 * bend * half * half);
+    }
+    gap
 }
 
 #[cfg(test)]

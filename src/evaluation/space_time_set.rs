@@ -17,8 +17,10 @@ pub struct SpaceTimeSet {
 /// A vertex of the section: `initial + t velocity`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MovingVertex {
-    initial: Vector,
-    velocity: Vector,
+    /// Metres, at t = 0.
+    pub initial: Vector,
+    /// m/s.
+    pub velocity: Vector,
 }
 
 impl MovingVertex {
