@@ -325,23 +325,27 @@ mod tests {
     #[test]
     fn turning_broadside_past_a_corner_costs_few_probes() {
         // the nearest point is inside own ship's side, which turns: a fixed line bounds it badly
-        let buoy = ConvexPolygon::point(Vector::new(3.0, 80.0));
-        let set = MovingSet::new(&buoy, &ConvexPolygon::point(Vector::new(0.1, 0.0)));
+        let buoy = ConvexPolygon::point(Vector::new(0.0, 40.0));
+        let set = MovingSet::new(&buoy, &ConvexPolygon::point(Vector::zeros()));
         let hull = Hull {
             length: 30.0,
             beam: 8.0,
         };
-        for turn_rate in [0.06, -0.06] {
-            let s = Segment {
-                start: Pose::new(Vector::new(-60.0, 0.0), -10.0 * turn_rate),
-                start_time: 0.0,
-                duration: 20.0,
-                speed: 6.0,
-                turn_rate,
-            };
-            let found = least_distance(&[s], Body::hull(&hull), &set);
-            assert!(found.certified && found.probes < 300, "{found:?}");
-        }
+        // round a circle of 100 m about (0, 100), lowest after 10 s
+        let (half_turn, rate) = (0.6_f64, 0.06);
+        let s = Segment {
+            start: Pose::new(
+                Vector::new(-100.0 * half_turn.sin(), 100.0 - 100.0 * half_turn.cos()),
+                -half_turn,
+            ),
+            start_time: 0.0,
+            duration: 20.0,
+            speed: 6.0,
+            turn_rate: rate,
+        };
+        let found = least_distance(&[s], Body::hull(&hull), &set);
+        assert!(found.certified && found.probes < 300, "{found:?}");
+        assert!((found.value - 36.0).abs() < 1e-6 && (found.time - 10.0).abs() < 0.01);
     }
 
     #[test]
