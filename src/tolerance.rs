@@ -30,9 +30,9 @@ pub const TIME_S: f64 = 1e-9;
 /// Relative. A turning radius, a speed or a curvature may differ from its limit by this fraction.
 pub const LIMIT: f64 = 1e-9;
 
-/// Metres. A plan has arrived when it ends this near to the last waypoint: the rounding of a chain of
-/// some hundred segments.
-pub const ARRIVAL_M: f64 = 1e-6;
+/// Metres. A plan has arrived when it ends this near to the last waypoint: the way of a ship in some
+/// microseconds, which is how exactly a plan ends on time.
+pub const ARRIVAL_M: f64 = 1e-5;
 
 /// Metres. A shape that is drawn back to let own ship start outside leaves her this much room.
 pub const START_M: f64 = 1e-3;

@@ -107,8 +107,14 @@ impl Body {
         if !self.is_point() {
             let ahead = pose.ahead();
             let port = to_port(ahead);
-            for normal in [ahead, port, -ahead, -port] {
-                keep(beyond(&set.face(normal)));
+            let sides = [
+                (ahead, self.half_length),
+                (-ahead, self.half_length),
+                (port, self.half_beam),
+                (-port, self.half_beam),
+            ];
+            for (normal, reach) in sides {
+                keep(beyond_side(segment, &pose, normal, reach, set, time, half));
             }
         }
         if best.value > 0.0 {
@@ -155,6 +161,40 @@ impl Body {
         }
         best
     }
+}
+
+/// How far a set is beyond one of own ship's sides now, and at least within `half` seconds. The side turns
+/// with her: a fixed line through it would lose a distance of first order in time at its ends.
+fn beyond_side(
+    segment: &Segment,
+    pose: &Pose,
+    normal: Vector,
+    reach: f64,
+    set: &MovingSet,
+    time: f64,
+    half: f64,
+) -> Probe {
+    let (turn, speed) = (segment.turn_rate.abs(), segment.speed);
+    let velocity = segment.velocity_at(time);
+    let turning = to_port(normal) * segment.turn_rate;
+    let mut gap = Probe {
+        value: f64::INFINITY,
+        lower: f64::INFINITY,
+    };
+    for vertex in &set.vertices {
+        let offset = vertex.at(time) - pose.position;
+        let relative = vertex.velocity - velocity;
+        let value = normal.dot(&offset) - reach;
+        let rate = normal.dot(&relative) + turning.dot(&offset);
+        // of n . (p - x): the largest that the second derivative can be within the time asked for
+        let fastest = vertex.velocity.norm() + speed;
+        let bend = turn * (turn * (offset.norm() + fastest * half) + 2.0 * fastest + speed);
+        gap.value = gap.value.min(value);
+        gap.lower = gap
+            .lower
+            .min(value - rate.abs() * half - 0.5 * bend * half * half);
+    }
+    gap
 }
 
 #[cfg(test)]
@@ -280,6 +320,32 @@ mod tests {
         };
         let found = least_distance(&[touching], Body::POINT, &rest);
         assert!(found.certified && found.probes < 300, "{found:?}");
+    }
+
+    #[test]
+    fn turning_broadside_past_a_corner_costs_few_probes() {
+        // the nearest point is inside own ship's side, which turns: a fixed line bounds it badly
+        let buoy = ConvexPolygon::point(Vector::new(0.0, 40.0));
+        let set = MovingSet::new(&buoy, &ConvexPolygon::point(Vector::zeros()));
+        let hull = Hull {
+            length: 30.0,
+            beam: 8.0,
+        };
+        // round a circle of 100 m about (0, 100), lowest after 10 s
+        let (half_turn, rate) = (0.6_f64, 0.06);
+        let s = Segment {
+            start: Pose::new(
+                Vector::new(-100.0 * half_turn.sin(), 100.0 - 100.0 * half_turn.cos()),
+                -half_turn,
+            ),
+            start_time: 0.0,
+            duration: 20.0,
+            speed: 6.0,
+            turn_rate: rate,
+        };
+        let found = least_distance(&[s], Body::hull(&hull), &set);
+        assert!(found.certified && found.probes < 300, "{found:?}");
+        assert!((found.value - 36.0).abs() < 1e-6 && (found.time - 10.0).abs() < 0.01);
     }
 
     #[test]

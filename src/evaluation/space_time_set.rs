@@ -17,8 +17,10 @@ pub struct SpaceTimeSet {
 /// A vertex of the section: `initial + t velocity`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MovingVertex {
-    initial: Vector,
-    velocity: Vector,
+    /// Metres, at t = 0.
+    pub initial: Vector,
+    /// m/s.
+    pub velocity: Vector,
 }
 
 impl MovingVertex {
@@ -120,15 +122,10 @@ impl MovingSet {
     }
 }
 
-/// A direction in the counter-clockwise gap between two unit vectors, the gap at most half a turn.
+/// Along the bisector of the counter-clockwise gap, at most half a turn, between two unit vectors. The
+/// first part vanishes for opposite vectors, the second for equal ones.
 fn between(a: Vector, b: Vector) -> Vector {
-    let sum = a + b;
-    if sum.norm() > 1e-6 {
-        sum
-    } else {
-        // opposite normals: half-way is a quarter turn to port of the first
-        -to_starboard(a)
-    }
+    (a + b) + to_starboard(b - a)
 }
 
 /// The vertex farthest in a direction; of equal ones the first.
