@@ -44,6 +44,8 @@ pub struct DenseSearch {
     pub per_cell: usize,
     /// Seconds between the instants at which membership is tested.
     pub check: f64,
+    /// States to step from at most: the bound on time and memory.
+    pub max_states: usize,
 }
 
 impl Default for DenseSearch {
@@ -54,6 +56,7 @@ impl Default for DenseSearch {
             headings: 72,
             per_cell: 1,
             check: 0.25,
+            max_states: 2_000_000,
         }
     }
 }
@@ -74,6 +77,8 @@ pub struct Answer {
     pub cheaper: Option<Found>,
     /// States that were stepped from.
     pub states: usize,
+    /// False when the search ran out of states: something cheaper may be left.
+    pub complete: bool,
 }
 
 struct State {
@@ -122,10 +127,10 @@ impl DenseSearch {
             before: None,
         }];
         let mut layer = 0..1;
-        let mut expanded = 0;
+        let (mut expanded, mut complete) = (0, true);
         for index in 0.. {
             let time = index as f64 * self.step;
-            if layer.is_empty() || time + self.step > problem.horizon {
+            if !complete || layer.is_empty() || time + self.step > problem.horizon {
                 break;
             }
             let mut next: Vec<State> = Vec::new();
@@ -134,6 +139,10 @@ impl DenseSearch {
                 let (pose, cost) = (states[at].pose, states[at].cost);
                 if cost + bound.to_go(&pose, index) >= limit {
                     continue;
+                }
+                if expanded == self.max_states {
+                    complete = false;
+                    break;
                 }
                 expanded += 1;
                 for closing in scene.closings(&pose, time) {
@@ -172,6 +181,7 @@ impl DenseSearch {
                 trajectory: trace(&states, at, closing),
             }),
             states: expanded,
+            complete,
         }
     }
 
