@@ -1,0 +1,58 @@
+//! The judgement of encounters against scenes drawn of a known kind, wherever they lie in the plane.
+
+use searoom::colregs::Role;
+use searoom::pipeline::{TargetSets, sets};
+use searoom::simulation::{EncounterKind, Placement, random_encounter};
+
+fn role(kind: EncounterKind) -> Role {
+    match kind {
+        EncounterKind::HeadOn => Role::HeadOn,
+        EncounterKind::GiveWay => Role::GiveWay,
+        EncounterKind::StandOn => Role::StandOn,
+        EncounterKind::Overtaking => Role::Overtaking,
+    }
+}
+
+fn judged(kind: EncounterKind, seed: u64, placement: Placement) -> TargetSets {
+    let drawn = random_encounter(kind, seed, placement).expect("a scene");
+    sets(&drawn.scenario).remove(0)
+}
+
+#[test]
+fn a_drawn_encounter_has_the_role_it_was_drawn_for() {
+    for kind in EncounterKind::ALL {
+        for seed in 0..250 {
+            let found = judged(kind, seed, Placement::Random).encounter;
+            assert_eq!(found.role, role(kind), "{} {seed}", kind.name());
+        }
+    }
+}
+
+#[test]
+fn turning_and_moving_the_scene_changes_no_judgement_and_no_shape() {
+    for kind in EncounterKind::ALL {
+        for seed in 0..100 {
+            let here = judged(kind, seed, Placement::Origin);
+            let there = judged(kind, seed, Placement::Random);
+            assert_eq!(here.encounter.role, there.encounter.role);
+            let pairs = [
+                (
+                    here.encounter.undisturbed_dcpa,
+                    there.encounter.undisturbed_dcpa,
+                ),
+                (here.shape_reduced, there.shape_reduced),
+                (
+                    here.hard.initial().area().sqrt(),
+                    there.hard.initial().area().sqrt(),
+                ),
+                (
+                    here.shaped.initial().area().sqrt(),
+                    there.shaped.initial().area().sqrt(),
+                ),
+            ];
+            for (a, b) in pairs {
+                assert!((a - b).abs() < 1e-6, "{} {seed}: {a} {b}", kind.name());
+            }
+        }
+    }
+}
