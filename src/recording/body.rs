@@ -69,7 +69,11 @@ pub fn mesh(scene: &Scene, set: &PolytopeObstacle) -> Mesh3D {
         triangles.extend([[base, base + 1, base + 3], [base, base + 3, base + 2]]);
     }
     let base = corners.len() as u32;
-    corners.extend(vertices.iter().map(|v| scene.lifted(v.at(scene.end), scene.end)));
+    corners.extend(
+        vertices
+            .iter()
+            .map(|v| scene.lifted(v.at(scene.end), scene.end)),
+    );
     normals.extend(std::iter::repeat_n([0.0, 0.0, 1.0], count));
     triangles.extend((2..count as u32).map(|i| [base, base + i - 1, base + i]));
     Mesh3D::new(corners)
@@ -99,8 +103,7 @@ mod tests {
         ] {
             let set = PolytopeObstacle::new("t", initial, velocity);
             for time in [0.0, 1.0, 60.0] {
-                let moved: Vec<Vector> =
-                    moving_vertices(&set).iter().map(|v| v.at(time)).collect();
+                let moved: Vec<Vector> = moving_vertices(&set).iter().map(|v| v.at(time)).collect();
                 let hull = ConvexPolygon::hull(&moved).expect("finite");
                 let section = set.section(time);
                 for face in set.faces() {

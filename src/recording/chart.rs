@@ -59,19 +59,11 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let mut lines = Lines::default();
     for east in multiples(low.x, high.x, spacing) {
         let ends = [Vector::new(east, low.y), Vector::new(east, high.y)];
-        lines.add(
-            ends.map(flat).to_vec(),
-            style::grid(),
-            style::points(0.5),
-        );
+        lines.add(ends.map(flat).to_vec(), style::grid(), style::points(0.5));
     }
     for north in multiples(low.y, high.y, spacing) {
         let ends = [Vector::new(low.x, north), Vector::new(high.x, north)];
-        lines.add(
-            ends.map(flat).to_vec(),
-            style::grid(),
-            style::points(0.5),
-        );
+        lines.add(ends.map(flat).to_vec(), style::grid(), style::points(0.5));
     }
     rec.log_static(path(&[MAP, "grid"]), &lines.archetype())?;
 
@@ -112,11 +104,8 @@ pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 
 /// Samples of the line styles with their meaning, below the sea that is shown.
 fn log_legend(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let mut entries: Vec<(String, Color, Radius)> = vec![(
-        "desired".into(),
-        style::desired(),
-        style::points(0.8),
-    )];
+    let mut entries: Vec<(String, Color, Radius)> =
+        vec![("desired".into(), style::desired(), style::points(0.8))];
     for pace in shown_paces(scene) {
         entries.push((pace.name().into(), pace.color(), pace.radius()));
     }
@@ -135,9 +124,9 @@ fn log_legend(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
         }
     }
     entries.push((
-        format!("{:.0} m", grid_spacing(scene)),
+        format!("grid {:.0} m", grid_spacing(scene)),
         style::chart_text(),
-        style::points(1.0),
+        style::points(0.5),
     ));
     let bounds = scene.bounds;
     let width = bounds.size().x / entries.len() as f64;
@@ -146,16 +135,16 @@ fn log_legend(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
     let mut labels = Vec::new();
     for (index, (label, color, radius)) in entries.into_iter().enumerate() {
         let west = bounds.low.x + width * (index as f64 + 0.2);
-        let ends = [Vector::new(west, north), Vector::new(west + 0.6 * width, north)];
+        let ends = [
+            Vector::new(west, north),
+            Vector::new(west + 0.6 * width, north),
+        ];
         lines.add(ends.map(flat).to_vec(), color, radius);
         labels.push(label);
     }
     rec.log_static(
         path(&[MAP, "legend"]),
-        &lines
-            .archetype()
-            .with_labels(labels)
-            .with_show_labels(true),
+        &lines.archetype().with_labels(labels).with_show_labels(true),
     )
 }
 
@@ -237,7 +226,9 @@ pub fn mark_step(scene: &Scene) -> f64 {
 
 /// Own ship's position every round number of seconds, with the time.
 fn log_time_marks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let times: Vec<f64> = multiples(0.0, scene.end, mark_step(scene)).skip(1).collect();
+    let times: Vec<f64> = multiples(0.0, scene.end, mark_step(scene))
+        .skip(1)
+        .collect();
     let points = times
         .iter()
         .map(|&t| flat(scene.motion.pose_at(t).position));
@@ -300,10 +291,7 @@ fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     }
     rec.log_static(
         path(&[MAP, "closest_points"]),
-        &lines
-            .archetype()
-            .with_labels(labels)
-            .with_show_labels(true),
+        &lines.archetype().with_labels(labels).with_show_labels(true),
     )
 }
 

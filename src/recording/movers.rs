@@ -29,10 +29,22 @@ pub fn log_movers(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
         let name = sets.hard.name();
         if sets.shaped != sets.hard {
             let look = (shaped_color(index), SHAPED_RADIUS);
-            log_sections(rec, scene, path(&[MAP, "shaped_sets", name]), &sets.shaped, look)?;
+            log_sections(
+                rec,
+                scene,
+                path(&[MAP, "shaped_sets", name]),
+                &sets.shaped,
+                look,
+            )?;
         }
         let look = (style::target(index), HARD_RADIUS);
-        log_sections(rec, scene, path(&[MAP, "hard_sets", name]), &sets.hard, look)?;
+        log_sections(
+            rec,
+            scene,
+            path(&[MAP, "hard_sets", name]),
+            &sets.hard,
+            look,
+        )?;
     }
     for (index, target) in scene.run.scenario.targets.iter().enumerate() {
         log_target(rec, scene, index, target)?;
@@ -79,7 +91,11 @@ fn log_target(
     let mut lines = Lines::default();
     if let Some(ship) = target.ship() {
         let here = Pose::new(Vector::zeros(), ship.pose.heading);
-        lines.add(outline(&ship.hull.polygon(&here)), color, style::points(1.0));
+        lines.add(
+            outline(&ship.hull.polygon(&here)),
+            color,
+            style::points(1.0),
+        );
         let tip = ship.velocity() * vector_seconds(scene);
         lines.add(vec![[0.0, 0.0], flat(tip)], color, style::points(0.8));
     }
@@ -101,10 +117,7 @@ fn log_own_ship(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
     } else {
         "Own ship, had she no plan"
     };
-    rec.log_static(
-        path(&[MAP, "own_ship", "name"]),
-        &label(scene, color, name),
-    )?;
+    rec.log_static(path(&[MAP, "own_ship", "name"]), &label(scene, color, name))?;
     let poses: Vec<Pose> = scene
         .moments
         .iter()
@@ -186,7 +199,10 @@ fn log_own_vector(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
         .columns_of_unit_batches()?;
     rec.send_columns(
         entity,
-        [TimeColumn::new_duration_secs(TIMELINE, times.iter().copied())],
+        [TimeColumn::new_duration_secs(
+            TIMELINE,
+            times.iter().copied(),
+        )],
         columns,
     )
 }
@@ -205,7 +221,7 @@ pub fn vector_seconds(scene: &Scene) -> f64 {
 fn mark(color: Color) -> Points2D {
     Points2D::new([[0.0, 0.0]])
         .with_colors([color])
-        .with_radii([style::points(4.0)])
+        .with_radii([style::points(3.0)])
 }
 
 /// A name north of the ship: the time marks have theirs south of the track.

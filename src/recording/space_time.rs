@@ -13,9 +13,9 @@ use crate::frame::Vector;
 use crate::obstacle::PolytopeObstacle;
 
 /// Of the sides of a shaped body.
-const SHAPED_ALPHA: u8 = 26;
+const SHAPED_ALPHA: u8 = 16;
 /// Of the sides of a hard body.
-const HARD_ALPHA: u8 = 60;
+const HARD_ALPHA: u8 = 36;
 
 /// Lines in space-time, each with its look.
 #[derive(Debug, Default)]
@@ -63,10 +63,18 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let mut lines = Lines::default();
     let ground = |east: f64, north: f64| scene.lifted(Vector::new(east, north), 0.0);
     for east in multiples(low.x, high.x, spacing) {
-        lines.add(vec![ground(east, low.y), ground(east, high.y)], style::grid(), 0.5);
+        lines.add(
+            vec![ground(east, low.y), ground(east, high.y)],
+            style::grid(),
+            0.5,
+        );
     }
     for north in multiples(low.y, high.y, spacing) {
-        lines.add(vec![ground(low.x, north), ground(high.x, north)], style::grid(), 0.5);
+        lines.add(
+            vec![ground(low.x, north), ground(high.x, north)],
+            style::grid(),
+            0.5,
+        );
     }
     let text = style::chart_text();
     let axis = axis_corner(scene);
@@ -74,7 +82,7 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     lines.add(axis_line.to_vec(), text, 1.0);
     let mut places = Vec::new();
     let mut labels = Vec::new();
-    for time in multiples(0.0, scene.end, mark_step(scene)) {
+    for time in multiples(0.0, scene.end, 2.0 * mark_step(scene)) {
         places.push(scene.lifted(axis, time));
         labels.push(if time == 0.0 {
             "t = 0 s".to_owned()
@@ -84,8 +92,8 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     }
     let middle = scene.bounds.center();
     for (place, name) in [
-        (Vector::new(high.x, middle.y), "east"),
-        (Vector::new(middle.x, high.y), "north"),
+        (Vector::new(high.x, middle.y), "E"),
+        (Vector::new(middle.x, high.y), "N"),
     ] {
         places.push(scene.lifted(place, 0.0));
         labels.push(name.to_owned());
@@ -105,9 +113,16 @@ fn axis_corner(scene: &Scene) -> Vector {
     let Bounds { low, high } = scene.bounds;
     let start = scene.motion.pose_at(0.0).position;
     let nearer = |value: f64, low: f64, high: f64| {
-        if value - low < high - value { low } else { high }
+        if value - low < high - value {
+            low
+        } else {
+            high
+        }
     };
-    Vector::new(nearer(start.x, low.x, high.x), nearer(start.y, low.y, high.y))
+    Vector::new(
+        nearer(start.x, low.x, high.x),
+        nearer(start.y, low.y, high.y),
+    )
 }
 
 /// The translucent body, its edges and its last section.
@@ -121,11 +136,14 @@ fn log_body(
     let color = style::target(index);
     let body = mesh(scene, set).with_albedo_factor(style::translucent(color, alpha).0);
     let vertices = moving_vertices(set);
-    let strength = f32::from(alpha) / 100.0;
+    let strength = 0.3 + f32::from(alpha) / 100.0;
     let faint = style::toward_background(color, strength);
     let mut lines = Lines::default();
     for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * scene.end) {
-        let mut ring: Vec<_> = vertices.iter().map(|v| scene.lifted(v.at(time), time)).collect();
+        let mut ring: Vec<_> = vertices
+            .iter()
+            .map(|v| scene.lifted(v.at(time), time))
+            .collect();
         ring.extend(ring.first().copied());
         lines.add(ring, faint, 0.6);
     }
@@ -185,7 +203,10 @@ fn log_now(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         .with_radii([style::points(0.6)]);
     let entity = path(&[VOLUME, "now"]);
     rec.log_static(entity.clone(), &frame)?;
-    let heights = scene.moments.iter().map(|&t| scene.lifted(Vector::zeros(), t));
+    let heights = scene
+        .moments
+        .iter()
+        .map(|&t| scene.lifted(Vector::zeros(), t));
     rec.send_columns(
         entity,
         [scene.moment_column()],
@@ -195,8 +216,7 @@ fn log_now(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     )?;
 
     let targets = &scene.run.scenario.targets;
-    let colors = std::iter::once(style::own_ship())
-        .chain((0..targets.len()).map(style::target));
+    let colors = std::iter::once(style::own_ship()).chain((0..targets.len()).map(style::target));
     let names = std::iter::once("Own ship").chain(targets.iter().map(|t| t.name.as_str()));
     let entity = path(&[VOLUME, "ships"]);
     let look = Points3D::update_fields()
@@ -208,7 +228,11 @@ fn log_now(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let mut places = Vec::new();
     for &time in &scene.moments {
         places.push(scene.lifted(scene.motion.pose_at(time).position, time));
-        places.extend(targets.iter().map(|t| scene.lifted(t.position_at(time), time)));
+        places.extend(
+            targets
+                .iter()
+                .map(|t| scene.lifted(t.position_at(time), time)),
+        );
     }
     let lengths = vec![1 + targets.len(); scene.moments.len()];
     rec.send_columns(

@@ -77,7 +77,13 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
         )),
         None => said.push("keeps her course".to_owned()),
     }
-    let speeds = || trajectory.segments().iter().filter(|s| s.duration > 0.0).map(|s| s.speed);
+    let speeds = || {
+        trajectory
+            .segments()
+            .iter()
+            .filter(|s| s.duration > 0.0)
+            .map(|s| s.speed)
+    };
     let slowest = speeds().fold(f64::INFINITY, f64::min);
     let fastest = speeds().fold(0.0, f64::max);
     said.push(if slowest < fastest {
@@ -127,9 +133,11 @@ fn reason(outcome: &Outcome) -> String {
         Outcome::Infeasible(why) => format!(
             "**{why}.** The pictures and curves show own ship as if she followed the desired trajectory."
         ),
-        Outcome::Deadline(None) => "**The deadline passed before a plan was found.** The pictures and \
+        Outcome::Deadline(None) => {
+            "**The deadline passed before a plan was found.** The pictures and \
             curves show own ship as if she followed the desired trajectory."
-            .to_owned(),
+                .to_owned()
+        }
         Outcome::Solved(_) | Outcome::Deadline(Some(_)) => String::new(),
     }
 }
@@ -199,7 +207,9 @@ fn targets_table(scene: &Scene) -> String {
 }
 
 fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
-    let graph = plan.graph_cost.map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
+    let graph = plan
+        .graph_cost
+        .map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
     format!(
         "| J, space-time error | graph alone | over arc length | delay | duration | length | worst-case clearance |\n\
          |---|---|---|---|---|---|---|\n\
@@ -216,7 +226,10 @@ fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
 fn search(scene: &Scene, drawn: Drawn) -> String {
     let stats = scene.run.planned.stats;
     let graph = if drawn.edges < drawn.tested {
-        format!("{} of {} tested edges are in the recording", drawn.edges, drawn.tested)
+        format!(
+            "{} of {} tested edges are in the recording",
+            drawn.edges, drawn.tested
+        )
     } else {
         format!("all {} tested edges are in the recording", drawn.tested)
     };
@@ -236,15 +249,15 @@ fn claim(scene: &Scene) -> String {
     if !judged {
         return "Nothing is claimed.".to_owned();
     }
-    let kept = match run.scenario.compliance {
-        Compliance::Shape => "the shaped sets, which hold the hard sets and the rules' side",
-        Compliance::None => "the hard sets",
+    let sets = match run.scenario.compliance {
+        Compliance::Shape => "shaped and hard sets",
+        Compliance::None => "hard sets",
     };
     format!(
-        "Claimed: until arrival at {:.0} s own ship stays out of {kept}. So {:.0} m are kept between the \
-         hulls wherever a target starts in its initial set and whatever velocities of its velocity set \
-         it takes, changing ones included. Nothing is claimed after arrival, nor for a target that \
-         leaves its sets.",
+        "**Claimed** until arrival at {:.0} s: own ship's centre stays out of all {sets}, so at least \
+         {:.0} m remain between the hulls, wherever in its initial set a target starts and however its \
+         velocity varies within its velocity set. **Not claimed:** anything after arrival, or of a target \
+         that leaves its sets.",
         trajectory.end_time(),
         run.scenario.own_ship.safety_margin
     )

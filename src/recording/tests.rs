@@ -58,7 +58,10 @@ fn sets(own: &OwnShip, target: &Target) -> TargetSets {
     let Some(ship) = target.ship() else {
         panic!("a ship")
     };
-    let keep = outer_disc(own.hull.half_diagonal() + own.safety_margin, ship.pose.heading);
+    let keep = outer_disc(
+        own.hull.half_diagonal() + own.safety_margin,
+        ship.pose.heading,
+    );
     let hard = ship.hull.polygon(&ship.pose).minkowski_sum(&keep);
     let sweep = ConvexPolygon::hull(&[
         Vector::zeros(),
@@ -230,11 +233,12 @@ fn read(path: &Path) -> BTreeMap<String, (u64, Vec<String>)> {
     let mut entities = BTreeMap::new();
     for (_, store) in stores.iter().filter(|(id, _)| id.is_recording()) {
         for chunk in store.iter_physical_chunks() {
-            let entry: &mut (u64, Vec<String>) = entities
-                .entry(chunk.entity_path().to_string())
-                .or_default();
+            let entry: &mut (u64, Vec<String>) =
+                entities.entry(chunk.entity_path().to_string()).or_default();
             entry.0 += chunk.num_rows() as u64;
-            entry.1.extend(chunk.timelines().keys().map(ToString::to_string));
+            entry
+                .1
+                .extend(chunk.timelines().keys().map(ToString::to_string));
         }
     }
     entities
@@ -268,10 +272,16 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
         "/curves/speed_kn/own_ship".to_owned(),
         "/curves/course_deg/own_ship".to_owned(),
     ] {
-        assert!(entities.contains_key(&expected), "{expected} in {entities:#?}");
+        assert!(
+            entities.contains_key(&expected),
+            "{expected} in {entities:#?}"
+        );
     }
     for (entity, (_, timelines)) in &entities {
-        assert!(timelines.iter().all(|t| t == TIMELINE), "{entity} {timelines:?}");
+        assert!(
+            timelines.iter().all(|t| t == TIMELINE),
+            "{entity} {timelines:?}"
+        );
     }
     let size = std::fs::metadata(&path).expect("exists").len();
     assert!(size < 300_000, "{size} bytes");
