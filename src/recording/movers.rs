@@ -115,7 +115,7 @@ fn log_own_ship(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
     let name = if scene.motion.is_planned() {
         "Own ship"
     } else {
-        "Own ship, had she no plan"
+        "Own ship (no plan)"
     };
     rec.log_static(path(&[MAP, "own_ship", "name"]), &label(scene, color, name))?;
     let poses: Vec<Pose> = scene
