@@ -15,8 +15,8 @@ use rerun::external::re_sdk_types::blueprint::components::{
 };
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
-use super::chart::legend_height;
-use super::curves::{CLEARANCE, COURSE, MARGIN, SPEED};
+use super::chart::{knots, legend_height};
+use super::curves::{CLEARANCE, COURSE, MARGIN, SPEED, clearances, courses, margins};
 use super::scene::Scene;
 use super::{APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VOLUME, style};
 use crate::frame::{Vector, direction, to_starboard};
@@ -129,11 +129,11 @@ fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
     } else {
         direction(scene.motion.pose_at(0.0).heading)
     };
-    let side: Vector = to_starboard(ahead) * 1.25 - ahead * 0.55;
+    let side: Vector = to_starboard(ahead) * 1.0 - ahead * 0.35;
     let eye = [
         middle[0] + (side.x * size) as f32,
         middle[1] + (side.y * size) as f32,
-        middle[2] + (0.62 * size) as f32,
+        middle[2] + (0.36 * size) as f32,
     ];
     with(
         Spatial3DView::new("Space-time: time upward").with_origin(VOLUME),
@@ -158,22 +158,34 @@ fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
 }
 
 fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4] {
-    let nearest = scene
-        .run
-        .evaluation
-        .as_ref()
-        .map_or(0.0, |e| e.min_clearance.clamp(0.0, 1e6));
     let margin = scene.run.scenario.own_ship.safety_margin;
-    let reach = (3.0 * nearest).max(10.0 * margin).max(100.0);
+    let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
+    let targets = &scene.run.scenario.targets;
+    let clearance = targets.iter().map(|t| least(clearances(scene, t)));
+    let clearance = clearance.fold(0.0, f64::max);
+    let sets: Vec<_> = scene.run.sets.iter().map(|s| &s.hard).collect();
     let views = [
-        ("Clearance between hulls (m)", CLEARANCE, Some(reach)),
-        ("Margin to the sets (m)", MARGIN, Some(reach)),
-        ("Speed (kn)", SPEED, None),
-        ("Course (deg)", COURSE, None),
+        (
+            "Clearance between hulls (m)",
+            CLEARANCE,
+            near_zero(clearance, margin),
+        ),
+        (
+            "Margin to the sets (m)",
+            MARGIN,
+            near_zero(least(margins(scene, &sets)), margin),
+        ),
+        (
+            "Speed (kn)",
+            SPEED,
+            [0.0, 1.4 * knots(scene.run.scenario.own_ship.max_speed())],
+        ),
+        ("Course (deg)", COURSE, course_range(scene)),
     ];
-    views.map(|(name, origin, reach)| {
+    views.map(|(name, origin, range)| {
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
         let times = TimeAxis::new().with_view_range(whole_time(scene));
+<<<<<<< HEAD
         let mut added: Vec<(&str, Box<dyn AsComponents>)> = vec![
             ("PlotLegend", Box::new(legend)),
             ("TimeAxis", Box::new(times)),
@@ -182,12 +194,35 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4]
             let range = rerun::datatypes::Range1D([-0.1 * reach, reach]);
             added.push(("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))));
         }
+=======
+        let range = rerun::datatypes::Range1D(range);
+>>>>>>> recording
         with(
             TimeSeriesView::new(name).with_origin(origin),
             properties,
-            added,
+            vec![
+                ("PlotLegend", Box::new(legend)),
+                ("TimeAxis", Box::new(times)),
+                ("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))),
+            ],
         )
     })
+}
+
+/// The interesting part of a distance that falls to `least`, where `margin` is asked for; metres.
+fn near_zero(least: f64, margin: f64) -> [f64; 2] {
+    let least = if least.is_finite() { least } else { 0.0 };
+    let top = (3.0 * least.abs()).max(8.0 * margin).max(50.0);
+    [least.min(0.0) - 0.1 * top, top]
+}
+
+/// Degrees: all courses of the run, and air above them for the legend.
+fn course_range(scene: &Scene) -> [f64; 2] {
+    let courses = courses(scene);
+    let low = courses.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = courses.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let air = (0.15 * (high - low)).max(10.0);
+    [low - air, high + 3.0 * air]
 }
 
 /// The API has no setters for most properties of views: they are logged into the blueprint's own

@@ -124,9 +124,9 @@ fn log_legend(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
         }
     }
     entries.push((
-        format!("{:.0} m", grid_spacing(scene)),
+        format!("grid {:.0} m", grid_spacing(scene)),
         style::chart_text(),
-        style::points(1.0),
+        style::points(0.5),
     ));
     let bounds = scene.bounds;
     let width = bounds.size().x / entries.len() as f64;

@@ -1,9 +1,10 @@
 //! Curves over time: clearance, margin, speed, course.
 
+use rerun::components::InterpolationMode;
 use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
 use super::chart::knots;
-use super::scene::{Scene, desired_leg};
+use super::scene::{Motion, Scene, desired_leg};
 use super::{TIMELINE, path, style};
 use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, wrap};
 use crate::obstacle::PolytopeObstacle;
@@ -129,46 +130,49 @@ pub fn margins(scene: &Scene, sets: &[&PolytopeObstacle]) -> Vec<f64> {
     scene.samples.iter().map(at).collect()
 }
 
+/// Speeds are steps: one sample where each begins, and one at the end.
 fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let desired = &scene.run.scenario.desired;
-    let times = step_times(desired.legs().iter().map(|l| (l.start_time, l.end_time())));
-    let values = times
+    let mut steps: Vec<_> = desired
+        .legs()
         .iter()
-        .map(|&(_, inside)| knots(desired_leg(desired, inside).speed))
+        .map(|l| (l.start_time, l.speed))
         .collect();
-    let times: Vec<f64> = times.into_iter().map(|(t, _)| t).collect();
+    steps.extend(desired.legs().last().map(|l| (l.end_time(), l.speed)));
     let look = ("desired", style::desired(), 1.0);
-    log_curve(rec, path(&[SPEED, "desired"]), look, &times, values)?;
-    let super::scene::Motion::Planned(trajectory) = scene.motion else {
+    log_steps(rec, path(&[SPEED, "desired"]), look, &steps)?;
+    let Motion::Planned(trajectory) = scene.motion else {
         return Ok(());
     };
-    let spans = trajectory.segments().iter().filter(|s| s.duration > 0.0);
-    let times = step_times(spans.map(|s| (s.start_time, s.end_time())));
-    let values = times
-        .iter()
-        .map(|&(_, inside)| knots(trajectory.segment_at(inside).speed))
-        .collect();
-    let times: Vec<f64> = times.into_iter().map(|(t, _)| t).collect();
+    let moving = trajectory.segments().iter().filter(|s| s.duration > 0.0);
+    let mut steps: Vec<_> = moving.map(|s| (s.start_time, s.speed)).collect();
+    let last = steps.last().copied();
+    steps.extend(last.map(|(_, speed)| (trajectory.end_time(), speed)));
     let look = ("own ship", style::own_ship(), 2.0);
-    log_curve(rec, path(&[SPEED, "own_ship"]), look, &times, values)
+    log_steps(rec, path(&[SPEED, "own_ship"]), look, &steps)
 }
 
-/// Both ends of every span, each with a time inside the span: a step function drawn with lines. The
-/// second of two equal times is a nanosecond later, the resolution of a recording.
-fn step_times(spans: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
-    spans
-        .flat_map(|(start, end)| {
-            let inside = (start + end) / 2.0;
-            [(start + 1e-9, inside), (end, inside)]
-        })
-        .collect()
+/// Steps of `(time, m/s)`.
+fn log_steps(
+    rec: &RecordingStream,
+    entity: rerun::EntityPath,
+    look: Look,
+    steps: &[(f64, f64)],
+) -> RecordingStreamResult<()> {
+    let held = SeriesLines::update_fields().with_interpolation_mode(InterpolationMode::StepAfter);
+    rec.log_static(entity.clone(), &held)?;
+    let times: Vec<f64> = steps.iter().map(|s| s.0).collect();
+    let speeds = steps.iter().map(|s| knots(s.1)).collect();
+    log_curve(rec, entity, look, &times, speeds)
 }
 
 fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let desired = &scene.run.scenario.desired;
-    let wanted = |t: f64| heading_of(desired_leg(desired, t).direction);
-    let start = course_deg_from_heading(scene.motion.pose_at(0.0).heading);
-    let values = continuous_courses(start, scene.samples.iter().map(|&t| wanted(t)));
+    let wanted = scene
+        .samples
+        .iter()
+        .map(|&t| heading_of(desired_leg(desired, t).direction));
+    let values = continuous_courses(start_course(scene), wanted);
     let look = ("desired", style::desired(), 1.0);
     log_curve(
         rec,
@@ -180,19 +184,40 @@ fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
     if !scene.motion.is_planned() {
         return Ok(());
     }
+<<<<<<< HEAD
     let headings = scene
         .samples
         .iter()
         .map(|&t| scene.motion.pose_at(t).heading);
     let values = continuous_courses(start, headings);
+=======
+>>>>>>> recording
     let look = ("own ship", style::own_ship(), 2.0);
     log_curve(
         rec,
         path(&[COURSE, "own_ship"]),
         look,
         &scene.samples,
+<<<<<<< HEAD
         values,
     )
+=======
+        courses(scene),
+    )
+}
+
+/// Own ship's course at every sample, degrees, continuous.
+pub fn courses(scene: &Scene) -> Vec<f64> {
+    let headings = scene
+        .samples
+        .iter()
+        .map(|&t| scene.motion.pose_at(t).heading);
+    continuous_courses(start_course(scene), headings)
+}
+
+fn start_course(scene: &Scene) -> f64 {
+    course_deg_from_heading(scene.motion.pose_at(0.0).heading)
+>>>>>>> recording
 }
 
 /// Courses in degrees without jumps at north, the first one within half a circle of `near`.

@@ -115,7 +115,7 @@ fn log_own_ship(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
     let name = if scene.motion.is_planned() {
         "Own ship"
     } else {
-        "Own ship, had she no plan"
+        "Own ship (no plan)"
     };
     rec.log_static(path(&[MAP, "own_ship", "name"]), &label(scene, color, name))?;
     let poses: Vec<Pose> = scene
@@ -221,7 +221,7 @@ pub fn vector_seconds(scene: &Scene) -> f64 {
 fn mark(color: Color) -> Points2D {
     Points2D::new([[0.0, 0.0]])
         .with_colors([color])
-        .with_radii([style::points(4.0)])
+        .with_radii([style::points(3.0)])
 }
 
 /// A name north of the ship: the time marks have theirs south of the track.

@@ -138,7 +138,7 @@ impl<'a> Scene<'a> {
             moments,
             samples,
             bounds,
-            metres_per_second: round_down(0.7 * bounds.extent() / end),
+            metres_per_second: one_digit(0.65 * bounds.extent() / end),
         }
     }
 
@@ -171,6 +171,12 @@ pub fn round_down(value: f64) -> f64 {
         1.0
     };
     rounded * power
+}
+
+/// `value` with one digit.
+fn one_digit(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    (value / power).round() * power
 }
 
 /// 0, every `step`, and `end`.

@@ -13,9 +13,9 @@ use crate::frame::Vector;
 use crate::obstacle::PolytopeObstacle;
 
 /// Of the sides of a shaped body.
-const SHAPED_ALPHA: u8 = 26;
+const SHAPED_ALPHA: u8 = 16;
 /// Of the sides of a hard body.
-const HARD_ALPHA: u8 = 60;
+const HARD_ALPHA: u8 = 36;
 
 /// Lines in space-time, each with its look.
 #[derive(Debug, Default)]
@@ -82,7 +82,7 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     lines.add(axis_line.to_vec(), text, 1.0);
     let mut places = Vec::new();
     let mut labels = Vec::new();
-    for time in multiples(0.0, scene.end, mark_step(scene)) {
+    for time in multiples(0.0, scene.end, 2.0 * mark_step(scene)) {
         places.push(scene.lifted(axis, time));
         labels.push(if time == 0.0 {
             "t = 0 s".to_owned()
@@ -92,8 +92,8 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     }
     let middle = scene.bounds.center();
     for (place, name) in [
-        (Vector::new(high.x, middle.y), "east"),
-        (Vector::new(middle.x, high.y), "north"),
+        (Vector::new(high.x, middle.y), "E"),
+        (Vector::new(middle.x, high.y), "N"),
     ] {
         places.push(scene.lifted(place, 0.0));
         labels.push(name.to_owned());
@@ -136,7 +136,7 @@ fn log_body(
     let color = style::target(index);
     let body = mesh(scene, set).with_albedo_factor(style::translucent(color, alpha).0);
     let vertices = moving_vertices(set);
-    let strength = f32::from(alpha) / 100.0;
+    let strength = 0.3 + f32::from(alpha) / 100.0;
     let faint = style::toward_background(color, strength);
     let mut lines = Lines::default();
     for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * scene.end) {

@@ -111,27 +111,41 @@ struct Turn {
     time: f64,
 }
 
+/// Radians. A smaller turn is no alteration of course.
+const LEAST_TURN: f64 = 0.01;
+
 /// Turning segments to one side, one after another, are one alteration.
 fn first_turn(trajectory: &Trajectory) -> Option<Turn> {
-    let mut moving = trajectory.segments().iter().filter(|s| s.length() > 0.0);
-    let first = moving.find(|s| Side::of_turn(s.turn_rate).is_some())?;
-    let side = Side::of_turn(first.turn_rate)?;
-    let angle = |s: &crate::trajectory::Segment| (s.turn_rate * s.duration).abs();
-    let more: f64 = moving
-        .take_while(|s| Side::of_turn(s.turn_rate) == Some(side))
-        .map(angle)
-        .sum();
-    Some(Turn {
-        side,
-        angle: angle(first) + more,
-        time: first.start_time,
-    })
+    let mut turn: Option<Turn> = None;
+    for segment in trajectory.segments().iter().filter(|s| s.duration > 0.0) {
+        let side = Side::of_turn(segment.turn_rate);
+        let over = turn.as_ref().is_some_and(|t| Some(t.side) != side);
+        if over && turn.as_ref().is_some_and(|t| t.angle >= LEAST_TURN) {
+            return turn;
+        }
+        let Some(side) = side else {
+            turn = None;
+            continue;
+        };
+        let angle = (segment.turn_rate * segment.duration).abs();
+        match &mut turn {
+            Some(begun) if begun.side == side => begun.angle += angle,
+            _ => {
+                turn = Some(Turn {
+                    side,
+                    angle,
+                    time: segment.start_time,
+                });
+            }
+        }
+    }
+    turn.filter(|t| t.angle >= LEAST_TURN)
 }
 
 fn reason(outcome: &Outcome) -> String {
     match outcome {
         Outcome::Infeasible(why) => format!(
-            "**{why}.** The pictures and curves show own ship as if she followed the desired trajectory."
+            "**Why: {why}.** The pictures and curves show own ship as if she followed the desired trajectory."
         ),
         Outcome::Deadline(None) => {
             "**The deadline passed before a plan was found.** The pictures and \
@@ -249,15 +263,15 @@ fn claim(scene: &Scene) -> String {
     if !judged {
         return "Nothing is claimed.".to_owned();
     }
-    let kept = match run.scenario.compliance {
-        Compliance::Shape => "the shaped sets, which hold the hard sets and the rules' side",
-        Compliance::None => "the hard sets",
+    let sets = match run.scenario.compliance {
+        Compliance::Shape => "shaped and hard sets",
+        Compliance::None => "hard sets",
     };
     format!(
-        "Claimed: until arrival at {:.0} s own ship stays out of {kept}. So {:.0} m are kept between the \
-         hulls wherever a target starts in its initial set and whatever velocities of its velocity set \
-         it takes, changing ones included. Nothing is claimed after arrival, nor for a target that \
-         leaves its sets.",
+        "**Claimed** until arrival at {:.0} s: own ship's centre stays out of all {sets}, so at least \
+         {:.0} m remain between the hulls, wherever in its initial set a target starts and however its \
+         velocity varies within its velocity set. **Not claimed:** anything after arrival, or of a target \
+         that leaves its sets.",
         trajectory.end_time(),
         run.scenario.own_ship.safety_margin
     )

@@ -1,229 +1,64 @@
 //! A recording is read back as a user's tools would read it.
 
 use std::collections::BTreeMap;
-use std::time::Duration;
 
 use rerun::{ChunkStore, ChunkStoreConfig};
 
 use super::*;
-use crate::colregs::{Encounter, Role};
-use crate::evaluation::{Evaluation, Passage};
-use crate::frame::{Pose, Side, Vector, direction, heading_from_course_deg};
-use crate::geometry::{ConvexPolygon, outer_disc};
-use crate::obstacle::PolytopeObstacle;
-use crate::pipeline::TargetSets;
-use crate::planner::{
-    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NoPlan, NodeKind, Outcome, Plan,
-    Planned, SearchKind, SearchStats,
-};
-use crate::scenario::{Compliance, Scenario};
-use crate::target::{DomainKind, Motion, ShipTrack, Target};
-use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
-use crate::vessel::{Hull, OwnShip};
+use crate::evaluation::Violation;
+use crate::pipeline;
+use crate::planner::{NoPlan, Outcome};
+use crate::scenario::Scenario;
 
-fn own_ship() -> OwnShip {
-    OwnShip {
-        pose: Pose::new(Vector::zeros(), heading_from_course_deg(90.0)),
-        speed: 5.0,
-        hull: Hull {
-            length: 30.0,
-            beam: 8.0,
-        },
-        turning_radius: 100.0,
-        speeds: vec![2.5, 5.0, 6.0],
-        safety_margin: 20.0,
-    }
-}
+/// A name that no entity path would take unescaped.
+const NAME: &str = "ferry / Ærø";
 
-fn target(name: &str, position: Vector, course_deg: f64) -> Target {
-    Target {
-        name: name.to_owned(),
-        motion: Motion::Ship(ShipTrack {
-            pose: Pose::new(position, heading_from_course_deg(course_deg)),
-            speed: 5.0,
-            hull: Hull {
-                length: 60.0,
-                beam: 12.0,
-            },
-            position_std: 0.0,
-            speed_spread: 0.5,
-            course_spread: 5f64.to_radians(),
-            domain: DomainKind::Colregs,
-        }),
-    }
-}
+const HEAD_ON: &str = r#"
+title = "Head-on"
+horizon_s = 400.0
+own_ship = { position = { east_m = 0.0, north_m = 0.0 }, course_deg = 90.0, speed_mps = 5.0, length_m = 30.0, beam_m = 8.0, turning_radius_m = 100.0, speeds_mps = [2.5, 5.0, 6.0], safety_margin_m = 20.0 }
+mission = { waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1500.0, north_m = 0.0 }] }
+[[targets]]
+name = "ferry / Ærø"
+position = { east_m = 1500.0, north_m = 0.0 }
+course_deg = 270.0
+speed_mps = 5.0
+length_m = 60.0
+beam_m = 12.0
+speed_spread_mps = 0.5
+course_spread_deg = 5.0
+"#;
 
-/// Hull, own half diagonal and margin; the shape swept to the target's starboard side.
-fn sets(own: &OwnShip, target: &Target) -> TargetSets {
-    let Some(ship) = target.ship() else {
-        panic!("a ship")
-    };
-    let keep = outer_disc(
-        own.hull.half_diagonal() + own.safety_margin,
-        ship.pose.heading,
-    );
-    let hard = ship.hull.polygon(&ship.pose).minkowski_sum(&keep);
-    let sweep = ConvexPolygon::hull(&[
-        Vector::zeros(),
-        crate::frame::to_starboard(ship.pose.ahead()) * 60.0 + ship.pose.ahead() * 40.0,
-    ]);
-    let shaped = hard.minkowski_sum(&sweep.expect("finite"));
-    let velocity = ship.outer_velocity_set();
-    TargetSets {
-        hard: PolytopeObstacle::new(target.name.clone(), hard, velocity.clone()),
-        shaped: PolytopeObstacle::new(target.name.clone(), shaped, velocity),
-        encounter: Encounter {
-            role: Role::HeadOn,
-            undisturbed_dcpa: -10.0,
-            undisturbed_tcpa: 145.0,
-        },
-        shape_reduced: 0.0,
-    }
-}
-
-/// A turn to starboard, a straight, back across and onto the desired line.
-fn trajectory() -> Trajectory {
-    let rate = 5.0 / 100.0;
-    let mut segments = Vec::new();
-    let mut pose = Pose::new(Vector::zeros(), 0.0);
-    let mut time = 0.0;
-    for (duration, speed, turn) in [
-        (40.0, 5.0, 0.0),
-        (10.0, 5.0, -rate),
-        (85.0, 6.0, 0.0),
-        (20.0, 5.0, rate),
-        (85.0, 6.0, 0.0),
-        (10.0, 5.0, -rate),
-        (36.0, 2.5, 0.0),
-    ] {
-        let segment = Segment {
-            start: pose,
-            start_time: time,
-            duration,
-            speed,
-            turn_rate: turn,
-        };
-        pose = segment.end();
-        time = segment.end_time();
-        segments.push(segment);
-    }
-    Trajectory::new(segments).expect("continuous")
-}
-
-fn explored() -> ExploredGraph {
-    let mut graph = ExploredGraph::new();
-    let mut node = |kind, pose, time| {
-        graph.add_node(ExploredNode {
-            kind,
-            pose,
-            time,
-            cost: 0.0,
-            expanded: true,
-        })
-    };
-    let start = Pose::new(Vector::zeros(), 0.0);
-    let root = node(NodeKind::Start, start, 0.0);
-    let leaves: Vec<_> = (0..12)
-        .map(|i| node(NodeKind::End, start, f64::from(i)))
-        .collect();
-    for (i, leaf) in leaves.into_iter().enumerate() {
-        let turn = Segment {
-            start,
-            start_time: 0.0,
-            duration: 2.0 * i as f64,
-            speed: 5.0,
-            turn_rate: if i % 2 == 0 { 0.05 } else { -0.05 },
-        };
-        let line = Segment {
-            start: turn.end(),
-            start_time: turn.end_time(),
-            duration: 100.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        };
-        let verdict = match i % 3 {
-            0 => EdgeVerdict::Free,
-            1 => EdgeVerdict::Blocked {
-                obstacle: 0,
-                time: 50.0,
-            },
-            _ => EdgeVerdict::Untested,
-        };
-        graph.add_edge(
-            root,
-            leaf,
-            ExploredEdge {
-                segments: vec![turn, line],
-                cost: 1.0,
-                verdict,
-            },
-        );
-    }
-    graph
+fn scenario() -> Scenario {
+    Scenario::parse(HEAD_ON).expect("a valid scenario")
 }
 
 fn run() -> Run {
-    let own = own_ship();
-    let waypoints = [Vector::zeros(), Vector::new(1500.0, 0.0)];
-    let targets = vec![target("ferry / Ærø", Vector::new(1500.0, 0.0), 270.0)];
-    let sets: Vec<TargetSets> = targets.iter().map(|t| sets(&own, t)).collect();
-    let passage = Passage {
-        dcpa: 190.0,
-        tcpa: 142.0,
-        passing_side: Side::Port,
-        min_clearance: 61.0,
-        min_margin: 0.4,
-        min_margin_time: 120.0,
-    };
-    Run {
-        obstacles: sets.iter().map(|s| s.shaped.clone()).collect(),
-        sets,
-        planned: Planned {
-            outcome: Outcome::Solved(Plan {
-                trajectory: trajectory(),
-                cost: 1234.5,
-                graph_cost: Some(1300.0),
-            }),
-            stats: SearchStats {
-                expanded: 5,
-                generated: 12,
-                edges_checked: 8,
-            },
-            explored: explored(),
-        },
-        relaxations: Vec::new(),
-        evaluation: Some(Evaluation {
-            violations: Vec::new(),
-            space_time_error: 1234.5,
-            arc_length_error: 1200.0,
-            duration: 286.0,
-            length: 1510.0,
-            delay: -14.0,
-            min_clearance: 61.0,
-            passages: vec![passage],
-        }),
-        plan_time: Duration::from_millis(2),
-        scenario: Scenario {
-            title: "Head-on".to_owned(),
-            horizon: 400.0,
-            own_ship: own,
-            desired: DesiredTrajectory::new(&waypoints, &[5.0]).expect("valid"),
-            targets,
-            search: SearchKind::AStar,
-            compliance: Compliance::Shape,
-            time_weight: 25.0,
-            deadline: 5.0,
-        },
-    }
+    let run = pipeline::run(scenario());
+    assert!(run.planned.outcome.plan().is_some());
+    run
 }
 
 fn run_without_plan() -> Run {
     let mut run = run();
     run.planned.outcome = Outcome::Infeasible(NoPlan::NoCandidate {
-        closest: "ferry blocks the desired trajectory at 120.0 s".to_owned(),
+        target: NAME.to_owned(),
+        time: 120.0,
     });
     run.evaluation = None;
     run
+}
+
+/// Every kind of target and plan that a recording may meet: two targets, one of them explicit sets.
+fn run_with_sets() -> Run {
+    let sets = r#"
+[[targets]]
+name = "drifting"
+initial_set = { vertices_m = [[700.0, 300.0], [700.0, 340.0], [760.0, 340.0], [760.0, 300.0]] }
+velocity_set = { vertices_mps = [[0.0, 0.1], [0.2, -0.1], [-0.2, -0.1]] }
+"#;
+    let text = format!("{HEAD_ON}{sets}");
+    pipeline::run(Scenario::parse(&text).expect("a valid scenario"))
 }
 
 /// Rows and timelines of every entity of the recording's own store.
@@ -250,7 +85,7 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
     let path = folder.path().join("new/deep/head-on.rrd");
     write(&run(), &path).expect("writes");
     let entities = read(&path);
-    let name = r"ferry\ \/\ Ærø";
+    let name = EntityPathPart::new(NAME).escaped_string();
     for expected in [
         "/summary".to_owned(),
         "/chart/map".to_owned(),
@@ -283,8 +118,6 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
             "{entity} {timelines:?}"
         );
     }
-    let size = std::fs::metadata(&path).expect("exists").len();
-    assert!(size < 300_000, "{size} bytes");
 }
 
 #[test]
@@ -318,17 +151,36 @@ fn a_failed_write_leaves_nothing_and_names_the_file() {
     assert_eq!(left.len(), 1, "{left:?}");
 }
 
-/// `SEAROOM_LOOK=folder cargo test look -- --ignored` leaves the recordings there to be looked at.
 #[test]
-#[ignore = "writes files to be looked at"]
-fn look() {
-    let folder = std::env::var_os("SEAROOM_LOOK").map(PathBuf::from);
-    let folder = folder.expect("SEAROOM_LOOK names a folder");
-    for (name, run) in [("plan", run()), ("no-plan", run_without_plan())] {
-        let path = folder.join(format!("{name}.rrd"));
-        let start = std::time::Instant::now();
-        write(&run, &path).expect("writes");
-        eprintln!("{name}: {:?}", start.elapsed());
+fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("sets.rrd");
+    let mut run = run_with_sets();
+    if let Some(evaluation) = &mut run.evaluation {
+        evaluation.violations.push(Violation {
+            what: "set of 'drifting': 1.2 m deep, 0 m allowed".to_owned(),
+            time: 100.0,
+        });
     }
-    let _ = direction(0.0);
+    write(&run, &path).expect("writes");
+    let entities = read(&path);
+    assert!(entities.contains_key("/chart/map/hard_sets/drifting"));
+    assert!(!entities.contains_key("/chart/map/shaped_sets/drifting"));
+    assert!(entities.contains_key("/curves/clearance_m/drifting"));
+    assert!(entities.contains_key("/chart/map/violations"));
+}
+
+#[test]
+fn every_scenario_of_the_suite_stays_small() {
+    let folder = tempfile::tempdir().expect("folder");
+    let suite = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/colregs");
+    let files = std::fs::read_dir(suite).expect("lists");
+    for file in files {
+        let file = file.expect("entry").path();
+        let run = pipeline::run(Scenario::read(&file).expect("valid"));
+        let path = folder.path().join("one.rrd");
+        write(&run, &path).expect("writes");
+        let size = std::fs::metadata(&path).expect("exists").len();
+        assert!(size < 300_000, "{}: {size} bytes", file.display());
+    }
 }
