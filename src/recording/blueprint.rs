@@ -185,18 +185,7 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4]
     views.map(|(name, origin, range)| {
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
         let times = TimeAxis::new().with_view_range(whole_time(scene));
-<<<<<<< HEAD
-        let mut added: Vec<(&str, Box<dyn AsComponents>)> = vec![
-            ("PlotLegend", Box::new(legend)),
-            ("TimeAxis", Box::new(times)),
-        ];
-        if let Some(reach) = reach {
-            let range = rerun::datatypes::Range1D([-0.1 * reach, reach]);
-            added.push(("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))));
-        }
-=======
         let range = rerun::datatypes::Range1D(range);
->>>>>>> recording
         with(
             TimeSeriesView::new(name).with_origin(origin),
             properties,

@@ -184,24 +184,12 @@ fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
     if !scene.motion.is_planned() {
         return Ok(());
     }
-<<<<<<< HEAD
-    let headings = scene
-        .samples
-        .iter()
-        .map(|&t| scene.motion.pose_at(t).heading);
-    let values = continuous_courses(start, headings);
-=======
->>>>>>> recording
     let look = ("own ship", style::own_ship(), 2.0);
     log_curve(
         rec,
         path(&[COURSE, "own_ship"]),
         look,
         &scene.samples,
-<<<<<<< HEAD
-        values,
-    )
-=======
         courses(scene),
     )
 }
@@ -217,7 +205,6 @@ pub fn courses(scene: &Scene) -> Vec<f64> {
 
 fn start_course(scene: &Scene) -> f64 {
     course_deg_from_heading(scene.motion.pose_at(0.0).heading)
->>>>>>> recording
 }
 
 /// Courses in degrees without jumps at north, the first one within half a circle of `near`.

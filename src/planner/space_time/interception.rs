@@ -75,12 +75,6 @@ impl Chase {
         let line = square.sqrt();
         let course = heading_of(to) + sigma * self.radius.atan2(line);
         let turn = wrap_positive(sigma * (course - self.pose.heading));
-        // a full circle is a rounded zero: the point is dead ahead
-        let turn = if std::f64::consts::TAU - turn < 1e-9 {
-            0.0
-        } else {
-            turn
-        };
         Some((turn, line))
     }
 

@@ -534,12 +534,15 @@ mod tests {
             hazards: &hazards,
         };
         let canonical = Canonical {
-            lead: 40.0,
-            run: 20.0,
             turn: 0.7,
-            out: 30.0,
-            along: 90.0,
+            lead: 0.9,
+            reach: 1.0,
             slow: false,
+        };
+        let conflict = Conflict {
+            from: 140.0,
+            to: 180.0,
+            offsets: [80.0, 90.0],
         };
         for (side, goal) in [
             (Side::Starboard, false),
@@ -547,7 +550,7 @@ mod tests {
             (Side::Port, true),
         ] {
             let mut seed = canonical
-                .seed(&problem, &route, side, 140.0, 0)
+                .seed(&problem, &route, side, &conflict, 0)
                 .expect("a seed");
             if goal {
                 seed.template.ending = Ending::Goal { side, speed: 6.0 };

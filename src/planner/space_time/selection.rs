@@ -162,6 +162,20 @@ impl<'a> Selection<'a> {
         if std::env::var("DEV").is_ok() {
             for r in &running {
                 eprintln!("{}", r.debug());
+                if let Some(b) = r.best() {
+                    eprintln!(
+                        "   solved {:?} {:?}",
+                        b.model.sailed.solved,
+                        b.model
+                            .sailed
+                            .legs
+                            .iter()
+                            .rev()
+                            .take(2)
+                            .map(|l| l.segment)
+                            .collect::<Vec<_>>()
+                    );
+                }
             }
         }
         self.collect(&running);
