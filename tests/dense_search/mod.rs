@@ -85,6 +85,8 @@ struct State {
     pose: Pose,
     /// Integral of the error so far, m² s.
     cost: f64,
+    /// That, and the lower bound of what is still to come: what states of one cell are compared by.
+    total: f64,
     /// Index of the state before, and the step from there.
     before: Option<(usize, Segment)>,
 }
@@ -124,6 +126,7 @@ impl DenseSearch {
         let mut states = vec![State {
             pose: problem.own.pose,
             cost: 0.0,
+            total: 0.0,
             before: None,
         }];
         let mut layer = 0..1;
@@ -137,7 +140,7 @@ impl DenseSearch {
             let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
             for at in layer.clone() {
                 let (pose, cost) = (states[at].pose, states[at].cost);
-                if cost + bound.to_go(&pose, index) >= limit {
+                if states[at].total >= limit {
                     continue;
                 }
                 if expanded == self.max_states {
@@ -158,14 +161,16 @@ impl DenseSearch {
                     if cost + to_go >= limit {
                         continue;
                     }
+                    let cost = cost + scene.cost(&segment);
                     let state = State {
                         pose: end,
-                        cost: cost + scene.cost(&segment),
+                        cost,
+                        total: cost + to_go,
                         before: Some((at, segment)),
                     };
                     let kept = cells.entry(self.cell_of(&end, leg)).or_default();
-                    if state.cost + to_go < limit
-                        && self.wants(kept, &next, state.cost)
+                    if state.total < limit
+                        && self.wants(kept, &next, state.total)
                         && scene.is_clear(&[segment])
                     {
                         self.keep(kept, &mut next, state);
@@ -196,8 +201,8 @@ impl DenseSearch {
     }
 
     /// True while the cell has room, or a costlier state to give up.
-    fn wants(&self, kept: &[usize], next: &[State], cost: f64) -> bool {
-        kept.len() < self.per_cell || kept.iter().any(|&k| cost < next[k].cost)
+    fn wants(&self, kept: &[usize], next: &[State], total: f64) -> bool {
+        kept.len() < self.per_cell || kept.iter().any(|&k| total < next[k].total)
     }
 
     /// Adds the state to the next layer, in place of its cell's costliest when the cell is full.
@@ -207,7 +212,7 @@ impl DenseSearch {
             next.push(state);
             return;
         }
-        let costs = |&a: &usize, &b: &usize| next[a].cost.total_cmp(&next[b].cost);
+        let costs = |&a: &usize, &b: &usize| next[a].total.total_cmp(&next[b].total);
         if let Some(costliest) = kept.iter().copied().max_by(costs) {
             next[costliest] = state;
         }

@@ -1,0 +1,453 @@
+//! Holds the borders of the house: who may import whom, and what is named in one place only.
+//!
+//! Reads the sources as token trees, so comments, strings and formatting do not count. Unit tests inside a
+//! file (`#[cfg(test)] mod …`) may use anything, but count for the file's length.
+
+use std::path::{Path, PathBuf};
+
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+
+/// What a room may use of the crate; itself is always allowed. House, section 2.
+const MAY_USE: &[(&str, &[&str])] = &[
+    ("frame", &[]),
+    ("tolerance", &[]),
+    ("search", &[]),
+    // vectors and their products live in `frame`, which knows neither ship nor time
+    ("geometry", &["tolerance", "frame"]),
+    ("trajectory", &["frame", "tolerance", "geometry"]),
+    ("vessel", &["frame", "tolerance", "geometry", "trajectory"]),
+    ("map", &["frame", "geometry", "tolerance"]),
+    // the hull is a type of `vessel`
+    ("target", &["frame", "geometry", "tolerance", "vessel"]),
+    (
+        "colregs",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "trajectory",
+            "target",
+            "vessel",
+        ],
+    ),
+    (
+        "obstacle",
+        &[
+            "frame",
+            "geometry",
+            "tolerance",
+            "target",
+            "trajectory",
+            "map",
+        ],
+    ),
+    (
+        "planner",
+        &[
+            "obstacle",
+            "trajectory",
+            "vessel",
+            "target",
+            "search",
+            "geometry",
+            "frame",
+            "tolerance",
+            "colregs",
+        ],
+    ),
+    (
+        "evaluation",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "map",
+            "vessel",
+            "target",
+            "trajectory",
+            "colregs",
+        ],
+    ),
+    (
+        "scenario",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "trajectory",
+            "vessel",
+            "map",
+            "target",
+            "colregs",
+            "planner",
+        ],
+    ),
+    (
+        "pipeline",
+        &[
+            "frame",
+            "tolerance",
+            "search",
+            "geometry",
+            "trajectory",
+            "vessel",
+            "map",
+            "target",
+            "colregs",
+            "obstacle",
+            "planner",
+            "evaluation",
+            "scenario",
+            "simulation",
+        ],
+    ),
+    (
+        "simulation",
+        &[
+            "frame",
+            "tolerance",
+            "search",
+            "geometry",
+            "trajectory",
+            "vessel",
+            "map",
+            "target",
+            "colregs",
+            "obstacle",
+            "planner",
+            "evaluation",
+            "scenario",
+            "pipeline",
+        ],
+    ),
+    (
+        "report",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "trajectory",
+            "vessel",
+            "map",
+            "target",
+            "colregs",
+            "obstacle",
+            "planner",
+            "evaluation",
+            "scenario",
+            "pipeline",
+            "simulation",
+        ],
+    ),
+    (
+        "recording",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "trajectory",
+            "vessel",
+            "map",
+            "target",
+            "colregs",
+            "obstacle",
+            "planner",
+            "evaluation",
+            "scenario",
+            "pipeline",
+            "simulation",
+        ],
+    ),
+];
+
+/// Paths that a room may not name although it may use their room.
+const NEVER: &[(&str, &str)] = &[
+    ("scenario", "planner::cost"),
+    ("scenario", "planner::space_time"),
+    ("scenario", "planner::path_time"),
+    ("scenario", "planner::optimal_control"),
+];
+
+/// A name and the only places (path prefixes below `src/`) where it may stand.
+const ONLY_IN: &[(&str, &[&str])] = &[
+    ("rerun", &["recording/", "cli/inspect"]),
+    ("parry2d_f64", &["geometry/", "map.rs", "obstacle/index.rs"]),
+    ("clap", &["cli/", "main.rs"]),
+    ("to_degrees", &["frame.rs"]),
+    ("to_radians", &["frame.rs"]),
+    ("println", &["cli/output.rs"]),
+    ("print", &["cli/output.rs"]),
+    ("eprintln", &["cli/output.rs"]),
+    ("eprint", &["cli/output.rs"]),
+    ("dbg", &[]),
+];
+
+/// Rooms that belong to the binary: they may use everything, nobody may use them.
+const BINARY: &[&str] = &["cli", "main"];
+
+/// Lines.
+const LONGEST_FILE: usize = 500;
+
+/// Everything wrong with one file; `path` is below `src/`, with forward slashes.
+fn faults(path: &str, text: &str) -> Vec<String> {
+    let mut faults = Vec::new();
+    let lines = text.lines().count();
+    if lines > LONGEST_FILE {
+        faults.push(format!("{path}: {lines} lines, at most {LONGEST_FILE}"));
+    }
+    let tokens: TokenStream = match text.parse() {
+        Ok(tokens) => tokens,
+        Err(error) => return vec![format!("{path}: not Rust: {error}")],
+    };
+    let module = module_of(path);
+    // a file that is nothing but unit tests
+    if module.last().is_some_and(|m| m == "tests") {
+        return faults;
+    }
+    let mut names = Vec::new();
+    let mut used = Vec::new();
+    read(tokens, &module, &mut names, &mut used);
+    for name in names {
+        let allowed = ONLY_IN.iter().find(|(n, _)| *n == name);
+        if let Some((_, places)) = allowed
+            && !places.iter().any(|place| path.starts_with(place))
+        {
+            faults.push(format!("{path}: names {name}, allowed only in {places:?}"));
+        }
+    }
+    // the library's root names every room, to declare them
+    let Some(room) = module.first().filter(|m| !BINARY.contains(&m.as_str())) else {
+        return faults;
+    };
+    let Some((_, may_use)) = MAY_USE.iter().find(|(r, _)| r == room) else {
+        faults.push(format!("{path}: room {room} is not in the table"));
+        return faults;
+    };
+    for path_used in used {
+        let first = path_used.split("::").next().unwrap_or_default();
+        let known = MAY_USE.iter().any(|(r, _)| *r == first) || BINARY.contains(&first);
+        if known && first != room && !may_use.contains(&first) {
+            faults.push(format!("{path}: {room} may not use {path_used}"));
+        }
+        for (_, never) in NEVER.iter().filter(|(r, _)| r == room) {
+            if path_used == *never || path_used.starts_with(&format!("{never}::")) {
+                faults.push(format!("{path}: {room} may not use {path_used}"));
+            }
+        }
+    }
+    faults
+}
+
+fn module_of(path: &str) -> Vec<String> {
+    let stem = path.strip_suffix(".rs").unwrap_or(path);
+    let mut module: Vec<String> = stem.split('/').map(str::to_owned).collect();
+    if module.last().is_some_and(|m| m == "mod" || m == "lib") {
+        module.pop();
+    }
+    module
+}
+
+/// Collects every identifier that is a path of its own or heads one, and every path below the crate.
+fn read(tokens: TokenStream, module: &[String], names: &mut Vec<String>, used: &mut Vec<String>) {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let mut i = 0;
+    while i < tokens.len() {
+        if let Some(after) = skip_unit_tests(&tokens, i) {
+            i = after;
+            continue;
+        }
+        match &tokens[i] {
+            TokenTree::Group(group) => read(group.stream(), module, names, used),
+            TokenTree::Ident(ident) => {
+                let name = ident.to_string();
+                let macro_only = ["println", "print", "eprintln", "eprint", "dbg"];
+                if !macro_only.contains(&name.as_str()) || is_punct(tokens.get(i + 1), '!') {
+                    names.push(name.clone());
+                }
+                let headed = i > 0 && is_punct(tokens.get(i - 1), ':');
+                if !headed && let Some((base, after)) = base(&tokens, i, module) {
+                    expand(&tokens[after..], &base, used);
+                }
+            }
+            TokenTree::Punct(_) | TokenTree::Literal(_) => {}
+        }
+        i += 1;
+    }
+}
+
+/// `crate::` or `super::super::` at `i`: the module it stands for and where the path goes on.
+fn base(tokens: &[TokenTree], i: usize, module: &[String]) -> Option<(Vec<String>, usize)> {
+    let word = |i: usize| match tokens.get(i) {
+        Some(TokenTree::Ident(ident)) => Some(ident.to_string()),
+        _ => None,
+    };
+    let colons = |i: usize| is_punct(tokens.get(i), ':') && is_punct(tokens.get(i + 1), ':');
+    match word(i)?.as_str() {
+        "crate" | "searoom" if colons(i + 1) => Some((Vec::new(), i + 3)),
+        "super" => {
+            let (mut base, mut at) = (module.to_vec(), i);
+            while word(at).is_some_and(|w| w == "super") && colons(at + 1) {
+                base.pop();
+                at += 3;
+            }
+            Some((base, at))
+        }
+        _ => None,
+    }
+}
+
+/// Adds `a::b::c` and the members of `a::{b, c::{d}}`.
+fn expand(tokens: &[TokenTree], base: &[String], used: &mut Vec<String>) {
+    match tokens.first() {
+        Some(TokenTree::Ident(ident)) => {
+            let mut path = base.to_vec();
+            path.push(ident.to_string());
+            if is_punct(tokens.get(1), ':') && is_punct(tokens.get(2), ':') {
+                expand(&tokens[3..], &path, used);
+            } else {
+                used.push(path.join("::"));
+            }
+        }
+        Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
+            let members: Vec<TokenTree> = group.stream().into_iter().collect();
+            for member in members.split(|t| is_punct(Some(t), ',')) {
+                expand(member, base, used);
+            }
+        }
+        _ => used.push(base.join("::")),
+    }
+}
+
+fn is_punct(token: Option<&TokenTree>, character: char) -> bool {
+    matches!(token, Some(TokenTree::Punct(p)) if p.as_char() == character)
+}
+
+/// Behind `#[cfg(test)] mod name { … }` or `#[cfg(test)] mod name;` when it starts at `i`.
+fn skip_unit_tests(tokens: &[TokenTree], i: usize) -> Option<usize> {
+    let TokenTree::Group(attribute) = tokens.get(i + 1)? else {
+        return None;
+    };
+    let is_test = is_punct(tokens.get(i), '#')
+        && attribute.stream().to_string().replace(' ', "") == "cfg(test)";
+    let mut at = i + 2;
+    if !is_test {
+        return None;
+    }
+    // visibility and further attributes may stand between
+    while !matches!(tokens.get(at)?, TokenTree::Ident(word) if word == "mod") {
+        at += 1;
+        if at > i + 8 {
+            return None;
+        }
+    }
+    Some(at + 3)
+}
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("a readable folder")
+        .map(|entry| entry.expect("a readable entry").path())
+        .collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn the_sources_keep_the_borders() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    assert!(files.len() > 20, "{files:?}");
+    let faults: Vec<String> = files
+        .iter()
+        .flat_map(|file| {
+            let path = file.strip_prefix(&root).expect("below src");
+            let path = path.to_string_lossy().replace('\\', "/");
+            faults(&path, &std::fs::read_to_string(file).expect("text"))
+        })
+        .collect();
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+#[test]
+fn every_border_can_be_broken() {
+    for (path, text) in [
+        ("geometry/disc.rs", "use crate::vessel::Hull;"),
+        ("search/mod.rs", "fn f() -> crate::frame::Pose { todo!() }"),
+        (
+            "planner/cost.rs",
+            "use crate::{frame::Pose, evaluation::Evaluation};",
+        ),
+        (
+            "planner/space_time/graph.rs",
+            "use super::super::super::scenario::Scenario;",
+        ),
+        (
+            "evaluation/mod.rs",
+            "use crate::obstacle::contact::first_contact;",
+        ),
+        (
+            "scenario/mod.rs",
+            "use crate::planner::{SearchKind, space_time};",
+        ),
+        ("pipeline.rs", "use crate::report::table;"),
+        ("report/table.rs", "use crate::recording::Recording;"),
+        ("colregs/domain.rs", "use crate::cli::output;"),
+        ("target.rs", "use rerun::RecordingStream;"),
+        ("trajectory/mod.rs", "use parry2d_f64::math::Point;"),
+        ("report/table.rs", "#[derive(clap::ValueEnum)] enum A { B }"),
+        (
+            "scenario/check.rs",
+            "fn f(a: f64) -> f64 { a.to_radians() }",
+        ),
+        ("cli/plan.rs", "fn f() { println!(\"x\"); }"),
+        ("planner/mod.rs", "fn f() { dbg!(1); }"),
+        ("weather/mod.rs", "fn f() {}"),
+        ("frame.rs", "fn f( {"),
+    ] {
+        assert_eq!(
+            faults(path, text).len(),
+            1,
+            "{path}: {text}: {:?}",
+            faults(path, text)
+        );
+    }
+    let long = "\n".repeat(LONGEST_FILE + 1);
+    assert_eq!(faults("frame.rs", &long).len(), 1);
+}
+
+#[test]
+fn what_is_allowed_passes() {
+    for (path, text) in [
+        (
+            "geometry/disc.rs",
+            "use crate::frame::Vector; // crate::vessel, println!, rerun",
+        ),
+        (
+            "geometry/disc.rs",
+            "#[cfg(test)] mod tests { use crate::vessel::Hull; }",
+        ),
+        ("geometry/disc.rs", "#[cfg(test)] pub(crate) mod tests;"),
+        ("geometry/disc.rs", "const A: &str = \"use crate::vessel\";"),
+        (
+            "planner/space_time/graph.rs",
+            "use super::super::{Problem, cost}; use super::route;",
+        ),
+        ("scenario/mod.rs", "use crate::planner::SearchKind;"),
+        ("cli/output.rs", "fn f() { println!(\"x\"); }"),
+        (
+            "cli/plan.rs",
+            "use searoom::recording::record; use clap::Args;",
+        ),
+        ("recording/file.rs", "use rerun::external::re_log;"),
+        ("lib.rs", "pub mod cli; pub use crate::planner::Plan;"),
+    ] {
+        assert_eq!(faults(path, text), Vec::<String>::new());
+    }
+}
