@@ -148,21 +148,26 @@ impl Chase {
         None
     }
 
-    /// `F` and its derivative.
+    /// `F` and its derivative, with one arctangent: the tangent's direction is a rotation of the line to
+    /// the centre by the angle whose sine is `radius / distance`.
     fn gap(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
-        let point = origin + velocity * time;
-        let parallel = cross(self.pose.ahead(), velocity).abs() <= 1e-12 * velocity.norm();
-        let (turn, line) = if parallel {
-            self.way_to(point)?
-        } else {
-            self.unsnapped_way_to(point)?
-        };
-        let course = self.pose.heading + self.side.turn_sign() * turn;
+        let sigma = self.side.turn_sign();
+        let ahead = self.pose.ahead();
+        let to = origin + velocity * time - self.pose.position - to_port(ahead) * (sigma * self.radius);
+        let square = to.norm_squared();
+        let along = square - self.radius * self.radius;
+        if !(along >= 0.0) {
+            return None;
+        }
+        let line = along.sqrt();
+        let course = (to * line + to_port(to) * (sigma * self.radius)) / square;
+        let turn = (sigma * cross(ahead, course)).atan2(ahead.dot(&course));
+        let turn = if turn < 0.0 { turn + TAU } else { turn };
+        // parallel and dead ahead for ever: a full circle is a rounded zero
+        let dead_ahead = TAU - turn < DEAD_AHEAD_RAD && cross(ahead, velocity).abs() <= 1e-12 * velocity.norm();
+        let turn = if dead_ahead { 0.0 } else { turn };
         let value = self.speed * (time - self.time) - (self.radius * turn + line);
-        Some((
-            value,
-            self.speed - crate::frame::direction(course).dot(&velocity),
-        ))
+        Some((value, self.speed - course.dot(&velocity)))
     }
 
     /// Roots of the concave `F` on one piece, at most two, earliest first.
