@@ -7,8 +7,8 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{HalfSpace, PolytopeObstacle};
-use crate::frame::{heading_of, to_port};
-use crate::trajectory::Segment;
+use crate::frame::{Vector, heading_of, to_port};
+use crate::trajectory::{Mover, Segment};
 
 /// A time interval, seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,16 +44,112 @@ pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64)
     }
 }
 
+/// True when the segment is at least `depth` metres inside the obstacle at some time: the decision alone,
+/// several times faster than [`first_contact`] on arcs. An arc is compared with its chords, halved until
+/// they decide; what stays open at a sagitta below a hundredth of the depth or a nanometre is contact.
+pub fn meets(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64) -> bool {
+    if !(segment.is_valid() && depth.is_finite()) {
+        return true;
+    }
+    if !segment.is_arc() {
+        return segment.end_time() >= 0.0 && line_contact(obstacle, segment, depth).is_some();
+    }
+    let count = (segment.turn_rate.abs() * segment.duration / CHORD_RAD)
+        .ceil()
+        .max(1.0);
+    let duration = segment.duration / count;
+    let mover = Mover::new(segment);
+    let arc = Arc {
+        obstacle,
+        mover,
+        radius: segment.radius().abs(),
+        rate: segment.turn_rate,
+        depth,
+    };
+    let mut from = segment.start.position;
+    (0..count as usize).any(|k| {
+        let start = segment.start_time + duration * k as f64;
+        let to = mover.position_at(start + duration);
+        let met = arc.meets(from, to, start, duration);
+        from = to;
+        met
+    })
+}
+
+/// An arc and a depth, for [`meets`].
+struct Arc<'a> {
+    obstacle: &'a PolytopeObstacle,
+    mover: Mover,
+    radius: f64,
+    rate: f64,
+    depth: f64,
+}
+
+impl Arc<'_> {
+    fn meets(&self, from: Vector, to: Vector, start: f64, duration: f64) -> bool {
+        // the chord at equal times is within the sagitta of the arc
+        let sagitta = self.radius * (self.rate * duration).powi(2) / 8.0;
+        let velocity = (to - from) / duration;
+        let nearly = clip(
+            self.obstacle,
+            from,
+            velocity,
+            start,
+            duration,
+            self.depth - sagitta,
+        );
+        if nearly.is_none() {
+            return false;
+        }
+        if sagitta < (0.01 * self.depth).max(1e-9)
+            || clip(
+                self.obstacle,
+                from,
+                velocity,
+                start,
+                duration,
+                self.depth + sagitta,
+            )
+            .is_some()
+        {
+            return true;
+        }
+        let half = duration / 2.0;
+        let middle = self.mover.position_at(start + half);
+        self.meets(from, middle, start, half) || self.meets(middle, to, start + half, half)
+    }
+}
+
 /// The interval during which a straight segment (or a wait) is at least `depth` inside: Cyrus-Beck
 /// over the faces, formulas section 10 (iv). The body is convex, so there is at most one. O(n + m).
 pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> Option<Interval> {
     let velocity = line.start.ahead() * line.speed;
-    let start = line.start_time.max(0.0);
-    let origin = line.start.position - velocity * line.start_time;
+    clip(
+        obstacle,
+        line.start.position,
+        velocity,
+        line.start_time,
+        line.duration,
+        depth,
+    )
+}
+
+fn clip(
+    obstacle: &PolytopeObstacle,
+    position: Vector,
+    velocity: Vector,
+    start_time: f64,
+    duration: f64,
+    depth: f64,
+) -> Option<Interval> {
+    let origin = position - velocity * start_time;
     let mut inside = Interval {
-        start,
-        end: line.end_time(),
+        start: start_time.max(0.0),
+        end: start_time + duration,
     };
+    if inside.start > inside.end {
+        return None;
+    }
     for face in obstacle.faces() {
         let rate = face.normal.dot(&velocity) - face.velocity_support;
         let reach = face.initial_support - depth - face.normal.dot(&origin);
@@ -122,7 +218,7 @@ fn clear_of_chords(obstacle: &PolytopeObstacle, arc: &Segment, depth: f64) -> bo
 
 /// An arc as `centre + radius e(phase + rate t)`.
 struct Circle {
-    centre: crate::frame::Vector,
+    centre: Vector,
     radius: f64,
     phase: f64,
     rate: f64,
@@ -232,7 +328,7 @@ fn intersect(a: &[Interval], b: &[Interval]) -> Vec<Interval> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{Pose, Vector};
+    use crate::frame::Pose;
     use crate::geometry::ConvexPolygon;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -291,6 +387,9 @@ mod tests {
             let depth = if rng.random_bool(0.5) { 0.0 } else { 1e-3 };
             let found = first_contact(&o, &segment, depth);
             let (dense, least) = sampled(&o, &segment, depth);
+            if (least + depth).abs() > 1e-6 + 12.0 * segment.duration / 20_000.0 {
+                assert_eq!(meets(&o, &segment, depth), found.is_some(), "{segment:?}");
+            }
             let step = segment.duration / 20_000.0;
             match (found, dense) {
                 (Some(a), Some(b)) => {

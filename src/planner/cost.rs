@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::trajectory::{DesiredTrajectory, Segment};
+use crate::trajectory::{DesiredTrajectory, Mover, Nearest, Segment};
 
 /// Nodes and weights of the 4-point Gauss-Legendre rule on [0, 1].
 pub(crate) const GAUSS_4: [(f64, f64); 4] = [
@@ -10,6 +10,12 @@ pub(crate) const GAUSS_4: [(f64, f64); 4] = [
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
     (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// Two points, exact for cubics: the squared error along a line is quadratic.
+pub(crate) const GAUSS_2: [(f64, f64); 2] = [
+    (0.211_324_865_405_187_13, 0.5),
+    (0.788_675_134_594_812_9, 0.5),
 ];
 
 /// Halvings of a stretch in which the nearest leg or its end changes.
@@ -23,46 +29,68 @@ pub fn space_time_error(desired: &DesiredTrajectory, segment: &Segment, time_wei
         .ceil()
         .max(1.0);
     let duration = segment.duration / pieces;
+    let stretch = Stretch {
+        desired,
+        mover: Mover::new(segment),
+        time_weight,
+        bent: segment.is_arc(),
+    };
     let integral: f64 = (0..pieces as usize)
         .map(|k| {
-            let from = segment.start_time + duration * k as f64;
-            stretch(desired, segment, time_weight, from, duration, MAX_HALVINGS)
+            stretch.integral(
+                segment.start_time + duration * k as f64,
+                duration,
+                MAX_HALVINGS,
+            )
         })
         .sum();
     integral / desired.duration()
 }
 
-fn stretch(
-    desired: &DesiredTrajectory,
-    segment: &Segment,
-    q: f64,
-    from: f64,
-    duration: f64,
-    halvings: u32,
-) -> f64 {
-    let at = |fraction: f64| {
-        let t = from + duration * fraction;
-        desired.nearest(segment.pose_at(t).position, t, q)
-    };
-    let regime = |fraction: f64| {
-        let nearest = at(fraction);
-        let leg = &desired.legs()[nearest.leg];
+struct Stretch<'a> {
+    desired: &'a DesiredTrajectory,
+    mover: Mover,
+    time_weight: f64,
+    bent: bool,
+}
+
+impl Stretch<'_> {
+    fn at(&self, time: f64) -> Nearest {
+        self.desired
+            .nearest(self.mover.position_at(time), time, self.time_weight)
+    }
+
+    /// Which leg is nearest, and whether one of its ends is.
+    fn regime(&self, time: f64) -> (usize, bool, bool) {
+        let nearest = self.at(time);
+        let leg = &self.desired.legs()[nearest.leg];
         let along = nearest.distance - leg.start_distance;
         (nearest.leg, along > 0.0, along < leg.length)
-    };
-    let first = regime(0.0);
-    // within one leg and one clamp the error is smooth
-    let inner: &[f64] = if desired.legs().len() == 1 {
-        &[1.0]
-    } else {
-        &[1.0, 0.5, 0.25, 0.75]
-    };
-    if halvings == 0 || inner.iter().all(|f| regime(*f) == first) {
-        return duration * GAUSS_4.iter().map(|(x, w)| w * at(*x).error).sum::<f64>();
     }
-    let half = duration / 2.0;
-    stretch(desired, segment, q, from, half, halvings - 1)
-        + stretch(desired, segment, q, from + half, half, halvings - 1)
+
+    fn integral(&self, from: f64, duration: f64, halvings: u32) -> f64 {
+        let first = self.regime(from);
+        // within one leg and one clamp the error is smooth
+        let inner: &[f64] = if self.desired.legs().len() == 1 {
+            &[1.0]
+        } else {
+            &[1.0, 0.5, 0.25, 0.75]
+        };
+        if halvings == 0
+            || inner
+                .iter()
+                .all(|f| self.regime(from + duration * f) == first)
+        {
+            let nodes: &[(f64, f64)] = if self.bent { &GAUSS_4 } else { &GAUSS_2 };
+            return duration
+                * nodes
+                    .iter()
+                    .map(|(x, w)| w * self.at(from + duration * x).error)
+                    .sum::<f64>();
+        }
+        let half = duration / 2.0;
+        self.integral(from, half, halvings - 1) + self.integral(from + half, half, halvings - 1)
+    }
 }
 
 #[cfg(test)]

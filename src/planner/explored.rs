@@ -47,10 +47,9 @@ pub enum EdgeVerdict {
     Free,
     /// Meets a set.
     Blocked {
-        /// Index of the obstacle that it meets first.
+        /// Index of an obstacle that it meets: the first, in their order, that its first blocked segment
+        /// meets.
         obstacle: usize,
-        /// Seconds.
-        time: f64,
     },
     /// Never reached by the search, so never tested.
     Untested,

@@ -136,6 +136,11 @@ impl<S> Search<S> {
         &self.nodes
     }
 
+    /// Every node made, given up by the search.
+    pub fn into_nodes(self) -> Vec<Node<S>> {
+        self.nodes
+    }
+
     /// What was done so far.
     pub fn counts(&self) -> Counts {
         self.counts

@@ -5,7 +5,7 @@ mod desired;
 mod segment;
 
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
-pub use segment::Segment;
+pub use segment::{Mover, Segment};
 
 use crate::frame::{Pose, wrap};
 use crate::tolerance;

@@ -5,7 +5,7 @@
 
 use std::cell::Cell;
 
-use super::hazard::{Hazard, first_contact};
+use super::hazard::{Hazard, first_met};
 use super::heuristic::Heuristic;
 use super::interception::{Chase, Limits};
 use super::route::{Route, return_to_line};
@@ -47,7 +47,7 @@ pub(crate) struct State {
     /// How a way to the end ends; of no meaning elsewhere.
     pub ending: Ending,
     chain: u8,
-    verdict: Cell<Option<(usize, f64)>>,
+    met: Cell<Option<usize>>,
 }
 
 /// Vertices of one obstacle at which own ship may aim.
@@ -129,7 +129,7 @@ impl<'a> Graph<'a> {
             motion: Vec::new(),
             ending: Ending::Follow,
             chain: 0,
-            verdict: Cell::new(None),
+            met: Cell::new(None),
         }
     }
 
@@ -160,7 +160,7 @@ impl<'a> Graph<'a> {
                 motion,
                 ending,
                 chain,
-                verdict: Cell::new(None),
+                met: Cell::new(None),
             },
             cost,
         ));
@@ -389,10 +389,12 @@ impl<'a> Graph<'a> {
     }
 
     /// Everything that a search made, with what is known of each edge.
-    pub(crate) fn explored(search: &Search<State>) -> ExploredGraph {
-        let mut graph = ExploredGraph::with_capacity(search.nodes().len(), search.nodes().len());
-        for node in search.nodes() {
-            let state = &node.state;
+    pub(crate) fn explored(search: Search<State>) -> ExploredGraph {
+        let nodes = search.into_nodes();
+        let costs: Vec<f64> = nodes.iter().map(|n| n.cost).collect();
+        let mut graph = ExploredGraph::with_capacity(nodes.len(), nodes.len());
+        for node in nodes {
+            let state = node.state;
             let index = graph.add_node(ExploredNode {
                 kind: state.kind,
                 pose: state.pose,
@@ -401,20 +403,17 @@ impl<'a> Graph<'a> {
                 expanded: node.fate == Fate::Expanded,
             });
             let Some(parent) = node.parent else { continue };
-            let verdict = match (node.fate, state.verdict.get()) {
-                (_, Some((obstacle, time))) => EdgeVerdict::Blocked { obstacle, time },
+            let verdict = match (node.fate, state.met.get()) {
+                (_, Some(obstacle)) => EdgeVerdict::Blocked { obstacle },
                 (Fate::Queued | Fate::Rejected, None) => EdgeVerdict::Untested,
                 (Fate::Expanded | Fate::Goal, None) => EdgeVerdict::Free,
             };
-            graph.add_edge(
-                petgraph::graph::NodeIndex::new(parent),
-                index,
-                ExploredEdge {
-                    segments: state.motion.clone(),
-                    cost: node.cost - search.nodes()[parent].cost,
-                    verdict,
-                },
-            );
+            let edge = ExploredEdge {
+                segments: state.motion,
+                cost: node.cost - costs[parent],
+                verdict,
+            };
+            graph.add_edge(petgraph::graph::NodeIndex::new(parent), index, edge);
         }
         graph
     }
@@ -449,9 +448,9 @@ impl Space for Graph<'_> {
     }
 
     fn admits(&mut self, state: &State) -> bool {
-        let contact = first_contact(self.hazards, &state.motion);
-        state.verdict.set(contact);
-        contact.is_none()
+        let met = first_met(self.hazards, &state.motion);
+        state.met.set(met);
+        met.is_none()
     }
 }
 

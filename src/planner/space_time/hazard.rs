@@ -71,6 +71,15 @@ impl<'a> Hazard<'a> {
     }
 }
 
+/// The first obstacle, in their order, that the first segment to meet any meets deeper than touching.
+pub(crate) fn first_met(hazards: &[Hazard], segments: &[Segment]) -> Option<usize> {
+    segments.iter().find_map(|s| {
+        hazards
+            .iter()
+            .position(|h| h.clearance_bound(s) <= 0.0 && contact::meets(h.body, s, TOUCH_M))
+    })
+}
+
 /// The first contact of a chain of segments with any obstacle: `(obstacle, time)`; of several at one
 /// instant the first obstacle.
 pub(crate) fn first_contact(hazards: &[Hazard], segments: &[Segment]) -> Option<(usize, f64)> {

@@ -153,7 +153,8 @@ impl Chase {
     fn gap(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
         let sigma = self.side.turn_sign();
         let ahead = self.pose.ahead();
-        let to = origin + velocity * time - self.pose.position - to_port(ahead) * (sigma * self.radius);
+        let to =
+            origin + velocity * time - self.pose.position - to_port(ahead) * (sigma * self.radius);
         let square = to.norm_squared();
         let along = square - self.radius * self.radius;
         if !(along >= 0.0) {
@@ -164,7 +165,8 @@ impl Chase {
         let turn = (sigma * cross(ahead, course)).atan2(ahead.dot(&course));
         let turn = if turn < 0.0 { turn + TAU } else { turn };
         // parallel and dead ahead for ever: a full circle is a rounded zero
-        let dead_ahead = TAU - turn < DEAD_AHEAD_RAD && cross(ahead, velocity).abs() <= 1e-12 * velocity.norm();
+        let dead_ahead =
+            TAU - turn < DEAD_AHEAD_RAD && cross(ahead, velocity).abs() <= 1e-12 * velocity.norm();
         let turn = if dead_ahead { 0.0 } else { turn };
         let value = self.speed * (time - self.time) - (self.radius * turn + line);
         Some((value, self.speed - course.dot(&velocity)))

@@ -113,7 +113,9 @@ pub fn plan(problem: &Problem) -> Planned {
             break;
         }
     }
-    if std::env::var("DEVT").is_ok() { eprintln!("graph {:?} {:?}", started.elapsed(), search.counts()); }
+    if std::env::var("DEVT").is_ok() {
+        eprintln!("graph {:?} {:?}", started.elapsed(), search.counts());
+    }
     let contact = first_contact(&hazards, &undisturbed);
     if contact.is_some() {
         let mut conflicts: Vec<Conflict> = hazards
@@ -123,7 +125,9 @@ pub fn plan(problem: &Problem) -> Planned {
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, &out_of_time);
     }
-    if std::env::var("DEVT").is_ok() { eprintln!("refined {:?}", started.elapsed()); }
+    if std::env::var("DEVT").is_ok() {
+        eprintln!("refined {:?}", started.elapsed());
+    }
     let counts = search.counts();
     let stats = SearchStats {
         expanded: counts.expanded,
@@ -151,6 +155,6 @@ pub fn plan(problem: &Problem) -> Planned {
     Planned {
         outcome,
         stats,
-        explored: Graph::explored(&search),
+        explored: Graph::explored(search),
     }
 }

@@ -8,8 +8,8 @@ use super::template::{Ending, Owner, Point, Sailed, Template};
 use crate::frame::{Vector, to_port};
 use crate::obstacle::HalfSpace;
 use crate::planner::Problem;
-use crate::planner::cost::{GAUSS_4, space_time_error};
-use crate::trajectory::Segment;
+use crate::planner::cost::{GAUSS_2, GAUSS_4, space_time_error};
+use crate::trajectory::{Mover, Segment};
 
 /// Metres. Approaches closer than this become rows.
 const NEAR_M: f64 = 60.0;
@@ -20,11 +20,7 @@ const CHORD_RAD: f64 = 0.2;
 /// Metres kept from every set while refining, so that the exact test afterwards passes.
 const MARGIN_M: f64 = 0.02;
 
-/// Nodes and weights of Gauss-Legendre rules on [0, 1]: 2 points are exact on a line, 3 on short arcs.
-const GAUSS_2: [(f64, f64); 2] = [
-    (0.211_324_865_405_187_13, 0.5),
-    (0.788_675_134_594_812_9, 0.5),
-];
+/// Three Gauss-Legendre points on [0, 1], for short arcs.
 const GAUSS_3: [(f64, f64); 3] = [
     (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
     (0.5, 0.444_444_444_444_444_4),

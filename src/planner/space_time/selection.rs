@@ -1,7 +1,7 @@
 //! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
 
 use super::graph::State;
-use super::hazard::first_contact;
+use super::hazard::first_met;
 use super::model::Scene;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
 use super::seeds::{Canonical, Conflict, from_graph};
@@ -203,8 +203,7 @@ impl<'a> Selection<'a> {
         let in_time = motion
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);
-        let clear =
-            in_time && cost.is_finite() && first_contact(self.scene.hazards, &motion).is_none();
+        let clear = in_time && cost.is_finite() && first_met(self.scene.hazards, &motion).is_none();
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }
