@@ -57,6 +57,27 @@ struct Aims {
     vertices: Vec<MovingVertex>,
 }
 
+impl Aims {
+    fn kind(&self, place: usize) -> NodeKind {
+        let (initial, velocity) = self.vertices[place].indices;
+        NodeKind::Vertex {
+            obstacle: self.obstacle,
+            initial,
+            velocity,
+        }
+    }
+
+    /// Around a body one edge at a time: from one of its vertices only the next two either way follow.
+    fn follows(&self, from: &State, place: usize) -> bool {
+        let n = self.vertices.len();
+        let Some(at) = (0..n).find(|k| self.kind(*k) == from.kind) else {
+            return true;
+        };
+        let apart = (place + n - at) % n;
+        apart != 0 && apart.min(n - apart) <= 2
+    }
+}
+
 /// The graph of one problem.
 #[derive(Debug)]
 pub(crate) struct Graph<'a> {
@@ -286,29 +307,20 @@ impl<'a> Graph<'a> {
             turn: MAX_TURN,
             time: (from.time + MAX_CHASE_S).min(self.problem.horizon),
         };
+        let chases = Side::BOTH.map(|side| Chase::new(&from.pose, from.time, 1.0, radius, side));
         for aims in &self.aims {
-            for vertex in &aims.vertices {
-                let kind = NodeKind::Vertex {
-                    obstacle: aims.obstacle,
-                    initial: vertex.indices.0,
-                    velocity: vertex.indices.1,
-                };
-                if from.kind == kind {
+            for (place, vertex) in aims.vertices.iter().enumerate() {
+                if !aims.follows(from, place) {
                     continue;
                 }
+                let kind = aims.kind(place);
                 for speed in self.moving_speeds() {
-                    for side in Side::BOTH {
-                        let chase = Chase {
-                            pose: from.pose,
-                            time: from.time,
-                            speed,
-                            radius,
-                            side,
-                        };
-                        let Some(meeting) = chase.intercept(vertex.origin, vertex.velocity, limits)
-                        else {
-                            continue;
-                        };
+                    for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
+                        let meeting =
+                            chase
+                                .at_speed(speed)
+                                .intercept(vertex.origin, vertex.velocity, limits);
+                        let Some(meeting) = meeting else { continue };
                         let motion = turn_and_line(
                             from,
                             side,
@@ -364,13 +376,7 @@ impl<'a> Graph<'a> {
         }
         for side in Side::BOTH {
             for speed in self.moving_speeds() {
-                let chase = Chase {
-                    pose: from.pose,
-                    time: from.time,
-                    speed,
-                    radius,
-                    side,
-                };
+                let chase = Chase::new(&from.pose, from.time, speed, radius, side);
                 let Some((turn, line)) = chase.way_to(desired.end()) else {
                     continue;
                 };

@@ -2,21 +2,19 @@
 
 use std::f64::consts::TAU;
 
-use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap_positive};
+use crate::frame::{Pose, Side, Vector, cross, to_port};
 
 /// What own ship sails: a turn and a line at one speed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Chase {
-    /// Where and when she starts.
-    pub pose: Pose,
-    /// Seconds.
-    pub time: f64,
-    /// m/s, positive.
-    pub speed: f64,
-    /// Turning radius, metres.
-    pub radius: f64,
-    /// Side of the turn.
-    pub side: Side,
+    position: Vector,
+    ahead: Vector,
+    centre: Vector,
+    radius: f64,
+    /// Of the turn, to port positive.
+    sigma: f64,
+    time: f64,
+    speed: f64,
 }
 
 /// Bounds of what counts as a meeting.
@@ -49,9 +47,30 @@ const DEAD_AHEAD_RAD: f64 = 1e-12;
 const MAX_ITERATIONS: usize = 60;
 
 impl Chase {
+    /// From a pose (metres, radians) at a time (seconds), at a positive speed (m/s), turning to one side
+    /// with a radius (metres).
+    pub(crate) fn new(pose: &Pose, time: f64, speed: f64, radius: f64, side: Side) -> Self {
+        let (ahead, sigma) = (pose.ahead(), side.turn_sign());
+        let centre = pose.position + to_port(ahead) * (sigma * radius);
+        Self {
+            position: pose.position,
+            ahead,
+            centre,
+            radius,
+            sigma,
+            time,
+            speed,
+        }
+    }
+
+    /// The same chase at another speed.
+    pub(crate) fn at_speed(&self, speed: f64) -> Self {
+        Self { speed, ..*self }
+    }
+
     /// The way to a fixed point: turn and line. `None` inside the turning circle.
     pub(crate) fn way_to(&self, point: Vector) -> Option<(f64, f64)> {
-        let (turn, line) = self.unsnapped_way_to(point)?;
+        let (turn, line, _) = self.tangent(point)?;
         // a full circle is a rounded zero: the point is dead ahead
         Some((
             if TAU - turn < DEAD_AHEAD_RAD {
@@ -63,19 +82,21 @@ impl Chase {
         ))
     }
 
-    /// The way without the rounding of full circles, which would hide the jump at a wrap.
-    fn unsnapped_way_to(&self, point: Vector) -> Option<(f64, f64)> {
-        let sigma = self.side.turn_sign();
-        let centre = self.pose.position + to_port(self.pose.ahead()) * (sigma * self.radius);
-        let to = point - centre;
-        let square = to.norm_squared() - self.radius * self.radius;
-        if !(square >= 0.0) {
+    /// Turn, line and the line's direction, without the rounding of full circles, which would hide the jump
+    /// at a wrap. One arctangent: the tangent is the line to the centre, turned by the angle whose sine is
+    /// `radius / distance`.
+    fn tangent(&self, point: Vector) -> Option<(f64, f64, Vector)> {
+        let to = point - self.centre;
+        let square = to.norm_squared();
+        let along = square - self.radius * self.radius;
+        // negated on purpose: a NaN is inside
+        if !(along >= 0.0) {
             return None;
         }
-        let line = square.sqrt();
-        let course = heading_of(to) + sigma * self.radius.atan2(line);
-        let turn = wrap_positive(sigma * (course - self.pose.heading));
-        Some((turn, line))
+        let line = along.sqrt();
+        let course = (to * line + to_port(to) * (self.sigma * self.radius)) / square;
+        let turn = (self.sigma * cross(self.ahead, course)).atan2(self.ahead.dot(&course));
+        Some((if turn < 0.0 { turn + TAU } else { turn }, line, course))
     }
 
     /// The earliest meeting with `origin + velocity t` within the limits. `t` is on the clock. Between
@@ -91,9 +112,7 @@ impl Chase {
         if !(until > from) {
             return None;
         }
-        let sigma = self.side.turn_sign();
-        let ahead = self.pose.ahead();
-        let centre = self.pose.position + to_port(ahead) * (sigma * self.radius);
+        let (ahead, centre) = (self.ahead, self.centre);
         let mut cuts = [from, until, until, until, until];
         let mut count = 1;
         let mut cut = |t: f64| {
@@ -105,7 +124,7 @@ impl Chase {
         // P on the line ahead: the turn wraps between nothing and a full circle
         let drift = cross(ahead, velocity);
         if drift != 0.0 {
-            cut(-cross(ahead, origin - self.pose.position) / drift);
+            cut(-cross(ahead, origin - self.position) / drift);
         }
         // P on the turning circle
         let (a, b, c) = (
@@ -148,26 +167,13 @@ impl Chase {
         None
     }
 
-    /// `F` and its derivative, with one arctangent: the tangent's direction is a rotation of the line to
-    /// the centre by the angle whose sine is `radius / distance`.
+    /// `F` and its derivative.
     fn gap(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
-        let sigma = self.side.turn_sign();
-        let ahead = self.pose.ahead();
-        let to =
-            origin + velocity * time - self.pose.position - to_port(ahead) * (sigma * self.radius);
-        let square = to.norm_squared();
-        let along = square - self.radius * self.radius;
-        if !(along >= 0.0) {
-            return None;
-        }
-        let line = along.sqrt();
-        let course = (to * line + to_port(to) * (sigma * self.radius)) / square;
-        let turn = (sigma * cross(ahead, course)).atan2(ahead.dot(&course));
-        let turn = if turn < 0.0 { turn + TAU } else { turn };
+        let (turn, line, course) = self.tangent(origin + velocity * time)?;
         // parallel and dead ahead for ever: a full circle is a rounded zero
-        let dead_ahead =
-            TAU - turn < DEAD_AHEAD_RAD && cross(ahead, velocity).abs() <= 1e-12 * velocity.norm();
-        let turn = if dead_ahead { 0.0 } else { turn };
+        let wraps = TAU - turn < DEAD_AHEAD_RAD
+            && cross(self.ahead, velocity).abs() <= 1e-12 * velocity.norm();
+        let turn = if wraps { 0.0 } else { turn };
         let value = self.speed * (time - self.time) - (self.radius * turn + line);
         Some((value, self.speed - course.dot(&velocity)))
     }
@@ -250,17 +256,14 @@ mod tests {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(21);
         let mut met = 0;
         for _ in 0..3000 {
-            let chase = Chase {
-                pose: Pose::new(Vector::new(0.0, 0.0), rng.random_range(-3.1..3.1)),
-                time: rng.random_range(0.0..50.0),
-                speed: [2.5, 5.0, 6.0][rng.random_range(0..3)],
-                radius: 100.0,
-                side: if rng.random_bool(0.5) {
-                    Side::Port
-                } else {
-                    Side::Starboard
-                },
+            let pose = Pose::new(Vector::new(0.0, 0.0), rng.random_range(-3.1..3.1));
+            let speed = [2.5, 5.0, 6.0][rng.random_range(0..3)];
+            let side = if rng.random_bool(0.5) {
+                Side::Port
+            } else {
+                Side::Starboard
             };
+            let chase = Chase::new(&pose, rng.random_range(0.0..50.0), speed, 100.0, side);
             let origin = Vector::new(
                 rng.random_range(-900.0..900.0),
                 rng.random_range(-900.0..900.0),

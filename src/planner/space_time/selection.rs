@@ -159,6 +159,25 @@ impl<'a> Selection<'a> {
                 }
             }
         }
+        if std::env::var("DEVS").is_ok() {
+            let w = (0..running.len())
+                .filter(|i| running[*i].best().is_some())
+                .min_by(|a, b| {
+                    running[*a]
+                        .best()
+                        .unwrap()
+                        .model
+                        .cost
+                        .total_cmp(&running[*b].best().unwrap().model.cost)
+                });
+            eprintln!(
+                "SEEDS {} graph {} steps {} winner {:?}",
+                running.len(),
+                running.len() as i64 - 8,
+                running.iter().map(|r| r.steps()).sum::<usize>(),
+                w.map(|w| w as i64 - (running.len() as i64 - 8))
+            );
+        }
         if std::env::var("DEV").is_ok() {
             for r in &running {
                 eprintln!("{}", r.debug());

@@ -251,13 +251,7 @@ impl Template {
     ) -> Option<()> {
         let radius = at.radius;
         let goal = problem.desired.end();
-        let chase = Chase {
-            pose: at.pose,
-            time: at.time,
-            speed,
-            radius,
-            side,
-        };
+        let chase = Chase::new(&at.pose, at.time, speed, radius, side);
         let (turn, line) = chase.way_to(goal)?;
         if !(turn < 2.5) {
             return None;
