@@ -1,0 +1,115 @@
+//! One plan, from sets to verdict. Every bench asserts the answer, then times it.
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use searoom::obstacle::PolytopeObstacle;
+use searoom::pipeline;
+use searoom::planner::{Outcome, Problem, SearchKind, space_time};
+use searoom::scenario::Scenario;
+use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
+
+fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [PolytopeObstacle]) -> Problem<'a> {
+    Problem {
+        own: &scenario.own_ship,
+        desired: &scenario.desired,
+        obstacles,
+        horizon: scenario.horizon,
+        time_weight: scenario.time_weight,
+        search: scenario.search,
+        deadline: Duration::from_secs_f64(scenario.deadline),
+    }
+}
+
+fn shaped(scenario: &Scenario) -> Vec<PolytopeObstacle> {
+    pipeline::sets(scenario)
+        .into_iter()
+        .map(|s| s.shaped)
+        .collect()
+}
+
+/// Asserts that a plan is found and passes the independent check.
+fn assert_planned(scenario: &Scenario) {
+    let run = pipeline::run(scenario.clone());
+    assert!(
+        matches!(run.planned.outcome, Outcome::Solved(_)),
+        "{}: no plan",
+        scenario.title
+    );
+    assert!(
+        run.evaluation.is_some_and(|e| e.verified()),
+        "{}: not verified",
+        scenario.title
+    );
+}
+
+fn time_plan(criterion: &mut Criterion, id: &str, scenario: &Scenario) {
+    assert_planned(scenario);
+    let obstacles = shaped(scenario);
+    let problem = problem(scenario, &obstacles);
+    criterion.bench_function(id, |b| b.iter(|| space_time::plan(black_box(&problem))));
+}
+
+/// The first random encounter of each kind.
+fn one_target(criterion: &mut Criterion) {
+    for kind in EncounterKind::ALL {
+        let drawn = random_encounter(kind, 0, Placement::Origin).expect("drawn");
+        let id = format!("plan/one target/{}", kind.name());
+        time_plan(criterion, &id, &drawn.scenario);
+    }
+}
+
+/// Dijkstra over the same graph: its graph plan must cost what that of A* costs.
+fn dijkstra(criterion: &mut Criterion) {
+    let drawn = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin).expect("drawn");
+    let obstacles = shaped(&drawn.scenario);
+    let a_star = problem(&drawn.scenario, &obstacles);
+    let dijkstra = Problem {
+        search: SearchKind::Dijkstra,
+        ..a_star.clone()
+    };
+    let graph_cost = |p: &Problem| {
+        space_time::plan(p)
+            .outcome
+            .plan()
+            .and_then(|plan| plan.graph_cost)
+            .expect("a plan")
+    };
+    let (a, d) = (graph_cost(&a_star), graph_cost(&dijkstra));
+    assert!((a - d).abs() <= 1e-9 * a, "A* {a}, Dijkstra {d}");
+    criterion.bench_function("plan/one target/head-on, Dijkstra", |b| {
+        b.iter(|| space_time::plan(black_box(&dijkstra)))
+    });
+}
+
+/// The first random traffic of each size that has a plan.
+fn many_targets(criterion: &mut Criterion) {
+    for count in [2, 4, 10] {
+        let scenario = (0..100)
+            .map(|seed| {
+                random_traffic(count, seed, Placement::Origin)
+                    .expect("drawn")
+                    .scenario
+            })
+            .find(|s| {
+                pipeline::run(s.clone())
+                    .evaluation
+                    .is_some_and(|e| e.verified())
+            })
+            .expect("a plan among a hundred");
+        time_plan(criterion, &format!("plan/{count} targets"), &scenario);
+    }
+}
+
+/// Sets, plan and verdict together.
+fn whole_run(criterion: &mut Criterion) {
+    let drawn = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin).expect("drawn");
+    assert_planned(&drawn.scenario);
+    criterion.bench_function("run/one target/head-on", |b| {
+        b.iter(|| pipeline::run(black_box(&drawn.scenario).clone()))
+    });
+}
+
+criterion_group!(benches, one_target, dijkstra, many_targets, whole_run);
+criterion_main!(benches);
