@@ -32,7 +32,7 @@ use searoom::simulation::{
     Behaviour, Drawn, EncounterKind, Placement, Signal, random_encounter, random_traffic,
 };
 use searoom::target::ShipTrack;
-use searoom::trajectory::Trajectory;
+use searoom::trajectory::{Segment, Trajectory};
 use searoom::vessel::OwnShip;
 use statistics::{failure_bound, quantile};
 
@@ -147,6 +147,33 @@ fn least_hull_distance(
         time += ((apart - least) / closing).max(0.1);
     }
     least
+}
+
+#[test]
+fn a_ship_that_does_not_give_way_is_hit() {
+    let mut hit = 0;
+    for kind in EncounterKind::ALL {
+        for seed in 0..10 {
+            let scenario = random_encounter(kind, seed, Placement::Random)
+                .expect("drawn")
+                .scenario;
+            let undisturbed = Trajectory::new(vec![Segment {
+                start: scenario.own_ship.pose,
+                start_time: 0.0,
+                duration: scenario.desired.duration(),
+                speed: scenario.own_ship.speed,
+                turn_rate: 0.0,
+            }])
+            .expect("one line");
+            let ship = scenario.targets[0].ship().expect("a ship");
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let own = &scenario.own_ship;
+            hit += (0..20)
+                .map(|_| least_hull_distance(own, &undisturbed, ship, Signal::Constant, &mut rng))
+                .any(|least| least < 0.0) as usize;
+        }
+    }
+    assert!(hit >= 30, "only {hit} of 40 undisturbed ships are hit");
 }
 
 /// Least over all targets and signals; infinite without a plan.

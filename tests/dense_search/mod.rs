@@ -13,6 +13,9 @@
 //! membership of a set. One straight desired leg only.
 
 mod bound;
+mod closing;
+#[cfg(test)]
+mod tests;
 
 use std::collections::HashMap;
 
@@ -21,9 +24,7 @@ use searoom::planner::Problem;
 use searoom::trajectory::{DesiredLeg, Segment, Trajectory};
 
 use bound::Bound;
-
-/// Angles (radians) between path and closing line that are tried.
-const RETURN_ANGLES: [f64; 4] = [0.15, 0.3, 0.5, 0.8];
+use closing::{chain, returns, turn_then_straight};
 
 /// Metres before the end from which the ship also steers straight for the last waypoint.
 const HOMING: f64 = 500.0;
@@ -436,81 +437,6 @@ impl Scene<'_> {
     }
 }
 
-/// A turn (counter-clockwise positive, radians) or a run straight on (metres).
-#[derive(Debug, Clone, Copy)]
-enum Piece {
-    Turn(f64),
-    Run(f64),
-}
-
-fn chain(from: &Pose, time: f64, speed: f64, radius: f64, pieces: &[Piece]) -> Vec<Segment> {
-    let (mut pose, mut now) = (*from, time);
-    let mut segments = Vec::with_capacity(pieces.len() + 2);
-    for piece in pieces {
-        let (length, turn) = match *piece {
-            Piece::Turn(angle) => (angle.abs() * radius, angle.signum()),
-            Piece::Run(length) => (length, 0.0),
-        };
-        if length > 1e-9 {
-            let segment = Segment {
-                start: pose,
-                start_time: now,
-                duration: length / speed,
-                speed,
-                turn_rate: turn * speed / radius,
-            };
-            (pose, now) = (segment.end(), segment.end_time());
-            segments.push(segment);
-        }
-    }
-    segments
-}
-
-/// Arc, line, arc that end on the path and along it, for a ship `across` metres to port of it whose
-/// heading is `heading` from it. One way per angle of the line, and the one with no line.
-fn returns(across: f64, heading: f64, radius: f64) -> Vec<[Piece; 3]> {
-    // seen from the port side of the path; the starboard side is its mirror image
-    let mirror = if across < 0.0 || (across == 0.0 && heading < 0.0) {
-        -1.0
-    } else {
-        1.0
-    };
-    let (y, psi) = (across * mirror, heading * mirror);
-    // no line: turn away down to -g, then back; r cos g = (r + r cos psi - y) / 2
-    let without = (radius + radius * psi.cos() - y) / (2.0 * radius);
-    let without = (without.abs() <= 1.0).then(|| without.acos());
-    let mut ways = Vec::new();
-    for angle in RETURN_ANGLES.into_iter().chain(without) {
-        let turn = -angle - psi;
-        // height after the first turn, by r (cos - cos) on either circle
-        let rise = radius * (angle.cos() - psi.cos());
-        let start_of_line = if turn < 0.0 { y + rise } else { y - rise };
-        let end_of_line = radius * (1.0 - angle.cos());
-        let line = (start_of_line - end_of_line) / angle.sin();
-        if line >= -1e-7 && angle > 1e-6 {
-            ways.push([
-                Piece::Turn(turn * mirror),
-                Piece::Run(line.max(0.0)),
-                Piece::Turn(angle * mirror),
-            ]);
-        }
-    }
-    if y < 1e-6 && psi.abs() < 1e-9 {
-        ways.push([Piece::Run(0.0); 3]);
-    }
-    ways
-}
-
-/// One arc to the side of `turn`, then a line to the point: nothing when it is inside the circle.
-fn turn_then_straight(pose: &Pose, point: Vector, turn: f64, radius: f64) -> Option<[Piece; 2]> {
-    let centre = pose.world_coordinates(Vector::new(0.0, turn * radius));
-    let to_point = point - centre;
-    let run = (to_point.norm_squared() - radius * radius).sqrt();
-    let course = heading_of(to_point) + turn * radius.atan2(run);
-    let angle = (turn * (course - pose.heading)).rem_euclid(std::f64::consts::TAU);
-    (run.is_finite() && angle < 3.0).then_some([Piece::Turn(turn * angle), Piece::Run(run)])
-}
-
 /// Depth, cost, limits and ends of a trajectory, each by brute force. Between
 /// the instants that the search tests it may cut a corner, by 5 cm at most.
 ///
@@ -551,91 +477,4 @@ fn trace(states: &[State], mut at: usize, closing: Vec<Segment>) -> Trajectory {
     }
     backwards.reverse();
     Trajectory::new(backwards).expect("segments that were chained meet")
-}
-
-#[cfg(test)]
-mod tests {
-    use std::time::Duration;
-
-    use super::*;
-    use searoom::geometry::outer_disc;
-    use searoom::obstacle::PolytopeObstacle;
-    use searoom::planner::SearchKind;
-    use searoom::scenario::Scenario;
-    use searoom::simulation::{EncounterKind, Placement, random_encounter};
-
-    fn scene(kind: EncounterKind, seed: u64, placement: Placement) -> Scenario {
-        random_encounter(kind, seed, placement)
-            .expect("drawn")
-            .scenario
-    }
-
-    /// The sets that safety is claimed on, from their definition.
-    fn hard_sets(scenario: &Scenario) -> Vec<PolytopeObstacle> {
-        let own = &scenario.own_ship;
-        let ships = scenario.targets.iter().filter_map(|t| t.ship());
-        ships
-            .map(|ship| {
-                let reach = own.hull.half_diagonal() + own.safety_margin + 3.0 * ship.position_std;
-                let hull = ship.hull.polygon(&ship.pose);
-                let initial = hull.minkowski_sum(&outer_disc(reach, ship.pose.heading));
-                PolytopeObstacle::new("hard", initial, ship.outer_velocity_set())
-            })
-            .collect()
-    }
-
-    fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [PolytopeObstacle]) -> Problem<'a> {
-        Problem {
-            own: &scenario.own_ship,
-            desired: &scenario.desired,
-            obstacles,
-            horizon: scenario.horizon,
-            time_weight: scenario.time_weight,
-            search: SearchKind::AStar,
-            deadline: Duration::from_secs(60),
-        }
-    }
-
-    #[test]
-    fn nothing_in_the_way_costs_nothing() {
-        for placement in [Placement::Origin, Placement::Random] {
-            let scenario = scene(EncounterKind::HeadOn, 0, placement);
-            let problem = problem(&scenario, &[]);
-            let search = DenseSearch::default();
-            let answer = search.cheaper_than(&problem, 1.0);
-            assert!(answer.cheaper.expect("the desired trajectory itself").cost < 1e-9);
-            assert!(search.cheaper_than(&problem, 0.0).cheaper.is_none());
-        }
-    }
-
-    #[test]
-    fn what_it_finds_is_clear_and_costs_what_it_says() {
-        for kind in EncounterKind::ALL {
-            let scenario = scene(kind, 1, Placement::Random);
-            let sets = hard_sets(&scenario);
-            let problem = problem(&scenario, &sets);
-            let answer = DenseSearch::coarse(10_000.0).cheaper_than(&problem, 10_000.0);
-            let found = answer.cheaper.expect("a way round");
-            recheck(&problem, &found);
-            // the bound never exceeds what was in fact still to come
-            let leg = problem.desired.legs()[0];
-            let bound = Bound::new(&problem, &leg, 4.0);
-            let duration = problem.desired.duration();
-            let mut so_far = 0.0;
-            for i in 0..(found.trajectory.end_time() / 4.0) as usize {
-                let time = 4.0 * i as f64;
-                let bound = bound.to_go(&found.trajectory.pose_at(time), i);
-                let to_go = found.cost * duration - so_far;
-                assert!(
-                    bound <= to_go + 1e-3 * found.cost * duration,
-                    "{bound} {to_go} at {time}"
-                );
-                for j in 0..400 {
-                    let t = time + 0.01 * (f64::from(j) + 0.5);
-                    let p = found.trajectory.pose_at(t).position;
-                    so_far += 0.01 * problem.desired.nearest(p, t, problem.time_weight).error;
-                }
-            }
-        }
-    }
 }

@@ -1,0 +1,85 @@
+//! The search on its own: hand cases, and the bound against what was in fact still to come.
+
+use std::time::Duration;
+
+use super::*;
+use searoom::geometry::outer_disc;
+use searoom::obstacle::PolytopeObstacle;
+use searoom::planner::SearchKind;
+use searoom::scenario::Scenario;
+use searoom::simulation::{EncounterKind, Placement, random_encounter};
+
+fn scene(kind: EncounterKind, seed: u64, placement: Placement) -> Scenario {
+    random_encounter(kind, seed, placement)
+        .expect("drawn")
+        .scenario
+}
+
+/// The sets that safety is claimed on, from their definition.
+fn hard_sets(scenario: &Scenario) -> Vec<PolytopeObstacle> {
+    let own = &scenario.own_ship;
+    let ships = scenario.targets.iter().filter_map(|t| t.ship());
+    ships
+        .map(|ship| {
+            let reach = own.hull.half_diagonal() + own.safety_margin + 3.0 * ship.position_std;
+            let hull = ship.hull.polygon(&ship.pose);
+            let initial = hull.minkowski_sum(&outer_disc(reach, ship.pose.heading));
+            PolytopeObstacle::new("hard", initial, ship.outer_velocity_set())
+        })
+        .collect()
+}
+
+fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [PolytopeObstacle]) -> Problem<'a> {
+    Problem {
+        own: &scenario.own_ship,
+        desired: &scenario.desired,
+        obstacles,
+        horizon: scenario.horizon,
+        time_weight: scenario.time_weight,
+        search: SearchKind::AStar,
+        deadline: Duration::from_secs(60),
+    }
+}
+
+#[test]
+fn nothing_in_the_way_costs_nothing() {
+    for placement in [Placement::Origin, Placement::Random] {
+        let scenario = scene(EncounterKind::HeadOn, 0, placement);
+        let problem = problem(&scenario, &[]);
+        let search = DenseSearch::default();
+        let answer = search.cheaper_than(&problem, 1.0);
+        assert!(answer.cheaper.expect("the desired trajectory itself").cost < 1e-9);
+        assert!(search.cheaper_than(&problem, 0.0).cheaper.is_none());
+    }
+}
+
+#[test]
+fn what_it_finds_is_clear_and_costs_what_it_says() {
+    for kind in EncounterKind::ALL {
+        let scenario = scene(kind, 1, Placement::Random);
+        let sets = hard_sets(&scenario);
+        let problem = problem(&scenario, &sets);
+        let answer = DenseSearch::coarse(10_000.0).cheaper_than(&problem, 10_000.0);
+        let found = answer.cheaper.expect("a way round");
+        recheck(&problem, &found);
+        // the bound never exceeds what was in fact still to come
+        let leg = problem.desired.legs()[0];
+        let bound = Bound::new(&problem, &leg, 4.0);
+        let duration = problem.desired.duration();
+        let mut so_far = 0.0;
+        for i in 0..(found.trajectory.end_time() / 4.0) as usize {
+            let time = 4.0 * i as f64;
+            let bound = bound.to_go(&found.trajectory.pose_at(time), i);
+            let to_go = found.cost * duration - so_far;
+            assert!(
+                bound <= to_go + 1e-3 * found.cost * duration,
+                "{bound} {to_go} at {time}"
+            );
+            for j in 0..400 {
+                let t = time + 0.01 * (f64::from(j) + 0.5);
+                let p = found.trajectory.pose_at(t).position;
+                so_far += 0.01 * problem.desired.nearest(p, t, problem.time_weight).error;
+            }
+        }
+    }
+}
