@@ -18,8 +18,8 @@ use crate::vessel::{Hull, OwnShip};
 const OWN_SPEED: f64 = 5.0;
 /// m/s, the speeds she may choose.
 const OWN_SPEEDS: [f64; 3] = [2.5, 5.0, 6.0];
-/// Metres, the desired path, straight.
-const PATH_LENGTH: f64 = 1500.0;
+/// Metres, the desired path, straight: long enough for the slowest overtaking to end before it does.
+const PATH_LENGTH: f64 = 2500.0;
 /// Metres, smallest turning radius.
 const TURNING_RADIUS: f64 = 100.0;
 /// Own hull.
@@ -30,7 +30,7 @@ const OWN_HULL: Hull = Hull {
 /// Metres between hulls.
 const SAFETY_MARGIN: f64 = 20.0;
 /// Seconds.
-const HORIZON: f64 = 600.0;
+const HORIZON: f64 = 1000.0;
 /// m²/s².
 const TIME_WEIGHT: f64 = 25.0;
 /// Seconds of computing that one plan may take. Far beyond need: outcomes must not depend on it.
@@ -39,7 +39,7 @@ const DEADLINE: f64 = 60.0;
 /// Seconds from the start until the undisturbed ships are closest.
 const MEETING_TIME: RangeInclusive<f64> = 100.0..=220.0;
 /// Metres.
-const TARGET_LENGTH: RangeInclusive<f64> = 30.0..=120.0;
+const TARGET_LENGTH: RangeInclusive<f64> = 30.0..=100.0;
 /// Length over beam.
 const SLENDERNESS: RangeInclusive<f64> = 4.0..=7.0;
 /// Fraction of the target's length by which the undisturbed centres miss each other, either way.

@@ -9,7 +9,7 @@ use crate::frame::{Vector, to_port};
 use crate::obstacle::HalfSpace;
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4, space_time_error};
-use crate::trajectory::{Mover, Segment};
+use crate::trajectory::Segment;
 
 /// Metres. Approaches closer than this become rows.
 const NEAR_M: f64 = 60.0;
@@ -44,7 +44,8 @@ pub(crate) struct Model {
     pub hessian: Matrix,
     /// Contact rows and the signs of the solved slots, linearised: `row . step >= bound`.
     pub rows: Vec<Constraint>,
-    /// Sum of the missing slacks, metres; zero when clear with the margin.
+    /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
+    /// splits in two must not make the merit jump.
     pub violation: f64,
     /// Least slack of all contact rows, metres.
     pub least_slack: f64,
@@ -76,11 +77,11 @@ impl Scene<'_> {
             self.add_tail(&sailed, all, &mut full);
         }
         let mut rows = Vec::with_capacity(8);
-        let (mut violation, mut least_slack) = (0.0, f64::INFINITY);
+        let (mut violation, mut least_slack) = (0.0_f64, f64::INFINITY);
         for hazard in self.hazards {
             for approach in approaches(hazard, &sailed) {
                 let missing = MARGIN_M - approach.slack;
-                violation += missing.max(0.0);
+                violation = missing.max(violation);
                 least_slack = least_slack.min(approach.slack);
                 let coefficients = self.approach_row(hazard, &sailed, &approach, all);
                 rows.push(Constraint {

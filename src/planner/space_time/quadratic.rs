@@ -33,8 +33,8 @@ pub(crate) struct Programme<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Solution {
     pub x: Row,
-    /// The largest multiplier of a row: the least weight of an exact penalty.
-    pub largest_multiplier: f64,
+    /// The rows' multipliers together: the least weight of an exact penalty on the largest violation.
+    pub multipliers: f64,
 }
 
 /// Steps before giving up; a programme of this size needs about as many as it has constraints.
@@ -193,16 +193,13 @@ impl Programme<'_> {
                 }
             }
         }
-        let largest_multiplier = active
+        let multipliers = active
             .iter()
             .zip(&u)
             .filter(|(k, _)| matches!(k, Kind::Row(_)))
             .map(|(_, u)| *u)
-            .fold(0.0, f64::max);
-        Ok(Solution {
-            x,
-            largest_multiplier,
-        })
+            .sum();
+        Ok(Solution { x, multipliers })
     }
 }
 

@@ -12,6 +12,10 @@ const SMALLEST_RADIUS_M: f64 = 0.02;
 /// Steps of one refinement at most.
 pub(crate) const MAX_STEPS: usize = 30;
 
+/// Last corrections of a refinement that ends a little inside, and how far inside that may be, metres.
+const RESTORATIONS: usize = 3;
+const RESTORABLE_M: f64 = 5.0;
+
 /// Radians. Longest turn of one slot.
 const LONGEST_ARC: f64 = 2.0;
 
@@ -178,11 +182,57 @@ impl Refinement {
         }
     }
 
+    /// The nearest manoeuvre that is clear, from one that is nearly so: least change of lengths under the
+    /// linearised rows, a few times.
+    fn restore(&mut self, scene: &Scene) {
+        let n = self.template.free();
+        let mut identity = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+        for (i, row) in identity.iter_mut().enumerate() {
+            row[i] = 1.0;
+        }
+        for _ in 0..RESTORATIONS {
+            let clear = self.model.least_slack >= 0.0;
+            let close = self.model.violation < RESTORABLE_M;
+            let worth = self
+                .best
+                .as_ref()
+                .is_none_or(|b| self.model.cost < b.model.cost);
+            if clear || !close || !worth {
+                return;
+            }
+            let (low, high) = (self.lengths.map(|l| -l), [LARGEST_RADIUS_M; MAX_VARIABLES]);
+            let programme = Programme {
+                size: n,
+                hessian: &identity,
+                gradient: &[0.0; MAX_VARIABLES],
+                low: &low,
+                high: &high,
+                rows: &self.model.rows,
+            };
+            let Some(solution) = programme.solve() else {
+                return;
+            };
+            let mut trial = self.lengths;
+            for (length, step) in trial.iter_mut().zip(&solution.x).take(n) {
+                *length = (*length + step).max(0.0);
+            }
+            let Some(model) = scene.model(&self.template, &trial) else {
+                return;
+            };
+            if model.violation >= self.model.violation {
+                return;
+            }
+            (self.lengths, self.model) = (trial, model);
+            self.keep();
+        }
+    }
+
     /// One step.
     pub(crate) fn step(&mut self, scene: &Scene) {
         self.steps += 1;
-        if self.steps > MAX_STEPS || !self.advance(scene) {
+        if self.steps >= MAX_STEPS || !self.advance(scene) {
             self.finished = true;
+            self.restore(scene);
         }
     }
 
@@ -221,7 +271,7 @@ impl Refinement {
         let Some(solution) = programme.solve() else {
             return false;
         };
-        self.penalty = self.penalty.max(1.5 * solution.largest_multiplier);
+        self.penalty = self.penalty.max(1.5 * solution.multipliers);
         let step = solution.x;
         let mut trial = self.lengths;
         for i in 0..n {

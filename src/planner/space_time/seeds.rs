@@ -69,7 +69,10 @@ impl Conflict {
         };
         for k in 0..=CONFLICT_SAMPLES {
             let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
-            let segment = undisturbed.iter().find(|s| s.end_time() >= time)?;
+            let segment = undisturbed
+                .iter()
+                .find(|s| s.end_time() >= time)
+                .or(undisturbed.last())?;
             let pose = segment.pose_at(time);
             if hazard.body.slack(pose.position, time).value > 0.0 {
                 continue;
@@ -83,6 +86,9 @@ impl Conflict {
         Some(conflict)
     }
 }
+
+/// Radians at which a canonical manoeuvre returns, the flattest that fits.
+const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 
 /// Instants at which a conflict's width is taken.
 const CONFLICT_SAMPLES: usize = 24;
@@ -162,8 +168,19 @@ impl Canonical {
         let arc = turn * radius;
         let way_out = (2.0 * arc + out) / if self.slow { paces.normal } else { fast };
         let departure = (conflict.from - self.lead * way_out).max(0.0);
-        let along = ((conflict.to - departure - way_out) * fast).max(0.0);
         let lead = (departure * paces.normal).min(route.length());
+        // made good along the route on the way out, and on the way back at the flattest angle that fits
+        let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
+        let room = route.length() - made_good;
+        let way_back = |angle: f64| {
+            let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
+            2.0 * radius * angle.sin() + line / angle.tan()
+        };
+        let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
+        let along = ((conflict.to - departure - way_out) * fast).max(0.0);
+        let along = along
+            .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
+            .max(0.0);
         let mut draft = Draft::default();
         draft.runs(&paces, lead, 0.0, 0.0);
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
@@ -194,12 +211,18 @@ impl Canonical {
         );
         draft.push(Slot::Line { speed: slow }, 0.0);
         draft.push(Slot::Line { speed: fast }, along);
+        let Some(angle) = angle else {
+            return draft.seed(Ending::Goal {
+                side: back,
+                speed: fast,
+            });
+        };
         draft.push(
             Slot::Arc {
                 side: back,
                 speed: fast,
             },
-            0.4_f64.min(needed.max(0.1)) * radius,
+            angle.min(needed.max(0.1)) * radius,
         );
         draft.seed(Ending::Return { leg, speed: fast })
     }

@@ -12,27 +12,27 @@ use crate::trajectory::Segment;
 /// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin.
 const CANONICAL: [Canonical; 4] = [
     Canonical {
-        turn: 0.5,
-        lead: 0.9,
-        reach: 1.0,
+        turn: 0.4,
+        lead: 1.0,
+        reach: 1.2,
         slow: false,
     },
     Canonical {
         turn: 0.9,
-        lead: 0.6,
-        reach: 0.8,
+        lead: 1.0,
+        reach: 1.2,
         slow: false,
     },
     Canonical {
-        turn: 1.0,
-        lead: 0.9,
-        reach: 0.9,
+        turn: 0.7,
+        lead: 1.0,
+        reach: 1.2,
         slow: true,
     },
     Canonical {
-        turn: 1.4,
-        lead: 0.5,
-        reach: 0.6,
+        turn: 1.3,
+        lead: 1.0,
+        reach: 1.2,
         slow: true,
     },
 ];
@@ -134,6 +134,17 @@ impl<'a> Selection<'a> {
                 for side in Side::BOTH {
                     seeds.extend(canonical.seed(problem, route, side, conflict, leg));
                 }
+            }
+        }
+        if std::env::var("DEV").is_ok() {
+            eprintln!("conflicts {conflicts:?}");
+            for sd in &seeds {
+                eprintln!(
+                    "seed {:?} {:?} fits {}",
+                    sd.template.ending,
+                    &sd.lengths[..13],
+                    Refinement::fitting(&scene, sd.clone()).is_some()
+                );
             }
         }
         let mut running: Vec<Refinement> = seeds
