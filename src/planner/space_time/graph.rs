@@ -21,7 +21,7 @@ use crate::search::{Fate, Search, Space};
 use crate::trajectory::Segment;
 
 /// Seconds before first contact at which a manoeuvre may begin, besides t = 0.
-const LEADS_S: [f64; 7] = [0.0, 5.0, 12.0, 20.0, 30.0, 45.0, 70.0];
+const LEADS_S: [f64; 5] = [0.0, 12.0, 25.0, 45.0, 75.0];
 /// Angles at which the route is met again, radians.
 const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
 /// Radians. Larger turns toward a vertex are not offered.
@@ -350,7 +350,8 @@ impl<'a> Graph<'a> {
                 let Some(back) = return_to_line(&from.pose, l.start, heading, radius, angle) else {
                     continue;
                 };
-                for speed in self.moving_speeds() {
+                let speed = own.max_speed();
+                {
                     let mut motion = Vec::with_capacity(6);
                     let mut at = (from.pose, from.time);
                     for (length, bend) in
@@ -375,7 +376,8 @@ impl<'a> Graph<'a> {
             }
         }
         for side in Side::BOTH {
-            for speed in self.moving_speeds() {
+            let speed = own.max_speed();
+            {
                 let chase = Chase::new(&from.pose, from.time, speed, radius, side);
                 let Some((turn, line)) = chase.way_to(desired.end()) else {
                     continue;

@@ -40,7 +40,7 @@ const MAX_EXPANDED: usize = 20_000;
 const MAX_SIGNATURES: usize = 4;
 
 /// Expansions beyond the graph's best plan, to find such others.
-const FURTHER_EXPANDED: usize = 40;
+const FURTHER_EXPANDED: usize = 20;
 
 /// Plans one problem.
 ///

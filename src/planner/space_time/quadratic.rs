@@ -2,7 +2,7 @@
 //! (doi:10.1007/BF02591962).
 
 /// Most variables of a programme: fixed, so that no step allocates.
-pub(crate) const MAX_VARIABLES: usize = 32;
+pub(crate) const MAX_VARIABLES: usize = 24;
 
 /// A row of numbers, one per variable.
 pub(crate) type Row = [f64; MAX_VARIABLES];

@@ -120,6 +120,24 @@ impl Draft {
         self.lengths.push(length);
     }
 
+    fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
+        for (speed, length) in lengths {
+            self.push(
+                Slot::Arc {
+                    side,
+                    speed: *speed,
+                },
+                *length,
+            );
+        }
+    }
+
+    fn line(&mut self, lengths: &[(f64, f64)]) {
+        for (speed, length) in lengths {
+            self.push(Slot::Line { speed: *speed }, *length);
+        }
+    }
+
     fn runs(&mut self, paces: &Paces, normal: f64, fast: f64, slow: f64) {
         self.push(
             Slot::Run {
@@ -184,33 +202,17 @@ impl Canonical {
         let mut draft = Draft::default();
         draft.runs(&paces, lead, 0.0, 0.0);
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
-        draft.push(Slot::Arc { side, speed: fast }, fast_arc);
-        draft.push(Slot::Arc { side, speed: slow }, slow_arc);
-        draft.push(
-            Slot::Line { speed: slow },
-            if self.slow { out } else { 0.0 },
-        );
-        draft.push(
-            Slot::Line { speed: fast },
-            if self.slow { 0.0 } else { out },
-        );
+        let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();
-        draft.push(
-            Slot::Arc {
-                side: back,
-                speed: slow,
-            },
-            0.0,
-        );
-        draft.push(
-            Slot::Arc {
-                side: back,
-                speed: fast,
-            },
-            arc,
-        );
-        draft.push(Slot::Line { speed: slow }, 0.0);
-        draft.push(Slot::Line { speed: fast }, along);
+        // a set with many corners is rounded in more than one turn: empty groups open where that pays
+        draft.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
+        draft.line(&[(slow, 0.5 * slow_line), (fast, 0.5 * fast_line)]);
+        draft.turn(side, &[(fast, 0.0)]);
+        draft.line(&[(slow, 0.5 * slow_line), (fast, 0.5 * fast_line)]);
+        draft.turn(back, &[(slow, 0.0), (fast, arc)]);
+        draft.line(&[(slow, 0.0), (fast, 0.5 * along)]);
+        draft.turn(back, &[(fast, 0.0)]);
+        draft.line(&[(fast, 0.5 * along)]);
         let Some(angle) = angle else {
             return draft.seed(Ending::Goal {
                 side: back,
@@ -241,20 +243,22 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
     let along: f64 = departure.motion.iter().map(Segment::length).sum();
     draft.runs(&paces, along, 0.0, 0.0);
     let mut side = None;
+    let mut turns = 0;
     for vertex in vertices {
         let turn = vertex.motion.iter().find(|s| s.is_arc());
         let line = vertex.motion.iter().find(|s| !s.is_arc());
+        let before = side;
         side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
-        group(
-            &mut draft,
-            &paces,
-            side.unwrap_or(Side::Starboard),
-            turn,
-            line,
-        );
+        let side = side.unwrap_or(Side::Starboard);
+        turns += usize::from(before != Some(side));
+        group(&mut draft, &paces, side, turn, line);
+        if vertices.len() == 1 {
+            draft.turn(side, &[(paces.fast, 0.0)]);
+            draft.line(&[(paces.fast, 0.0)]);
+        }
     }
     let back = side.unwrap_or(Side::Starboard).opposite();
-    if vertices.len() == 1 {
+    if turns < 2 && vertices.len() < 3 {
         group(&mut draft, &paces, back, None, None);
     }
     match last.ending {
@@ -293,7 +297,7 @@ fn group(
             .filter(|s| (s.speed - speed).abs() < 1e-9)
             .map_or(0.0, Segment::length)
     };
-    let mut speeds = vec![paces.slow, paces.normal, paces.fast];
+    let mut speeds = vec![paces.slow, paces.fast];
     speeds.dedup();
     // a speed of its own goes to the nearest
     let nearest = |segment: Option<&Segment>| {

@@ -10,7 +10,7 @@ use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
 
 /// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin.
-const CANONICAL: [Canonical; 4] = [
+const CANONICAL: [Canonical; 3] = [
     Canonical {
         turn: 0.4,
         lead: 1.0,
@@ -22,12 +22,6 @@ const CANONICAL: [Canonical; 4] = [
         lead: 1.0,
         reach: 1.2,
         slow: false,
-    },
-    Canonical {
-        turn: 0.7,
-        lead: 1.0,
-        reach: 1.2,
-        slow: true,
     },
     Canonical {
         turn: 1.3,
