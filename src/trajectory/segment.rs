@@ -146,6 +146,15 @@ impl Mover {
         let versine = if cos > 0.0 { versine } else { 1.0 - cos };
         self.origin + crate::frame::to_port(self.arm) * sin - self.arm * versine
     }
+
+    /// Velocity at an absolute time in seconds, m/s.
+    pub fn velocity_at(&self, time: f64) -> Vector {
+        if self.turn_rate == 0.0 {
+            return self.velocity;
+        }
+        let (sin, cos) = (self.turn_rate * (time - self.start_time)).sin_cos();
+        self.velocity * cos + crate::frame::to_port(self.velocity) * sin
+    }
 }
 
 #[cfg(test)]

@@ -6,16 +6,19 @@ use super::quadratic::{Constraint, MAX_VARIABLES, Matrix, Row};
 use super::route::Route;
 use super::template::{Ending, Owner, Point, Sailed, Template};
 use crate::frame::{Vector, to_port};
-use crate::obstacle::HalfSpace;
+use crate::obstacle::{HalfSpace, Slack};
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4, space_time_error};
-use crate::trajectory::Segment;
+use crate::trajectory::{Mover, Segment};
 
 /// Metres. Approaches closer than this become rows.
 const NEAR_M: f64 = 60.0;
 
 /// Radians. Longest arc that one chord stands for when a minimum is sought.
-const CHORD_RAD: f64 = 0.2;
+const CHORD_RAD: f64 = 0.05;
+
+/// Cuts of one minimum at most.
+const MAX_CUTS: usize = 30;
 
 /// Metres kept from every set while refining, so that the exact test afterwards passes.
 const MARGIN_M: f64 = 0.02;
@@ -194,28 +197,84 @@ impl Scene<'_> {
             .sum()
     }
 
-    /// Adds the tail's cost, by differences in the place and time at which it begins.
+    /// Adds the tail's cost.
     fn add_tail(&self, sailed: &Sailed, all: usize, full: &mut Full) {
         let (s, t) = sailed.joined;
-        let (ds, dt) = (0.05, 0.01);
-        let here = self.tail_cost(s, t);
-        let (earlier, later) = (self.tail_cost(s, t - dt), self.tail_cost(s, t + dt));
-        let (back, on) = (self.tail_cost(s - ds, t), self.tail_cost(s + ds, t));
-        let by_time = (later - earlier) / (2.0 * dt);
-        let by_distance = (on - back) / (2.0 * ds);
-        let bend = ((later + earlier - 2.0 * here) / (dt * dt)).max(0.0);
-        full.cost += here;
+        let tail = self
+            .straight_tail(s, t)
+            .unwrap_or_else(|| self.any_tail(s, t));
+        full.cost += tail.cost;
         let (distance, clock) = sailed.joining_rates(sailed.joining_heading());
-        let slowness = (self.route.due_at(s + ds) - self.route.due_at(s)) / ds;
         let mut lateness = [0.0; MAX_VARIABLES];
         for i in 0..all {
-            full.gradient[i] += by_time * clock[i] + by_distance * distance[i];
-            lateness[i] = clock[i] - slowness * distance[i];
+            full.gradient[i] += tail.by_time * clock[i] + tail.by_distance * distance[i];
+            lateness[i] = clock[i] - tail.slowness * distance[i];
         }
         for i in 0..all {
             for k in 0..=i {
-                full.hessian[i][k] += bend * lateness[i] * lateness[k];
+                full.hessian[i][k] += tail.bend * lateness[i] * lateness[k];
             }
+        }
+    }
+
+    /// On the last leg, recovering in time at the greatest or the least speed, then on schedule: the lag
+    /// shrinks at a constant rate `r`, so the cost is `kappa lag³ / (3 r T_d)`. `None` in any other case.
+    fn straight_tail(&self, distance: f64, time: f64) -> Option<Tail> {
+        let desired = self.problem.desired;
+        let last = desired.legs().len() - 1;
+        let leg = &desired.legs()[last];
+        let stretch = self
+            .route
+            .stretch(last, desired)
+            .filter(|s| s.distance <= distance)?;
+        let own = self.problem.own;
+        own.speeds
+            .iter()
+            .find(|u| (*u - leg.speed).abs() <= 1e-9 * leg.speed)?;
+        let along = stretch.from + distance - stretch.distance;
+        let lag = leg.speed * (time - leg.start_time) - along;
+        let (pace, rate) = if lag >= 0.0 {
+            (own.max_speed(), own.max_speed() - leg.speed)
+        } else {
+            (own.min_speed(), leg.speed - own.min_speed())
+        };
+        let recovery = lag.abs() / rate;
+        let due = self.route.due_at(distance);
+        let on_timetable = (due - leg.start_time - along / leg.speed).abs() < 1e-6;
+        // negated on purpose: a NaN does not fit
+        if !(rate > 1e-9 && along + recovery * pace <= stretch.to && on_timetable) {
+            return None;
+        }
+        let q = self.problem.time_weight;
+        let kappa = q / (q + leg.speed * leg.speed) / (rate * desired.duration());
+        let by_lag = kappa * lag * lag.abs();
+        Some(Tail {
+            cost: kappa * lag.abs().powi(3) / 3.0,
+            by_time: by_lag * leg.speed,
+            by_distance: -by_lag,
+            bend: 2.0 * kappa * lag.abs() * leg.speed * leg.speed,
+            slowness: 1.0 / leg.speed,
+        })
+    }
+
+    /// Any tail, by differences in the place and time at which it begins.
+    fn any_tail(&self, distance: f64, time: f64) -> Tail {
+        let (ds, dt) = (0.05, 0.01);
+        let cost = self.tail_cost(distance, time);
+        let (earlier, later) = (
+            self.tail_cost(distance, time - dt),
+            self.tail_cost(distance, time + dt),
+        );
+        let (back, on) = (
+            self.tail_cost(distance - ds, time),
+            self.tail_cost(distance + ds, time),
+        );
+        Tail {
+            cost,
+            by_time: (later - earlier) / (2.0 * dt),
+            by_distance: (on - back) / (2.0 * ds),
+            bend: ((later + earlier - 2.0 * cost) / (dt * dt)).max(0.0),
+            slowness: (self.route.due_at(distance + ds) - self.route.due_at(distance)) / ds,
         }
     }
 
@@ -285,6 +344,16 @@ impl Scene<'_> {
     }
 }
 
+/// Cost of the route followed from a place at a time, with its rates per second and per metre, its
+/// second rate per second, and the timetable's seconds per metre there.
+struct Tail {
+    cost: f64,
+    by_time: f64,
+    by_distance: f64,
+    bend: f64,
+    slowness: f64,
+}
+
 /// Cost and rates in all slots; the lower triangle of the Hessian.
 struct Full {
     cost: f64,
@@ -340,106 +409,133 @@ fn reduce_matrix(lower: &Matrix, sailed: &Sailed, free: usize, all: usize) -> Ma
 
 /// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`].
 fn approaches(hazard: &Hazard, sailed: &Sailed) -> Vec<Approach> {
-    let mut chords: Vec<(Approach, f64, f64)> = Vec::with_capacity(32);
+    let mut chords: Vec<Chord> = Vec::with_capacity(64);
     let mut found: Vec<Approach> = Vec::new();
-    let flush = |chords: &mut Vec<(Approach, f64, f64)>, found: &mut Vec<Approach>| {
-        for i in 0..chords.len() {
-            let here = chords[i].0;
-            let before = if i > 0 {
-                chords[i - 1].0.slack
-            } else {
-                f64::INFINITY
-            };
-            let after = chords.get(i + 1).map_or(f64::INFINITY, |c| c.0.slack);
-            if here.slack < before && here.slack <= after && here.slack < NEAR_M {
-                let mut row = here;
-                // at a joint the two sides share the instant: its rows are one falling, one rising
-                let next = chords.get(i + 1).filter(|c| c.0.slack - here.slack < 1e-9);
-                if let Some((rising, _, rate)) = next
-                    && here.faces[1].1 == 0.0
-                    && chords[i].1 < 0.0
-                    && *rate > 0.0
-                {
-                    let (falling, face) = (chords[i].1, rising.faces[0].0);
-                    let weight = rate / (rate - falling);
-                    row.faces = [(here.faces[0].0, weight), (face, 1.0 - weight)];
-                }
-                found.push(row);
-            }
-        }
-        chords.clear();
-    };
     for (leg, l) in sailed.legs.iter().enumerate() {
         let segment = &l.segment;
         if segment.duration <= 0.0 {
             continue;
         }
         if hazard.clearance_bound(segment) > NEAR_M {
-            flush(&mut chords, &mut found);
+            local_minima(&mut chords, &mut found);
             continue;
         }
         let count = (segment.turn_rate.abs() * segment.duration / CHORD_RAD)
             .ceil()
             .max(1.0);
-        for k in 0..count as usize {
-            let (from, to) = (k as f64 / count, (k + 1) as f64 / count);
-            chords.push(least_on(hazard, segment, leg, from, to));
+        let mover = Mover::new(segment);
+        let at = |fraction: f64| {
+            let time = segment.start_time + segment.duration * fraction;
+            let position = mover.position_at(time);
+            Sample {
+                position,
+                time,
+                fraction,
+                slack: hazard.body.slack(position, time),
+            }
+        };
+        let mut from = at(0.0);
+        for k in 1..=count as usize {
+            let to = at(k as f64 / count);
+            let mut chord = Chord::new(hazard, leg, &from, &to);
+            if count > 1.0 && chord.least.faces[1].1 != 0.0 {
+                chord.least.slack = at(chord.least.fraction).slack.value;
+            }
+            chords.push(chord);
+            from = to;
         }
     }
-    flush(&mut chords, &mut found);
+    local_minima(&mut chords, &mut found);
     found
 }
 
-/// The minimum over part of a segment, with the slack's rates at its start side and end side of that
-/// instant (zero weight on the second face at an end of the part).
-fn least_on(
-    hazard: &Hazard,
-    segment: &Segment,
-    leg: usize,
-    from: f64,
-    to: f64,
-) -> (Approach, f64, f64) {
-    let (mut low, mut high) = (from, to);
-    let faces = hazard.body.faces();
-    let passes = if segment.is_arc() { 3 } else { 1 };
-    let mut best = (
-        Approach {
+/// Moves the local minima of a run of chords to `found`.
+fn local_minima(chords: &mut Vec<Chord>, found: &mut Vec<Approach>) {
+    for i in 0..chords.len() {
+        let here = &chords[i].least;
+        let before = if i > 0 {
+            chords[i - 1].least.slack
+        } else {
+            f64::INFINITY
+        };
+        let after = chords.get(i + 1).map_or(f64::INFINITY, |c| c.least.slack);
+        if !(here.slack < before && here.slack <= after && here.slack < NEAR_M) {
+            continue;
+        }
+        let mut approach = *here;
+        // at a joint the two sides share the instant: its faces are one falling, one rising
+        if let Some(next) = chords.get(i + 1)
+            && next.least.slack - here.slack < 1e-9
+            && here.faces[1].1 == 0.0
+            && chords[i].end_rate < 0.0
+            && next.start_rate > 0.0
+        {
+            let weight = next.start_rate / (next.start_rate - chords[i].end_rate);
+            approach.faces = [
+                (here.faces[0].0, weight),
+                (next.least.faces[0].0, 1.0 - weight),
+            ];
+        }
+        found.push(approach);
+    }
+    chords.clear();
+}
+
+/// An instant of a segment with its slack.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    position: Vector,
+    time: f64,
+    fraction: f64,
+    slack: Slack,
+}
+
+/// A straight piece between two samples, with the least slack on it. Along it the slack is a convex,
+/// piecewise linear function, so tangents of a falling and a rising face are intersected until they meet.
+#[derive(Debug, Clone, Copy)]
+struct Chord {
+    least: Approach,
+    /// m/s of the slack at the start and at the end.
+    start_rate: f64,
+    end_rate: f64,
+}
+
+impl Chord {
+    fn new(hazard: &Hazard, leg: usize, from: &Sample, to: &Sample) -> Self {
+        let faces = hazard.body.faces();
+        let width = (to.time - from.time).max(1e-12);
+        let velocity = (to.position - from.position) / width;
+        let rate = |face: usize| faces[face].normal.dot(&velocity) - faces[face].velocity_support;
+        let (start_rate, end_rate) = (rate(from.slack.face), rate(to.slack.face));
+        let approach = |fraction, slack, faces| Approach {
             leg,
-            fraction: from,
-            slack: f64::INFINITY,
-            faces: [(0, 1.0), (0, 0.0)],
-        },
-        0.0,
-        0.0,
-    );
-    for _ in 0..passes {
-        let at = |f: f64| {
-            let elapsed = segment.duration * f;
-            (
-                segment.pose_after(elapsed).position,
-                segment.start_time + elapsed,
+            fraction,
+            slack,
+            faces,
+        };
+        let end = |s: &Sample| {
+            approach(
+                s.fraction,
+                s.slack.value,
+                [(s.slack.face, 1.0), (s.slack.face, 0.0)],
             )
         };
-        let ((pa, ta), (pb, tb)) = (at(low), at(high));
-        let width = (tb - ta).max(1e-12);
-        let velocity = (pb - pa) / width;
-        let rate = |face: usize| faces[face].normal.dot(&velocity) - faces[face].velocity_support;
-        let slack = |s: f64| hazard.body.slack(pa + velocity * s, ta + s);
-        let (mut a, mut b) = ((0.0, slack(0.0)), (width, slack(width)));
-        let mut least = if rate(a.1.face) >= 0.0 {
-            (a, [(a.1.face, 1.0), (a.1.face, 0.0)])
-        } else if rate(b.1.face) <= 0.0 {
-            (b, [(b.1.face, 1.0), (b.1.face, 0.0)])
+        let least = if start_rate >= 0.0 {
+            end(from)
+        } else if end_rate <= 0.0 {
+            end(to)
         } else {
-            // a convex piecewise linear function between a falling and a rising face
-            let mut least = (a, [(a.1.face, 1.0), (b.1.face, 0.0)]);
-            for _ in 0..30 {
+            let (mut a, mut b) = ((0.0, from.slack), (width, to.slack));
+            let mut best = (0.0, from.slack.value, [(a.1.face, 1.0), (b.1.face, 0.0)]);
+            for _ in 0..MAX_CUTS {
                 let (fall, rise) = (rate(a.1.face), rate(b.1.face));
                 let s = (a.0 + (b.1.value - a.1.value - rise * (b.0 - a.0)) / (fall - rise))
                     .clamp(a.0, b.0);
-                let g = slack(s);
+                let g = hazard
+                    .body
+                    .slack(from.position + velocity * s, from.time + s);
                 let weight = rise / (rise - fall);
-                least = ((s, g), [(a.1.face, weight), (b.1.face, 1.0 - weight)]);
+                best = (s, g.value, [(a.1.face, weight), (b.1.face, 1.0 - weight)]);
                 if g.face == a.1.face || g.face == b.1.face || !(s > a.0 && s < b.0) {
                     break;
                 }
@@ -449,32 +545,15 @@ fn least_on(
                     b = (s, g)
                 }
             }
-            least
+            let fraction = from.fraction + (to.fraction - from.fraction) * best.0 / width;
+            approach(fraction, best.1, best.2)
         };
-        let fraction = low + (high - low) * least.0.0 / width;
-        if passes > 1 {
-            let (p, t) = at(fraction);
-            let exact = hazard.body.slack(p, t);
-            least.0.1 = exact;
-            if least.1[1].1 == 0.0 {
-                least.1 = [(exact.face, 1.0), (exact.face, 0.0)];
-            }
+        Self {
+            least,
+            start_rate,
+            end_rate,
         }
-        let ends = (rate(least.1[0].0), rate(least.1[0].0));
-        best = (
-            Approach {
-                leg,
-                fraction,
-                slack: least.0.1.value,
-                faces: least.1,
-            },
-            ends.0,
-            ends.1,
-        );
-        let reach = (high - low) / 6.0;
-        (low, high) = ((fraction - reach).max(from), (fraction + reach).min(to));
     }
-    best
 }
 
 #[cfg(test)]

@@ -228,6 +228,29 @@ impl<'a> Selection<'a> {
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);
         let clear = in_time && cost.is_finite() && first_met(self.scene.hazards, &motion).is_none();
+        if std::env::var("DEV").is_ok() && !clear {
+            for (k, s) in motion.iter().enumerate() {
+                let mut m = (1e9, 0.0);
+                for i in 0..=1000 {
+                    let t = s.start_time + s.duration * i as f64 / 1000.0;
+                    let g = self.scene.hazards[0]
+                        .body
+                        .slack(s.pose_at(t).position, t)
+                        .value;
+                    if g < m.0 {
+                        m = (g, i as f64 / 1000.0);
+                    }
+                }
+                eprintln!(
+                    "  seg {k} arc {} {:.2}s {:.4} at {:.3} met {:?}",
+                    s.is_arc(),
+                    s.duration,
+                    m.0,
+                    m.1,
+                    first_met(self.scene.hazards, &[*s])
+                );
+            }
+        }
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }
