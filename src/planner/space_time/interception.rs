@@ -223,7 +223,8 @@ impl Chase {
     ) -> Option<f64> {
         let (mut low, mut high) = (a, b);
         let rising = fa < 0.0;
-        let mut at = 0.5 * (a + b);
+        // concave: from the end where it is negative Newton runs straight to the root
+        let mut at = if rising { a } else { b };
         for _ in 0..MAX_ITERATIONS {
             let (f, d) = gap(at)?;
             if (f < 0.0) == rising {
@@ -237,7 +238,7 @@ impl Chase {
             } else {
                 0.5 * (low + high)
             };
-            if (next - at).abs() <= 1e-12 * (1.0 + at.abs()) {
+            if (next - at).abs() <= 1e-11 * (1.0 + at.abs()) {
                 return Some(next);
             }
             at = next;

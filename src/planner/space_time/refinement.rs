@@ -51,6 +51,8 @@ pub(crate) struct Refinement {
     model: Model,
     best: Option<Refined>,
     penalty: f64,
+    /// Slots that stayed empty in the last step.
+    still: [bool; MAX_VARIABLES],
     radius: f64,
     stalled: usize,
     steps: usize,
@@ -102,6 +104,7 @@ impl Refinement {
             model,
             best: None,
             penalty,
+            still: [false; MAX_VARIABLES],
             radius: FIRST_RADIUS_M,
             stalled: 0,
             steps: 0,
@@ -268,10 +271,12 @@ impl Refinement {
             high: &high,
             rows: &rows,
         };
-        let Some(solution) = programme.solve() else {
+        let Some(solution) = programme.solve_from(&mut self.still) else {
             return false;
         };
-        self.penalty = self.penalty.max(1.5 * solution.multipliers);
+        self.penalty = self
+            .penalty
+            .max(1.5 * solution.multipliers.iter().sum::<f64>());
         let step = solution.x;
         let mut trial = self.lengths;
         for i in 0..n {

@@ -35,10 +35,10 @@ const CANONICAL: [Canonical; 3] = [
 const MAX_CONFLICTS: usize = 2;
 
 /// Steps after which a refinement may be overtaken.
-const RACE_FROM: usize = 6;
+const RACE_FROM: usize = 4;
 
 /// Relative excess over the best that a refinement may still have at first.
-const RACE_SLACK: f64 = 0.5;
+const RACE_SLACK: f64 = 0.3;
 
 /// A clear trajectory.
 #[derive(Debug, Clone)]
