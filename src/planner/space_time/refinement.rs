@@ -24,6 +24,11 @@ const LONGEST_ARC: f64 = 2.0;
 const LEAST_PENALTY: f64 = 10.0;
 const PENALTY_PER_COST: f64 = 0.05;
 
+/// A step that does not fit or gain is shortened by this, so many times, before the programme is solved
+/// anew in a smaller box.
+const BACKTRACK: f64 = 0.4;
+const MAX_BACKTRACKS: usize = 2;
+
 /// Share of what the box allows that an unmet row asks for.
 const REACHABLE: f64 = 0.8;
 
@@ -220,6 +225,12 @@ impl Refinement {
                 *length = (*length + step).max(0.0);
             }
             let Some(model) = scene.model(&self.template, &trial) else {
+                if std::env::var("DEVI").is_ok() {
+                    eprintln!(
+                        "it {} none radius {} solved {:?} room {:?}",
+                        self.steps, self.radius, self.model.sailed.solved, self.model.sailed.room
+                    );
+                }
                 return;
             };
             if model.violation >= self.model.violation {
@@ -278,36 +289,42 @@ impl Refinement {
             .penalty
             .max(1.5 * solution.multipliers.iter().sum::<f64>());
         let step = solution.x;
-        let mut trial = self.lengths;
-        for i in 0..n {
-            trial[i] = (trial[i] + step[i]).max(0.0);
-        }
         let largest = step[..n].iter().fold(0.0_f64, |m, s| m.max(s.abs()));
         let linear: f64 = (0..n).map(|i| step[i] * self.model.gradient[i]).sum();
         let bent: f64 = (0..n)
             .map(|i| step[i] * (0..n).map(|k| hessian[i][k] * step[k]).sum::<f64>())
             .sum();
-        let predicted = -(linear + 0.5 * bent) + self.penalty * self.model.violation;
         let merit = self.model.cost + self.penalty * self.model.violation;
-        let Some(model) = scene.model(&self.template, &trial) else {
-            return self.shrink(largest);
-        };
-        let gained = merit - model.cost - self.penalty * model.violation;
-        if !(gained > 0.0 && gained >= 0.05 * predicted) {
-            return self.shrink(largest);
+        let mut share = 1.0;
+        for _ in 0..=MAX_BACKTRACKS {
+            let predicted =
+                share * (self.penalty * self.model.violation - linear) - 0.5 * share * share * bent;
+            let mut trial = self.lengths;
+            for i in 0..n {
+                trial[i] = (trial[i] + share * step[i]).max(0.0);
+            }
+            let found = scene.model(&self.template, &trial).map(|model| {
+                let gained = merit - model.cost - self.penalty * model.violation;
+                (model, gained)
+            });
+            if let Some((model, gained)) = found
+                && gained > 0.0
+                && gained >= 0.05 * predicted
+            {
+                let settled = gained < STALLED * model.cost.max(1.0) && model.violation < 1e-3;
+                self.stalled = if settled { self.stalled + 1 } else { 0 };
+                (self.lengths, self.model) = (trial, model);
+                self.keep();
+                if share < 1.0 {
+                    self.radius = (2.0 * share * largest).clamp(SMALLEST_RADIUS_M, self.radius);
+                } else if gained > 0.6 * predicted && largest > 0.9 * self.radius {
+                    self.radius = (1.7 * self.radius).min(LARGEST_RADIUS_M);
+                }
+                return self.stalled < 2;
+            }
+            share *= BACKTRACK;
         }
-        let settled = gained < STALLED * model.cost.max(1.0) && model.violation < 1e-3;
-        self.stalled = if settled { self.stalled + 1 } else { 0 };
-        (self.lengths, self.model) = (trial, model);
-        self.keep();
-        if gained > 0.6 * predicted && largest > 0.9 * self.radius {
-            self.radius = (1.7 * self.radius).min(LARGEST_RADIUS_M);
-        }
-        self.stalled < 2
-    }
-
-    fn shrink(&mut self, largest: f64) -> bool {
-        self.radius = 0.4 * largest.min(self.radius);
+        self.radius = share * largest.min(self.radius);
         self.radius >= SMALLEST_RADIUS_M
     }
 }

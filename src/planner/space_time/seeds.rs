@@ -105,6 +105,8 @@ pub(crate) struct Canonical {
     pub reach: f64,
     /// The turn out at the least speed, not at the greatest.
     pub slow: bool,
+    /// Share of the conflict's duration that is lost at the least speed before the turn.
+    pub wait: f64,
 }
 
 /// Slots and lengths while they are put together.
@@ -185,10 +187,13 @@ impl Canonical {
         let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
         let arc = turn * radius;
         let way_out = (2.0 * arc + out) / if self.slow { paces.normal } else { fast };
-        let departure = (conflict.from - self.lead * way_out).max(0.0);
+        // sailed at the least speed, so as to arrive later by a share of the conflict
+        let delay = self.wait * (conflict.to - conflict.from);
+        let run = (delay / (1.0 / slow - 1.0 / paces.normal).max(1e-3)).min(0.3 * route.length());
+        let departure = (conflict.from - self.lead * way_out - run / slow).max(0.0);
         let lead = (departure * paces.normal).min(route.length());
         // made good along the route on the way out, and on the way back at the flattest angle that fits
-        let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
+        let made_good = lead + run + 2.0 * radius * turn.sin() + out * turn.cos();
         let room = route.length() - made_good;
         let way_back = |angle: f64| {
             let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
@@ -200,7 +205,7 @@ impl Canonical {
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
             .max(0.0);
         let mut draft = Draft::default();
-        draft.runs(&paces, lead, 0.0, 0.0);
+        draft.runs(&paces, lead, 0.0, run);
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();

@@ -10,32 +10,45 @@ use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
 
 /// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin.
-const CANONICAL: [Canonical; 3] = [
-    Canonical {
-        turn: 0.4,
-        lead: 1.0,
-        reach: 1.2,
-        slow: false,
-    },
+const CANONICAL: [Canonical; 4] = [
     Canonical {
         turn: 0.9,
         lead: 1.0,
         reach: 1.2,
         slow: false,
+        wait: 0.0,
+    },
+    Canonical {
+        turn: 0.4,
+        lead: 1.0,
+        reach: 1.2,
+        slow: false,
+        wait: 0.0,
     },
     Canonical {
         turn: 1.3,
         lead: 1.0,
         reach: 1.2,
         slow: true,
+        wait: 0.0,
+    },
+    Canonical {
+        turn: 0.5,
+        lead: 1.0,
+        reach: 0.6,
+        slow: true,
+        wait: 0.3,
     },
 ];
+
+/// A side whose offset is this many times the other's gets one manoeuvre only.
+const FAR_SIDE: f64 = 1.8;
 
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
 /// Steps after which a refinement may be overtaken.
-const RACE_FROM: usize = 4;
+const RACE_FROM: usize = 40;
 
 /// Relative excess over the best that a refinement may still have at first.
 const RACE_SLACK: f64 = 0.3;
@@ -124,10 +137,14 @@ impl<'a> Selection<'a> {
         let mut seeds = std::mem::take(&mut self.seeds);
         let leg = problem.desired.legs().len() - 1;
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
-            for canonical in CANONICAL {
-                for side in Side::BOTH {
-                    seeds.extend(canonical.seed(problem, route, side, conflict, leg));
-                }
+            for side in Side::BOTH {
+                let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
+                let tried = if far { &CANONICAL[..1] } else { &CANONICAL[..] };
+                seeds.extend(
+                    tried
+                        .iter()
+                        .filter_map(|c| c.seed(problem, route, side, conflict, leg)),
+                );
             }
         }
         if std::env::var("DEV").is_ok() {

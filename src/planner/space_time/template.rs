@@ -101,6 +101,8 @@ pub(crate) struct Sailed {
     pub tail: usize,
     /// Distance along the route and time at which the tail begins.
     pub joined: (f64, f64),
+    /// Metres left of the leg after a return.
+    pub room: Option<f64>,
     /// Lengths of the solved slots.
     pub solved: [f64; 2],
     /// Rates of the solved slots with each free one.
@@ -138,6 +140,7 @@ impl Template {
             legs: Vec::with_capacity(2 * self.all() + 8),
             tail: 0,
             joined: (0.0, 0.0),
+            room: None,
             solved: [0.0; 2],
             solved_rates: [[0.0; MAX_VARIABLES]; 2],
             rigid: Vec::with_capacity(self.all()),
@@ -228,6 +231,7 @@ impl Template {
             return None;
         }
         sailed.joined = (stretch.distance + along - stretch.from, at.time);
+        sailed.room = Some(stretch.to - along);
         let normal = to_port(l.direction);
         let end = at.pose.position;
         let across = normal.dot(&sailed.rigid[n].ahead);
