@@ -173,28 +173,36 @@ impl Scene<'_> {
         let q = self.problem.time_weight;
         let sigma = distance - l.start_distance;
         let n = point.slots;
-        let mut row = [0.0; MAX_VARIABLES];
-        let normal = to_port(l.direction);
+        let (ahead, normal) = (l.direction, to_port(l.direction));
         let offset = point.position - l.start;
-        let mut add = |residual: f64, of: &dyn Fn(f64, f64, f64) -> f64| {
-            for (i, r) in row.iter_mut().enumerate().take(n) {
-                *r = of(point.east[i], point.north[i], point.clock[i]);
-            }
-            full.add(&row, residual, weight, n);
-        };
-        add(normal.dot(&offset), &|e, n, _| normal.x * e + normal.y * n);
-        let behind = l.direction.dot(&offset) - sigma;
+        let behind = ahead.dot(&offset) - sigma;
         let late = point.time - l.start_time - sigma / l.speed;
+        let row = |of: &[f64; 3]| {
+            let mut row = [0.0; MAX_VARIABLES];
+            for (i, r) in row[..n].iter_mut().enumerate() {
+                *r = of[0] * point.east[i] + of[1] * point.north[i] + of[2] * point.clock[i];
+            }
+            row
+        };
+        let across = (normal.dot(&offset), row(&[normal.x, normal.y, 0.0]));
         if sigma > 0.0 && sigma < l.length {
             let scale = (q / (q + l.speed * l.speed)).sqrt();
-            let lag = l.speed * late - behind;
-            add(scale * lag, &|e, n, t| {
-                scale * (l.speed * t - l.direction.x * e - l.direction.y * n)
-            });
+            let lag = scale * (l.speed * late - behind);
+            full.add(
+                weight,
+                n,
+                &across,
+                &(
+                    lag,
+                    row(&[-scale * ahead.x, -scale * ahead.y, scale * l.speed]),
+                ),
+            );
         } else {
+            let none = (0.0, [0.0; MAX_VARIABLES]);
+            full.add(weight, n, &across, &none);
             let root = q.sqrt();
-            add(behind, &|e, n, _| l.direction.x * e + l.direction.y * n);
-            add(root * late, &|_, _, t| root * t);
+            let along = (behind, row(&[ahead.x, ahead.y, 0.0]));
+            full.add(weight, n, &along, &(root * late, row(&[0.0, 0.0, root])));
         }
     }
 
@@ -373,13 +381,15 @@ struct Full {
 }
 
 impl Full {
-    fn add(&mut self, row: &Row, residual: f64, weight: f64, n: usize) {
+    /// Adds two squared residuals with their rates.
+    fn add(&mut self, weight: f64, n: usize, one: &(f64, Row), other: &(f64, Row)) {
         let scale = 2.0 * weight;
         for i in 0..n {
-            let r = scale * row[i];
-            self.gradient[i] += residual * r;
-            for (h, c) in self.hessian[i].iter_mut().zip(row).take(i + 1) {
-                *h += r * c;
+            let (a, b) = (scale * one.1[i], scale * other.1[i]);
+            self.gradient[i] += a * one.0 + b * other.0;
+            let row = &mut self.hessian[i][..=i];
+            for ((h, p), q) in row.iter_mut().zip(&one.1).zip(&other.1) {
+                *h += a * p + b * q;
             }
         }
     }

@@ -48,10 +48,13 @@ const FAR_SIDE: f64 = 1.8;
 const MAX_CONFLICTS: usize = 2;
 
 /// Steps after which a refinement may be overtaken.
-const RACE_FROM: usize = 40;
+const RACE_FROM: usize = 5;
 
 /// Relative excess over the best that a refinement may still have at first.
-const RACE_SLACK: f64 = 0.3;
+const RACE_SLACK: f64 = 0.5;
+
+/// Rounds after which only the best goes on.
+const RACE_ROUNDS: f64 = 14.0;
 
 /// A clear trajectory.
 #[derive(Debug, Clone)]
@@ -174,7 +177,8 @@ impl<'a> Selection<'a> {
                     best = best.min(found.model.cost);
                 }
             }
-            let allowed = best * (1.0 + RACE_SLACK * (1.0 - round as f64 / MAX_STEPS as f64)) + 1.0;
+            let slack = RACE_SLACK * (1.0 - round as f64 / RACE_ROUNDS).max(0.0);
+            let allowed = best * (1.0 + slack);
             for refinement in running.iter_mut().filter(|r| r.steps() >= RACE_FROM) {
                 if refinement.cost() > allowed {
                     refinement.stop();
