@@ -17,9 +17,10 @@ use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStre
 
 use super::chart::{knots, legend_height};
 use super::curves::{CLEARANCE, COURSE, MARGIN, SPEED, clearances, courses, margins};
+use super::explored::BLOCKED;
 use super::scene::Scene;
 use super::{APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VOLUME, style};
-use crate::frame::{Vector, direction, to_starboard};
+use crate::frame::{Vector, to_starboard};
 
 /// Seconds in which the whole run is played.
 const PLAY_S: f64 = 25.0;
@@ -77,6 +78,11 @@ fn hidden() -> Box<dyn AsComponents> {
     Box::new(EntityBehavior::new().with_visible(false))
 }
 
+/// Where a view keeps what it does with an entity.
+fn behavior(entity: &str) -> String {
+    format!("ViewContents/overrides/{entity}/visualizers")
+}
+
 /// Everything logged so far stays visible.
 fn up_to_cursor() -> VisibleTimeRanges {
     VisibleTimeRanges::new([VisibleTimeRange {
@@ -105,7 +111,6 @@ fn chart_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
         x_range: [low.x, high.x].into(),
         y_range: [-high.y, -low.y + legend_height(scene)].into(),
     };
-    let behavior = |entity| format!("ViewContents/overrides/{entity}/visualizers");
     with(
         Spatial2DView::new("Chart, north up").with_origin(CHART),
         properties,
@@ -119,17 +124,11 @@ fn chart_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
 }
 
 fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
-    let size = scene.bounds.extent();
+    let size = 0.92 * scene.bounds.size().norm();
     let middle = scene.lifted(scene.bounds.center(), 0.42 * scene.end);
     // from starboard and somewhat astern: own ship runs from left to right and upward
-    let desired = &scene.run.scenario.desired;
-    let ahead = desired.end() - desired.waypoints()[0];
-    let ahead = if ahead.norm() > 0.0 {
-        ahead.normalize()
-    } else {
-        direction(scene.motion.pose_at(0.0).heading)
-    };
-    let side: Vector = to_starboard(ahead) * 1.0 - ahead * 0.35;
+    let ahead = scene.ahead();
+    let side: Vector = to_starboard(ahead) - ahead * 0.35;
     let eye = [
         middle[0] + (side.x * size) as f32,
         middle[1] + (side.y * size) as f32,
@@ -153,6 +152,7 @@ fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
                 Box::new(LineGrid3D::new().with_visible(false)),
             ),
             ("Background", plain_background()),
+            (&behavior(&format!("{VOLUME}/explored/{BLOCKED}")), hidden()),
         ],
     )
 }

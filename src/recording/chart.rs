@@ -1,6 +1,8 @@
 //! The chart that stands still: grid, legend, desired and planned trajectory, closest points.
 
-use rerun::{Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult};
+use rerun::{
+    AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult,
+};
 
 use super::scene::{Bounds, Scene, desired_leg, flat, round_down};
 use super::style::{self, Pace};
@@ -49,6 +51,7 @@ pub fn log_chart(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<
         log_track(rec, scene, index, target)?;
     }
     log_closest_points(rec, scene)?;
+    log_conflict(rec, scene)?;
     log_violations(rec, scene)
 }
 
@@ -87,7 +90,7 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         .with_show_labels(true);
     rec.log_static(
         path(&[MAP, "north"]),
-        &[&north.archetype() as &dyn rerun::AsComponents, &name],
+        &[&north.archetype() as &dyn AsComponents, &name],
     )
 }
 
@@ -262,7 +265,7 @@ fn log_track(
         .with_radii([style::points(3.0)]);
     rec.log_static(
         path(&[MAP, "tracks", &target.name]),
-        &[&line as &dyn rerun::AsComponents, &marks],
+        &[&line as &dyn AsComponents, &marks],
     )
 }
 
@@ -271,16 +274,22 @@ fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     let Some(evaluation) = &scene.run.evaluation else {
         return Ok(());
     };
+    let beyond = scene.bounds.extent() / 10.0;
     let mut lines = Lines::default();
-    let mut labels = Vec::new();
+    let (mut places, mut labels) = (Vec::new(), Vec::new());
     for (target, passage) in scene.run.scenario.targets.iter().zip(&evaluation.passages) {
         let own = scene.motion.pose_at(passage.tcpa).position;
-        let ends = [own, target.position_at(passage.tcpa)];
+        let other = target.position_at(passage.tcpa);
         lines.add(
-            ends.map(flat).to_vec(),
+            [own, other].map(flat).to_vec(),
             style::chart_text(),
             style::points(0.8),
         );
+        // on the far side of the target: own ship and her time marks are named on the near side
+        let away = (other - own)
+            .try_normalize(0.0)
+            .unwrap_or_else(Vector::zeros);
+        places.push(flat(other + away * beyond));
         labels.push(format!(
             "CPA {:.0} m at {:.0} s",
             passage.dcpa, passage.tcpa
@@ -289,9 +298,40 @@ fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     if labels.is_empty() {
         return Ok(());
     }
+    let lines = lines.archetype();
+    let names = Points2D::new(places)
+        .with_colors([style::chart_text()])
+        .with_radii([style::points(0.0)])
+        .with_labels(labels)
+        .with_show_labels(true);
+    let parts: [&dyn AsComponents; 2] = [&lines, &names];
+    rec.log_static(path(&[MAP, "closest_points"]), &parts)
+}
+
+/// Without a plan: where own ship on the desired trajectory first is in a set.
+fn log_conflict(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    if scene.motion.is_planned() {
+        return Ok(());
+    }
+    let inside = scene.samples.iter().find_map(|&time| {
+        let own = scene.motion.pose_at(time).position;
+        let mut sets = scene.run.obstacles.iter();
+        let set = sets.find(|set| set.contains(own, time))?;
+        Some((
+            own,
+            format!("in the set of {} from {time:.0} s", set.name()),
+        ))
+    });
+    let Some((place, label)) = inside else {
+        return Ok(());
+    };
     rec.log_static(
-        path(&[MAP, "closest_points"]),
-        &lines.archetype().with_labels(labels).with_show_labels(true),
+        path(&[MAP, "conflict"]),
+        &Points2D::new([flat(place)])
+            .with_colors([style::alarm()])
+            .with_radii([style::points(6.0)])
+            .with_labels([label])
+            .with_show_labels(true),
     )
 }
 

@@ -1,14 +1,15 @@
 //! Curves over time: clearance, margin, speed, course.
 
-use rerun::components::InterpolationMode;
+use rerun::components::{AggregationPolicy, InterpolationMode};
 use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
 use super::chart::knots;
-use super::scene::{Motion, Scene, desired_leg};
+use super::scene::{Motion, Scene};
 use super::{TIMELINE, path, style};
 use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, wrap};
 use crate::obstacle::PolytopeObstacle;
 use crate::target::Target;
+use crate::trajectory::DesiredLeg;
 
 /// Distances between hulls, per target.
 pub const CLEARANCE: &str = "curves/clearance_m";
@@ -40,7 +41,9 @@ fn log_curve(
     let look = SeriesLines::new()
         .with_names([name])
         .with_colors([color])
-        .with_widths([width]);
+        .with_widths([width])
+        // averaging neighbours would show speeds and depths that are not there
+        .with_aggregation_policy(AggregationPolicy::Off);
     rec.log_static(entity.clone(), &look)?;
     rec.send_columns(
         entity,
@@ -130,57 +133,56 @@ pub fn margins(scene: &Scene, sets: &[&PolytopeObstacle]) -> Vec<f64> {
     scene.samples.iter().map(at).collect()
 }
 
-/// Speeds are steps: one sample where each begins, and one at the end.
 fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let desired = &scene.run.scenario.desired;
-    let mut steps: Vec<_> = desired
-        .legs()
-        .iter()
-        .map(|l| (l.start_time, l.speed))
-        .collect();
-    steps.extend(desired.legs().last().map(|l| (l.end_time(), l.speed)));
+    let steps = leg_steps(scene, |leg| knots(leg.speed));
+    let (times, values): (Vec<f64>, _) = steps.into_iter().unzip();
     let look = ("desired", style::desired(), 1.0);
-    log_steps(rec, path(&[SPEED, "desired"]), look, &steps)?;
+    log_steps(rec, path(&[SPEED, "desired"]), look, &times, values)?;
     let Motion::Planned(trajectory) = scene.motion else {
         return Ok(());
     };
     let moving = trajectory.segments().iter().filter(|s| s.duration > 0.0);
-    let mut steps: Vec<_> = moving.map(|s| (s.start_time, s.speed)).collect();
-    let last = steps.last().copied();
-    steps.extend(last.map(|(_, speed)| (trajectory.end_time(), speed)));
+    let steps = moving.map(|s| (s.start_time, knots(s.speed)));
+    let (times, values): (Vec<f64>, _) = held_until(trajectory.end_time(), steps.collect())
+        .into_iter()
+        .unzip();
     let look = ("own ship", style::own_ship(), 2.0);
-    log_steps(rec, path(&[SPEED, "own_ship"]), look, &steps)
+    log_steps(rec, path(&[SPEED, "own_ship"]), look, &times, values)
 }
 
-/// Steps of `(time, m/s)`.
+/// A value of every leg of the desired trajectory at its start, and the last one at the end.
+fn leg_steps(scene: &Scene, value: impl Fn(&DesiredLeg) -> f64) -> Vec<(f64, f64)> {
+    let desired = &scene.run.scenario.desired;
+    let steps = desired.legs().iter().map(|l| (l.start_time, value(l)));
+    held_until(desired.duration(), steps.collect())
+}
+
+/// With the last value once more at `end`.
+fn held_until(end: f64, mut steps: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let last = steps.last().copied();
+    steps.extend(last.map(|(_, value)| (end, value)));
+    steps
+}
+
+/// A curve that holds every value until the next.
 fn log_steps(
     rec: &RecordingStream,
     entity: rerun::EntityPath,
     look: Look,
-    steps: &[(f64, f64)],
+    times: &[f64],
+    values: Vec<f64>,
 ) -> RecordingStreamResult<()> {
     let held = SeriesLines::update_fields().with_interpolation_mode(InterpolationMode::StepAfter);
     rec.log_static(entity.clone(), &held)?;
-    let times: Vec<f64> = steps.iter().map(|s| s.0).collect();
-    let speeds = steps.iter().map(|s| knots(s.1)).collect();
-    log_curve(rec, entity, look, &times, speeds)
+    log_curve(rec, entity, look, times, values)
 }
 
 fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let desired = &scene.run.scenario.desired;
-    let wanted = scene
-        .samples
-        .iter()
-        .map(|&t| heading_of(desired_leg(desired, t).direction));
-    let values = continuous_courses(start_course(scene), wanted);
+    let steps = leg_steps(scene, |leg| heading_of(leg.direction));
+    let times: Vec<f64> = steps.iter().map(|s| s.0).collect();
+    let values = continuous_courses(start_course(scene), steps.iter().map(|s| s.1));
     let look = ("desired", style::desired(), 1.0);
-    log_curve(
-        rec,
-        path(&[COURSE, "desired"]),
-        look,
-        &scene.samples,
-        values,
-    )?;
+    log_steps(rec, path(&[COURSE, "desired"]), look, &times, values)?;
     if !scene.motion.is_planned() {
         return Ok(());
     }

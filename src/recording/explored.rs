@@ -8,8 +8,13 @@ use super::{MAP, VOLUME, path, style};
 use crate::frame::Vector;
 use crate::planner::{EdgeVerdict, ExploredEdge};
 
+/// Edges that are clear of every set.
+const FREE: &str = "free";
+/// Edges that meet one.
+pub const BLOCKED: &str = "blocked";
+
 /// Points that the edges may have in all: 24 bytes each, in both pictures.
-const POINT_BUDGET: usize = 3000;
+const POINT_BUDGET: usize = 2400;
 
 /// How much of the graph is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,12 +37,12 @@ struct Kind {
 pub fn log_explored(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<Drawn> {
     let mut kinds = [
         Kind {
-            name: "free",
+            name: FREE,
             color: style::graph_free(),
             strips: Vec::new(),
         },
         Kind {
-            name: "blocked",
+            name: BLOCKED,
             color: style::graph_blocked(),
             strips: Vec::new(),
         },

@@ -14,6 +14,7 @@
 //! | `chart/map/time_marks` | own ship every round number of seconds |
 //! | `chart/map/tracks/<target>` | the target's expected track with the same time marks |
 //! | `chart/map/closest_points` | own ship and each target at their CPA, joined |
+//! | `chart/map/conflict` | without a plan: where the desired trajectory first is in a set |
 //! | `chart/map/violations` | where the independent check found something wrong |
 //! | `chart/map/own_ship`, with `name`, `hull`, `hull/vector` | own ship's place, hull and speed vector at the cursor |
 //! | `chart/map/targets/<target>`, with `name` | expected place, hull and speed vector at the cursor |
@@ -24,7 +25,7 @@
 //! | `space_time/desired`, `planned`, `targets` | the motions as lines; the plan's shadow lies on the sea |
 //! | `space_time/hard_sets/<target>`, `shaped_sets/<target>` | the bodies, translucent, from t = 0 to the end |
 //! | `space_time/now`, `ships` | the plane of the cursor and the ships in it |
-//! | `space_time/explored/free`, `blocked` | edges that the search tested |
+//! | `space_time/explored/free`, `blocked` | edges that the search tested; the blocked ones hidden until asked for |
 //! | `curves/clearance_m/<target>` | metres between own hull and the expected hull |
 //! | `curves/margin_m/hard`, `shaped` | metres from own ship's centre to the nearest set of the kind, negative inside |
 //! | `curves/speed_kn/own_ship`, `desired` | knots |

@@ -14,6 +14,9 @@ const SECTION_BYTES: f64 = 96e3;
 /// Seconds between two moments of the cursor.
 const MOMENT_STEP_S: (f64, f64) = (2.0, 5.0);
 
+/// Most moments, as far as the largest step allows.
+const MOMENTS: f64 = 120.0;
+
 /// Most samples of one curve.
 const CURVE_SAMPLES: f64 = 400.0;
 
@@ -142,6 +145,15 @@ impl<'a> Scene<'a> {
         }
     }
 
+    /// The unit vector from the first waypoint to the last; own ship's first heading on a round trip.
+    pub fn ahead(&self) -> Vector {
+        let desired = &self.run.scenario.desired;
+        let start = desired.legs()[0].start;
+        (desired.end() - start)
+            .try_normalize(0.0)
+            .unwrap_or_else(|| self.motion.pose_at(0.0).ahead())
+    }
+
     /// The index column of everything that moves.
     pub fn moment_column(&self) -> TimeColumn {
         TimeColumn::new_duration_secs(TIMELINE, self.moments.iter().copied())
@@ -193,7 +205,7 @@ fn moment_step(run: &Run, end: f64) -> f64 {
         .iter()
         .map(|s| s.hard.faces().len() + s.shaped.faces().len() + 2)
         .sum();
-    let rows = SECTION_BYTES / (8.0 * corners.max(1) as f64);
+    let rows = (SECTION_BYTES / (8.0 * corners.max(1) as f64)).min(MOMENTS);
     (end / rows)
         .ceil()
         .clamp(MOMENT_STEP_S.0, MOMENT_STEP_S.1)

@@ -9,7 +9,7 @@ use super::body::{mesh, moving_vertices};
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
 use super::scene::{Bounds, Scene};
 use super::{VOLUME, path, style};
-use crate::frame::Vector;
+use crate::frame::{Vector, to_port};
 use crate::obstacle::PolytopeObstacle;
 
 /// Of the sides of a shaped body.
@@ -108,20 +108,15 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     rec.log_static(path(&[VOLUME, "axes"]), &parts)
 }
 
-/// Where the time axis stands: the corner of the sea nearest to own ship's start, out of the way.
+/// Where the time axis stands: on the far side as the eye sees it, at the end where own ship starts.
 fn axis_corner(scene: &Scene) -> Vector {
     let Bounds { low, high } = scene.bounds;
-    let start = scene.motion.pose_at(0.0).position;
-    let nearer = |value: f64, low: f64, high: f64| {
-        if value - low < high - value {
-            low
-        } else {
-            high
-        }
-    };
+    let ahead = scene.ahead();
+    let beside = to_port(ahead) - ahead;
+    let corner = |along: f64, low: f64, high: f64| if along < 0.0 { low } else { high };
     Vector::new(
-        nearer(start.x, low.x, high.x),
-        nearer(start.y, low.y, high.y),
+        corner(beside.x, low.x, high.x),
+        corner(beside.y, low.y, high.y),
     )
 }
 

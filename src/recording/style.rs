@@ -12,8 +12,8 @@ const DESIRED: (u8, u8, u8) = (143, 163, 184);
 const GRID: (u8, u8, u8) = (38, 52, 74);
 const CHART_TEXT: (u8, u8, u8) = (160, 174, 192);
 const ALARM: (u8, u8, u8) = (255, 45, 45);
-const GRAPH_FREE: (u8, u8, u8) = (40, 105, 110);
-const GRAPH_BLOCKED: (u8, u8, u8) = (120, 40, 48);
+const GRAPH_FREE: (u8, u8, u8) = (30, 76, 84);
+const GRAPH_BLOCKED: (u8, u8, u8) = (96, 34, 44);
 const TARGETS: [(u8, u8, u8); 6] = [
     (255, 128, 64),
     (226, 96, 190),

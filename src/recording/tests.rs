@@ -136,6 +136,7 @@ fn a_run_without_a_plan_is_recorded_too() {
     write(&run_without_plan(), &path).expect("writes");
     let entities = read(&path);
     assert!(!entities.contains_key("/chart/map/planned"));
+    assert!(entities.contains_key("/chart/map/conflict"));
     assert!(entities.contains_key("/curves/margin_m/hard"));
 }
 
