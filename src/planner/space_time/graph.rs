@@ -5,10 +5,12 @@
 
 use std::cell::Cell;
 
+use super::chain::Chain;
 use super::hazard::{Hazard, first_met};
 use super::heuristic::Heuristic;
 use super::interception::{Chase, Limits};
-use super::route::{Route, return_to_line};
+use super::returning::return_to_line;
+use super::route::Route;
 use super::template::Ending;
 use crate::frame::{Pose, Side, heading_of};
 use crate::geometry::outer_simplified;
@@ -321,24 +323,21 @@ impl<'a> Graph<'a> {
                                 .at_speed(speed)
                                 .intercept(vertex.origin, vertex.velocity, limits);
                         let Some(meeting) = meeting else { continue };
-                        let motion = turn_and_line(
-                            from,
-                            side,
-                            meeting.turn * radius,
-                            meeting.line,
-                            speed,
-                            radius,
-                        );
-                        self.push(out, kind, Ending::Follow, motion, from);
+                        let mut chain = Chain::new(from.pose, from.time, speed, radius);
+                        chain.arc(meeting.turn * radius * side.turn_sign());
+                        chain.line(meeting.line);
+                        self.push(out, kind, Ending::Follow, chain.segments, from);
                     }
                 }
             }
         }
     }
 
+    /// Ways back onto the legs ahead, and straight to the last waypoint, all at the greatest speed: own
+    /// ship is late after a manoeuvre.
     fn returns(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let (own, desired) = (self.problem.own, self.problem.desired);
-        let radius = own.turning_radius;
+        let (radius, speed) = (own.turning_radius, own.max_speed());
         let near = desired.nearest(from.pose.position, from.time, 0.0).leg;
         for leg in near..desired.legs().len().min(near + 2) {
             let Some(stretch) = self.route.stretch(leg, desired) else {
@@ -350,48 +349,29 @@ impl<'a> Graph<'a> {
                 let Some(back) = return_to_line(&from.pose, l.start, heading, radius, angle) else {
                     continue;
                 };
-                let speed = own.max_speed();
-                {
-                    let mut motion = Vec::with_capacity(6);
-                    let mut at = (from.pose, from.time);
-                    for (length, bend) in
-                        [(back.first, true), (back.line, false), (back.last, true)]
-                    {
-                        append(&mut motion, &mut at, length, bend, speed, radius);
-                    }
-                    let along = l.direction.dot(&(at.0.position - l.start));
-                    if along < stretch.from || along > stretch.to {
-                        continue;
-                    }
-                    self.route
-                        .follow(stretch.distance + along - stretch.from, at.1, &mut motion);
-                    self.push(
-                        out,
-                        NodeKind::End,
-                        Ending::Return { leg, speed },
-                        motion,
-                        from,
-                    );
+                let mut chain = Chain::new(from.pose, from.time, speed, radius);
+                chain.arc(back.first);
+                chain.line(back.line);
+                chain.arc(back.last);
+                let along = l.direction.dot(&(chain.pose.position - l.start));
+                if along >= stretch.from && along <= stretch.to {
+                    let at = stretch.distance + along - stretch.from;
+                    self.route.follow(at, chain.time, &mut chain.segments);
+                    let ending = Ending::Return { leg, speed };
+                    self.push(out, NodeKind::End, ending, chain.segments, from);
                 }
             }
         }
         for side in Side::BOTH {
-            let speed = own.max_speed();
+            let chase = Chase::new(&from.pose, from.time, speed, radius, side);
+            if let Some((turn, line)) = chase.way_to(desired.end())
+                && turn <= MAX_TURN
             {
-                let chase = Chase::new(&from.pose, from.time, speed, radius, side);
-                let Some((turn, line)) = chase.way_to(desired.end()) else {
-                    continue;
-                };
-                if turn <= MAX_TURN {
-                    let motion = turn_and_line(from, side, turn * radius, line, speed, radius);
-                    self.push(
-                        out,
-                        NodeKind::End,
-                        Ending::Goal { side, speed },
-                        motion,
-                        from,
-                    );
-                }
+                let mut chain = Chain::new(from.pose, from.time, speed, radius);
+                chain.arc(turn * radius * side.turn_sign());
+                chain.line(line);
+                let ending = Ending::Goal { side, speed };
+                self.push(out, NodeKind::End, ending, chain.segments, from);
             }
         }
     }
@@ -460,53 +440,4 @@ impl Space for Graph<'_> {
         state.met.set(met);
         met.is_none()
     }
-}
-
-fn turn_and_line(
-    from: &State,
-    side: Side,
-    arc: f64,
-    line: f64,
-    speed: f64,
-    radius: f64,
-) -> Vec<Segment> {
-    let mut motion = Vec::with_capacity(2);
-    let mut at = (from.pose, from.time);
-    append(
-        &mut motion,
-        &mut at,
-        arc * side.turn_sign(),
-        true,
-        speed,
-        radius,
-    );
-    append(&mut motion, &mut at, line, false, speed, radius);
-    motion
-}
-
-/// Appends an arc (signed length, to port positive) or a line, unless it has no length.
-pub(crate) fn append(
-    motion: &mut Vec<Segment>,
-    at: &mut (Pose, f64),
-    length: f64,
-    bend: bool,
-    speed: f64,
-    radius: f64,
-) {
-    if length.abs() <= crate::tolerance::LENGTH_M {
-        return;
-    }
-    let segment = Segment {
-        start: at.0,
-        start_time: at.1,
-        duration: length.abs() / speed,
-        speed,
-        turn_rate: if bend {
-            speed * length.signum() / radius
-        } else {
-            0.0
-        },
-    };
-    *at = (segment.end(), segment.end_time());
-    motion.push(segment);
 }

@@ -9,13 +9,18 @@
 //! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
 //! plan is one of the candidates.
 
+mod approach;
+mod chain;
+mod factor;
 mod graph;
 mod hazard;
 mod heuristic;
 mod interception;
 mod model;
 mod quadratic;
+mod reduction;
 mod refinement;
+mod returning;
 mod route;
 mod seeds;
 mod selection;
@@ -24,6 +29,8 @@ mod template;
 use std::time::Instant;
 
 use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
+use crate::geometry::outer_disc;
+use crate::obstacle::PolytopeObstacle;
 use crate::search::{Search, Stop};
 use crate::trajectory::{Segment, Trajectory};
 use graph::Graph;
@@ -35,6 +42,9 @@ use selection::Selection;
 
 /// Expansions of one search at most: the bound on its memory. Typical searches need a hundredth.
 const MAX_EXPANDED: usize = 20_000;
+
+/// Metres. Sets narrower than twice this are grown by it.
+const LEAST_RADIUS_M: f64 = 5e-4;
 
 /// Plans of the graph that are refined, each passing the targets on other sides.
 const MAX_SIGNATURES: usize = 4;
@@ -49,6 +59,29 @@ const FURTHER_EXPANDED: usize = 20;
 /// cheapest of the candidates, not proven the cheapest of all: see the docs on its quality. The same
 /// problem gives the same plan unless the deadline strikes.
 pub fn plan(problem: &Problem) -> Planned {
+    let widened: Vec<PolytopeObstacle> = problem.obstacles.iter().map(outer_widened).collect();
+    plan_clear_of(&Problem {
+        obstacles: &widened,
+        ..problem.clone()
+    })
+}
+
+/// An outer approximation of an obstacle that starts without an interior: grown by [`LEAST_RADIUS_M`],
+/// so that touching it, which is allowed, is not meeting it.
+fn outer_widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
+    let initial = obstacle.initial();
+    let narrow = initial
+        .normals()
+        .iter()
+        .any(|n| initial.support(*n) + initial.support(-n) < 2.0 * LEAST_RADIUS_M);
+    if !narrow {
+        return obstacle.clone();
+    }
+    let grown = initial.minkowski_sum(&outer_disc(LEAST_RADIUS_M, 0.0));
+    PolytopeObstacle::new(obstacle.name(), grown, obstacle.velocity().clone())
+}
+
+fn plan_clear_of(problem: &Problem) -> Planned {
     let started = Instant::now();
     let out_of_time = || started.elapsed() >= problem.deadline;
     let refuse = |reason| Planned {
@@ -113,9 +146,6 @@ pub fn plan(problem: &Problem) -> Planned {
             break;
         }
     }
-    if std::env::var("DEVT").is_ok() {
-        eprintln!("graph {:?} {:?}", started.elapsed(), search.counts());
-    }
     let contact = first_contact(&hazards, &undisturbed);
     if contact.is_some() {
         let mut conflicts: Vec<Conflict> = hazards
@@ -124,9 +154,6 @@ pub fn plan(problem: &Problem) -> Planned {
             .collect();
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, &out_of_time);
-    }
-    if std::env::var("DEVT").is_ok() {
-        eprintln!("refined {:?}", started.elapsed());
     }
     let counts = search.counts();
     let stats = SearchStats {

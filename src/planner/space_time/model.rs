@@ -1,24 +1,17 @@
 //! The refinement's view of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the
 //! contact rows, all in the free lengths.
 
+use super::approach::{Approach, approaches};
 use super::hazard::Hazard;
 use super::quadratic::{Constraint, MAX_VARIABLES, Matrix, Row};
+use super::reduction::{Full, reduce, reduce_matrix};
 use super::route::Route;
 use super::template::{Ending, Owner, Point, Sailed, Template};
 use crate::frame::{Vector, to_port};
-use crate::obstacle::{HalfSpace, Slack};
+use crate::obstacle::HalfSpace;
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4, space_time_error};
-use crate::trajectory::{Mover, Segment};
-
-/// Metres. Approaches closer than this become rows.
-const NEAR_M: f64 = 60.0;
-
-/// Radians. Longest arc that one chord stands for when a minimum is sought.
-const CHORD_RAD: f64 = 0.05;
-
-/// Cuts of one minimum at most.
-const MAX_CUTS: usize = 30;
+use crate::trajectory::Segment;
 
 /// Metres that solved slots and the leg after the return keep, so that a step does not run out of them.
 const ROOM_M: f64 = 1.0;
@@ -55,15 +48,6 @@ pub(crate) struct Model {
     pub violation: f64,
     /// Least slack of all contact rows, metres.
     pub least_slack: f64,
-}
-
-/// A local minimum of the slack along a manoeuvre.
-#[derive(Debug, Clone, Copy)]
-struct Approach {
-    leg: usize,
-    fraction: f64,
-    slack: f64,
-    faces: [(usize, f64); 2],
 }
 
 impl Scene<'_> {
@@ -136,7 +120,7 @@ impl Scene<'_> {
         let per_time = 1.0 / desired.duration();
         let turn = segment.turn_rate.abs() * segment.duration;
         let nodes: &[(f64, f64)] = match turn {
-            t if t == 0.0 => &GAUSS_2,
+            t if t < 0.3 => &GAUSS_2,
             t if t < 1.0 => &GAUSS_3,
             _ => &GAUSS_4,
         };
@@ -371,210 +355,6 @@ struct Tail {
     by_distance: f64,
     bend: f64,
     slowness: f64,
-}
-
-/// Cost and rates in all slots; the lower triangle of the Hessian.
-struct Full {
-    cost: f64,
-    gradient: Row,
-    hessian: Matrix,
-}
-
-impl Full {
-    /// Adds two squared residuals with their rates.
-    fn add(&mut self, weight: f64, n: usize, one: &(f64, Row), other: &(f64, Row)) {
-        let scale = 2.0 * weight;
-        for i in 0..n {
-            let (a, b) = (scale * one.1[i], scale * other.1[i]);
-            self.gradient[i] += a * one.0 + b * other.0;
-            let row = &mut self.hessian[i][..=i];
-            for ((h, p), q) in row.iter_mut().zip(&one.1).zip(&other.1) {
-                *h += a * p + b * q;
-            }
-        }
-    }
-}
-
-/// A row in all slots as a row in the free ones.
-fn reduce(row: &Row, sailed: &Sailed, free: usize, all: usize) -> Row {
-    let mut reduced = [0.0; MAX_VARIABLES];
-    for i in 0..free {
-        reduced[i] = row[i]
-            + (0..all - free)
-                .map(|k| row[free + k] * sailed.solved_rates[k][i])
-                .sum::<f64>();
-    }
-    reduced
-}
-
-fn reduce_matrix(lower: &Matrix, sailed: &Sailed, free: usize, all: usize) -> Matrix {
-    let mut half: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    for i in 0..all {
-        let mut row = [0.0; MAX_VARIABLES];
-        for k in 0..all {
-            row[k] = if k <= i { lower[i][k] } else { lower[k][i] };
-        }
-        half[i] = reduce(&row, sailed, free, all);
-    }
-    let mut reduced: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    for i in 0..free {
-        for k in 0..free {
-            reduced[i][k] = half[i][k]
-                + (0..all - free)
-                    .map(|d| sailed.solved_rates[d][i] * half[free + d][k])
-                    .sum::<f64>();
-        }
-    }
-    reduced
-}
-
-/// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`].
-fn approaches(hazard: &Hazard, sailed: &Sailed) -> Vec<Approach> {
-    let mut chords: Vec<Chord> = Vec::with_capacity(64);
-    let mut found: Vec<Approach> = Vec::new();
-    for (leg, l) in sailed.legs.iter().enumerate() {
-        let segment = &l.segment;
-        if segment.duration <= 0.0 {
-            continue;
-        }
-        if hazard.clearance_bound(segment) > NEAR_M {
-            local_minima(&mut chords, &mut found);
-            continue;
-        }
-        let count = (segment.turn_rate.abs() * segment.duration / CHORD_RAD)
-            .ceil()
-            .max(1.0);
-        let mover = Mover::new(segment);
-        let at = |fraction: f64| {
-            let time = segment.start_time + segment.duration * fraction;
-            let position = mover.position_at(time);
-            Sample {
-                position,
-                time,
-                fraction,
-                slack: hazard.body.slack(position, time),
-            }
-        };
-        let mut from = at(0.0);
-        for k in 1..=count as usize {
-            let to = at(k as f64 / count);
-            let mut chord = Chord::new(hazard, leg, &from, &to);
-            if count > 1.0 && chord.least.faces[1].1 != 0.0 {
-                chord.least.slack = at(chord.least.fraction).slack.value;
-            }
-            chords.push(chord);
-            from = to;
-        }
-    }
-    local_minima(&mut chords, &mut found);
-    found
-}
-
-/// Moves the local minima of a run of chords to `found`.
-fn local_minima(chords: &mut Vec<Chord>, found: &mut Vec<Approach>) {
-    for i in 0..chords.len() {
-        let here = &chords[i].least;
-        let before = if i > 0 {
-            chords[i - 1].least.slack
-        } else {
-            f64::INFINITY
-        };
-        let after = chords.get(i + 1).map_or(f64::INFINITY, |c| c.least.slack);
-        if !(here.slack < before && here.slack <= after && here.slack < NEAR_M) {
-            continue;
-        }
-        let mut approach = *here;
-        // at a joint the two sides share the instant: its faces are one falling, one rising
-        if let Some(next) = chords.get(i + 1)
-            && next.least.slack - here.slack < 1e-9
-            && here.faces[1].1 == 0.0
-            && chords[i].end_rate < 0.0
-            && next.start_rate > 0.0
-        {
-            let weight = next.start_rate / (next.start_rate - chords[i].end_rate);
-            approach.faces = [
-                (here.faces[0].0, weight),
-                (next.least.faces[0].0, 1.0 - weight),
-            ];
-        }
-        found.push(approach);
-    }
-    chords.clear();
-}
-
-/// An instant of a segment with its slack.
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    position: Vector,
-    time: f64,
-    fraction: f64,
-    slack: Slack,
-}
-
-/// A straight piece between two samples, with the least slack on it. Along it the slack is a convex,
-/// piecewise linear function, so tangents of a falling and a rising face are intersected until they meet.
-#[derive(Debug, Clone, Copy)]
-struct Chord {
-    least: Approach,
-    /// m/s of the slack at the start and at the end.
-    start_rate: f64,
-    end_rate: f64,
-}
-
-impl Chord {
-    fn new(hazard: &Hazard, leg: usize, from: &Sample, to: &Sample) -> Self {
-        let faces = hazard.body.faces();
-        let width = (to.time - from.time).max(1e-12);
-        let velocity = (to.position - from.position) / width;
-        let rate = |face: usize| faces[face].normal.dot(&velocity) - faces[face].velocity_support;
-        let (start_rate, end_rate) = (rate(from.slack.face), rate(to.slack.face));
-        let approach = |fraction, slack, faces| Approach {
-            leg,
-            fraction,
-            slack,
-            faces,
-        };
-        let end = |s: &Sample| {
-            approach(
-                s.fraction,
-                s.slack.value,
-                [(s.slack.face, 1.0), (s.slack.face, 0.0)],
-            )
-        };
-        let least = if start_rate >= 0.0 {
-            end(from)
-        } else if end_rate <= 0.0 {
-            end(to)
-        } else {
-            let (mut a, mut b) = ((0.0, from.slack), (width, to.slack));
-            let mut best = (0.0, from.slack.value, [(a.1.face, 1.0), (b.1.face, 0.0)]);
-            for _ in 0..MAX_CUTS {
-                let (fall, rise) = (rate(a.1.face), rate(b.1.face));
-                let s = (a.0 + (b.1.value - a.1.value - rise * (b.0 - a.0)) / (fall - rise))
-                    .clamp(a.0, b.0);
-                let g = hazard
-                    .body
-                    .slack(from.position + velocity * s, from.time + s);
-                let weight = rise / (rise - fall);
-                best = (s, g.value, [(a.1.face, weight), (b.1.face, 1.0 - weight)]);
-                if g.face == a.1.face || g.face == b.1.face || !(s > a.0 && s < b.0) {
-                    break;
-                }
-                if rate(g.face) < 0.0 {
-                    a = (s, g)
-                } else {
-                    b = (s, g)
-                }
-            }
-            let fraction = from.fraction + (to.fraction - from.fraction) * best.0 / width;
-            approach(fraction, best.1, best.2)
-        };
-        Self {
-            least,
-            start_rate,
-            end_rate,
-        }
-    }
 }
 
 #[cfg(test)]

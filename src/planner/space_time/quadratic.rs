@@ -1,6 +1,8 @@
 //! A small dense convex quadratic programme by the dual active-set method of Goldfarb & Idnani
 //! (doi:10.1007/BF02591962).
 
+use super::factor::{add, dot, inverse_transposed_factor, remove};
+
 /// Most variables of a programme: fixed, so that no step allocates.
 pub(crate) const MAX_VARIABLES: usize = 24;
 
@@ -60,8 +62,8 @@ impl Programme<'_> {
     /// cost grows with the cube of the size. `still` says which, and is brought up to date.
     pub(crate) fn solve_from(&self, still: &mut [bool; MAX_VARIABLES]) -> Option<Solution> {
         let n = self.size;
-        for i in 0..n {
-            still[i] &= self.low[i] == 0.0;
+        for (s, low) in still.iter_mut().zip(self.low) {
+            *s &= *low == 0.0;
         }
         loop {
             let free: Vec<usize> = (0..n).filter(|i| !still[*i]).collect();
@@ -281,86 +283,6 @@ impl Programme<'_> {
     }
 }
 
-fn dot(a: &Row, b: &Row, n: usize) -> f64 {
-    a[..n].iter().zip(&b[..n]).map(|(x, y)| x * y).sum()
-}
-
-/// `L^-T` for `H = L L'`.
-fn inverse_transposed_factor(h: &Matrix, n: usize) -> Option<Matrix> {
-    let mut l: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    for i in 0..n {
-        for k in 0..=i {
-            let sum = h[i][k] - dot(&l[i], &l[k], k);
-            if i == k {
-                // negated on purpose: a NaN is not positive
-                if !(sum > 0.0) {
-                    return None;
-                }
-                l[i][i] = sum.sqrt();
-            } else {
-                l[i][k] = sum / l[k][k];
-            }
-        }
-    }
-    let mut inverse: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    // column c of L^-1 is row c of its transpose
-    for c in 0..n {
-        inverse[c][c] = 1.0 / l[c][c];
-        for i in c + 1..n {
-            let sum: f64 = (c..i).map(|k| l[i][k] * inverse[c][k]).sum();
-            inverse[c][i] = -sum / l[i][i];
-        }
-    }
-    Some(inverse)
-}
-
-/// Rotates `d` below `q` to zero and appends it to `R`.
-fn add(j: &mut Matrix, r: &mut Matrix, d: &mut Row, q: usize, n: usize) {
-    for k in (q + 1..n).rev() {
-        if d[k] == 0.0 {
-            continue;
-        }
-        let h = d[k - 1].hypot(d[k]);
-        let (c, s) = (d[k - 1] / h, d[k] / h);
-        (d[k - 1], d[k]) = (h, 0.0);
-        for row in j.iter_mut().take(n) {
-            let (a, b) = (row[k - 1], row[k]);
-            row[k - 1] = c * a + s * b;
-            row[k] = c * b - s * a;
-        }
-    }
-    for i in 0..=q {
-        r[i][q] = d[i];
-    }
-}
-
-/// Drops active constraint `i` of `q`.
-fn remove(j: &mut Matrix, r: &mut Matrix, u: &mut [f64], i: usize, q: usize, n: usize) {
-    for k in i..q - 1 {
-        u[k] = u[k + 1];
-        for row in r.iter_mut().take(q) {
-            row[k] = row[k + 1];
-        }
-    }
-    for k in i..q - 1 {
-        let h = r[k][k].hypot(r[k + 1][k]);
-        if h == 0.0 {
-            continue;
-        }
-        let (c, s) = (r[k][k] / h, r[k + 1][k] / h);
-        for m in k..q - 1 {
-            let (a, b) = (r[k][m], r[k + 1][m]);
-            r[k][m] = c * a + s * b;
-            r[k + 1][m] = c * b - s * a;
-        }
-        for row in j.iter_mut().take(n) {
-            let (a, b) = (row[k], row[k + 1]);
-            row[k] = c * a + s * b;
-            row[k + 1] = c * b - s * a;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -377,9 +299,9 @@ mod tests {
             let mut gradient = [0.0; MAX_VARIABLES];
             for i in 0..n {
                 gradient[i] = rng.random_range(-5.0..5.0);
-                for k in 0..n {
-                    root[i][k] = rng.random_range(-1.0..1.0);
-                }
+                root[i][..n]
+                    .iter_mut()
+                    .for_each(|c| *c = rng.random_range(-1.0..1.0));
             }
             for i in 0..n {
                 for k in 0..n {

@@ -119,41 +119,6 @@ impl Refinement {
         Some(refinement)
     }
 
-    pub(crate) fn debug(&self) -> String {
-        format!(
-            "J {:.1} viol {:.3} least {:.3} best {:?} steps {} radius {:.3} pen {:.2} rows {} {:?} {:?}",
-            self.model.cost,
-            self.model.violation,
-            self.model.least_slack,
-            self.best.as_ref().map(|b| b.model.cost),
-            self.steps,
-            self.radius,
-            self.penalty,
-            self.model.rows.len(),
-            self.template.ending,
-            self.template
-                .slots
-                .iter()
-                .zip(&self.lengths)
-                .map(|(s, l)| format!(
-                    "{}{:.0}@{}",
-                    match s {
-                        Slot::Run { .. } => "R",
-                        Slot::Arc {
-                            side: crate::frame::Side::Port,
-                            ..
-                        } => "P",
-                        Slot::Arc { .. } => "S",
-                        Slot::Line { .. } => "L",
-                    },
-                    l,
-                    s.speed()
-                ))
-                .collect::<Vec<_>>()
-                .join(" ")
-        )
-    }
-
     pub(crate) fn is_finished(&self) -> bool {
         self.finished
     }
@@ -225,12 +190,6 @@ impl Refinement {
                 *length = (*length + step).max(0.0);
             }
             let Some(model) = scene.model(&self.template, &trial) else {
-                if std::env::var("DEVI").is_ok() {
-                    eprintln!(
-                        "it {} none radius {} solved {:?} room {:?}",
-                        self.steps, self.radius, self.model.sailed.solved, self.model.sailed.room
-                    );
-                }
                 return;
             };
             if model.violation >= self.model.violation {

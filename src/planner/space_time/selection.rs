@@ -150,17 +150,6 @@ impl<'a> Selection<'a> {
                 );
             }
         }
-        if std::env::var("DEV").is_ok() {
-            eprintln!("conflicts {conflicts:?}");
-            for sd in &seeds {
-                eprintln!(
-                    "seed {:?} {:?} fits {}",
-                    sd.template.ending,
-                    &sd.lengths[..13],
-                    Refinement::fitting(&scene, sd.clone()).is_some()
-                );
-            }
-        }
         let mut running: Vec<Refinement> = seeds
             .into_iter()
             .filter_map(|s| Refinement::fitting(&scene, s))
@@ -182,44 +171,6 @@ impl<'a> Selection<'a> {
             for refinement in running.iter_mut().filter(|r| r.steps() >= RACE_FROM) {
                 if refinement.cost() > allowed {
                     refinement.stop();
-                }
-            }
-        }
-        if std::env::var("DEVS").is_ok() {
-            let w = (0..running.len())
-                .filter(|i| running[*i].best().is_some())
-                .min_by(|a, b| {
-                    running[*a]
-                        .best()
-                        .unwrap()
-                        .model
-                        .cost
-                        .total_cmp(&running[*b].best().unwrap().model.cost)
-                });
-            eprintln!(
-                "SEEDS {} graph {} steps {} winner {:?}",
-                running.len(),
-                running.len() as i64 - 8,
-                running.iter().map(|r| r.steps()).sum::<usize>(),
-                w.map(|w| w as i64 - (running.len() as i64 - 8))
-            );
-        }
-        if std::env::var("DEV").is_ok() {
-            for r in &running {
-                eprintln!("{}", r.debug());
-                if let Some(b) = r.best() {
-                    eprintln!(
-                        "   solved {:?} {:?}",
-                        b.model.sailed.solved,
-                        b.model
-                            .sailed
-                            .legs
-                            .iter()
-                            .rev()
-                            .take(2)
-                            .map(|l| l.segment)
-                            .collect::<Vec<_>>()
-                    );
                 }
             }
         }
@@ -249,29 +200,6 @@ impl<'a> Selection<'a> {
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);
         let clear = in_time && cost.is_finite() && first_met(self.scene.hazards, &motion).is_none();
-        if std::env::var("DEV").is_ok() && !clear {
-            for (k, s) in motion.iter().enumerate() {
-                let mut m = (1e9, 0.0);
-                for i in 0..=1000 {
-                    let t = s.start_time + s.duration * i as f64 / 1000.0;
-                    let g = self.scene.hazards[0]
-                        .body
-                        .slack(s.pose_at(t).position, t)
-                        .value;
-                    if g < m.0 {
-                        m = (g, i as f64 / 1000.0);
-                    }
-                }
-                eprintln!(
-                    "  seg {k} arc {} {:.2}s {:.4} at {:.3} met {:?}",
-                    s.is_arc(),
-                    s.duration,
-                    m.0,
-                    m.1,
-                    first_met(self.scene.hazards, &[*s])
-                );
-            }
-        }
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }

@@ -1,0 +1,54 @@
+//! Lines and arcs put one after another at one speed.
+
+use crate::frame::Pose;
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// A motion while it is put together.
+#[derive(Debug, Clone)]
+pub(crate) struct Chain {
+    pub segments: Vec<Segment>,
+    /// Where and when it ends so far.
+    pub pose: Pose,
+    pub time: f64,
+    speed: f64,
+    radius: f64,
+}
+
+impl Chain {
+    /// An empty motion from a pose at a time, at a positive speed, with a turning radius.
+    pub(crate) fn new(pose: Pose, time: f64, speed: f64, radius: f64) -> Self {
+        Self {
+            segments: Vec::with_capacity(6),
+            pose,
+            time,
+            speed,
+            radius,
+        }
+    }
+
+    /// An arc of a signed length in metres, to port positive.
+    pub(crate) fn arc(&mut self, length: f64) {
+        self.push(length.abs(), length.signum() / self.radius);
+    }
+
+    /// A line of a length in metres.
+    pub(crate) fn line(&mut self, length: f64) {
+        self.push(length, 0.0);
+    }
+
+    fn push(&mut self, length: f64, curvature: f64) {
+        if length <= tolerance::LENGTH_M {
+            return;
+        }
+        let segment = Segment {
+            start: self.pose,
+            start_time: self.time,
+            duration: length / self.speed,
+            speed: self.speed,
+            turn_rate: curvature * self.speed,
+        };
+        (self.pose, self.time) = (segment.end(), segment.end_time());
+        self.segments.push(segment);
+    }
+}
