@@ -91,6 +91,25 @@ fn the_scenarios_in_the_documents_are_sound() {
     assert_eq!(both.targets.len(), scenario.targets.len() + 1);
 }
 
+/// The README's example, line by line.
+fn example() -> Result<(), Box<dyn std::error::Error>> {
+    let scenario = searoom::scenario::Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+    let run = searoom::pipeline::run(scenario);
+    println!("{}", searoom::report::plan_text(&run));
+    Ok(())
+}
+
+#[test]
+fn the_example_in_the_readme_runs() {
+    let (readme, here) = (read("README.md"), include_str!("readme.rs"));
+    let shown = blocks(&readme, "rust");
+    assert_eq!(shown.len(), 1);
+    for line in shown[0].lines() {
+        assert!(here.lines().any(|own| own.trim() == line), "{line}");
+    }
+    example().expect("a scenario without faults");
+}
+
 #[test]
 fn every_file_that_the_documents_link_to_is_there() {
     for name in [
