@@ -40,7 +40,7 @@ pub struct Problem<'a> {
     pub deadline: Duration,
 }
 
-/// What the search did.
+/// What the search did to find the cheapest plan on the graph.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct SearchStats {
     /// Nodes whose successors were made.
@@ -49,6 +49,8 @@ pub struct SearchStats {
     pub generated: usize,
     /// Edges tested against every obstacle.
     pub edges_checked: usize,
+    /// Nodes expanded after that, to find plans that pass the targets on other sides.
+    pub further_expanded: usize,
 }
 
 /// A collision-free trajectory to the end of the desired path.

@@ -16,7 +16,8 @@ pub trait Space {
     /// Adds every state that can follow, with the cost of its edge (not negative).
     fn successors(&mut self, state: &Self::State, out: &mut Vec<(Self::State, f64)>);
 
-    /// A lower bound of the cost from here to any goal. Zero turns A* into Dijkstra.
+    /// A lower bound of the cost from here to any goal; infinite where there is no way to one. Zero turns
+    /// A* into Dijkstra.
     fn bound(&mut self, state: &Self::State) -> f64;
 
     /// True at a goal.

@@ -59,7 +59,7 @@ fn what_it_finds_is_clear_and_costs_what_it_says() {
         let scenario = scene(kind, 1, Placement::Random);
         let sets = hard_sets(&scenario);
         let problem = problem(&scenario, &sets);
-        let answer = DenseSearch::coarse(10_000.0).cheaper_than(&problem, 10_000.0);
+        let answer = DenseSearch::coarse(40_000.0).cheaper_than(&problem, 40_000.0);
         let found = answer.cheaper.expect("a way round");
         recheck(&problem, &found);
         // the bound never exceeds what was in fact still to come

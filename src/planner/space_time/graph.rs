@@ -9,6 +9,7 @@ use super::chain::Chain;
 use super::hazard::{Hazard, first_met};
 use super::heuristic::Heuristic;
 use super::interception::{Chase, Limits};
+use super::keep_out::KeepOut;
 use super::returning::return_to_line;
 use super::route::Route;
 use super::template::Ending;
@@ -131,6 +132,7 @@ impl<'a> Graph<'a> {
             time_weight: problem.time_weight,
             max_speed: problem.own.max_speed(),
             radius: problem.own.turning_radius,
+            keep_out: KeepOut::new(problem, hazards),
         });
         Self {
             problem,
@@ -427,6 +429,7 @@ impl Space for Graph<'_> {
     fn bound(&mut self, state: &State) -> f64 {
         match (&self.heuristic, state.kind) {
             (None, _) | (_, NodeKind::End) => 0.0,
+            (Some(heuristic), _) if heuristic.is_dead(&state.pose, state.time) => f64::INFINITY,
             (Some(heuristic), _) => heuristic.cost_to_go(&state.pose, state.time),
         }
     }

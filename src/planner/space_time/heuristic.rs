@@ -17,7 +17,10 @@
 //! of their end values: a lower sum over [`STEPS`] intervals; afterwards they are linear and integrate in
 //! closed form. For a polyline the distance `d` to the nearest leg replaces `c`: it shrinks by at most
 //! `u_max` per second and is zero at the end, `h = d³ / (3 u_max T_d)`.
+//!
+//! The obstacles give a second bound, [`KeepOut`]; the greater of two bounds is a bound.
 
+use super::keep_out::KeepOut;
 use crate::frame::{Pose, cross, heading_of, wrap};
 use crate::trajectory::DesiredTrajectory;
 
@@ -25,7 +28,7 @@ use crate::trajectory::DesiredTrajectory;
 const STEPS: usize = 6;
 
 /// The bound for one problem.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub(crate) struct Heuristic<'a> {
     pub desired: &'a DesiredTrajectory,
     /// m²/s².
@@ -34,11 +37,35 @@ pub(crate) struct Heuristic<'a> {
     pub max_speed: f64,
     /// Metres.
     pub radius: f64,
+    /// What the obstacles cost.
+    pub keep_out: KeepOut,
 }
 
 impl Heuristic<'_> {
     /// Least space-time error of any way from here to the last waypoint, m².
     pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
+        let keep_out = |from: f64| self.keep_out.cost_from(from);
+        let (across, lag) = self.way_back(pose, time);
+        // bounds of separate stretches of time add up
+        let both = across.cost + lag.cost + keep_out(time + across.span.max(lag.span));
+        both.max(across.cost + keep_out(time + across.span))
+            .max(keep_out(time))
+    }
+
+    /// True when no way from here clears the obstacles.
+    pub(crate) fn is_dead(&self, pose: &Pose, time: f64) -> bool {
+        let [leg] = self.desired.legs() else {
+            return false;
+        };
+        let offset = pose.position - leg.start;
+        let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
+        let kappa = self.time_weight / (self.time_weight + leg.speed * leg.speed);
+        let error = (cross(leg.direction, offset).powi(2) + kappa * lag * lag).sqrt();
+        self.keep_out.forbids(error, time)
+    }
+
+    /// The bounds that see no obstacle: across the path, and along it.
+    fn way_back(&self, pose: &Pose, time: f64) -> (Stretch, Stretch) {
         let legs = self.desired.legs();
         if let [leg] = legs {
             let offset = pose.position - leg.start;
@@ -47,15 +74,16 @@ impl Heuristic<'_> {
             let lag = leg.speed * (time - leg.start_time) - along;
             let heading = wrap(pose.heading - heading_of(leg.direction));
             let least_time = (self.desired.end() - pose.position).norm() / self.max_speed;
-            let lag_cost = if lag >= 0.0 {
+            let scale = 1.0 / self.desired.duration();
+            let along = if lag >= 0.0 {
                 self.shrinking(lag, heading.abs(), leg.speed, least_time)
             } else {
                 squared_ramp(-lag, -(self.max_speed + leg.speed), least_time)
             };
             // angle between the heading and the direction straight to the path
             let toward = (-across.signum() * heading.sin()).clamp(-1.0, 1.0).acos();
-            let cross_cost = self.shrinking(across.abs(), toward, 0.0, f64::INFINITY);
-            return (cross_cost + kappa * lag_cost) / self.desired.duration();
+            let aside = self.shrinking(across.abs(), toward, 0.0, f64::INFINITY);
+            return (aside.scaled(scale), along.scaled(kappa * scale));
         }
         let off = legs
             .iter()
@@ -65,12 +93,19 @@ impl Heuristic<'_> {
                 (offset - l.direction * along).norm()
             })
             .fold(f64::INFINITY, f64::min);
-        off.powi(3) / (3.0 * self.max_speed * self.desired.duration())
+        let aside = squared_ramp(off, -self.max_speed, f64::INFINITY);
+        (
+            aside.scaled(1.0 / self.desired.duration()),
+            Stretch {
+                cost: 0.0,
+                span: 0.0,
+            },
+        )
     }
 
     /// Lower sum of the integral, up to `until`, of the squared positive part of
     /// `start + growth tau - P(u_max tau)`, for a heading `angle` off the way that shrinks it.
-    fn shrinking(&self, start: f64, angle: f64, growth: f64, until: f64) -> f64 {
+    fn shrinking(&self, start: f64, angle: f64, growth: f64, until: f64) -> Stretch {
         let (u, r) = (self.max_speed, self.radius);
         let turning = (r * angle / u).min(until);
         let value = |tau: f64| {
@@ -87,23 +122,53 @@ impl Heuristic<'_> {
                 before = now;
             }
         }
-        sum + squared_ramp(before, growth - u, until - turning)
+        let after = squared_ramp(before, growth - u, until - turning);
+        Stretch {
+            cost: sum + after.cost,
+            span: turning.max(0.0) + after.span,
+        }
     }
 }
 
-/// Integral over `[0, duration]` of the squared positive part of `start + slope tau`; a decreasing ramp
-/// may run for ever.
-fn squared_ramp(start: f64, slope: f64, duration: f64) -> f64 {
+/// A bound that holds for the next `span` seconds.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    cost: f64,
+    span: f64,
+}
+
+impl Stretch {
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            cost: self.cost * factor,
+            ..self
+        }
+    }
+}
+
+/// Integral over `[0, duration]` of the squared positive part of `start + slope tau`, and until when that is
+/// positive; a decreasing ramp may run for ever.
+fn squared_ramp(start: f64, slope: f64, duration: f64) -> Stretch {
     if start <= 0.0 && slope <= 0.0 || !(duration > 0.0) {
-        return 0.0;
+        return Stretch {
+            cost: 0.0,
+            span: 0.0,
+        };
     }
     if slope < 0.0 {
-        let end = (start + slope * duration).max(0.0);
-        let end = if duration.is_finite() { end } else { 0.0 };
-        return (start.powi(3) - end.powi(3)) / (-3.0 * slope);
+        let span = duration.min(-start / slope).max(0.0);
+        let end = (start + slope * span).max(0.0);
+        return Stretch {
+            cost: (start.powi(3) - end.powi(3)) / (-3.0 * slope),
+            span,
+        };
     }
     // not shrinking: the start value stays a bound
-    start * start * duration.min(1e9)
+    let span = duration.min(1e9);
+    Stretch {
+        cost: start * start * span,
+        span,
+    }
 }
 
 #[cfg(test)]
@@ -133,6 +198,7 @@ mod tests {
                 time_weight: 25.0,
                 max_speed: 6.0,
                 radius: 100.0,
+                keep_out: KeepOut::none(),
             };
             let mut pose = Pose::new(
                 Vector::new(

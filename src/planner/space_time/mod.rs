@@ -16,6 +16,7 @@ mod graph;
 mod hazard;
 mod heuristic;
 mod interception;
+mod keep_out;
 mod model;
 mod quadratic;
 mod reduction;
@@ -124,11 +125,13 @@ fn plan_clear_of(problem: &Problem) -> Planned {
     let mut selection = Selection::new(scene);
     let mut budget = MAX_EXPANDED;
     let mut timed_out = false;
+    let mut optimum = None;
     while selection.signatures() < MAX_SIGNATURES {
         // a slice at a time, so that the deadline is seen
         let slice = (search.counts().expanded + 50).min(budget);
         match search.next_goal(&mut graph, slice) {
             Stop::Goal(node) => {
+                optimum.get_or_insert(search.counts());
                 let way = search.way_to(node);
                 let states: Vec<_> = way[1..].iter().map(|i| &search.nodes()[*i].state).collect();
                 selection.offer(search.nodes()[node].cost, &states);
@@ -155,11 +158,12 @@ fn plan_clear_of(problem: &Problem) -> Planned {
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, &out_of_time);
     }
-    let counts = search.counts();
+    let counts = optimum.unwrap_or(search.counts());
     let stats = SearchStats {
         expanded: counts.expanded,
         generated: counts.generated,
         edges_checked: counts.tested,
+        further_expanded: search.counts().expanded - counts.expanded,
     };
     let graph_cost = selection.graph_cost();
     let plan = selection.cheapest().and_then(|(motion, cost)| {

@@ -10,7 +10,7 @@ const LARGEST_RADIUS_M: f64 = 400.0;
 const SMALLEST_RADIUS_M: f64 = 0.02;
 
 /// Steps of one refinement at most.
-pub(crate) const MAX_STEPS: usize = 30;
+pub(crate) const MAX_STEPS: usize = 40;
 
 /// Last corrections of a refinement that ends a little inside, and how far inside that may be, metres.
 const RESTORATIONS: usize = 3;
@@ -33,7 +33,7 @@ const MAX_BACKTRACKS: usize = 2;
 const REACHABLE: f64 = 0.8;
 
 /// Relative decrease that is no progress.
-const STALLED: f64 = 5e-4;
+const STALLED: f64 = 2e-4;
 
 /// A manoeuvre to begin from.
 #[derive(Debug, Clone)]

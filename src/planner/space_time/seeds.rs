@@ -215,9 +215,9 @@ impl Canonical {
         draft.turn(side, &[(fast, 0.0)]);
         draft.line(&[(slow, 0.5 * slow_line), (fast, 0.5 * fast_line)]);
         draft.turn(back, &[(slow, 0.0), (fast, arc)]);
-        draft.line(&[(slow, 0.0), (fast, 0.5 * along)]);
+        draft.line(&[(slow, 0.0), (paces.normal, 0.0), (fast, 0.5 * along)]);
         draft.turn(back, &[(fast, 0.0)]);
-        draft.line(&[(fast, 0.5 * along)]);
+        draft.line(&[(paces.normal, 0.0), (fast, 0.5 * along)]);
         let Some(angle) = angle else {
             return draft.seed(Ending::Goal {
                 side: back,
@@ -297,39 +297,23 @@ fn group(
     turn: Option<&Segment>,
     line: Option<&Segment>,
 ) {
-    let at = |segment: Option<&Segment>, speed: f64| {
-        segment
-            .filter(|s| (s.speed - speed).abs() < 1e-9)
-            .map_or(0.0, Segment::length)
-    };
-    let mut speeds = vec![paces.slow, paces.fast];
-    speeds.dedup();
-    // a speed of its own goes to the nearest
-    let nearest = |segment: Option<&Segment>| {
-        segment.map(|s| {
-            let speed = speeds
-                .iter()
-                .copied()
-                .min_by(|a, b| (a - s.speed).abs().total_cmp(&(b - s.speed).abs()))
-                .unwrap_or(s.speed);
-            Segment {
-                speed,
-                duration: s.length() / speed,
-                ..*s
-            }
-        })
-    };
-    let (turn, line) = (nearest(turn), nearest(line));
-    for speed in &speeds {
-        draft.push(
-            Slot::Arc {
-                side,
-                speed: *speed,
-            },
-            at(turn.as_ref(), *speed),
-        );
+    let turns = shared(turn, &[paces.slow, paces.fast]);
+    draft.turn(side, &turns);
+    let lines = shared(line, &[paces.slow, paces.normal, paces.fast]);
+    draft.line(&lines);
+}
+
+/// The speeds, without repetition, the nearest to the segment's own with its length.
+fn shared(segment: Option<&Segment>, speeds: &[f64]) -> Vec<(f64, f64)> {
+    let mut lengths: Vec<(f64, f64)> = speeds.iter().map(|u| (*u, 0.0)).collect();
+    lengths.dedup();
+    if let Some(s) = segment {
+        let nearest = lengths
+            .iter_mut()
+            .min_by(|a, b| (a.0 - s.speed).abs().total_cmp(&(b.0 - s.speed).abs()));
+        if let Some(nearest) = nearest {
+            nearest.1 = s.length();
+        }
     }
-    for speed in &speeds {
-        draft.push(Slot::Line { speed: *speed }, at(line.as_ref(), *speed));
-    }
+    lengths
 }

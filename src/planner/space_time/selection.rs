@@ -48,13 +48,13 @@ const FAR_SIDE: f64 = 1.8;
 const MAX_CONFLICTS: usize = 2;
 
 /// Steps after which a refinement may be overtaken.
-const RACE_FROM: usize = 5;
+const RACE_FROM: usize = 6;
 
 /// Relative excess over the best that a refinement may still have at first.
-const RACE_SLACK: f64 = 0.5;
+const RACE_SLACK: f64 = 1.0;
 
 /// Rounds after which only the best goes on.
-const RACE_ROUNDS: f64 = 14.0;
+const RACE_ROUNDS: f64 = 16.0;
 
 /// A clear trajectory.
 #[derive(Debug, Clone)]

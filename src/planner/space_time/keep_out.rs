@@ -1,0 +1,145 @@
+//! A lower bound of the space-time error that the obstacles force on every plan: part of the heuristic.
+//!
+//! # Why it never exceeds the true cost to go
+//!
+//! One straight leg, on schedule at `p_d(tau)`. Every plan is outside every `O_tau` until it arrives, and
+//! the outside of a convex set is the union of its faces' outer half-planes, so with the unclamped error
+//!
+//! `e(tau) >= E(tau) = max over obstacles of min over faces of depth_n(p_d) / sqrt(n_across² + n_along² / kappa)`:
+//!
+//! the depth of the point on schedule behind a face, in the metric of `e`. `e` changes by at most
+//! `rho = max over |v| <= u_max of sqrt(v_across² + kappa (u_d - v_along)²)` per second, so the envelope
+//! `max over tau' of E(tau') - rho |tau - tau'|` bounds it too, and between two instants `D` apart
+//! `e >= (E_a + E_b - rho D) / 2`. Summed over the time that remains until anybody could have arrived.
+//! A node whose own error is below the envelope cannot be part of any plan.
+
+use super::hazard::Hazard;
+use crate::frame::cross;
+use crate::planner::Problem;
+
+/// Seconds between two instants.
+const STEP_S: f64 = 0.5;
+
+/// The bound by time.
+#[derive(Debug, Clone)]
+pub(crate) struct KeepOut {
+    /// m², what is still to come at every multiple of [`STEP_S`]; decreasing.
+    to_come: Vec<f64>,
+    /// Metres, the envelope of `E` there, and by how much it may fall from one instant to the next.
+    least: Vec<f64>,
+    fall: f64,
+}
+
+impl KeepOut {
+    /// No obstacles, or more than one leg: zero.
+    pub(crate) fn none() -> Self {
+        Self {
+            to_come: Vec::new(),
+            least: Vec::new(),
+            fall: 0.0,
+        }
+    }
+
+    /// For the obstacles that the motion on schedule enters.
+    pub(crate) fn new(problem: &Problem, hazards: &[Hazard]) -> Self {
+        let [leg] = problem.desired.legs() else {
+            return Self::none();
+        };
+        let (own, q) = (problem.own, problem.time_weight);
+        let kappa = q / (q + leg.speed * leg.speed);
+        // nobody arrives before this
+        let until = (problem.desired.end() - own.pose.position).norm() / own.max_speed();
+        let count = (until / STEP_S).floor().max(0.0) as usize;
+        let depth = |k: usize| {
+            let time = STEP_S * k as f64;
+            let on_schedule = leg.start + leg.direction * (leg.speed * (time - leg.start_time));
+            hazards
+                .iter()
+                .map(|h| {
+                    h.body
+                        .faces()
+                        .iter()
+                        .map(|f| {
+                            let (along, across) =
+                                (leg.direction.dot(&f.normal), cross(leg.direction, f.normal));
+                            -f.slack(on_schedule, time)
+                                / (across * across + along * along / kappa).sqrt()
+                        })
+                        .fold(f64::INFINITY, f64::min)
+                })
+                .fold(0.0, f64::max)
+        };
+        let mut least: Vec<f64> = (0..=count).map(depth).collect();
+        let fall = rate(own.max_speed(), leg.speed, kappa) * STEP_S;
+        for k in 1..least.len() {
+            least[k] = least[k].max(least[k - 1] - fall);
+        }
+        for k in (1..least.len()).rev() {
+            least[k - 1] = least[k - 1].max(least[k] - fall);
+        }
+        let mut to_come = vec![0.0; least.len()];
+        for k in (1..least.len()).rev() {
+            let between = (0.5 * (least[k - 1] + least[k] - fall)).max(0.0);
+            to_come[k - 1] = to_come[k] + between * between * STEP_S / problem.desired.duration();
+        }
+        Self {
+            to_come,
+            least,
+            fall,
+        }
+    }
+
+    /// True when no plan can be at this error (metres) at this time and still clear the obstacles later.
+    pub(crate) fn forbids(&self, error: f64, time: f64) -> bool {
+        let before = (time / STEP_S).floor().max(0.0) as usize;
+        match (self.least.get(before), self.least.get(before + 1)) {
+            (Some(a), Some(b)) => error < a.min(*b) - self.fall - 1e-6,
+            _ => false,
+        }
+    }
+
+    /// Least space-time error still to come at a time, m².
+    pub(crate) fn cost_from(&self, time: f64) -> f64 {
+        // the next instant: what lies before it is not counted
+        let next = (time / STEP_S).ceil().max(0.0) as usize;
+        self.to_come.get(next).copied().unwrap_or(0.0)
+    }
+}
+
+/// `rho`: the largest of a convex function of the velocity, so on the circle of the greatest speed.
+fn rate(max_speed: f64, desired: f64, kappa: f64) -> f64 {
+    let square = |cosine: f64| {
+        let across = max_speed * max_speed * (1.0 - cosine * cosine);
+        across + kappa * (desired - max_speed * cosine).powi(2)
+    };
+    let turning = -kappa * desired / (max_speed * (1.0 - kappa)).max(f64::MIN_POSITIVE);
+    [-1.0, 1.0, turning.clamp(-1.0, 1.0)]
+        .into_iter()
+        .map(square)
+        .fold(0.0, f64::max)
+        .sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rate_is_the_largest_over_every_velocity() {
+        for kappa in [0.1, 0.5, 0.9, 1.0] {
+            let bound = rate(6.0, 5.0, kappa);
+            let mut largest = 0.0_f64;
+            for i in 0..=200 {
+                for k in 0..=20 {
+                    let v = crate::frame::direction(f64::from(i) * 0.0315)
+                        * (6.0 * f64::from(k) / 20.0);
+                    largest = largest.max((v.y * v.y + kappa * (5.0 - v.x).powi(2)).sqrt());
+                }
+            }
+            assert!(
+                bound >= largest - 1e-9 && bound < largest * 1.01,
+                "{bound} {largest}"
+            );
+        }
+    }
+}
