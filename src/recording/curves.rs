@@ -3,10 +3,9 @@
 use rerun::components::{AggregationPolicy, InterpolationMode};
 use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
-use super::chart::knots;
 use super::scene::{Motion, Scene};
 use super::{TIMELINE, path, style};
-use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, wrap};
+use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap};
 use crate::obstacle::PolytopeObstacle;
 use crate::target::Target;
 use crate::trajectory::DesiredLeg;
@@ -134,7 +133,7 @@ pub fn margins(scene: &Scene, sets: &[&PolytopeObstacle]) -> Vec<f64> {
 }
 
 fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let steps = leg_steps(scene, |leg| knots(leg.speed));
+    let steps = leg_steps(scene, |leg| knots_from_mps(leg.speed));
     let (times, values): (Vec<f64>, _) = steps.into_iter().unzip();
     let look = ("desired", style::desired(), 1.0);
     log_steps(rec, path(&[SPEED, "desired"]), look, &times, values)?;
@@ -142,7 +141,7 @@ fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> 
         return Ok(());
     };
     let moving = trajectory.segments().iter().filter(|s| s.duration > 0.0);
-    let steps = moving.map(|s| (s.start_time, knots(s.speed)));
+    let steps = moving.map(|s| (s.start_time, knots_from_mps(s.speed)));
     let (times, values): (Vec<f64>, _) = held_until(trajectory.end_time(), steps.collect())
         .into_iter()
         .unzip();
