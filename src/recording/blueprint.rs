@@ -7,8 +7,8 @@ use rerun::blueprint::{
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis,
-    VisibleTimeRanges, VisualBounds2D,
+    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis, VisibleTimeRanges,
+    VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
@@ -186,6 +186,7 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4]
         ("Course (deg)", COURSE, course_range(scene)),
     ];
     views.map(|(name, origin, range)| {
+        // curves of distances are low where they matter
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
         let times = TimeAxis::new().with_view_range(whole_time(scene));
         let range = rerun::datatypes::Range1D(range);

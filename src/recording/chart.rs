@@ -68,16 +68,14 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         let ends = [Vector::new(low.x, north), Vector::new(high.x, north)];
         lines.add(ends.map(flat).to_vec(), style::grid(), style::points(0.5));
     }
-    rec.log_static(path(&[MAP, "grid"]), &lines.archetype())?;
 
     let unit = scene.bounds.extent() / 100.0;
     let corner = Vector::new(scene.bounds.low.x, scene.bounds.high.y);
     let foot = corner + Vector::new(2.5, -9.0) * unit;
     let head = foot + Vector::new(0.0, 5.0 * unit);
     let barbs = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
-    let mut north = Lines::default();
     for strip in [vec![foot, head], vec![barbs[0], head, barbs[1]]] {
-        north.add(
+        lines.add(
             strip.into_iter().map(flat).collect(),
             style::chart_text(),
             style::points(1.0),
@@ -89,8 +87,8 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         .with_labels(["N"])
         .with_show_labels(true);
     rec.log_static(
-        path(&[MAP, "north"]),
-        &[&north.archetype() as &dyn AsComponents, &name],
+        path(&[MAP, "grid"]),
+        &[&lines.archetype() as &dyn AsComponents, &name],
     )
 }
 

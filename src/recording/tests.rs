@@ -101,11 +101,10 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
         format!("/space_time/shaped_sets/{name}"),
         "/space_time/planned".to_owned(),
         "/space_time/explored/free".to_owned(),
-        format!("/curves/clearance_m/{name}"),
-        "/curves/margin_m/hard".to_owned(),
-        "/curves/margin_m/shaped".to_owned(),
-        "/curves/speed_kn/own_ship".to_owned(),
-        "/curves/course_deg/own_ship".to_owned(),
+        "/curves/clearance_m".to_owned(),
+        "/curves/margin_m".to_owned(),
+        "/curves/speed_kn".to_owned(),
+        "/curves/course_deg".to_owned(),
     ] {
         assert!(
             entities.contains_key(&expected),
@@ -137,7 +136,7 @@ fn a_run_without_a_plan_is_recorded_too() {
     let entities = read(&path);
     assert!(!entities.contains_key("/chart/map/planned"));
     assert!(entities.contains_key("/chart/map/conflict"));
-    assert!(entities.contains_key("/curves/margin_m/hard"));
+    assert!(entities.contains_key("/curves/margin_m"));
 }
 
 #[test]
@@ -167,7 +166,6 @@ fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
     let entities = read(&path);
     assert!(entities.contains_key("/chart/map/hard_sets/drifting"));
     assert!(!entities.contains_key("/chart/map/shaped_sets/drifting"));
-    assert!(entities.contains_key("/curves/clearance_m/drifting"));
     assert!(entities.contains_key("/chart/map/violations"));
 }
 
