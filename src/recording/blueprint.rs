@@ -7,8 +7,8 @@ use rerun::blueprint::{
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis, VisibleTimeRanges,
-    VisualBounds2D,
+    Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis,
+    VisibleTimeRanges, VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,

@@ -92,17 +92,18 @@ fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 }
 
 /// Metres between own hull and the target's expected hull (or its set, where that is given) at every
-/// sample; negative in overlap.
+/// sample; negative in overlap, no number after arrival.
 pub fn clearances(scene: &Scene, target: &Target) -> Vec<f64> {
     let own = &scene.run.scenario.own_ship.hull;
     let sets = target_set(target);
     let at = |&time: &f64| {
         let own = own.polygon(&scene.motion.pose_at(time));
-        match (target.ship(), &sets) {
+        let clearance = match (target.ship(), &sets) {
             (Some(ship), _) => own.separation(&ship.hull.polygon(&ship.pose_at(time))),
             (None, Some(set)) => own.separation(&set.section(time)),
             (None, None) => f64::NAN,
-        }
+        };
+        scene.motion.until_arrival(time, clearance)
     };
     scene.samples.iter().map(at).collect()
 }
@@ -154,13 +155,14 @@ fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
     )
 }
 
-/// Metres from own ship's centre to the nearest of the sets at every sample; negative inside.
+/// Metres from own ship's centre to the nearest of the sets at every sample; negative inside, no number after
+/// arrival.
 pub fn margins(scene: &Scene, sets: &[&PolytopeObstacle]) -> Vec<f64> {
     let at = |&time: &f64| {
         let own = scene.motion.pose_at(time).position;
-        sets.iter()
-            .map(|set| set.section(time).signed_distance(own))
-            .fold(f64::INFINITY, f64::min)
+        let margins = sets.iter().map(|s| s.section(time).signed_distance(own));
+        let least = margins.fold(f64::INFINITY, f64::min);
+        scene.motion.until_arrival(time, least)
     };
     scene.samples.iter().map(at).collect()
 }

@@ -183,3 +183,20 @@ fn every_scenario_of_the_suite_stays_small() {
         assert!(size < 300_000, "{}: {size} bytes", file.display());
     }
 }
+
+#[test]
+fn nothing_is_said_of_the_margin_after_arrival() {
+    let mut run = run();
+    let late = run.scenario.desired.duration() + 50.0;
+    let end = run.scenario.desired.end() + crate::frame::Vector::new(250.0, 0.0);
+    let points = [run.scenario.desired.waypoints()[0], end];
+    run.scenario.desired =
+        crate::trajectory::DesiredTrajectory::new(&points, &[5.0]).expect("valid");
+    let scene = Scene::new(&run);
+    assert!((scene.end - late).abs() < 1e-9);
+    let margins = curves::margins(&scene, &[&run.sets[0].hard]);
+    let arrival = run.planned.outcome.plan().map(|p| p.trajectory.end_time());
+    for (time, margin) in scene.samples.iter().zip(margins) {
+        assert_eq!(margin.is_nan(), Some(*time) > arrival, "{time} {margin}");
+    }
+}
