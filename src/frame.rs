@@ -180,6 +180,11 @@ pub fn mps_from_knots(knots: f64) -> f64 {
     knots * KNOT_MPS
 }
 
+/// Knots from metres per second.
+pub fn knots_from_mps(speed: f64) -> f64 {
+    speed / KNOT_MPS
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

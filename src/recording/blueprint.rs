@@ -15,12 +15,12 @@ use rerun::external::re_sdk_types::blueprint::components::{
 };
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
-use super::chart::{knots, legend_height};
+use super::chart::legend_height;
 use super::curves::{CLEARANCE, COURSE, MARGIN, SPEED, clearances, courses, margins};
 use super::explored::BLOCKED;
 use super::scene::Scene;
 use super::{APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VOLUME, style};
-use crate::frame::{Vector, to_starboard};
+use crate::frame::{Vector, knots_from_mps, to_starboard};
 
 /// Seconds in which the whole run is played.
 const PLAY_S: f64 = 25.0;
@@ -178,11 +178,15 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4]
         (
             "Speed (kn)",
             SPEED,
-            [0.0, 1.4 * knots(scene.run.scenario.own_ship.max_speed())],
+            [
+                0.0,
+                1.4 * knots_from_mps(scene.run.scenario.own_ship.max_speed()),
+            ],
         ),
         ("Course (deg)", COURSE, course_range(scene)),
     ];
     views.map(|(name, origin, range)| {
+        // curves of distances are low where they matter
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
         let times = TimeAxis::new().with_view_range(whole_time(scene));
         let range = rerun::datatypes::Range1D(range);

@@ -7,7 +7,7 @@ use rerun::{
 use super::scene::{Bounds, Scene, desired_leg, flat, round_down};
 use super::style::{self, Pace};
 use super::{MAP, path};
-use crate::frame::{KNOT_MPS, Vector};
+use crate::frame::Vector;
 use crate::target::Target;
 
 /// Degrees of turn between two drawn points of an arc, radians.
@@ -68,16 +68,14 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         let ends = [Vector::new(low.x, north), Vector::new(high.x, north)];
         lines.add(ends.map(flat).to_vec(), style::grid(), style::points(0.5));
     }
-    rec.log_static(path(&[MAP, "grid"]), &lines.archetype())?;
 
     let unit = scene.bounds.extent() / 100.0;
     let corner = Vector::new(scene.bounds.low.x, scene.bounds.high.y);
     let foot = corner + Vector::new(2.5, -9.0) * unit;
     let head = foot + Vector::new(0.0, 5.0 * unit);
     let barbs = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
-    let mut north = Lines::default();
     for strip in [vec![foot, head], vec![barbs[0], head, barbs[1]]] {
-        north.add(
+        lines.add(
             strip.into_iter().map(flat).collect(),
             style::chart_text(),
             style::points(1.0),
@@ -89,8 +87,8 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         .with_labels(["N"])
         .with_show_labels(true);
     rec.log_static(
-        path(&[MAP, "north"]),
-        &[&north.archetype() as &dyn AsComponents, &name],
+        path(&[MAP, "grid"]),
+        &[&lines.archetype() as &dyn AsComponents, &name],
     )
 }
 
@@ -269,14 +267,14 @@ fn log_track(
     )
 }
 
-/// A line between own ship and each target at their closest, with distance and time.
+/// A line between own ship and each target at their closest, with distance and time of the least.
 fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let Some(evaluation) = &scene.run.evaluation else {
         return Ok(());
     };
     let beyond = scene.bounds.extent() / 10.0;
     let mut lines = Lines::default();
-    let (mut places, mut labels) = (Vec::new(), Vec::new());
+    let mut nearest: Option<(f64, Vector, String)> = None;
     for (target, passage) in scene.run.scenario.targets.iter().zip(&evaluation.passages) {
         let own = scene.motion.pose_at(passage.tcpa).position;
         let other = target.position_at(passage.tcpa);
@@ -285,26 +283,25 @@ fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
             style::chart_text(),
             style::points(0.8),
         );
-        // on the far side of the target: own ship and her time marks are named on the near side
-        let away = (other - own)
-            .try_normalize(0.0)
-            .unwrap_or_else(Vector::zeros);
-        places.push(flat(other + away * beyond));
-        labels.push(format!(
-            "CPA {:.0} m at {:.0} s",
-            passage.dcpa, passage.tcpa
-        ));
+        if nearest.as_ref().is_none_or(|n| passage.dcpa < n.0) {
+            // on the far side of the target: own ship and her time marks are named on the near side
+            let away = (other - own)
+                .try_normalize(0.0)
+                .unwrap_or_else(Vector::zeros);
+            let label = format!("CPA {:.0} m at {:.0} s", passage.dcpa, passage.tcpa);
+            nearest = Some((passage.dcpa, other + away * beyond, label));
+        }
     }
-    if labels.is_empty() {
+    let Some((_, place, label)) = nearest else {
         return Ok(());
-    }
+    };
     let lines = lines.archetype();
-    let names = Points2D::new(places)
+    let name = Points2D::new([flat(place)])
         .with_colors([style::chart_text()])
         .with_radii([style::points(0.0)])
-        .with_labels(labels)
+        .with_labels([label])
         .with_show_labels(true);
-    let parts: [&dyn AsComponents; 2] = [&lines, &names];
+    let parts: [&dyn AsComponents; 2] = [&lines, &name];
     rec.log_static(path(&[MAP, "closest_points"]), &parts)
 }
 
@@ -355,9 +352,4 @@ fn log_violations(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
             .with_labels(evaluation.violations.iter().map(|v| v.what.clone()))
             .with_show_labels(true),
     )
-}
-
-/// Knots from m/s.
-pub fn knots(speed: f64) -> f64 {
-    speed / KNOT_MPS
 }

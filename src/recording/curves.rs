@@ -3,13 +3,12 @@
 use rerun::components::{AggregationPolicy, InterpolationMode};
 use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
-use super::chart::knots;
-use super::scene::{Motion, Scene};
-use super::{TIMELINE, path, style};
-use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, wrap};
+use super::scene::{Motion, Scene, desired_leg};
+use super::{TIMELINE, style};
+use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap};
 use crate::obstacle::PolytopeObstacle;
 use crate::target::Target;
-use crate::trajectory::DesiredLeg;
+use crate::tolerance;
 
 /// Distances between hulls, per target.
 pub const CLEARANCE: &str = "curves/clearance_m";
@@ -28,23 +27,33 @@ pub fn log_curves(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
     log_course(rec, scene)
 }
 
-/// Name, colour and width of a curve.
-type Look<'a> = (&'a str, rerun::Color, f32);
-
-fn log_curve(
-    rec: &RecordingStream,
-    entity: rerun::EntityPath,
-    (name, color, width): Look,
-    times: &[f64],
+/// One curve of a plot.
+struct Series<'a> {
+    name: &'a str,
+    color: rerun::Color,
+    width: f32,
+    /// One per time; where it is not a number, nothing is drawn.
     values: Vec<f64>,
+}
+
+/// All curves of a plot in one entity: a recording pays for entities, not for values.
+fn log_plot(
+    rec: &RecordingStream,
+    entity: &str,
+    times: &[f64],
+    between: InterpolationMode,
+    series: &[Series],
 ) -> RecordingStreamResult<()> {
     let look = SeriesLines::new()
-        .with_names([name])
-        .with_colors([color])
-        .with_widths([width])
+        .with_names(series.iter().map(|s| s.name))
+        .with_colors(series.iter().map(|s| s.color))
+        .with_widths(series.iter().map(|s| s.width))
+        .with_interpolation_mode(between)
         // averaging neighbours would show speeds and depths that are not there
         .with_aggregation_policy(AggregationPolicy::Off);
-    rec.log_static(entity.clone(), &look)?;
+    rec.log_static(entity, &look)?;
+    let rows = 0..times.len();
+    let values = rows.flat_map(|row| series.iter().map(move |s| s.values[row]));
     rec.send_columns(
         entity,
         [TimeColumn::new_duration_secs(
@@ -53,35 +62,48 @@ fn log_curve(
         )],
         Scalars::update_fields()
             .with_scalars(values)
-            .columns_of_unit_batches()?,
+            .columns(vec![series.len(); times.len()])?,
     )
 }
 
 fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    for (index, target) in scene.run.scenario.targets.iter().enumerate() {
-        let values = clearances(scene, target);
-        let look = (target.name.as_str(), style::target(index), 2.0);
-        let entity = path(&[CLEARANCE, &target.name]);
-        log_curve(rec, entity, look, &scene.samples, values)?;
-    }
-    let margin = scene.run.scenario.own_ship.safety_margin;
-    let look = ("safety margin", style::alarm(), 1.0);
-    let entity = path(&[CLEARANCE, "safety margin"]);
-    log_curve(rec, entity, look, &[0.0, scene.end], vec![margin; 2])
+    let targets = scene.run.scenario.targets.iter().enumerate();
+    let mut series: Vec<Series> = targets
+        .map(|(index, target)| Series {
+            name: &target.name,
+            color: style::target(index),
+            width: 2.0,
+            values: clearances(scene, target),
+        })
+        .collect();
+    series.push(Series {
+        name: "safety margin",
+        color: style::alarm(),
+        width: 1.0,
+        values: vec![scene.run.scenario.own_ship.safety_margin; scene.samples.len()],
+    });
+    log_plot(
+        rec,
+        CLEARANCE,
+        &scene.samples,
+        InterpolationMode::Linear,
+        &series,
+    )
 }
 
 /// Metres between own hull and the target's expected hull (or its set, where that is given) at every
-/// sample; negative in overlap.
+/// sample; negative in overlap, no number after arrival.
 pub fn clearances(scene: &Scene, target: &Target) -> Vec<f64> {
     let own = &scene.run.scenario.own_ship.hull;
     let sets = target_set(target);
     let at = |&time: &f64| {
         let own = own.polygon(&scene.motion.pose_at(time));
-        match (target.ship(), &sets) {
+        let clearance = match (target.ship(), &sets) {
             (Some(ship), _) => own.separation(&ship.hull.polygon(&ship.pose_at(time))),
             (None, Some(set)) => own.separation(&set.section(time)),
             (None, None) => f64::NAN,
-        }
+        };
+        scene.motion.until_arrival(time, clearance)
     };
     scene.samples.iter().map(at).collect()
 }
@@ -104,95 +126,108 @@ fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
     }
     let hard: Vec<&PolytopeObstacle> = sets.iter().map(|s| &s.hard).collect();
     let shaped: Vec<&PolytopeObstacle> = sets.iter().map(|s| &s.shaped).collect();
-    let look = ("hard sets", style::own_ship(), 2.0);
-    let values = margins(scene, &hard);
-    log_curve(rec, path(&[MARGIN, "hard"]), look, &scene.samples, values)?;
+    let mut series = vec![Series {
+        name: "hard sets",
+        color: style::own_ship(),
+        width: 2.0,
+        values: margins(scene, &hard),
+    }];
     if hard != shaped {
-        let look = ("shaped sets", style::Pace::Slow.color(), 2.0);
-        let values = margins(scene, &shaped);
-        log_curve(rec, path(&[MARGIN, "shaped"]), look, &scene.samples, values)?;
+        series.push(Series {
+            name: "shaped sets",
+            color: style::Pace::Slow.color(),
+            width: 2.0,
+            values: margins(scene, &shaped),
+        });
     }
-    let look = ("contact", style::alarm(), 1.0);
-    log_curve(
+    series.push(Series {
+        name: "contact",
+        color: style::alarm(),
+        width: 1.0,
+        values: vec![0.0; scene.samples.len()],
+    });
+    log_plot(
         rec,
-        path(&[MARGIN, "contact"]),
-        look,
-        &[0.0, scene.end],
-        vec![0.0; 2],
+        MARGIN,
+        &scene.samples,
+        InterpolationMode::Linear,
+        &series,
     )
 }
 
-/// Metres from own ship's centre to the nearest of the sets at every sample; negative inside.
+/// Metres from own ship's centre to the nearest of the sets at every sample; negative inside, no number after
+/// arrival.
 pub fn margins(scene: &Scene, sets: &[&PolytopeObstacle]) -> Vec<f64> {
     let at = |&time: &f64| {
         let own = scene.motion.pose_at(time).position;
-        sets.iter()
-            .map(|set| set.section(time).signed_distance(own))
-            .fold(f64::INFINITY, f64::min)
+        let margins = sets.iter().map(|s| s.section(time).signed_distance(own));
+        let least = margins.fold(f64::INFINITY, f64::min);
+        scene.motion.until_arrival(time, least)
     };
     scene.samples.iter().map(at).collect()
 }
 
+/// Speeds are steps: a row where one begins, and where one ends for good.
 fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let steps = leg_steps(scene, |leg| knots(leg.speed));
-    let (times, values): (Vec<f64>, _) = steps.into_iter().unzip();
-    let look = ("desired", style::desired(), 1.0);
-    log_steps(rec, path(&[SPEED, "desired"]), look, &times, values)?;
-    let Motion::Planned(trajectory) = scene.motion else {
-        return Ok(());
-    };
-    let moving = trajectory.segments().iter().filter(|s| s.duration > 0.0);
-    let steps = moving.map(|s| (s.start_time, knots(s.speed)));
-    let (times, values): (Vec<f64>, _) = held_until(trajectory.end_time(), steps.collect())
-        .into_iter()
-        .unzip();
-    let look = ("own ship", style::own_ship(), 2.0);
-    log_steps(rec, path(&[SPEED, "own_ship"]), look, &times, values)
-}
-
-/// A value of every leg of the desired trajectory at its start, and the last one at the end.
-fn leg_steps(scene: &Scene, value: impl Fn(&DesiredLeg) -> f64) -> Vec<(f64, f64)> {
     let desired = &scene.run.scenario.desired;
-    let steps = desired.legs().iter().map(|l| (l.start_time, value(l)));
-    held_until(desired.duration(), steps.collect())
-}
-
-/// With the last value once more at `end`.
-fn held_until(end: f64, mut steps: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    let last = steps.last().copied();
-    steps.extend(last.map(|(_, value)| (end, value)));
-    steps
-}
-
-/// A curve that holds every value until the next.
-fn log_steps(
-    rec: &RecordingStream,
-    entity: rerun::EntityPath,
-    look: Look,
-    times: &[f64],
-    values: Vec<f64>,
-) -> RecordingStreamResult<()> {
-    let held = SeriesLines::update_fields().with_interpolation_mode(InterpolationMode::StepAfter);
-    rec.log_static(entity.clone(), &held)?;
-    log_curve(rec, entity, look, times, values)
+    let mut times: Vec<f64> = desired.legs().iter().map(|l| l.start_time).collect();
+    times.extend([desired.duration(), scene.end]);
+    if let Motion::Planned(trajectory) = scene.motion {
+        times.extend(trajectory.segments().iter().map(|s| s.start_time));
+        times.push(trajectory.end_time());
+    }
+    times.retain(|&t| t <= scene.end);
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|later, earlier| *later - *earlier < tolerance::TIME_S);
+    let until = |end: f64, time: f64, speed: f64| {
+        let over = time > end - tolerance::TIME_S;
+        knots_from_mps(if over { f64::NAN } else { speed })
+    };
+    let wanted = |&t: &f64| until(desired.duration(), t, desired_leg(desired, t).speed);
+    let mut series = vec![Series {
+        name: "desired",
+        color: style::desired(),
+        width: 1.0,
+        values: times.iter().map(wanted).collect(),
+    }];
+    if let Motion::Planned(trajectory) = scene.motion {
+        let planned = |&t: &f64| until(trajectory.end_time(), t, trajectory.segment_at(t).speed);
+        series.push(Series {
+            name: "own ship",
+            color: style::own_ship(),
+            width: 2.0,
+            values: times.iter().map(planned).collect(),
+        });
+    }
+    log_plot(rec, SPEED, &times, InterpolationMode::StepAfter, &series)
 }
 
 fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let steps = leg_steps(scene, |leg| heading_of(leg.direction));
-    let times: Vec<f64> = steps.iter().map(|s| s.0).collect();
-    let values = continuous_courses(start_course(scene), steps.iter().map(|s| s.1));
-    let look = ("desired", style::desired(), 1.0);
-    log_steps(rec, path(&[COURSE, "desired"]), look, &times, values)?;
-    if !scene.motion.is_planned() {
-        return Ok(());
+    let desired = &scene.run.scenario.desired;
+    let wanted = scene
+        .samples
+        .iter()
+        .map(|&t| heading_of(desired_leg(desired, t).direction));
+    let mut series = vec![Series {
+        name: "desired",
+        color: style::desired(),
+        width: 1.0,
+        values: continuous_courses(start_course(scene), wanted),
+    }];
+    if scene.motion.is_planned() {
+        series.push(Series {
+            name: "own ship",
+            color: style::own_ship(),
+            width: 2.0,
+            values: courses(scene),
+        });
     }
-    let look = ("own ship", style::own_ship(), 2.0);
-    log_curve(
+    log_plot(
         rec,
-        path(&[COURSE, "own_ship"]),
-        look,
+        COURSE,
         &scene.samples,
-        courses(scene),
+        InterpolationMode::Linear,
+        &series,
     )
 }
 

@@ -8,29 +8,30 @@
 //! | --- | --- |
 //! | `summary` | verdict, manoeuvre, encounters, costs, claims, as markdown |
 //! | `chart/map` | turns north up (views of Rerun are y-down); everything below is east, north |
-//! | `chart/map/grid`, `north`, `legend` | scale and line styles |
+//! | `chart/map/grid`, `legend` | scale, north, line styles |
 //! | `chart/map/desired` | the desired trajectory, dashed |
 //! | `chart/map/planned` | the plan, one line per segment: thin and blue below the desired speed, white at it, thick and yellow above it |
 //! | `chart/map/time_marks` | own ship every round number of seconds |
 //! | `chart/map/tracks/<target>` | the target's expected track with the same time marks |
-//! | `chart/map/closest_points` | own ship and each target at their CPA, joined |
+//! | `chart/map/closest_points` | own ship and each target at their CPA, joined; the least distance in words |
 //! | `chart/map/conflict` | without a plan: where the desired trajectory first is in a set |
 //! | `chart/map/violations` | where the independent check found something wrong |
-//! | `chart/map/own_ship`, with `name`, `hull`, `hull/vector` | own ship's place, hull and speed vector at the cursor |
-//! | `chart/map/targets/<target>`, with `name` | expected place, hull and speed vector at the cursor |
+//! | `chart/map/own_ship`, `own_ship/hull` | own ship's place and name, her hull and speed vector at the cursor |
+//! | `chart/map/targets/<target>` | expected place, hull and speed vector at the cursor |
 //! | `chart/map/trails` | where the ships have been up to the cursor |
 //! | `chart/map/hard_sets/<target>`, `shaped_sets/<target>` | sections of the sets at the cursor; the shaped one only where it differs |
 //! | `chart/map/explored/free`, `blocked` | edges that the search tested; hidden until asked for |
 //! | `space_time/axes` | the sea at t = 0, the time axis (upward) |
 //! | `space_time/desired`, `planned`, `targets` | the motions as lines; the plan's shadow lies on the sea |
 //! | `space_time/hard_sets/<target>`, `shaped_sets/<target>` | the bodies, translucent, from t = 0 to the end |
-//! | `space_time/now`, `ships` | the plane of the cursor and the ships in it |
+//! | `space_time/now` | the plane of the cursor and the ships in it |
 //! | `space_time/explored/free`, `blocked` | edges that the search tested; the blocked ones hidden until asked for |
-//! | `curves/clearance_m/<target>` | metres between own hull and the expected hull |
-//! | `curves/margin_m/hard`, `shaped` | metres from own ship's centre to the nearest set of the kind, negative inside |
-//! | `curves/speed_kn/own_ship`, `desired` | knots |
-//! | `curves/course_deg/own_ship`, `desired` | degrees clockwise from true north, continuous |
+//! | `curves/clearance_m` | per target: metres between own hull and the expected hull; the safety margin |
+//! | `curves/margin_m` | metres from own ship's centre to the nearest hard and shaped set, negative inside; zero |
+//! | `curves/speed_kn` | desired and own speed, knots; a row where one changes, no number where one has ended |
+//! | `curves/course_deg` | desired and own course, degrees clockwise from true north, continuous |
 //!
+//! A plot is one entity; its curves are the scalars of each row, named in `SeriesLines:names`.
 //! The blueprint, a store of its own in the same file, lays this out. Two recordings of one run differ
 //! in their bytes (row ids are clock readings) and compare equal with `rerun rrd compare`.
 
@@ -86,7 +87,8 @@ pub enum RecordingError {
 
 /// Writes `run` as a recording with its blueprint to `path`, in full or not at all: to a temporary name
 /// in the same folder first, then renamed. Missing parent folders are made, an older file is replaced.
-/// The size is about 100 to 300 kB for one to four targets.
+/// One target makes about 250 kB, every
+/// further one about 60 kB more.
 pub fn write(run: &Run, path: &Path) -> Result<(), RecordingError> {
     let bytes = encode(run).map_err(|source| RecordingError::Encode {
         path: path.to_owned(),
@@ -107,9 +109,10 @@ fn encode(run: &Run) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>
     rec.set_log_time_enabled(false);
     rec.set_log_tick_enabled(false);
     log_run(&rec, &Scene::new(run))?;
-    // the footer is an index for files too large to be read whole; here it would be 40 % of the file
+    // the footer is an index into files too large to be read whole; here it would be 40 % of the file
     let mut encoder = Encoder::local()?;
     encoder.do_not_emit_footer();
+
     encoder.extend(store.take().into_iter().map(Ok))?;
     encoder.finish()?;
     Ok(encoder.into_inner()?)

@@ -100,10 +100,8 @@ fn log_target(
         lines.add(vec![[0.0, 0.0], flat(tip)], color, style::points(0.8));
     }
     let lines = lines.archetype();
-    let parts: [&dyn AsComponents; 2] = [&lines, &mark(color)];
+    let parts: [&dyn AsComponents; 2] = [&lines, &label(scene, color, &target.name)];
     rec.log_static(entity.clone(), &parts)?;
-    let name = label(scene, color, &target.name);
-    rec.log_static(path(&[MAP, "targets", &target.name, "name"]), &name)?;
     let places = scene.moments.iter().map(|&t| target.position_at(t));
     log_places(rec, scene, entity, places)
 }
@@ -111,34 +109,21 @@ fn log_target(
 fn log_own_ship(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let color = style::own_ship();
     let entity = path(&[MAP, "own_ship"]);
-    rec.log_static(entity.clone(), &mark(color))?;
     let name = if scene.motion.is_planned() {
         "Own ship"
     } else {
         "Own ship (no plan)"
     };
-    rec.log_static(path(&[MAP, "own_ship", "name"]), &label(scene, color, name))?;
-    let poses: Vec<Pose> = scene
-        .moments
-        .iter()
-        .map(|&t| scene.motion.pose_at(t))
-        .collect();
-    log_places(rec, scene, entity, poses.iter().map(|p| p.position))?;
+    rec.log_static(entity.clone(), &label(scene, color, name))?;
+    let poses = scene.moments.iter().map(|&t| scene.motion.pose_at(t));
+    log_places(rec, scene, entity, poses.clone().map(|p| p.position))?;
 
     let hull = path(&[MAP, "own_ship", "hull"]);
-    let shape = scene.run.scenario.own_ship.hull;
-    if shape.half_diagonal() > 0.0 {
-        let here = Pose::new(Vector::zeros(), 0.0);
-        let lines = LineStrips2D::new([outline(&shape.polygon(&here))])
-            .with_colors([color])
-            .with_radii([style::points(1.2)]);
-        rec.log_static(hull.clone(), &lines)?;
-    }
     let turns = Transform3D::update_fields()
-        .with_many_quaternion(poses.iter().map(|p| rotation(p.heading)))
+        .with_many_quaternion(poses.map(|p| rotation(p.heading)))
         .columns_of_unit_batches()?;
-    rec.send_columns(hull, [scene.moment_column()], turns)?;
-    log_own_vector(rec, scene)
+    rec.send_columns(hull.clone(), [scene.moment_column()], turns)?;
+    log_own_outline(rec, scene, hull)
 }
 
 fn log_places(
@@ -154,14 +139,15 @@ fn log_places(
     rec.send_columns(entity, [scene.moment_column()], columns)
 }
 
-/// A dot per ship and moment; the blueprint shows those up to the cursor.
+/// A dot per ship and moment; the blueprint shows those up to the cursor. The last one marks the ship
+/// at any zoom.
 fn log_trails(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let targets = &scene.run.scenario.targets;
     let entity = path(&[TRAILS]);
     let colors = std::iter::once(style::own_ship()).chain((0..targets.len()).map(style::target));
     let look = Points2D::update_fields()
         .with_colors(colors)
-        .with_radii([style::points(2.2)]);
+        .with_radii([style::points(2.4)]);
     rec.log_static(entity.clone(), &look)?;
     let mut dots = Vec::new();
     for &time in &scene.moments {
@@ -178,25 +164,30 @@ fn log_trails(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
     )
 }
 
-/// Own ship's speed vector, logged where the speed changes.
-fn log_own_vector(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let entity = path(&[MAP, "own_ship", "hull", "vector"]);
+/// Own ship's hull and speed vector in her own frame, logged where the speed changes.
+fn log_own_outline(
+    rec: &RecordingStream,
+    scene: &Scene,
+    entity: rerun::EntityPath,
+) -> RecordingStreamResult<()> {
     let look = LineStrips2D::update_fields()
         .with_colors([style::own_ship()])
-        .with_radii([style::points(0.8)]);
+        .with_radii([style::points(1.2), style::points(0.8)]);
     rec.log_static(entity.clone(), &look)?;
     let mut times = match scene.motion {
         Motion::Planned(trajectory) => trajectory.segments().iter().map(|s| s.start_time).collect(),
         Motion::Undisturbed(desired) => desired.legs().iter().map(|l| l.start_time).collect(),
     };
     dedup_increasing(&mut times);
-    let strips = times.iter().map(|&t| {
+    let own = scene.run.scenario.own_ship.hull;
+    let hull = outline(&own.polygon(&Pose::new(Vector::zeros(), 0.0)));
+    let strips = times.iter().flat_map(|&t| {
         let tip = scene.motion.speed_at(t) * vector_seconds(scene);
-        [[0.0, 0.0], [tip as f32, 0.0]]
+        [hull.clone(), vec![[0.0, 0.0], [tip as f32, 0.0]]]
     });
     let columns = LineStrips2D::update_fields()
         .with_strips(strips)
-        .columns_of_unit_batches()?;
+        .columns(vec![2; times.len()])?;
     rec.send_columns(
         entity,
         [TimeColumn::new_duration_secs(
@@ -215,13 +206,6 @@ fn dedup_increasing(times: &mut Vec<f64>) {
 /// Seconds that a speed vector reaches ahead.
 pub fn vector_seconds(scene: &Scene) -> f64 {
     round_down(scene.end / 6.0)
-}
-
-/// A dot that stays visible at any zoom.
-fn mark(color: Color) -> Points2D {
-    Points2D::new([[0.0, 0.0]])
-        .with_colors([color])
-        .with_radii([style::points(3.0)])
 }
 
 /// A name north of the ship: the time marks have theirs south of the track.

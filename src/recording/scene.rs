@@ -6,6 +6,7 @@ use rerun::TimeColumn;
 use super::TIMELINE;
 use crate::frame::{Pose, Vector, heading_of};
 use crate::pipeline::Run;
+use crate::tolerance;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
 
 /// Bytes that the moving sections of all sets may take; the step of the cursor follows.
@@ -33,6 +34,14 @@ pub enum Motion<'a> {
 impl Motion<'_> {
     pub fn is_planned(&self) -> bool {
         matches!(self, Self::Planned(_))
+    }
+
+    /// The value, or no number once the plan has arrived: nothing is claimed after that.
+    pub fn until_arrival(&self, time: f64, value: f64) -> f64 {
+        match self {
+            Self::Planned(plan) if time > plan.end_time() + tolerance::TIME_S => f64::NAN,
+            Self::Planned(_) | Self::Undisturbed(_) => value,
+        }
     }
 
     pub fn pose_at(&self, time: f64) -> Pose {

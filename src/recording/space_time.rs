@@ -196,45 +196,35 @@ fn log_now(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let frame = LineStrips3D::new([frame])
         .with_colors([style::toward_background(style::own_ship(), 0.5)])
         .with_radii([style::points(0.6)]);
-    let entity = path(&[VOLUME, "now"]);
-    rec.log_static(entity.clone(), &frame)?;
-    let heights = scene
-        .moments
-        .iter()
-        .map(|&t| scene.lifted(Vector::zeros(), t));
-    rec.send_columns(
-        entity,
-        [scene.moment_column()],
-        Transform3D::update_fields()
-            .with_many_translation(heights)
-            .columns_of_unit_batches()?,
-    )?;
-
     let targets = &scene.run.scenario.targets;
     let colors = std::iter::once(style::own_ship()).chain((0..targets.len()).map(style::target));
     let names = std::iter::once("Own ship").chain(targets.iter().map(|t| t.name.as_str()));
-    let entity = path(&[VOLUME, "ships"]);
-    let look = Points3D::update_fields()
+    let ships = Points3D::update_fields()
         .with_colors(colors)
         .with_radii([style::points(5.0)])
         .with_labels(names)
         .with_show_labels(true);
-    rec.log_static(entity.clone(), &look)?;
+    let entity = path(&[VOLUME, "now"]);
+    let parts: [&dyn AsComponents; 2] = [&frame, &ships];
+    rec.log_static(entity.clone(), &parts)?;
+
+    let plane = |time: f64| scene.lifted(Vector::zeros(), time);
+    let rises = Transform3D::update_fields()
+        .with_many_translation(scene.moments.iter().map(|&t| plane(t)))
+        .columns_of_unit_batches()?;
     let mut places = Vec::new();
     for &time in &scene.moments {
-        places.push(scene.lifted(scene.motion.pose_at(time).position, time));
+        let own = scene.motion.pose_at(time).position;
+        places.push(scene.lifted(own, 0.0));
         places.extend(
             targets
                 .iter()
-                .map(|t| scene.lifted(t.position_at(time), time)),
+                .map(|t| scene.lifted(t.position_at(time), 0.0)),
         );
     }
     let lengths = vec![1 + targets.len(); scene.moments.len()];
-    rec.send_columns(
-        entity,
-        [scene.moment_column()],
-        Points3D::update_fields()
-            .with_positions(places)
-            .columns(lengths)?,
-    )
+    let moves = Points3D::update_fields()
+        .with_positions(places)
+        .columns(lengths)?;
+    rec.send_columns(entity, [scene.moment_column()], rises.chain(moves))
 }

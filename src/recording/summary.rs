@@ -5,13 +5,12 @@ use std::fmt::Write;
 use rerun::{MediaType, RecordingStream, RecordingStreamResult, TextDocument};
 
 use super::SUMMARY;
-use super::chart::knots;
 use super::explored::Drawn;
 use super::movers::vector_seconds;
 use super::scene::{Motion, Scene};
 use crate::colregs::Role;
 use crate::evaluation::Evaluation;
-use crate::frame::{Side, deg_from_radians};
+use crate::frame::{Side, deg_from_radians, knots_from_mps};
 use crate::pipeline::Relaxation;
 use crate::planner::{Outcome, Plan};
 use crate::scenario::Compliance;
@@ -87,9 +86,13 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
     let slowest = speeds().fold(f64::INFINITY, f64::min);
     let fastest = speeds().fold(0.0, f64::max);
     said.push(if slowest < fastest {
-        format!("runs {:.1} to {:.1} kn", knots(slowest), knots(fastest))
+        format!(
+            "runs {:.1} to {:.1} kn",
+            knots_from_mps(slowest),
+            knots_from_mps(fastest)
+        )
     } else {
-        format!("keeps {:.1} kn", knots(fastest))
+        format!("keeps {:.1} kn", knots_from_mps(fastest))
     });
     let arrival = trajectory.end_time();
     let delay = arrival - scene.run.scenario.desired.duration();
@@ -201,23 +204,34 @@ fn targets_table(scene: &Scene) -> String {
         let encounter = &sets.encounter;
         let _ = write!(
             table,
-            "\n| {} | {} | {:.0} m at {:.0} s |",
+            "\n| {} | {} | {} |",
             sets.hard.name(),
             role_name(encounter.role),
-            encounter.undisturbed_dcpa,
-            encounter.undisturbed_tcpa
+            approach(encounter.undisturbed_dcpa, encounter.undisturbed_tcpa)
         );
         let passage = run.evaluation.as_ref().and_then(|e| e.passages.get(index));
         let _ = match passage {
             Some(p) => write!(
                 table,
-                " {:.0} m at {:.0} s | {} | {:.1} m | {:.1} m |",
-                p.dcpa, p.tcpa, p.passing_side, p.min_clearance, p.min_margin
+                " {} | {} | {:.1} m | {:.1} m |",
+                approach(p.dcpa, p.tcpa),
+                p.passing_side,
+                p.min_clearance,
+                p.min_margin
             ),
             None => write!(table, " – | – | – | – |"),
         };
     }
     table
+}
+
+/// A closest approach: metres between the hulls, negative in overlap, and seconds.
+fn approach(distance: f64, time: f64) -> String {
+    if distance < 0.0 {
+        format!("collision at {time:.0} s")
+    } else {
+        format!("{distance:.0} m at {time:.0} s")
+    }
 }
 
 fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
@@ -240,15 +254,12 @@ fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
 fn search(scene: &Scene, drawn: Drawn) -> String {
     let stats = scene.run.planned.stats;
     let graph = if drawn.edges < drawn.tested {
-        format!(
-            "{} of {} tested edges are in the recording",
-            drawn.edges, drawn.tested
-        )
+        format!("{} of {} are in the recording", drawn.edges, drawn.tested)
     } else {
-        format!("all {} tested edges are in the recording", drawn.tested)
+        format!("all {} that take time are in the recording", drawn.tested)
     };
     format!(
-        "Search: {} nodes expanded, {} made, {} edges tested; {graph}, hidden on the chart (`explored`).",
+        "Search: {} nodes expanded, {} made, {} edges tested; {graph} under `explored`, hidden on the chart.",
         stats.expanded, stats.generated, stats.edges_checked
     )
 }

@@ -101,11 +101,10 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
         format!("/space_time/shaped_sets/{name}"),
         "/space_time/planned".to_owned(),
         "/space_time/explored/free".to_owned(),
-        format!("/curves/clearance_m/{name}"),
-        "/curves/margin_m/hard".to_owned(),
-        "/curves/margin_m/shaped".to_owned(),
-        "/curves/speed_kn/own_ship".to_owned(),
-        "/curves/course_deg/own_ship".to_owned(),
+        "/curves/clearance_m".to_owned(),
+        "/curves/margin_m".to_owned(),
+        "/curves/speed_kn".to_owned(),
+        "/curves/course_deg".to_owned(),
     ] {
         assert!(
             entities.contains_key(&expected),
@@ -137,7 +136,7 @@ fn a_run_without_a_plan_is_recorded_too() {
     let entities = read(&path);
     assert!(!entities.contains_key("/chart/map/planned"));
     assert!(entities.contains_key("/chart/map/conflict"));
-    assert!(entities.contains_key("/curves/margin_m/hard"));
+    assert!(entities.contains_key("/curves/margin_m"));
 }
 
 #[test]
@@ -167,7 +166,6 @@ fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
     let entities = read(&path);
     assert!(entities.contains_key("/chart/map/hard_sets/drifting"));
     assert!(!entities.contains_key("/chart/map/shaped_sets/drifting"));
-    assert!(entities.contains_key("/curves/clearance_m/drifting"));
     assert!(entities.contains_key("/chart/map/violations"));
 }
 
@@ -183,5 +181,22 @@ fn every_scenario_of_the_suite_stays_small() {
         write(&run, &path).expect("writes");
         let size = std::fs::metadata(&path).expect("exists").len();
         assert!(size < 300_000, "{}: {size} bytes", file.display());
+    }
+}
+
+#[test]
+fn nothing_is_said_of_the_margin_after_arrival() {
+    let mut run = run();
+    let late = run.scenario.desired.duration() + 50.0;
+    let end = run.scenario.desired.end() + crate::frame::Vector::new(250.0, 0.0);
+    let points = [run.scenario.desired.waypoints()[0], end];
+    run.scenario.desired =
+        crate::trajectory::DesiredTrajectory::new(&points, &[5.0]).expect("valid");
+    let scene = Scene::new(&run);
+    assert!((scene.end - late).abs() < 1e-9);
+    let margins = curves::margins(&scene, &[&run.sets[0].hard]);
+    let arrival = run.planned.outcome.plan().map(|p| p.trajectory.end_time());
+    for (time, margin) in scene.samples.iter().zip(margins) {
+        assert_eq!(margin.is_nan(), Some(*time) > arrival, "{time} {margin}");
     }
 }
