@@ -46,6 +46,8 @@ pub(crate) struct Seed {
 #[derive(Debug, Clone)]
 pub(crate) struct Refined {
     pub model: Model,
+    /// Of its slots.
+    pub lengths: Row,
 }
 
 /// A refinement under way.
@@ -132,6 +134,15 @@ impl Refinement {
         self.best.as_ref()
     }
 
+    /// The best manoeuvre as a seed: a box that has shrunk around one contact is opened again.
+    pub(crate) fn anew(&self) -> Option<Seed> {
+        let lengths = self.best.as_ref()?.lengths;
+        Some(Seed {
+            template: self.template.clone(),
+            lengths,
+        })
+    }
+
     /// Cost of the manoeuvre at hand, clear or not, m².
     pub(crate) fn cost(&self) -> f64 {
         self.model.cost
@@ -151,6 +162,7 @@ impl Refinement {
         if clear && better {
             self.best = Some(Refined {
                 model: self.model.clone(),
+                lengths: self.lengths,
             });
         }
     }

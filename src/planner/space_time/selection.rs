@@ -44,6 +44,10 @@ const CANONICAL: [Canonical; 4] = [
 /// A side whose offset is this many times the other's gets one manoeuvre only.
 const FAR_SIDE: f64 = 1.8;
 
+/// Times that the best is refined anew, and the relative gain that is worth another.
+const POLISHES: usize = 3;
+const WORTH_A_POLISH: f64 = 2e-3;
+
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
@@ -174,8 +178,31 @@ impl<'a> Selection<'a> {
                 }
             }
         }
+        self.polish(&mut running);
         self.collect(&running);
         false
+    }
+
+    /// Refines the best of all anew for as long as that gains, a few times.
+    fn polish(&self, running: &mut Vec<Refinement>) {
+        for _ in 0..POLISHES {
+            let cost = |r: &Refinement| r.best().map_or(f64::INFINITY, |b| b.model.cost);
+            let leader = running.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
+            let Some((before, seed)) = leader.and_then(|r| Some((cost(r), r.anew()?))) else {
+                return;
+            };
+            let Some(mut again) = Refinement::fitting(&self.scene, seed) else {
+                return;
+            };
+            while !again.is_finished() {
+                again.step(&self.scene);
+            }
+            let gained = before - cost(&again);
+            running.push(again);
+            if !(gained > WORTH_A_POLISH * before) {
+                return;
+            }
+        }
     }
 
     /// Tests what the refinements found, cheapest first, until one passes.
