@@ -37,7 +37,9 @@ const MAX_CHAIN: u8 = 3;
 const INITIAL_VERTICES: usize = 6;
 const VELOCITY_VERTICES: usize = 3;
 /// Metres. Obstacles farther than this from the undisturbed motion are not met.
-const RELEVANT_M: f64 = 300.0;
+const RELEVANT_M: f64 = 120.0;
+/// Seconds of the pieces in which that is looked at.
+const PIECE_S: f64 = 5.0;
 
 /// A node with the motion that leads to it.
 #[derive(Debug, Clone)]
@@ -107,14 +109,21 @@ impl<'a> Graph<'a> {
             .collect();
         contacts.sort_by(f64::total_cmp);
         contacts.dedup_by(|a, b| *a - *b < LEADS_S[3]);
+        // short pieces: the bound is loose on long ones
+        let pieces: Vec<Segment> = undisturbed
+            .iter()
+            .flat_map(|s| {
+                let count = (s.duration / PIECE_S).ceil() as usize;
+                (0..count).map(move |k| {
+                    let from = s.start_time + PIECE_S * k as f64;
+                    s.between(from, from + PIECE_S)
+                })
+            })
+            .collect();
         let aims = hazards
             .iter()
             .enumerate()
-            .filter(|(_, h)| {
-                undisturbed
-                    .iter()
-                    .any(|s| h.clearance_bound(s) < RELEVANT_M)
-            })
+            .filter(|(_, h)| pieces.iter().any(|s| h.clearance_bound(s) < RELEVANT_M))
             .map(|(obstacle, h)| {
                 let coarse = PolytopeObstacle::new(
                     "",
