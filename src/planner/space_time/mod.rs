@@ -51,7 +51,7 @@ const LEAST_RADIUS_M: f64 = 5e-4;
 const MAX_SIGNATURES: usize = 4;
 
 /// Expansions beyond the graph's best plan, to find such others.
-const FURTHER_EXPANDED: usize = 20;
+const FURTHER_EXPANDED: usize = 8;
 
 /// Plans one problem.
 ///

@@ -143,6 +143,16 @@ impl Refinement {
         })
     }
 
+    /// Cost of the best clear manoeuvre, m²; infinite before there is one.
+    pub(crate) fn best_cost(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |b| b.model.cost)
+    }
+
+    /// Cost of the manoeuvre at hand with its penalty, m².
+    pub(crate) fn merit(&self) -> f64 {
+        self.model.cost + self.penalty * self.model.violation
+    }
+
     /// Cost of the manoeuvre at hand, clear or not, m².
     pub(crate) fn cost(&self) -> f64 {
         self.model.cost
@@ -265,7 +275,7 @@ impl Refinement {
         let bent: f64 = (0..n)
             .map(|i| step[i] * (0..n).map(|k| hessian[i][k] * step[k]).sum::<f64>())
             .sum();
-        let merit = self.model.cost + self.penalty * self.model.violation;
+        let merit = self.merit();
         let mut share = 1.0;
         for _ in 0..=MAX_BACKTRACKS {
             let predicted =

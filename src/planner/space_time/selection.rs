@@ -44,18 +44,17 @@ const CANONICAL: [Canonical; 4] = [
 /// A side whose offset is this many times the other's gets one manoeuvre only.
 const FAR_SIDE: f64 = 1.8;
 
-/// Times that the best is refined anew, and the relative gain that is worth another.
-const POLISHES: usize = 3;
-const WORTH_A_POLISH: f64 = 2e-3;
-
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
 /// Steps after which a refinement may be overtaken.
-const RACE_FROM: usize = 6;
+const RACE_FROM: usize = 4;
 
 /// Relative excess over the best that a refinement may still have at first.
 const RACE_SLACK: f64 = 1.0;
+
+/// Refinements that go on after [`RACE_FROM`] steps at most.
+const RACE_PLACES: usize = 3;
 
 /// Rounds after which only the best goes on.
 const RACE_ROUNDS: f64 = 16.0;
@@ -158,7 +157,6 @@ impl<'a> Selection<'a> {
             .into_iter()
             .filter_map(|s| Refinement::fitting(&scene, s))
             .collect();
-        let mut best = f64::INFINITY;
         for round in 0..MAX_STEPS {
             for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
                 if out_of_time() {
@@ -166,43 +164,46 @@ impl<'a> Selection<'a> {
                     return true;
                 }
                 refinement.step(&scene);
-                if let Some(found) = refinement.best() {
-                    best = best.min(found.model.cost);
-                }
             }
-            let slack = RACE_SLACK * (1.0 - round as f64 / RACE_ROUNDS).max(0.0);
-            let allowed = best * (1.0 + slack);
-            for refinement in running.iter_mut().filter(|r| r.steps() >= RACE_FROM) {
-                if refinement.cost() > allowed {
-                    refinement.stop();
-                }
-            }
+            self.race(&mut running, round);
         }
         self.polish(&mut running);
         self.collect(&running);
         false
     }
 
-    /// Refines the best of all anew for as long as that gains, a few times.
-    fn polish(&self, running: &mut Vec<Refinement>) {
-        for _ in 0..POLISHES {
-            let cost = |r: &Refinement| r.best().map_or(f64::INFINITY, |b| b.model.cost);
-            let leader = running.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
-            let Some((before, seed)) = leader.and_then(|r| Some((cost(r), r.anew()?))) else {
-                return;
-            };
-            let Some(mut again) = Refinement::fitting(&self.scene, seed) else {
-                return;
-            };
-            while !again.is_finished() {
-                again.step(&self.scene);
-            }
-            let gained = before - cost(&again);
-            running.push(again);
-            if !(gained > WORTH_A_POLISH * before) {
-                return;
+    /// Stops what has fallen behind, the worst first when too many are left.
+    fn race(&self, running: &mut [Refinement], round: usize) {
+        let best = running
+            .iter()
+            .map(Refinement::best_cost)
+            .fold(f64::INFINITY, f64::min);
+        let slack = RACE_SLACK * (1.0 - round as f64 / RACE_ROUNDS).max(0.0);
+        let mut going: Vec<&mut Refinement> = running
+            .iter_mut()
+            .filter(|r| !r.is_finished() && r.steps() >= RACE_FROM)
+            .collect();
+        going.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
+        for (place, refinement) in going.into_iter().enumerate() {
+            if place >= RACE_PLACES || refinement.cost() > best * (1.0 + slack) {
+                refinement.stop();
             }
         }
+    }
+
+    /// Refines the best of all anew, with a box that is open again.
+    fn polish(&self, running: &mut Vec<Refinement>) {
+        let leader = running
+            .iter()
+            .min_by(|a, b| a.best_cost().total_cmp(&b.best_cost()));
+        let seed = leader.and_then(Refinement::anew);
+        let Some(mut again) = seed.and_then(|s| Refinement::fitting(&self.scene, s)) else {
+            return;
+        };
+        while !again.is_finished() {
+            again.step(&self.scene);
+        }
+        running.push(again);
     }
 
     /// Tests what the refinements found, cheapest first, until one passes.
