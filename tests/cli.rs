@@ -519,3 +519,75 @@ fn a_reader_that_goes_away_is_no_fault() {
     assert_eq!(output.status.code(), Some(0));
     assert!(output.stderr.is_empty());
 }
+
+/// HEAD_ON with another first position and the given waypoints, without its target's motion in the way.
+fn with_waypoints(own: &str, waypoints: &str) -> String {
+    let at = HEAD_ON.find("waypoints").expect("a mission");
+    let line = &HEAD_ON[at..at + HEAD_ON[at..].find('\n').expect("a line")];
+    HEAD_ON
+        .replacen("position = { east_m = 0.0, north_m = 0.0 }", own, 1)
+        .replacen(line, waypoints, 1)
+        .replacen("horizon_s = 400.0", "horizon_s = 900.0", 1)
+}
+
+#[test]
+fn a_ship_at_the_last_waypoint_has_arrived() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let own = "position = { east_m = 700.0, north_m = 900.0 }";
+    let waypoints = "waypoints = [{ east_m = 0, north_m = 900 }, { east_m = 700, north_m = 900 }]";
+    let file = write(folder.path(), "there.toml", with_waypoints(own, waypoints));
+    let document = document(&searoom(&["plan", &file, "--json"]).success());
+    assert_eq!(document["outcome"], "solved");
+    assert_eq!(document["cost"]["duration_s"], 0.0);
+}
+
+#[test]
+fn legs_shorter_than_a_turn_are_cut_short_and_too_many_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let own = "position = { east_m = 0.0, north_m = 900.0 }";
+    let zigzag = |count: usize| {
+        let points: Vec<String> = (0..count)
+            .map(|i| format!("{{ east_m = {}, north_m = {} }}", 15 * i, 900 + 5 * (i % 2)))
+            .collect();
+        with_waypoints(own, &format!("waypoints = [{}]", points.join(", ")))
+    };
+    let file = write(folder.path(), "zigzag.toml", zigzag(99));
+    let document = document(&searoom(&["plan", &file, "--json"]).success());
+    assert_eq!(document["verified"], true);
+    assert!(document["cost"]["length_m"].as_f64().expect("a length") < 1600.0);
+    let file = write(folder.path(), "many.toml", zigzag(200));
+    let refused = searoom(&["check", &file]).code(2);
+    refused.stderr(contains("mission.waypoints: found 200 positions"));
+}
+
+#[test]
+fn sets_of_one_point_block_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = HEAD_ON
+        .split("[[targets]]")
+        .next()
+        .expect("before the targets")
+        .to_owned()
+        + "[[targets]]\nname = \"buoy\"\ninitial_set = { vertices_m = [[700.0, 0.0]] }\n\
+           velocity_set = { vertices_mps = [[-1.0, 0.0]] }\n";
+    let file = write(folder.path(), "point.toml", text);
+    let document = document(&searoom(&["plan", &file, "--json"]).success());
+    assert_eq!(document["verified"], true);
+    assert!(
+        document["cost"]["space_time_error_m2"]
+            .as_f64()
+            .expect("a cost")
+            > 0.0
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_not_waited_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("pipe.toml");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    if made.is_ok_and(|status| status.success()) {
+        searoom(&["suite", text(folder.path())]).code(2);
+    }
+}

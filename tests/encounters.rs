@@ -26,7 +26,7 @@ use searoom::frame::{Side, Vector, direction};
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::PolytopeObstacle;
 use searoom::pipeline;
-use searoom::planner::{Outcome, Problem};
+use searoom::planner::{Outcome, Problem, SearchKind};
 use searoom::scenario::Scenario;
 use searoom::simulation::{
     Behaviour, Drawn, EncounterKind, Placement, Signal, random_encounter, random_traffic,
@@ -503,4 +503,33 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
         ratios.iter().filter(|r| **r > 1.05).count(),
     );
     assert!(beaten.is_empty(), "{beaten:#?}");
+}
+
+/// The bound is admissible on real graphs: with it and without it the cheapest plan on the graph costs the
+/// same, and with it no more nodes are expanded.
+#[test]
+fn a_star_finds_what_dijkstra_finds() {
+    let mut saved = 0;
+    for kind in EncounterKind::ALL {
+        for seed in 0..25 {
+            let drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
+            let planned = [SearchKind::AStar, SearchKind::Dijkstra].map(|search| {
+                let mut scenario = drawn.scenario.clone();
+                scenario.search = search;
+                pipeline::run(scenario).planned
+            });
+            let cost = planned
+                .each_ref()
+                .map(|p| p.outcome.plan().and_then(|p| p.graph_cost));
+            let name = kind.name();
+            match cost {
+                [Some(a), Some(b)] => assert!((a - b).abs() <= 1e-9 * b, "{name} {seed}: {a} {b}"),
+                other => assert_eq!(other[0], other[1], "{name} {seed}"),
+            }
+            let [a, b] = planned.map(|p| p.stats.expanded);
+            assert!(a <= b, "{name} {seed}: {a} {b}");
+            saved += b - a;
+        }
+    }
+    assert!(saved > 0, "the bound is idle");
 }

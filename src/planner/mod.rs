@@ -77,7 +77,7 @@ pub enum NoPlan {
     },
     /// The end cannot be reached before the horizon even without obstacles.
     #[error(
-        "the last waypoint is reached after {earliest:.1} s at best, on a path with the turning radius and without targets, but the horizon is {horizon:.1} s"
+        "the last waypoint is reached after {earliest:.1} s at best, on the path found for the turning radius, without targets, but the horizon is {horizon:.1} s"
     )]
     HorizonTooShort {
         /// Seconds.

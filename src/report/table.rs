@@ -100,6 +100,9 @@ fn cells(summary: &Summary) -> Vec<Cell> {
 }
 
 fn square_metres(value: f64) -> String {
+    if value.is_nan() {
+        return "undefined".to_owned();
+    }
     if value < 1000.0 {
         format!("{value:.1}")
     } else {

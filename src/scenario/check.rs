@@ -130,6 +130,11 @@ fn own_speeds(section: &mut Section, speed: Option<f64>) -> Option<Vec<f64>> {
                 entry.fault("only zeros", "a list with at least one speed above 0");
                 return None;
             }
+            if speeds.len() > limits::SPEEDS {
+                let found = format_args!("{} speeds", speeds.len());
+                entry.fault(found, format_args!("at most {}", limits::SPEEDS));
+                return None;
+            }
             speeds
         }
         None if section.has_speed("speeds") => return None,
@@ -155,7 +160,15 @@ fn mission(mut section: Section, own_speed: Option<f64>) -> Option<DesiredTrajec
     section.not_built("alternatives");
     let entries = section
         .require("waypoints", "a list of at least 2 positions")
-        .and_then(|entry| entry.list(2, "positions"));
+        .and_then(|entry| {
+            let entries = entry.list(2, "positions")?;
+            if entries.len() > limits::WAYPOINTS {
+                let found = format_args!("{} positions", entries.len());
+                entry.fault(found, format_args!("at most {}", limits::WAYPOINTS));
+                return None;
+            }
+            Some(entries)
+        });
     let legs = entries.as_ref().map(|entries| entries.len() - 1);
     let waypoints = entries.and_then(|entries| waypoints(&entries));
     let speeds = leg_speeds(&mut section, legs, own_speed);

@@ -160,7 +160,7 @@ impl<'a, 'i> Entry<'a, 'i> {
         match self.value.get_ref().as_str() {
             Some(text)
                 if !text.trim().is_empty()
-                    && !text.chars().any(char::is_control)
+                    && !text.chars().any(unprintable)
                     && text.chars().count() <= TEXT_CHARS =>
             {
                 Some(text.to_owned())
@@ -270,4 +270,10 @@ fn describe(value: &DeValue) -> String {
         DeValue::Array(values) => format!("a list of {}", values.len()),
         DeValue::Table(_) => "a table".to_owned(),
     }
+}
+
+/// Control characters, and those that break a line or turn its direction.
+fn unprintable(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }

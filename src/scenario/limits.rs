@@ -8,6 +8,11 @@ use crate::frame::mps_from_knots;
 /// Bytes of a scenario file.
 pub(super) const FILE_BYTES: u64 = 16 * 1024 * 1024;
 
+/// Waypoints of a mission: the cost of a plan grows with their square.
+pub(super) const WAYPOINTS: usize = 100;
+/// Speeds of the finite set: the graph grows with the square of their number.
+pub(super) const SPEEDS: usize = 20;
+
 /// Metres east or north of the origin.
 pub(super) const COORDINATE: Range = Range::within(1e7);
 /// Metres: lengths, beams, turning radii, legs.

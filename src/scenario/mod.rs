@@ -66,6 +66,11 @@ impl Scenario {
                 line: None,
             }],
         };
+        // a pipe would be waited for, a device read for ever
+        if !std::fs::metadata(file).map_err(unread)?.is_file() {
+            let kind = std::io::ErrorKind::InvalidInput;
+            return Err(unread(std::io::Error::new(kind, "not a regular file")));
+        }
         let handle = std::fs::File::open(file).map_err(unread)?;
         let mut bytes = Vec::new();
         handle

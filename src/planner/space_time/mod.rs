@@ -33,6 +33,7 @@ use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats}
 use crate::geometry::outer_disc;
 use crate::obstacle::PolytopeObstacle;
 use crate::search::{Search, Stop};
+use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 use graph::Graph;
 use hazard::{Hazard, TOUCH_M, first_contact};
@@ -82,6 +83,27 @@ fn outer_widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
     PolytopeObstacle::new(obstacle.name(), grown, obstacle.velocity().clone())
 }
 
+/// Own ship starts at the last waypoint: she has arrived.
+fn already_there(problem: &Problem) -> Planned {
+    let stay = Segment {
+        start: problem.own.pose,
+        start_time: 0.0,
+        duration: 0.0,
+        speed: problem.own.max_speed(),
+        turn_rate: 0.0,
+    };
+    let plan = Trajectory::new(vec![stay]).map(|trajectory| Plan {
+        trajectory,
+        cost: 0.0,
+        graph_cost: None,
+    });
+    Planned {
+        outcome: plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved),
+        stats: SearchStats::default(),
+        explored: ExploredGraph::new(),
+    }
+}
+
 fn plan_clear_of(problem: &Problem) -> Planned {
     let started = Instant::now();
     let out_of_time = || started.elapsed() >= problem.deadline;
@@ -100,6 +122,9 @@ fn plan_clear_of(problem: &Problem) -> Planned {
                 depth: -slack,
             });
         }
+    }
+    if (problem.desired.end() - own.pose.position).norm() <= tolerance::LENGTH_M {
+        return already_there(problem);
     }
     let Some(route) = Route::new(problem) else {
         return refuse(NoPlan::NoRoute);

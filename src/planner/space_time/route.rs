@@ -14,6 +14,9 @@ const ON_TIME_S: f64 = 1e-6;
 /// Places ahead of the nearest one at which own ship may join the path, in turning radii.
 const JOINS: [f64; 10] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0, 14.0];
 
+/// Turning radii. A waypoint nearer than this to the last one, without room for its corner, is not passed.
+const SKIPPED_RADII: f64 = 4.0;
+
 /// Metres between two returns to schedule where the desired speed is not one of own ship's.
 const ALTERNATION_M: f64 = 400.0;
 
@@ -150,6 +153,9 @@ impl Route {
                     Pose::new(after.start + after.direction * tangent, heading(next)),
                     tangent,
                 )
+            } else if (after.start - at.0.position).norm() < SKIPPED_RADII * radius {
+                // no room to turn onto a course here: the path is cut short to the next corner
+                continue;
             } else {
                 let mean = Pose::new(after.start, heading(next - 1) + turn / 2.0);
                 (mean, mean, 0.0)
@@ -168,7 +174,18 @@ impl Route {
             at = (exit, exit_due, offset);
         }
         let last = legs.len() - 1;
-        let end = Pose::new(desired.end(), heading(last));
+        // the last waypoint is reached on any course: on a short last leg, the course that leads there
+        let chord = desired.end() - at.0.position;
+        let short =
+            legs[last].length < SKIPPED_RADII * radius && chord.norm() > tolerance::LENGTH_M;
+        let end = Pose::new(
+            desired.end(),
+            if short && at.2 == 0.0 {
+                heading_of(chord)
+            } else {
+                heading(last)
+            },
+        );
         route.connect(
             at.0,
             end,
