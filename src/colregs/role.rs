@@ -40,6 +40,23 @@ pub enum Role {
     None,
 }
 
+impl Role {
+    /// The role as tables, documents and recordings name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::HeadOn => "head-on",
+            Self::GiveWay => "give-way",
+            Self::StandOn => "stand-on",
+            Self::Overtaking => "overtaking",
+            Self::Overtaken => "overtaken",
+            Self::BothGiveWay => "both-give-way",
+            Self::PortToPort => "port-to-port",
+            Self::Static => "static",
+            Self::None => "none",
+        }
+    }
+}
+
 /// A ship on a steady course: the sectors of the rules are taken on the heading, and there is no drift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteadyShip {

@@ -8,7 +8,6 @@ use super::SUMMARY;
 use super::explored::Drawn;
 use super::movers::vector_seconds;
 use super::scene::{Motion, Scene};
-use crate::colregs::Role;
 use crate::evaluation::Evaluation;
 use crate::frame::{Side, deg_from_radians, knots_from_mps};
 use crate::pipeline::Relaxation;
@@ -176,21 +175,6 @@ fn relaxation(relaxation: &Relaxation) -> String {
     }
 }
 
-/// Own ship's role to a target, as the rules name it.
-fn role_name(role: Role) -> &'static str {
-    match role {
-        Role::HeadOn => "head-on",
-        Role::GiveWay => "give-way",
-        Role::StandOn => "stand-on",
-        Role::Overtaking => "overtaking",
-        Role::Overtaken => "overtaken",
-        Role::BothGiveWay => "both-give-way",
-        Role::PortToPort => "port-to-port",
-        Role::Static => "static",
-        Role::None => "none",
-    }
-}
-
 fn targets_table(scene: &Scene) -> String {
     let run = scene.run;
     if run.sets.is_empty() {
@@ -206,7 +190,7 @@ fn targets_table(scene: &Scene) -> String {
             table,
             "\n| {} | {} | {} |",
             sets.hard.name(),
-            role_name(encounter.role),
+            encounter.role.name(),
             approach(encounter.undisturbed_dcpa, encounter.undisturbed_tcpa)
         );
         let passage = run.evaluation.as_ref().and_then(|e| e.passages.get(index));

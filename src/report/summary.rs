@@ -1,6 +1,5 @@
 //! A run in the few figures that a navigator asks for first.
 
-use super::words;
 use crate::colregs::Role;
 use crate::frame::{Side, deg_from_radians};
 use crate::pipeline::Run;
@@ -150,7 +149,7 @@ impl Summary {
                 let passage = evaluation.and_then(|e| e.passages.get(index));
                 Meeting {
                     target: target.name.clone(),
-                    role: words::role(sets.encounter.role),
+                    role: sets.encounter.role.name(),
                     undisturbed_tcpa: sets.encounter.undisturbed_tcpa,
                     undisturbed_dcpa: sets.encounter.undisturbed_dcpa,
                     side: passage.map(|p| p.passing_side),

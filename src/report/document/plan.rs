@@ -258,7 +258,7 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
             let passage = passages.and_then(|passages| passages.get(index));
             EncounterDocument {
                 target: target.name.clone(),
-                role: words::role(sets.encounter.role).to_owned(),
+                role: sets.encounter.role.name().to_owned(),
                 dcpa_m: passage.and_then(|p| finite(p.dcpa)),
                 tcpa_s: passage.and_then(|p| finite(p.tcpa)),
                 undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
