@@ -3,11 +3,11 @@
 
 use super::approach::{Approach, approaches};
 use super::hazard::Hazard;
+use super::moments::{Moments, Residuals, reduce, reduce_matrix};
 use super::quadratic::{Constraint, MAX_VARIABLES, Matrix, Row};
-use super::reduction::{Full, reduce, reduce_matrix};
 use super::route::Route;
-use super::template::{Ending, Owner, Point, Sailed, Template};
-use crate::frame::{Vector, to_port};
+use super::template::{Ending, Owner, Place, Sailed, Template};
+use crate::frame::to_port;
 use crate::obstacle::HalfSpace;
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4, space_time_error};
@@ -35,9 +35,8 @@ pub(crate) struct Scene<'a> {
 }
 
 /// One manoeuvre, evaluated.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct Model {
-    pub sailed: Sailed,
     pub cost: f64,
     pub gradient: Row,
     pub hessian: Matrix,
@@ -59,13 +58,19 @@ impl Scene<'_> {
             cost: 0.0,
             gradient: [0.0; MAX_VARIABLES],
             hessian: [[0.0; MAX_VARIABLES]; MAX_VARIABLES],
+            moments: Moments::new(),
         };
         for leg in 0..sailed.tail {
             self.add_leg(&sailed, leg, &mut full);
         }
+        let motors = sailed.motors(self.problem.own.pose.position);
+        full.moments
+            .finish(&motors, &mut full.gradient, &mut full.hessian);
+        let joining = sailed.joining_rates();
         if !matches!(template.ending, Ending::Goal { .. }) {
-            self.add_tail(&sailed, all, &mut full);
+            self.add_tail(&sailed, &joining, all, &mut full);
         }
+        let solved = &sailed.solved_rates[..all - free];
         let mut rows = Vec::with_capacity(8);
         let (mut violation, mut least_slack) = (0.0_f64, f64::INFINITY);
         for hazard in self.hazards {
@@ -73,9 +78,9 @@ impl Scene<'_> {
                 let missing = MARGIN_M - approach.slack;
                 violation = missing.max(violation);
                 least_slack = least_slack.min(approach.slack);
-                let coefficients = self.approach_row(hazard, &sailed, &approach, all);
+                let coefficients = self.approach_row(hazard, &sailed, &approach, &joining);
                 rows.push(Constraint {
-                    coefficients: reduce(&coefficients, &sailed, free, all),
+                    coefficients: reduce(&coefficients, solved, free),
                     bound: missing,
                 });
             }
@@ -88,17 +93,15 @@ impl Scene<'_> {
             });
         }
         if let Some(room) = sailed.room {
-            let (distance, _) = sailed.joining_rates(sailed.joining_heading());
-            let coefficients = reduce(&distance, &sailed, free, all).map(|c| -c);
+            let coefficients = reduce(&joining.0, solved, free).map(|c| -c);
             rows.push(Constraint {
                 coefficients,
                 bound: ROOM_M.min(room) - room,
             });
         }
-        let gradient = reduce(&full.gradient, &sailed, free, all);
-        let hessian = reduce_matrix(&full.hessian, &sailed, free, all);
+        let gradient = reduce(&full.gradient, solved, free);
+        let hessian = reduce_matrix(&full.hessian, solved, free);
         Some(Model {
-            sailed,
             cost: full.cost,
             gradient,
             hessian,
@@ -131,63 +134,56 @@ impl Scene<'_> {
             return;
         }
         for (fraction, share) in nodes {
-            let point = sailed.point(leg, *fraction);
-            let nearest = desired.nearest(point.position, point.time, q);
-            full.cost += segment.duration * per_time * share * nearest.error;
+            let Some(place) = sailed.place(leg, *fraction) else {
+                continue;
+            };
+            let nearest = desired.nearest(place.position, place.time, q);
+            let weight = segment.duration * per_time * share;
+            full.cost += weight * nearest.error;
             full.gradient[index] += growth * share * nearest.error;
-            self.add_residuals(
-                &point,
-                nearest.leg,
-                nearest.distance,
-                segment.duration * per_time * share,
-                full,
-            );
+            let residuals = self.residuals(&place, nearest.leg, nearest.distance, weight);
+            if index < sailed.runs {
+                let mut rates = [[0.0; 3]; MAX_VARIABLES];
+                for (i, rate) in rates.iter_mut().enumerate().take(index + 1) {
+                    *rate = sailed.own_rate(&place, i);
+                }
+                Moments::add_directly(
+                    &rates[..=index],
+                    &residuals,
+                    &mut full.gradient,
+                    &mut full.hessian,
+                );
+            } else {
+                let at = place.position - self.problem.own.pose.position;
+                let own = sailed.own_rate(&place, index);
+                full.moments.add(index, [at.x, at.y], own, &residuals);
+            }
         }
     }
 
-    fn add_residuals(
-        &self,
-        point: &Point,
-        leg: usize,
-        distance: f64,
-        weight: f64,
-        full: &mut Full,
-    ) {
+    /// The residuals of a point whose nearest desired place is `distance` along the path, on `leg`.
+    fn residuals(&self, place: &Place, leg: usize, distance: f64, weight: f64) -> Residuals {
         let l = &self.problem.desired.legs()[leg];
         let q = self.problem.time_weight;
         let sigma = distance - l.start_distance;
-        let n = point.slots;
         let (ahead, normal) = (l.direction, to_port(l.direction));
-        let offset = point.position - l.start;
+        let offset = place.position - l.start;
         let behind = ahead.dot(&offset) - sigma;
-        let late = point.time - l.start_time - sigma / l.speed;
-        let row = |of: &[f64; 3]| {
-            let mut row = [0.0; MAX_VARIABLES];
-            for (i, r) in row[..n].iter_mut().enumerate() {
-                *r = of[0] * point.east[i] + of[1] * point.north[i] + of[2] * point.clock[i];
-            }
-            row
-        };
-        let across = (normal.dot(&offset), row(&[normal.x, normal.y, 0.0]));
+        let late = place.time - l.start_time - sigma / l.speed;
+        let mut residuals = Residuals::default();
+        let scale = 2.0 * weight;
+        residuals.add(scale, normal.dot(&offset), [normal.x, normal.y, 0.0]);
         if sigma > 0.0 && sigma < l.length {
-            let scale = (q / (q + l.speed * l.speed)).sqrt();
-            let lag = scale * (l.speed * late - behind);
-            full.add(
-                weight,
-                n,
-                &across,
-                &(
-                    lag,
-                    row(&[-scale * ahead.x, -scale * ahead.y, scale * l.speed]),
-                ),
-            );
+            let share = (q / (q + l.speed * l.speed)).sqrt();
+            let lag = share * (l.speed * late - behind);
+            let rates = [-share * ahead.x, -share * ahead.y, share * l.speed];
+            residuals.add(scale, lag, rates);
         } else {
-            let none = (0.0, [0.0; MAX_VARIABLES]);
-            full.add(weight, n, &across, &none);
             let root = q.sqrt();
-            let along = (behind, row(&[ahead.x, ahead.y, 0.0]));
-            full.add(weight, n, &along, &(root * late, row(&[0.0, 0.0, root])));
+            residuals.add(scale, behind, [ahead.x, ahead.y, 0.0]);
+            residuals.add(scale, root * late, [0.0, 0.0, root]);
         }
+        residuals
     }
 
     /// Cost of following the route from a place at a time, m².
@@ -201,13 +197,13 @@ impl Scene<'_> {
     }
 
     /// Adds the tail's cost.
-    fn add_tail(&self, sailed: &Sailed, all: usize, full: &mut Full) {
+    fn add_tail(&self, sailed: &Sailed, joining: &(Row, Row), all: usize, full: &mut Full) {
         let (s, t) = sailed.joined;
         let tail = self
             .straight_tail(s, t)
             .unwrap_or_else(|| self.any_tail(s, t));
         full.cost += tail.cost;
-        let (distance, clock) = sailed.joining_rates(sailed.joining_heading());
+        let (distance, clock) = joining;
         let mut lateness = [0.0; MAX_VARIABLES];
         for i in 0..all {
             full.gradient[i] += tail.by_time * clock[i] + tail.by_distance * distance[i];
@@ -287,64 +283,65 @@ impl Scene<'_> {
         hazard: &Hazard,
         sailed: &Sailed,
         approach: &Approach,
-        all: usize,
+        joining: &(Row, Row),
     ) -> Row {
-        let faces = hazard.body.faces();
-        let point = match sailed.legs[approach.leg].owner {
-            Owner::Slot { .. } => sailed.point(approach.leg, approach.fraction),
-            Owner::Tail { index } => self.tail_point(sailed, index, approach, all),
-        };
-        let mut row = [0.0; MAX_VARIABLES];
+        let mut of = [0.0; 3];
         for (face, weight) in approach.faces {
             let HalfSpace {
                 normal,
                 velocity_support,
                 ..
-            } = faces[face];
-            for (i, r) in row.iter_mut().enumerate().take(point.slots) {
-                *r += weight
-                    * (normal.x * point.east[i] + normal.y * point.north[i]
-                        - velocity_support * point.clock[i]);
+            } = hazard.body.faces()[face];
+            let rates = [normal.x, normal.y, -velocity_support];
+            for (o, rate) in of.iter_mut().zip(rates) {
+                *o += weight * rate;
             }
         }
-        row
+        let leg = &sailed.legs[approach.leg];
+        match (sailed.place(approach.leg, approach.fraction), leg.owner) {
+            (Some(place), _) => sailed.rates(&place, of),
+            (None, Owner::Tail { index }) => self.tail_row(sailed, index, approach, of, joining),
+            (None, Owner::Slot { .. }) => [0.0; MAX_VARIABLES],
+        }
     }
 
-    /// A point of the tail with its rates, by differences in the place and time of joining.
-    fn tail_point(&self, sailed: &Sailed, index: usize, approach: &Approach, all: usize) -> Point {
+    /// Rates of `of . (east, north, clock)` of a point of the tail, by differences in the place and time
+    /// of joining.
+    fn tail_row(
+        &self,
+        sailed: &Sailed,
+        index: usize,
+        approach: &Approach,
+        of: [f64; 3],
+        joining: &(Row, Row),
+    ) -> Row {
         let (s, t) = sailed.joined;
         let (ds, dt) = (0.05, 0.01);
-        let at = |distance: f64, time: f64| -> Option<(Vector, f64)> {
+        let at = |distance: f64, time: f64| -> Option<f64> {
             let mut segments = Vec::with_capacity(4);
             self.route.follow(distance, time, &mut segments);
             let segment: &Segment = segments.get(index)?;
             let elapsed = segment.duration * approach.fraction;
-            Some((
-                segment.pose_after(elapsed).position,
-                segment.start_time + elapsed,
-            ))
+            let position = segment.pose_after(elapsed).position;
+            Some(of[0] * position.x + of[1] * position.y + of[2] * (segment.start_time + elapsed))
         };
         let here = at(s, t).unwrap_or_default();
-        let by_distance = at(s + ds, t).unwrap_or(here);
-        let by_time = at(s, t + dt).unwrap_or(here);
-        let (distance, clock) = sailed.joining_rates(sailed.joining_heading());
-        let mut point = Point {
-            position: here.0,
-            time: here.1,
-            slots: all,
-            east: [0.0; MAX_VARIABLES],
-            north: [0.0; MAX_VARIABLES],
-            clock: [0.0; MAX_VARIABLES],
-        };
-        let (place_s, clock_s) = ((by_distance.0 - here.0) / ds, (by_distance.1 - here.1) / ds);
-        let (place_t, clock_t) = ((by_time.0 - here.0) / dt, (by_time.1 - here.1) / dt);
-        for i in 0..all {
-            point.east[i] = place_s.x * distance[i] + place_t.x * clock[i];
-            point.north[i] = place_s.y * distance[i] + place_t.y * clock[i];
-            point.clock[i] = clock_s * distance[i] + clock_t * clock[i];
+        let by_distance = (at(s + ds, t).unwrap_or(here) - here) / ds;
+        let by_time = (at(s, t + dt).unwrap_or(here) - here) / dt;
+        let mut row = [0.0; MAX_VARIABLES];
+        for (to, (distance, clock)) in row.iter_mut().zip(joining.0.iter().zip(&joining.1)) {
+            *to = by_distance * distance + by_time * clock;
         }
-        point
+        row
     }
+}
+
+/// Cost and rates in all slots; the lower triangle of the Hessian.
+struct Full {
+    cost: f64,
+    gradient: Row,
+    hessian: Matrix,
+    moments: Moments,
 }
 
 /// Cost of the route followed from a place at a time, with its rates per second and per metre, its
@@ -360,7 +357,7 @@ struct Tail {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{Pose, Side};
+    use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
     use crate::obstacle::PolytopeObstacle;
     use crate::planner::SearchKind;

@@ -3,6 +3,7 @@
 use super::model::{Model, Scene};
 use super::quadratic::{MAX_VARIABLES, Programme, Row};
 use super::template::{Ending, Slot, Template};
+use crate::trajectory::Segment;
 
 /// Metres by which one step may change a length, at first, at most, at least.
 const FIRST_RADIUS_M: f64 = 30.0;
@@ -43,11 +44,11 @@ pub(crate) struct Seed {
 }
 
 /// A manoeuvre clear of every set, with the margin, as far as its contact rows tell.
-#[derive(Debug, Clone)]
-pub(crate) struct Refined {
-    pub model: Model,
+#[derive(Debug, Clone, Copy)]
+struct Refined {
+    cost: f64,
     /// Of its slots.
-    pub lengths: Row,
+    lengths: Row,
 }
 
 /// A refinement under way.
@@ -129,9 +130,13 @@ impl Refinement {
         self.steps
     }
 
-    /// The cheapest clear manoeuvre so far.
-    pub(crate) fn best(&self) -> Option<&Refined> {
-        self.best.as_ref()
+    /// The motion of the cheapest clear manoeuvre so far.
+    pub(crate) fn best_motion(&self, scene: &Scene) -> Option<Vec<Segment>> {
+        let best = self.best?;
+        let sailed = self
+            .template
+            .sail(scene.problem, scene.route, &best.lengths)?;
+        Some(sailed.motion())
     }
 
     /// The best manoeuvre as a seed: a box that has shrunk around one contact is opened again.
@@ -145,7 +150,7 @@ impl Refinement {
 
     /// Cost of the best clear manoeuvre, m²; infinite before there is one.
     pub(crate) fn best_cost(&self) -> f64 {
-        self.best.as_ref().map_or(f64::INFINITY, |b| b.model.cost)
+        self.best.as_ref().map_or(f64::INFINITY, |b| b.cost)
     }
 
     /// Cost of the manoeuvre at hand with its penalty, m².
@@ -165,13 +170,10 @@ impl Refinement {
 
     fn keep(&mut self) {
         let clear = self.model.least_slack >= 0.0;
-        let better = self
-            .best
-            .as_ref()
-            .is_none_or(|b| self.model.cost < b.model.cost);
+        let better = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
         if clear && better {
             self.best = Some(Refined {
-                model: self.model.clone(),
+                cost: self.model.cost,
                 lengths: self.lengths,
             });
         }
@@ -188,10 +190,7 @@ impl Refinement {
         for _ in 0..RESTORATIONS {
             let clear = self.model.least_slack >= 0.0;
             let close = self.model.violation < RESTORABLE_M;
-            let worth = self
-                .best
-                .as_ref()
-                .is_none_or(|b| self.model.cost < b.model.cost);
+            let worth = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
             if clear || !close || !worth {
                 return;
             }

@@ -208,10 +208,13 @@ impl<'a> Selection<'a> {
 
     /// Tests what the refinements found, cheapest first, until one passes.
     fn collect(&mut self, running: &[Refinement]) {
-        let mut found: Vec<_> = running.iter().filter_map(Refinement::best).collect();
-        found.sort_by(|a, b| a.model.cost.total_cmp(&b.model.cost));
-        for refined in found {
-            if self.consider(refined.model.sailed.motion()) {
+        let mut found: Vec<_> = running.iter().collect();
+        found.sort_by(|a, b| a.best_cost().total_cmp(&b.best_cost()));
+        for refinement in found {
+            let Some(motion) = refinement.best_motion(&self.scene) else {
+                return;
+            };
+            if self.consider(motion) {
                 return;
             }
         }

@@ -5,9 +5,10 @@
 //! centre of its circle. That gives every derivative in closed form. Two last slots, where there are
 //! any, are not free: they are solved so that the chain ends on the desired path or at its end.
 
+use super::moments::Motor;
 use super::quadratic::{MAX_VARIABLES, Row};
 use super::route::{Route, Stretch};
-use crate::frame::{Pose, Side, Vector, cross, direction, heading_of, to_port, wrap};
+use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::interception::Chase;
 use crate::trajectory::Segment;
@@ -72,7 +73,35 @@ pub(crate) enum Owner {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Leg {
     pub segment: Segment,
+    /// The unit vector ahead at its start.
+    pub ahead: Vector,
     pub owner: Owner,
+}
+
+impl Leg {
+    /// Position and unit vector ahead at a fraction.
+    fn along(&self, fraction: f64) -> (Vector, Vector) {
+        let s = &self.segment;
+        let length = s.speed * s.duration * fraction;
+        if s.is_arc() {
+            turned(s.start.position, self.ahead, length, s.turn_rate / s.speed)
+        } else {
+            (s.start.position + self.ahead * length, self.ahead)
+        }
+    }
+}
+
+/// Position and unit vector ahead after an arc; `1 - cos` without cancellation.
+fn turned(from: Vector, ahead: Vector, length: f64, curvature: f64) -> (Vector, Vector) {
+    let (sin, cos) = (curvature * length).sin_cos();
+    let versine = if cos > 0.0 {
+        sin * sin / (1.0 + cos)
+    } else {
+        1.0 - cos
+    };
+    let port = to_port(ahead);
+    let end = from + (ahead * sin + port * versine) / curvature;
+    (end, ahead * cos + port * sin)
 }
 
 /// How everything after a slot moves per metre of it.
@@ -83,7 +112,6 @@ struct Rigid {
     ahead: Vector,
     curvature: f64,
     slowness: f64,
-    run: bool,
 }
 
 impl Rigid {
@@ -107,19 +135,20 @@ pub(crate) struct Sailed {
     pub solved: [f64; 2],
     /// Rates of the solved slots with each free one.
     pub solved_rates: [Row; 2],
+    /// Slots at the beginning that run along the route.
+    pub runs: usize,
     rigid: Vec<Rigid>,
 }
 
-/// A point of a manoeuvre and how it moves with every slot, free and solved.
+/// A point of a manoeuvre that belongs to a slot.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Point {
+pub(crate) struct Place {
     pub position: Vector,
+    pub ahead: Vector,
     pub time: f64,
-    /// Slots that move it: `0..slots`.
-    pub slots: usize,
-    pub east: Row,
-    pub north: Row,
-    pub clock: Row,
+    /// The slot, and the share of it that lies before the point.
+    pub slot: usize,
+    pub share: f64,
 }
 
 impl Template {
@@ -143,10 +172,12 @@ impl Template {
             room: None,
             solved: [0.0; 2],
             solved_rates: [[0.0; MAX_VARIABLES]; 2],
+            runs: 0,
             rigid: Vec::with_capacity(self.all()),
         };
         let mut at = Cursor {
             pose: problem.own.pose,
+            ahead: problem.own.pose.ahead(),
             time: 0.0,
             route: 0.0,
             radius,
@@ -161,6 +192,7 @@ impl Template {
             }
         }
         // runs move what follows them along the route where the last of them ends
+        sailed.runs = runs;
         if runs > 0 {
             let (pose, curvature) = route.pose_at(lengths[..runs].iter().sum());
             for r in &mut sailed.rigid[..runs] {
@@ -184,6 +216,7 @@ impl Template {
             let owned = tail.into_iter().enumerate();
             sailed.legs.extend(owned.map(|(index, segment)| Leg {
                 segment,
+                ahead: segment.start.ahead(),
                 owner: Owner::Tail { index },
             }));
         }
@@ -281,6 +314,7 @@ impl Template {
 /// Where own ship is while a template is sailed.
 struct Cursor {
     pose: Pose,
+    ahead: Vector,
     time: f64,
     route: f64,
     radius: f64,
@@ -297,9 +331,11 @@ impl Cursor {
             let to = from + segment.length() / total;
             sailed.legs.push(Leg {
                 segment,
+                ahead: segment.start.ahead(),
                 owner: Owner::Slot { index, from, to },
             });
             (self.pose, self.time) = (segment.end(), segment.end_time());
+            self.ahead = self.pose.ahead();
             from = to;
         }
         if from == 0.0 {
@@ -312,6 +348,7 @@ impl Cursor {
             };
             sailed.legs.push(Leg {
                 segment,
+                ahead: self.ahead,
                 owner: Owner::Slot {
                     index,
                     from: 0.0,
@@ -321,10 +358,9 @@ impl Cursor {
         }
         sailed.rigid.push(Rigid {
             end: self.pose.position,
-            ahead: self.pose.ahead(),
+            ahead: self.ahead,
             curvature: 0.0,
             slowness: 1.0 / speed,
-            run: true,
         });
     }
 
@@ -341,80 +377,109 @@ impl Cursor {
             speed,
             turn_rate: curvature * speed,
         };
-        if length > 0.0 {
-            (self.pose, self.time) = (segment.end(), segment.end_time());
-        }
         sailed.legs.push(Leg {
             segment,
+            ahead: self.ahead,
             owner: Owner::Slot {
                 index,
                 from: 0.0,
                 to: 1.0,
             },
         });
+        if length > 0.0 {
+            let (position, ahead) = if curvature == 0.0 {
+                (self.pose.position + self.ahead * length, self.ahead)
+            } else {
+                turned(self.pose.position, self.ahead, length, curvature)
+            };
+            self.pose = Pose::new(position, self.pose.heading + curvature * length);
+            (self.ahead, self.time) = (ahead, segment.end_time());
+        }
         sailed.rigid.push(Rigid {
             end: self.pose.position,
-            ahead: self.pose.ahead(),
+            ahead: self.ahead,
             curvature,
             slowness: 1.0 / speed,
-            run: false,
         });
     }
 }
 
 impl Sailed {
-    /// The point at `fraction` of a leg that belongs to a slot, with its rates.
-    pub(crate) fn point(&self, leg: usize, fraction: f64) -> Point {
-        let Leg { segment, owner } = self.legs[leg];
-        let pose = segment.pose_after(segment.duration * fraction);
-        let time = segment.start_time + segment.duration * fraction;
-        let (index, along) = match owner {
-            Owner::Slot { index, from, to } => (index, from + (to - from) * fraction),
-            Owner::Tail { .. } => (self.rigid.len(), 0.0),
+    /// The point at `fraction` of a leg; `None` on the tail.
+    pub(crate) fn place(&self, leg: usize, fraction: f64) -> Option<Place> {
+        let l = &self.legs[leg];
+        let Owner::Slot { index, from, to } = l.owner else {
+            return None;
         };
-        let mut point = Point {
-            position: pose.position,
-            time,
-            slots: (index + 1).min(self.rigid.len()),
-            east: [0.0; MAX_VARIABLES],
-            north: [0.0; MAX_VARIABLES],
-            clock: [0.0; MAX_VARIABLES],
+        let (position, ahead) = l.along(fraction);
+        Some(Place {
+            position,
+            ahead,
+            time: l.segment.start_time + l.segment.duration * fraction,
+            slot: index,
+            share: from + (to - from) * fraction,
+        })
+    }
+
+    /// How slot `index` moves a point of its own: (east, north, clock) per metre.
+    pub(crate) fn own_rate(&self, place: &Place, index: usize) -> [f64; 3] {
+        let share = if index == place.slot {
+            place.share
+        } else {
+            1.0
         };
-        let on_route = index < self.rigid.len() && self.rigid[index].run;
-        let ahead = pose.ahead();
-        for i in 0..index.min(self.rigid.len()) {
-            let r = &self.rigid[i];
-            let moved = if on_route {
-                ahead
+        [
+            share * place.ahead.x,
+            share * place.ahead.y,
+            share * self.rigid[index].slowness,
+        ]
+    }
+
+    /// `of . (east, north, clock)` per metre of each slot up to the point's own.
+    pub(crate) fn rates(&self, place: &Place, of: [f64; 3]) -> Row {
+        let mut row = [0.0; MAX_VARIABLES];
+        let on_route = place.slot < self.runs;
+        let all = row.iter_mut().zip(&self.rigid).enumerate();
+        for (i, (rate, rigid)) in all.take(place.slot + 1) {
+            *rate = if on_route || i == place.slot {
+                let own = self.own_rate(place, i);
+                of[0] * own[0] + of[1] * own[1] + of[2] * own[2]
             } else {
-                r.moves(pose.position)
+                let moved = rigid.moves(place.position);
+                of[0] * moved.x + of[1] * moved.y + of[2] * rigid.slowness
             };
-            point.east[i] = moved.x;
-            point.north[i] = moved.y;
-            point.clock[i] = r.slowness;
         }
-        if index < self.rigid.len() {
-            point.east[index] = along * ahead.x;
-            point.north[index] = along * ahead.y;
-            point.clock[index] = along * self.rigid[index].slowness;
-        }
-        point
+        row
+    }
+
+    /// How each slot moves what follows it, about `origin`.
+    pub(crate) fn motors(&self, origin: Vector) -> Vec<Motor> {
+        let motor = |r: &Rigid| {
+            let end = r.end - origin;
+            [
+                r.ahead.x + r.curvature * end.y,
+                r.ahead.y - r.curvature * end.x,
+                r.slowness,
+                r.curvature,
+            ]
+        };
+        self.rigid.iter().map(motor).collect()
     }
 
     /// The rates of the place and time at which the tail begins: metres along the route and seconds per
     /// metre of each slot.
-    pub(crate) fn joining_rates(&self, heading: f64) -> (Row, Row) {
+    pub(crate) fn joining_rates(&self) -> (Row, Row) {
         let mut distance = [0.0; MAX_VARIABLES];
         let mut clock = [0.0; MAX_VARIABLES];
         let Some(last) = self.rigid.last() else {
             return (distance, clock);
         };
-        let ahead = direction(heading);
+        let runs_only = self.runs == self.rigid.len();
         for (i, r) in self.rigid.iter().enumerate() {
-            distance[i] = if r.run && last.run {
+            distance[i] = if runs_only {
                 1.0
             } else {
-                ahead.dot(&r.moves(last.end))
+                last.ahead.dot(&r.moves(last.end))
             };
             clock[i] = r.slowness;
         }
@@ -430,10 +495,5 @@ impl Sailed {
                 s.duration > 0.0 && (s.length() > crate::tolerance::LENGTH_M || s.speed == 0.0)
             })
             .collect()
-    }
-
-    /// How far the last slot's heading ends, radians.
-    pub(crate) fn joining_heading(&self) -> f64 {
-        self.rigid.last().map_or(0.0, |r| heading_of(r.ahead))
     }
 }
