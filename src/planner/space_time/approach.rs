@@ -2,9 +2,8 @@
 
 use super::hazard::Hazard;
 use super::template::Sailed;
-use crate::frame::Vector;
+use crate::frame::{Vector, to_port, to_starboard};
 use crate::obstacle::Slack;
-use crate::trajectory::Mover;
 
 /// Metres. Approaches closer than this become rows.
 const NEAR_M: f64 = 60.0;
@@ -43,10 +42,8 @@ pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed) -> Vec<Approach> {
         let count = (segment.turn_rate.abs() * segment.duration / CHORD_RAD)
             .ceil()
             .max(1.0);
-        let mover = Mover::new(segment);
-        let at = |fraction: f64| {
+        let sample = |fraction: f64, position: Vector| {
             let time = segment.start_time + segment.duration * fraction;
-            let position = mover.position_at(time);
             Sample {
                 position,
                 time,
@@ -54,12 +51,30 @@ pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed) -> Vec<Approach> {
                 slack: hazard.body.slack(position, time),
             }
         };
-        let mut from = at(0.0);
+        // each sample is the one before turned about the centre of the arc
+        let turn = segment.turn_rate * segment.duration / count;
+        let (sin, cos) = if segment.is_arc() {
+            turn.sin_cos()
+        } else {
+            (0.0, 1.0)
+        };
+        let mut arm = to_starboard(l.ahead) * segment.radius();
+        let mut from = sample(0.0, segment.start.position);
         for k in 1..=count as usize {
-            let to = at(k as f64 / count);
+            let fraction = k as f64 / count;
+            let position = if segment.is_arc() {
+                let turned = arm * cos + to_port(arm) * sin;
+                let moved = turned - arm;
+                arm = turned;
+                from.position + moved
+            } else {
+                from.position + l.ahead * segment.length()
+            };
+            let to = sample(fraction, position);
             let mut chord = Chord::new(hazard, leg, &from, &to);
             if count > 1.0 && chord.least.faces[1].1 != 0.0 {
-                chord.least.slack = at(chord.least.fraction).slack.value;
+                let at = sample(chord.least.fraction, l.along(chord.least.fraction).0);
+                chord.least.slack = at.slack.value;
             }
             chords.push(chord);
             from = to;

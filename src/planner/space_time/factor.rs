@@ -42,7 +42,7 @@ pub(crate) fn add(j: &mut Matrix, r: &mut Matrix, d: &mut Row, q: usize, n: usiz
         if d[k] == 0.0 {
             continue;
         }
-        let h = d[k - 1].hypot(d[k]);
+        let h = (d[k - 1] * d[k - 1] + d[k] * d[k]).sqrt();
         let (c, s) = (d[k - 1] / h, d[k] / h);
         (d[k - 1], d[k]) = (h, 0.0);
         for row in j.iter_mut().take(n) {
@@ -65,7 +65,7 @@ pub(crate) fn remove(j: &mut Matrix, r: &mut Matrix, u: &mut [f64], i: usize, q:
         }
     }
     for k in i..q - 1 {
-        let h = r[k][k].hypot(r[k + 1][k]);
+        let h = (r[k][k] * r[k][k] + r[k + 1][k] * r[k + 1][k]).sqrt();
         if h == 0.0 {
             continue;
         }

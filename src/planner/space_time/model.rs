@@ -412,7 +412,6 @@ mod tests {
             lead: 0.9,
             reach: 1.0,
             slow: false,
-            wait: 0.0,
         };
         let conflict = Conflict {
             from: 140.0,

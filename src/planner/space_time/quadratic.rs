@@ -56,6 +56,13 @@ enum Kind {
     Row(usize),
 }
 
+/// Reciprocals of what a violation of each constraint is measured by.
+struct Scales {
+    low: Row,
+    high: Row,
+    rows: Vec<f64>,
+}
+
 impl Programme<'_> {
     /// [`Programme::solve`] with the variables that were at a lower bound of zero last time left out at
     /// first, and taken in again where that is not optimal: most slots of a manoeuvre stay empty, and the
@@ -162,26 +169,39 @@ impl Programme<'_> {
         }
     }
 
-    /// The most violated constraint that is not active.
-    fn violated(&self, x: &Row, active: &[Kind], ignored: &[bool]) -> Option<Kind> {
+    /// The most violated constraint that is not active, each relative to its scale.
+    fn violated(&self, x: &Row, active: &[Kind], scales: &Scales) -> Option<Kind> {
         let mut worst = (-SATISFIED, None);
-        let mut look = |kind: Kind, scale: f64| {
-            let v = self.value(kind, x) / scale;
+        let mut look = |kind: Kind, v: f64| {
             if v < worst.0 && !active.contains(&kind) {
                 worst = (v, Some(kind));
             }
         };
         for i in 0..self.size {
-            look(Kind::Low(i), 1.0 + self.low[i].abs());
-            look(Kind::High(i), 1.0 + self.high[i].abs());
+            look(Kind::Low(i), (x[i] - self.low[i]) * scales.low[i]);
+            look(Kind::High(i), (self.high[i] - x[i]) * scales.high[i]);
         }
-        for (r, row) in self.rows.iter().enumerate() {
-            if !ignored[r] {
-                let norm = dot(&row.coefficients, &row.coefficients, self.size).sqrt();
-                look(Kind::Row(r), (1.0 + row.bound.abs()).max(norm));
+        for (r, scale) in scales.rows.iter().enumerate() {
+            // left out rows have no weight
+            if *scale > 0.0 {
+                look(Kind::Row(r), self.value(Kind::Row(r), x) * scale);
             }
         }
         worst.1
+    }
+
+    fn scales(&self, ignored: &[bool]) -> Scales {
+        let n = self.size;
+        let of_row = |(row, left_out): (&Constraint, &bool)| {
+            let norm = dot(&row.coefficients, &row.coefficients, n).sqrt();
+            let scale = 1.0 / (1.0 + row.bound.abs()).max(norm);
+            if *left_out { 0.0 } else { scale }
+        };
+        Scales {
+            low: self.low.map(|l| 1.0 / (1.0 + l.abs())),
+            high: self.high.map(|h| 1.0 / (1.0 + h.abs())),
+            rows: self.rows.iter().zip(ignored).map(of_row).collect(),
+        }
     }
 
     #[inline(never)]
@@ -200,7 +220,8 @@ impl Programme<'_> {
         let mut active: Vec<Kind> = Vec::with_capacity(n);
         let mut u = [0.0; MAX_VARIABLES + 1];
         let mut steps = 0;
-        while let Some(entering) = self.violated(&x, &active, ignored) {
+        let scales = self.scales(ignored);
+        while let Some(entering) = self.violated(&x, &active, &scales) {
             let normal = self.normal(entering);
             let mut multiplier = 0.0;
             loop {
@@ -210,16 +231,16 @@ impl Programme<'_> {
                 }
                 let q = active.len();
                 let mut d = [0.0; MAX_VARIABLES];
-                for (i, c) in normal.iter().enumerate().take(n) {
+                for (row, c) in j.iter().zip(&normal).take(n) {
                     if *c != 0.0 {
-                        for k in 0..n {
-                            d[k] += j[i][k] * c;
+                        for (d, j) in d[..n].iter_mut().zip(&row[..n]) {
+                            *d += j * c;
                         }
                     }
                 }
                 let mut z = [0.0; MAX_VARIABLES];
-                for i in 0..n {
-                    z[i] = (q..n).map(|k| j[i][k] * d[k]).sum();
+                for (z, row) in z.iter_mut().zip(&j).take(n) {
+                    *z = row[q..n].iter().zip(&d[q..n]).map(|(j, d)| j * d).sum();
                 }
                 let mut back = [0.0; MAX_VARIABLES];
                 for i in (0..q).rev() {

@@ -6,7 +6,7 @@ use super::template::{Ending, Slot, Template};
 use crate::trajectory::Segment;
 
 /// Metres by which one step may change a length, at first, at most, at least.
-const FIRST_RADIUS_M: f64 = 30.0;
+const FIRST_RADIUS_M: f64 = 80.0;
 const LARGEST_RADIUS_M: f64 = 400.0;
 const SMALLEST_RADIUS_M: f64 = 0.02;
 
@@ -23,7 +23,7 @@ const LONGEST_ARC: f64 = 2.0;
 /// The merit's weight of a missing metre, m²/m: at first a multiple of the seed's cost, which a plan
 /// loses over some tens of metres; later at least the multipliers.
 const LEAST_PENALTY: f64 = 10.0;
-const PENALTY_PER_COST: f64 = 0.05;
+const PENALTY_PER_COST: f64 = 0.01;
 
 /// A step that does not fit or gain is shortened by this, so many times, before the programme is solved
 /// anew in a smaller box.
@@ -41,6 +41,9 @@ const STALLED: f64 = 2e-4;
 pub(crate) struct Seed {
     pub template: Template,
     pub lengths: Row,
+    /// All slots, and which of them the template has: the others stay empty until a last refinement.
+    pub whole: Vec<Slot>,
+    pub core: Vec<usize>,
 }
 
 /// A manoeuvre clear of every set, with the margin, as far as its contact rows tell.
@@ -54,6 +57,8 @@ struct Refined {
 /// A refinement under way.
 #[derive(Debug)]
 pub(crate) struct Refinement {
+    whole: Vec<Slot>,
+    core: Vec<usize>,
     template: Template,
     lengths: Row,
     model: Model,
@@ -107,6 +112,8 @@ impl Refinement {
         let model = scene.model(&seed.template, &seed.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
         let mut refinement = Self {
+            whole: seed.whole,
+            core: seed.core,
             template: seed.template,
             lengths: seed.lengths,
             model,
@@ -126,10 +133,6 @@ impl Refinement {
         self.finished
     }
 
-    pub(crate) fn steps(&self) -> usize {
-        self.steps
-    }
-
     /// The motion of the cheapest clear manoeuvre so far.
     pub(crate) fn best_motion(&self, scene: &Scene) -> Option<Vec<Segment>> {
         let best = self.best?;
@@ -141,10 +144,19 @@ impl Refinement {
 
     /// The best manoeuvre as a seed: a box that has shrunk around one contact is opened again.
     pub(crate) fn anew(&self) -> Option<Seed> {
-        let lengths = self.best.as_ref()?.lengths;
+        let best = self.best.as_ref()?.lengths;
+        let mut lengths: Row = [0.0; MAX_VARIABLES];
+        for (i, c) in self.core.iter().enumerate() {
+            lengths[*c] = best[i];
+        }
         Some(Seed {
-            template: self.template.clone(),
+            template: Template {
+                slots: self.whole.clone(),
+                ending: self.template.ending,
+            },
             lengths,
+            core: (0..self.whole.len()).collect(),
+            whole: self.whole.clone(),
         })
     }
 
@@ -156,11 +168,6 @@ impl Refinement {
     /// Cost of the manoeuvre at hand with its penalty, m².
     pub(crate) fn merit(&self) -> f64 {
         self.model.cost + self.penalty * self.model.violation
-    }
-
-    /// Cost of the manoeuvre at hand, clear or not, m².
-    pub(crate) fn cost(&self) -> f64 {
-        self.model.cost
     }
 
     /// Gives up: another one is ahead.

@@ -105,8 +105,6 @@ pub(crate) struct Canonical {
     pub reach: f64,
     /// The turn out at the least speed, not at the greatest.
     pub slow: bool,
-    /// Share of the conflict's duration that is lost at the least speed before the turn.
-    pub wait: f64,
 }
 
 /// Slots and lengths while they are put together.
@@ -114,12 +112,23 @@ pub(crate) struct Canonical {
 struct Draft {
     slots: Vec<Slot>,
     lengths: Vec<f64>,
+    core: Vec<bool>,
 }
 
 impl Draft {
     fn push(&mut self, slot: Slot, length: f64) {
         self.slots.push(slot);
         self.lengths.push(length);
+        self.core.push(true);
+    }
+
+    /// Slots that stay empty until the last refinement.
+    fn spare(&mut self, slots: &[Slot]) {
+        for slot in slots {
+            self.slots.push(*slot);
+            self.lengths.push(0.0);
+            self.core.push(false);
+        }
     }
 
     fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
@@ -156,13 +165,20 @@ impl Draft {
             return None;
         }
         let mut lengths: Row = [0.0; MAX_VARIABLES];
-        lengths[..self.lengths.len()].copy_from_slice(&self.lengths);
+        let mut slots = Vec::new();
+        let mut core = Vec::new();
+        for (i, slot) in self.slots.iter().enumerate() {
+            if self.core[i] {
+                lengths[slots.len()] = self.lengths[i];
+                slots.push(*slot);
+                core.push(i);
+            }
+        }
         Some(Seed {
-            template: Template {
-                slots: self.slots,
-                ending,
-            },
+            template: Template { slots, ending },
             lengths,
+            whole: self.slots,
+            core,
         })
     }
 }
@@ -187,13 +203,10 @@ impl Canonical {
         let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
         let arc = turn * radius;
         let way_out = (2.0 * arc + out) / if self.slow { paces.normal } else { fast };
-        // sailed at the least speed, so as to arrive later by a share of the conflict
-        let delay = self.wait * (conflict.to - conflict.from);
-        let run = (delay / (1.0 / slow - 1.0 / paces.normal).max(1e-3)).min(0.3 * route.length());
-        let departure = (conflict.from - self.lead * way_out - run / slow).max(0.0);
+        let departure = (conflict.from - self.lead * way_out).max(0.0);
         let lead = (departure * paces.normal).min(route.length());
         // made good along the route on the way out, and on the way back at the flattest angle that fits
-        let made_good = lead + run + 2.0 * radius * turn.sin() + out * turn.cos();
+        let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
         let room = route.length() - made_good;
         let way_back = |angle: f64| {
             let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
@@ -205,19 +218,35 @@ impl Canonical {
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
             .max(0.0);
         let mut draft = Draft::default();
-        draft.runs(&paces, lead, 0.0, run);
+        draft.runs(&paces, lead, 0.0, 0.0);
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();
         // a set with many corners is rounded in more than one turn: empty groups open where that pays
         draft.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
-        draft.line(&[(slow, 0.5 * slow_line), (fast, 0.5 * fast_line)]);
-        draft.turn(side, &[(fast, 0.0)]);
-        draft.line(&[(slow, 0.5 * slow_line), (fast, 0.5 * fast_line)]);
-        draft.turn(back, &[(slow, 0.0), (fast, arc)]);
-        draft.line(&[(slow, 0.0), (paces.normal, 0.0), (fast, 0.5 * along)]);
+        draft.line(&[(slow, slow_line), (fast, fast_line)]);
+        draft.spare(&[
+            Slot::Arc { side, speed: fast },
+            Slot::Line { speed: slow },
+            Slot::Line { speed: fast },
+            Slot::Arc {
+                side: back,
+                speed: slow,
+            },
+        ]);
+        draft.turn(back, &[(fast, arc)]);
+        draft.spare(&[
+            Slot::Line { speed: slow },
+            Slot::Line {
+                speed: paces.normal,
+            },
+        ]);
+        draft.line(&[(fast, 0.5 * along)]);
         draft.turn(back, &[(fast, 0.0)]);
-        draft.line(&[(paces.normal, 0.0), (fast, 0.5 * along)]);
+        draft.spare(&[Slot::Line {
+            speed: paces.normal,
+        }]);
+        draft.line(&[(fast, 0.5 * along)]);
         let Some(angle) = angle else {
             return draft.seed(Ending::Goal {
                 side: back,

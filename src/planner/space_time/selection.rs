@@ -9,35 +9,56 @@ use crate::frame::{Side, cross};
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
 
-/// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin.
-const CANONICAL: [Canonical; 4] = [
+/// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin. Chosen
+/// one by one from 152 of all angles, leads and offsets: each the one that helps those before it most.
+const CANONICAL: [Canonical; 8] = [
     Canonical {
-        turn: 0.9,
-        lead: 1.0,
-        reach: 1.2,
-        slow: false,
-        wait: 0.0,
+        turn: 1.3,
+        lead: 0.6,
+        reach: 0.6,
+        slow: true,
     },
     Canonical {
-        turn: 0.4,
-        lead: 1.0,
-        reach: 1.2,
+        turn: 0.2,
+        lead: 0.6,
+        reach: 0.9,
         slow: false,
-        wait: 0.0,
+    },
+    Canonical {
+        turn: 0.6,
+        lead: 0.3,
+        reach: 0.3,
+        slow: true,
+    },
+    Canonical {
+        turn: 0.2,
+        lead: 0.3,
+        reach: 0.9,
+        slow: false,
+    },
+    Canonical {
+        turn: 1.6,
+        lead: 0.3,
+        reach: 0.6,
+        slow: true,
+    },
+    Canonical {
+        turn: 0.2,
+        lead: 0.3,
+        reach: 0.6,
+        slow: false,
     },
     Canonical {
         turn: 1.3,
         lead: 1.0,
-        reach: 1.2,
+        reach: 0.9,
         slow: true,
-        wait: 0.0,
     },
     Canonical {
-        turn: 0.5,
-        lead: 1.0,
+        turn: 1.6,
+        lead: 0.6,
         reach: 0.6,
-        slow: true,
-        wait: 0.3,
+        slow: false,
     },
 ];
 
@@ -47,17 +68,8 @@ const FAR_SIDE: f64 = 1.8;
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
-/// Steps after which a refinement may be overtaken.
-const RACE_FROM: usize = 4;
-
-/// Relative excess over the best that a refinement may still have at first.
-const RACE_SLACK: f64 = 1.0;
-
-/// Refinements that go on after [`RACE_FROM`] steps at most.
-const RACE_PLACES: usize = 3;
-
-/// Rounds after which only the best goes on.
-const RACE_ROUNDS: f64 = 16.0;
+/// How many refinements go on after so many steps: those with the least merit. A winner is seen early.
+const PLACES: [(usize, usize); 6] = [(0, 10), (1, 6), (2, 4), (4, 3), (6, 2), (9, 1)];
 
 /// A clear trajectory.
 #[derive(Debug, Clone)]
@@ -158,6 +170,7 @@ impl<'a> Selection<'a> {
             .filter_map(|s| Refinement::fitting(&scene, s))
             .collect();
         for round in 0..MAX_STEPS {
+            race(&mut running, round);
             for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
                 if out_of_time() {
                     self.collect(&running);
@@ -165,30 +178,10 @@ impl<'a> Selection<'a> {
                 }
                 refinement.step(&scene);
             }
-            self.race(&mut running, round);
         }
         self.polish(&mut running);
         self.collect(&running);
         false
-    }
-
-    /// Stops what has fallen behind, the worst first when too many are left.
-    fn race(&self, running: &mut [Refinement], round: usize) {
-        let best = running
-            .iter()
-            .map(Refinement::best_cost)
-            .fold(f64::INFINITY, f64::min);
-        let slack = RACE_SLACK * (1.0 - round as f64 / RACE_ROUNDS).max(0.0);
-        let mut going: Vec<&mut Refinement> = running
-            .iter_mut()
-            .filter(|r| !r.is_finished() && r.steps() >= RACE_FROM)
-            .collect();
-        going.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
-        for (place, refinement) in going.into_iter().enumerate() {
-            if place >= RACE_PLACES || refinement.cost() > best * (1.0 + slack) {
-                refinement.stop();
-            }
-        }
     }
 
     /// Refines the best of all anew, with a box that is open again.
@@ -240,5 +233,22 @@ impl<'a> Selection<'a> {
     /// The cheapest clear trajectory and its cost, m².
     pub(crate) fn cheapest(self) -> Option<(Vec<Segment>, f64)> {
         self.best.map(|c| (c.motion, c.cost))
+    }
+}
+
+/// Stops what has fallen behind after so many rounds.
+fn race(running: &mut [Refinement], rounds: usize) {
+    let places = PLACES.iter().rev().find(|(from, _)| *from <= rounds);
+    let places = places.map_or(running.len(), |p| p.1);
+    let home = running.iter().filter(|r| r.is_finished());
+    let best = home
+        .map(Refinement::best_cost)
+        .fold(f64::INFINITY, f64::min);
+    let mut going: Vec<&mut Refinement> = running.iter_mut().filter(|r| !r.is_finished()).collect();
+    going.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
+    // the best that has come to its end holds a place while nobody is ahead of it
+    let held = going.first().is_some_and(|r| best < r.merit());
+    for refinement in going.into_iter().skip(places - usize::from(held)) {
+        refinement.stop();
     }
 }

@@ -80,7 +80,7 @@ pub(crate) struct Leg {
 
 impl Leg {
     /// Position and unit vector ahead at a fraction.
-    fn along(&self, fraction: f64) -> (Vector, Vector) {
+    pub(crate) fn along(&self, fraction: f64) -> (Vector, Vector) {
         let s = &self.segment;
         let length = s.speed * s.duration * fraction;
         if s.is_arc() {
