@@ -1,4 +1,6 @@
 //! The factors of a dual active-set method: `J = L^-T Q` and the triangle `R`, kept by plane rotations.
+//!
+//! `J` is held by columns: every operation on it then runs along memory.
 
 use super::quadratic::{MAX_VARIABLES, Matrix, Row};
 
@@ -7,33 +9,45 @@ pub(crate) fn dot(a: &Row, b: &Row, n: usize) -> f64 {
     a[..n].iter().zip(&b[..n]).map(|(x, y)| x * y).sum()
 }
 
-/// `L^-T` for `H = L L'`.
+/// `to += factor * from`, of the first `n` numbers.
+pub(crate) fn add_scaled(to: &mut Row, factor: f64, from: &Row, n: usize) {
+    for (t, f) in to[..n].iter_mut().zip(&from[..n]) {
+        *t += factor * f;
+    }
+}
+
+/// The columns of `L^-T` for `H = L L'`, which are the rows of `L^-1`.
 pub(crate) fn inverse_transposed_factor(h: &Matrix, n: usize) -> Option<Matrix> {
     let mut l: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    for i in 0..n {
-        for k in 0..=i {
-            let sum = h[i][k] - dot(&l[i], &l[k], k);
-            if i == k {
-                // negated on purpose: a NaN is not positive
-                if !(sum > 0.0) {
-                    return None;
-                }
-                l[i][i] = sum.sqrt();
-            } else {
-                l[i][k] = sum / l[k][k];
-            }
-        }
-    }
     let mut inverse: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    // column c of L^-1 is row c of its transpose
-    for c in 0..n {
-        inverse[c][c] = 1.0 / l[c][c];
-        for i in c + 1..n {
-            let sum: f64 = (c..i).map(|k| l[i][k] * inverse[c][k]).sum();
-            inverse[c][i] = -sum / l[i][i];
+    for i in 0..n {
+        for k in 0..i {
+            l[i][k] = (h[i][k] - dot(&l[i], &l[k], k)) / l[k][k];
         }
+        let square = h[i][i] - dot(&l[i], &l[i], i);
+        // negated on purpose: a NaN is not positive
+        if !(square > 0.0) {
+            return None;
+        }
+        l[i][i] = square.sqrt();
+        let scale = 1.0 / l[i][i];
+        let (above, below) = inverse.split_at_mut(i);
+        let row = &mut below[0];
+        for (k, known) in above.iter().enumerate() {
+            add_scaled(row, -l[i][k] * scale, known, k + 1);
+        }
+        row[i] = scale;
     }
     Some(inverse)
+}
+
+/// Turns two columns in their plane: `(c, s)` times the first, `(-s, c)` times the second.
+fn turn(columns: &mut Matrix, first: usize, c: f64, s: f64, n: usize) {
+    let (above, below) = columns.split_at_mut(first + 1);
+    let pairs = above[first][..n].iter_mut().zip(&mut below[0][..n]);
+    for (a, b) in pairs {
+        (*a, *b) = (c * *a + s * *b, c * *b - s * *a);
+    }
 }
 
 /// Rotates `d` below `q` to zero and appends it to `R`.
@@ -45,11 +59,7 @@ pub(crate) fn add(j: &mut Matrix, r: &mut Matrix, d: &mut Row, q: usize, n: usiz
         let h = (d[k - 1] * d[k - 1] + d[k] * d[k]).sqrt();
         let (c, s) = (d[k - 1] / h, d[k] / h);
         (d[k - 1], d[k]) = (h, 0.0);
-        for row in j.iter_mut().take(n) {
-            let (a, b) = (row[k - 1], row[k]);
-            row[k - 1] = c * a + s * b;
-            row[k] = c * b - s * a;
-        }
+        turn(j, k - 1, c, s, n);
     }
     for i in 0..=q {
         r[i][q] = d[i];
@@ -75,10 +85,6 @@ pub(crate) fn remove(j: &mut Matrix, r: &mut Matrix, u: &mut [f64], i: usize, q:
         for (a, b) in pair {
             (*a, *b) = (c * *a + s * *b, c * *b - s * *a);
         }
-        for row in j.iter_mut().take(n) {
-            let (a, b) = (row[k], row[k + 1]);
-            row[k] = c * a + s * b;
-            row[k + 1] = c * b - s * a;
-        }
+        turn(j, k, c, s, n);
     }
 }

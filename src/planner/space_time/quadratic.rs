@@ -1,7 +1,7 @@
 //! A small dense convex quadratic programme by the dual active-set method of Goldfarb & Idnani
 //! (doi:10.1007/BF02591962).
 
-use super::factor::{add, dot, inverse_transposed_factor, remove};
+use super::factor::{add, add_scaled, dot, inverse_transposed_factor, remove};
 
 /// Most variables of a programme: fixed, so that no step allocates.
 pub(crate) const MAX_VARIABLES: usize = 24;
@@ -151,16 +151,6 @@ impl Programme<'_> {
         }
     }
 
-    fn normal(&self, kind: Kind) -> Row {
-        let mut n = [0.0; MAX_VARIABLES];
-        match kind {
-            Kind::Low(i) => n[i] = 1.0,
-            Kind::High(i) => n[i] = -1.0,
-            Kind::Row(r) => n = self.rows[r].coefficients,
-        }
-        n
-    }
-
     fn value(&self, kind: Kind, x: &Row) -> f64 {
         match kind {
             Kind::Low(i) => x[i] - self.low[i],
@@ -209,12 +199,8 @@ impl Programme<'_> {
         let n = self.size;
         let mut j = inverse_transposed_factor(self.hessian, n).ok_or(None)?;
         let mut x = [0.0; MAX_VARIABLES];
-        let mut y = [0.0; MAX_VARIABLES];
-        for k in 0..n {
-            y[k] = -(0..n).map(|i| j[i][k] * self.gradient[i]).sum::<f64>();
-        }
-        for i in 0..n {
-            x[i] = dot(&j[i], &y, n);
+        for column in j.iter().take(n) {
+            add_scaled(&mut x, -dot(column, self.gradient, n), column, n);
         }
         let mut r: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
         let mut active: Vec<Kind> = Vec::with_capacity(n);
@@ -222,7 +208,6 @@ impl Programme<'_> {
         let mut steps = 0;
         let scales = self.scales(ignored);
         while let Some(entering) = self.violated(&x, &active, &scales) {
-            let normal = self.normal(entering);
             let mut multiplier = 0.0;
             loop {
                 steps += 1;
@@ -231,16 +216,16 @@ impl Programme<'_> {
                 }
                 let q = active.len();
                 let mut d = [0.0; MAX_VARIABLES];
-                for (row, c) in j.iter().zip(&normal).take(n) {
-                    if *c != 0.0 {
-                        for (d, j) in d[..n].iter_mut().zip(&row[..n]) {
-                            *d += j * c;
-                        }
-                    }
+                for (d, column) in d.iter_mut().zip(&j).take(n) {
+                    *d = match entering {
+                        Kind::Low(i) => column[i],
+                        Kind::High(i) => -column[i],
+                        Kind::Row(row) => dot(column, &self.rows[row].coefficients, n),
+                    };
                 }
                 let mut z = [0.0; MAX_VARIABLES];
-                for (z, row) in z.iter_mut().zip(&j).take(n) {
-                    *z = row[q..n].iter().zip(&d[q..n]).map(|(j, d)| j * d).sum();
+                for (column, d) in j[q..n].iter().zip(&d[q..n]) {
+                    add_scaled(&mut z, *d, column, n);
                 }
                 let mut back = [0.0; MAX_VARIABLES];
                 for i in (0..q).rev() {
@@ -254,10 +239,10 @@ impl Programme<'_> {
                         leaving = Some(i);
                     }
                 }
-                let slope = dot(&z, &normal, n);
-                let free: f64 = (q..n).map(|k| d[k] * d[k]).sum();
-                let all: f64 = (0..n).map(|k| d[k] * d[k]).sum();
-                let primal_step = if free > 1e-16 * all && slope > 0.0 {
+                // z . normal
+                let slope: f64 = d[q..n].iter().map(|d| d * d).sum();
+                let all = slope + d[..q].iter().map(|d| d * d).sum::<f64>();
+                let primal_step = if slope > 1e-16 * all {
                     -self.value(entering, &x) / slope
                 } else {
                     f64::INFINITY
