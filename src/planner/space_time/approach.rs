@@ -8,8 +8,9 @@ use crate::obstacle::Slack;
 /// Metres. Approaches closer than this become rows.
 const NEAR_M: f64 = 60.0;
 
-/// Radians. Longest arc that one chord stands for when a minimum is sought.
-const CHORD_RAD: f64 = 0.05;
+/// Radians. Longest arc that one chord stands for when a minimum is sought, to begin with and at the end.
+pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;
+pub(crate) const FINE_CHORD_RAD: f64 = 0.05;
 
 /// Cuts of one minimum at most.
 const MAX_CUTS: usize = 30;
@@ -26,8 +27,9 @@ pub(crate) struct Approach {
     pub faces: [(usize, f64); 2],
 }
 
-/// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`].
-pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed) -> Vec<Approach> {
+/// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`]; arcs are cut into chords of `chord`
+/// radians at most.
+pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed, chord: f64) -> Vec<Approach> {
     let mut chords: Vec<Chord> = Vec::with_capacity(64);
     let mut found: Vec<Approach> = Vec::new();
     for (leg, l) in sailed.legs.iter().enumerate() {
@@ -39,7 +41,7 @@ pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed) -> Vec<Approach> {
             local_minima(&mut chords, &mut found);
             continue;
         }
-        let count = (segment.turn_rate.abs() * segment.duration / CHORD_RAD)
+        let count = (segment.turn_rate.abs() * segment.duration / chord)
             .ceil()
             .max(1.0);
         let sample = |fraction: f64, position: Vector| {
@@ -71,12 +73,12 @@ pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed) -> Vec<Approach> {
                 from.position + l.ahead * segment.length()
             };
             let to = sample(fraction, position);
-            let mut chord = Chord::new(hazard, leg, &from, &to);
-            if count > 1.0 && chord.least.faces[1].1 != 0.0 {
-                let at = sample(chord.least.fraction, l.along(chord.least.fraction).0);
-                chord.least.slack = at.slack.value;
+            let mut piece = Chord::new(hazard, leg, &from, &to);
+            if count > 1.0 && piece.least.faces[1].1 != 0.0 {
+                let at = sample(piece.least.fraction, l.along(piece.least.fraction).0);
+                piece.least.slack = at.slack.value;
             }
-            chords.push(chord);
+            chords.push(piece);
             from = to;
         }
     }

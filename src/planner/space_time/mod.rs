@@ -35,6 +35,7 @@ use crate::obstacle::PolytopeObstacle;
 use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
+use approach::FINE_CHORD_RAD;
 use graph::Graph;
 use hazard::{Hazard, TOUCH_M, first_contact};
 use model::Scene;
@@ -146,6 +147,7 @@ fn plan_clear_of(problem: &Problem) -> Planned {
         problem,
         route: &route,
         hazards: &hazards,
+        chord: FINE_CHORD_RAD,
     };
     let mut selection = Selection::new(scene);
     let mut budget = MAX_EXPANDED;

@@ -32,6 +32,8 @@ pub(crate) struct Scene<'a> {
     pub problem: &'a Problem<'a>,
     pub route: &'a Route,
     pub hazards: &'a [Hazard<'a>],
+    /// Radians, see [`approaches`].
+    pub chord: f64,
 }
 
 /// One manoeuvre, evaluated.
@@ -74,7 +76,7 @@ impl Scene<'_> {
         let mut rows = Vec::with_capacity(8);
         let (mut violation, mut least_slack) = (0.0_f64, f64::INFINITY);
         for hazard in self.hazards {
-            for approach in approaches(hazard, &sailed) {
+            for approach in approaches(hazard, &sailed, self.chord) {
                 let missing = MARGIN_M - approach.slack;
                 violation = missing.max(violation);
                 least_slack = least_slack.min(approach.slack);
@@ -356,6 +358,7 @@ struct Tail {
 
 #[cfg(test)]
 mod tests {
+    use super::super::approach::FINE_CHORD_RAD;
     use super::*;
     use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
@@ -406,6 +409,7 @@ mod tests {
             problem: &problem,
             route: &route,
             hazards: &hazards,
+            chord: FINE_CHORD_RAD,
         };
         let canonical = Canonical {
             turn: 0.7,
@@ -416,6 +420,7 @@ mod tests {
         let conflict = Conflict {
             from: 140.0,
             to: 180.0,
+            through: 200.0,
             offsets: [80.0, 90.0],
         };
         for (side, goal) in [

@@ -1,5 +1,6 @@
 //! Finds the lengths of a manoeuvre: sequential quadratic programming with an L1 merit.
 
+use super::approach::FINE_CHORD_RAD;
 use super::model::{Model, Scene};
 use super::quadratic::{MAX_VARIABLES, Programme, Row};
 use super::template::{Ending, Slot, Template};
@@ -34,7 +35,7 @@ const MAX_BACKTRACKS: usize = 2;
 const REACHABLE: f64 = 0.8;
 
 /// Relative decrease that is no progress.
-const STALLED: f64 = 2e-4;
+const STALLED: f64 = 1e-3;
 
 /// A manoeuvre to begin from.
 #[derive(Debug, Clone)]
@@ -64,12 +65,15 @@ pub(crate) struct Refinement {
     model: Model,
     best: Option<Refined>,
     penalty: f64,
+    /// Sum of the multipliers of the last step, m²/m.
+    price: f64,
     /// Slots that stayed empty in the last step.
     still: [bool; MAX_VARIABLES],
     radius: f64,
     stalled: usize,
     steps: usize,
     finished: bool,
+    overtaken: bool,
 }
 
 impl Refinement {
@@ -119,13 +123,15 @@ impl Refinement {
             model,
             best: None,
             penalty,
+            price: penalty,
             still: [false; MAX_VARIABLES],
             radius: FIRST_RADIUS_M,
             stalled: 0,
             steps: 0,
             finished: false,
+            overtaken: false,
         };
-        refinement.keep();
+        refinement.keep(scene);
         Some(refinement)
     }
 
@@ -170,13 +176,24 @@ impl Refinement {
         self.model.cost + self.penalty * self.model.violation
     }
 
-    /// Gives up: another one is ahead.
-    pub(crate) fn stop(&mut self) {
-        self.finished = true;
+    /// What the manoeuvre at hand will cost once it is clear, to first order: the missing metres at the
+    /// multipliers of the last step, m².
+    pub(crate) fn expected_cost(&self) -> f64 {
+        self.model.cost + self.price * self.model.violation
     }
 
-    fn keep(&mut self) {
-        let clear = self.model.least_slack >= 0.0;
+    /// Gives up: another one is ahead.
+    pub(crate) fn stop(&mut self) {
+        (self.finished, self.overtaken) = (true, true);
+    }
+
+    pub(crate) fn is_overtaken(&self) -> bool {
+        self.overtaken
+    }
+
+    /// Only what fine chords have seen is known to be clear.
+    fn keep(&mut self, scene: &Scene) {
+        let clear = self.model.least_slack >= 0.0 && scene.chord <= FINE_CHORD_RAD;
         let better = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
         if clear && better {
             self.best = Some(Refined {
@@ -224,8 +241,17 @@ impl Refinement {
                 return;
             }
             (self.lengths, self.model) = (trial, model);
-            self.keep();
+            self.keep(scene);
         }
+    }
+
+    /// Looks at the manoeuvre at hand anew, with other chords.
+    pub(crate) fn look_again(&mut self, scene: &Scene) {
+        if let Some(model) = scene.model(&self.template, &self.lengths) {
+            self.model = model;
+            (self.finished, self.stalled) = (false, 0);
+        }
+        self.keep(scene);
     }
 
     /// One step.
@@ -272,6 +298,7 @@ impl Refinement {
         let Some(solution) = programme.solve_from(&mut self.still) else {
             return false;
         };
+        self.price = solution.multipliers.iter().sum::<f64>();
         self.penalty = self
             .penalty
             .max(1.5 * solution.multipliers.iter().sum::<f64>());
@@ -301,7 +328,7 @@ impl Refinement {
                 let settled = gained < STALLED * model.cost.max(1.0) && model.violation < 1e-3;
                 self.stalled = if settled { self.stalled + 1 } else { 0 };
                 (self.lengths, self.model) = (trial, model);
-                self.keep();
+                self.keep(scene);
                 if share < 1.0 {
                     self.radius = (2.0 * share * largest).clamp(SMALLEST_RADIUS_M, self.radius);
                 } else if gained > 0.6 * predicted && largest > 0.9 * self.radius {

@@ -48,6 +48,8 @@ pub(crate) struct Conflict {
     /// Seconds at which the contact begins and ends.
     pub from: f64,
     pub to: f64,
+    /// Metres sailed between them.
+    pub through: f64,
     /// Metres to starboard and to port that clear the set throughout.
     pub offsets: [f64; 2],
 }
@@ -58,6 +60,11 @@ impl Conflict {
         self.offsets[usize::from(side == Side::Port)]
     }
 
+    /// Metres sailed inside over the shortest way around.
+    pub(crate) fn slenderness(&self) -> f64 {
+        self.through / self.offsets[0].min(self.offsets[1]).max(1.0)
+    }
+
     /// The contact of one hazard with the undisturbed motion, from first to last instant.
     pub(crate) fn of(hazard: &Hazard, undisturbed: &[Segment]) -> Option<Self> {
         let from = undisturbed.iter().find_map(|s| hazard.first_contact(s))?;
@@ -65,6 +72,7 @@ impl Conflict {
         let mut conflict = Self {
             from,
             to: from,
+            through: 0.0,
             offsets: [0.0; 2],
         };
         for k in 0..=CONFLICT_SAMPLES {
@@ -83,6 +91,10 @@ impl Conflict {
                 *offset = offset.max(hazard.way_out(pose.position, time, beam));
             }
         }
+        conflict.through = undisturbed
+            .iter()
+            .map(|s| s.between(conflict.from, conflict.to).length())
+            .sum();
         Some(conflict)
     }
 }

@@ -1,5 +1,6 @@
 //! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
 
+use super::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
 use super::graph::State;
 use super::hazard::first_met;
 use super::model::Scene;
@@ -9,58 +10,71 @@ use crate::frame::{Side, cross};
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
 
-/// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin. Chosen
-/// one by one from 152 of all angles, leads and offsets: each the one that helps those before it most.
-const CANONICAL: [Canonical; 8] = [
+/// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin. Chosen from
+/// 152 of all angles, leads and offsets, for 400 encounters: the set that together comes nearest to the best.
+const COMPACT: [Canonical; 3] = [
     Canonical {
-        turn: 1.3,
+        turn: 1.4,
         lead: 0.6,
         reach: 0.6,
-        slow: true,
-    },
-    Canonical {
-        turn: 0.2,
-        lead: 0.6,
-        reach: 0.9,
         slow: false,
     },
     Canonical {
-        turn: 0.6,
-        lead: 0.3,
-        reach: 0.3,
-        slow: true,
-    },
-    Canonical {
-        turn: 0.2,
-        lead: 0.3,
-        reach: 0.9,
-        slow: false,
-    },
-    Canonical {
-        turn: 1.6,
-        lead: 0.3,
-        reach: 0.6,
-        slow: true,
-    },
-    Canonical {
-        turn: 0.2,
-        lead: 0.3,
-        reach: 0.6,
-        slow: false,
-    },
-    Canonical {
-        turn: 1.3,
+        turn: 1.0,
         lead: 1.0,
         reach: 0.9,
         slow: true,
     },
     Canonical {
-        turn: 1.6,
-        lead: 0.6,
+        turn: 0.4,
+        lead: 1.4,
         reach: 0.6,
         slow: false,
     },
 ];
+
+/// The same where the way through the set is long beside the way around it, as when overtaking.
+const SLENDER: [Canonical; 6] = [
+    Canonical {
+        turn: 0.2,
+        lead: 0.3,
+        reach: 0.6,
+        slow: false,
+    },
+    Canonical {
+        turn: 0.2,
+        lead: 1.0,
+        reach: 0.9,
+        slow: false,
+    },
+    Canonical {
+        turn: 0.7,
+        lead: 0.3,
+        reach: 0.6,
+        slow: true,
+    },
+    Canonical {
+        turn: 0.4,
+        lead: 0.3,
+        reach: 0.9,
+        slow: false,
+    },
+    Canonical {
+        turn: 1.0,
+        lead: 0.3,
+        reach: 0.9,
+        slow: false,
+    },
+    Canonical {
+        turn: 0.2,
+        lead: 0.3,
+        reach: 0.6,
+        slow: true,
+    },
+];
+
+/// Way through over way around from which a conflict is slender.
+const SLENDER_FROM: f64 = 2.5;
 
 /// A side whose offset is this many times the other's gets one manoeuvre only.
 const FAR_SIDE: f64 = 1.8;
@@ -68,8 +82,12 @@ const FAR_SIDE: f64 = 1.8;
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
-/// How many refinements go on after so many steps: those with the least merit. A winner is seen early.
-const PLACES: [(usize, usize); 6] = [(0, 10), (1, 6), (2, 4), (4, 3), (6, 2), (9, 1)];
+/// How many refinements go on after so many steps: those of the least expected
+/// cost. A winner is seen early.
+const PLACES: [(usize, usize); 6] = [(0, 12), (1, 8), (2, 6), (4, 4), (7, 3), (11, 2)];
+
+/// Rounds after which arcs are cut into fine chords.
+const FINE_FROM: usize = 6;
 
 /// A clear trajectory.
 #[derive(Debug, Clone)]
@@ -150,14 +168,17 @@ impl<'a> Selection<'a> {
         conflicts: &[Conflict],
         out_of_time: &dyn Fn() -> bool,
     ) -> bool {
-        let scene = self.scene;
+        let mut scene = self.scene;
+        scene.chord = COARSE_CHORD_RAD;
         let (problem, route) = (scene.problem, scene.route);
         let mut seeds = std::mem::take(&mut self.seeds);
         let leg = problem.desired.legs().len() - 1;
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
+            let slender = conflict.slenderness() > SLENDER_FROM;
+            let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             for side in Side::BOTH {
                 let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
-                let tried = if far { &CANONICAL[..1] } else { &CANONICAL[..] };
+                let tried = if far { &manoeuvres[..1] } else { manoeuvres };
                 seeds.extend(
                     tried
                         .iter()
@@ -171,6 +192,12 @@ impl<'a> Selection<'a> {
             .collect();
         for round in 0..MAX_STEPS {
             race(&mut running, round);
+            if round == FINE_FROM {
+                scene.chord = FINE_CHORD_RAD;
+                for refinement in running.iter_mut().filter(|r| !r.is_overtaken()) {
+                    refinement.look_again(&scene);
+                }
+            }
             for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
                 if out_of_time() {
                     self.collect(&running);
@@ -240,15 +267,10 @@ impl<'a> Selection<'a> {
 fn race(running: &mut [Refinement], rounds: usize) {
     let places = PLACES.iter().rev().find(|(from, _)| *from <= rounds);
     let places = places.map_or(running.len(), |p| p.1);
-    let home = running.iter().filter(|r| r.is_finished());
-    let best = home
-        .map(Refinement::best_cost)
-        .fold(f64::INFINITY, f64::min);
-    let mut going: Vec<&mut Refinement> = running.iter_mut().filter(|r| !r.is_finished()).collect();
-    going.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
-    // the best that has come to its end holds a place while nobody is ahead of it
-    let held = going.first().is_some_and(|r| best < r.merit());
-    for refinement in going.into_iter().skip(places - usize::from(held)) {
+    let mut going: Vec<&mut Refinement> =
+        running.iter_mut().filter(|r| !r.is_overtaken()).collect();
+    going.sort_by(|a, b| a.expected_cost().total_cmp(&b.expected_cost()));
+    for refinement in going.into_iter().skip(places) {
         refinement.stop();
     }
 }
