@@ -9,6 +9,7 @@
 //! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
 //! plan is one of the candidates.
 
+mod aims;
 mod approach;
 mod chain;
 mod factor;
@@ -18,6 +19,7 @@ mod heuristic;
 mod interception;
 mod keep_out;
 mod model;
+mod node;
 mod quadratic;
 mod reduction;
 mod refinement;
@@ -155,12 +157,11 @@ fn plan_clear_of(problem: &Problem) -> Planned {
         // a slice at a time, so that the deadline is seen
         let slice = (search.counts().expanded + 50).min(budget);
         match search.next_goal(&mut graph, slice) {
-            Stop::Goal(node) => {
+            Stop::Goal(goal) => {
                 optimum.get_or_insert(search.counts());
-                let way = search.way_to(node);
-                let states: Vec<_> = way[1..].iter().map(|i| &search.nodes()[*i].state).collect();
-                selection.offer(search.nodes()[node].cost, &states);
-                if states.len() == 1 {
+                let way = node::way_to(&search, goal);
+                selection.offer(search.nodes()[goal].cost, &way.iter().collect::<Vec<_>>());
+                if way.len() == 1 {
                     break;
                 }
                 budget = budget.min(search.counts().expanded + FURTHER_EXPANDED);
@@ -211,6 +212,6 @@ fn plan_clear_of(problem: &Problem) -> Planned {
     Planned {
         outcome,
         stats,
-        explored: Graph::explored(search),
+        explored: node::explored(search),
     }
 }

@@ -1,8 +1,8 @@
 //! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
 
-use super::graph::State;
 use super::hazard::first_met;
 use super::model::Scene;
+use super::node::State;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
 use super::seeds::{Canonical, Conflict, from_graph};
 use crate::frame::{Side, cross};
