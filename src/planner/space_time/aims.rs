@@ -7,15 +7,18 @@
 //! face is constant, so its sign at the two ends tells whether there is a line between them that touches,
 //! before any root is sought.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use super::interception::{Chase, Interception, Limits};
-use crate::frame::{Side, Vector, to_port, wrap};
+use crate::frame::{Side, Vector, direction, heading_of, to_port, wrap};
 use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
 
 /// Metres. A distance this small has no sign.
 const NO_SIGN_M: f64 = 1e-6;
+
+/// Gaps between the two levels of a face beside one that is faster than own ship.
+const FAN: usize = 4;
 
 /// Radians. A turn is found to this.
 const TURN_RAD: f64 = 1e-13;
@@ -35,12 +38,13 @@ impl Corner {
     }
 }
 
-/// A direction along which the distance from a face is constant.
+/// A direction along which the distance from a face is constant, or from another plane that touches the
+/// body in one corner.
 #[derive(Debug, Clone, Copy)]
 struct Level {
     ahead: Vector,
     heading: f64,
-    face: usize,
+    plane: HalfSpace,
 }
 
 /// Directions between two [`Level`]s, in which a corner is touched.
@@ -48,8 +52,6 @@ struct Level {
 struct Gap {
     corner: usize,
     levels: [usize; 2],
-    /// One face only has levels: between them a line may touch twice.
-    single: bool,
 }
 
 /// What does not depend on where own ship is, for one speed.
@@ -58,7 +60,7 @@ struct Pace {
     speed: f64,
     levels: Vec<Level>,
     gaps: Vec<Gap>,
-    /// Corners beside a face that is faster than own ship: their meetings are sought one by one.
+    /// Corners of sets without an interior: their meetings are sought one by one.
     others: Vec<usize>,
 }
 
@@ -66,7 +68,6 @@ struct Pace {
 #[derive(Debug)]
 pub(crate) struct Aims {
     obstacle: usize,
-    faces: Vec<HalfSpace>,
     corners: Vec<Corner>,
     paces: Vec<Pace>,
 }
@@ -87,7 +88,7 @@ impl Aims {
         body: &PolytopeObstacle,
         speeds: impl Iterator<Item = f64>,
     ) -> Self {
-        let faces = body.faces().to_vec();
+        let faces = body.faces();
         let corners: Vec<Corner> = body
             .moving_vertices()
             .into_iter()
@@ -102,10 +103,9 @@ impl Aims {
                 Corner { vertex, faces }
             })
             .collect();
-        let paces = speeds.map(|u| Pace::new(&faces, &corners, u)).collect();
+        let paces = speeds.map(|u| Pace::new(faces, &corners, u)).collect();
         Self {
             obstacle,
-            faces,
             corners,
             paces,
         }
@@ -144,14 +144,14 @@ impl Aims {
                 signed.extend(pace.levels.iter().map(|level| {
                     let turn = wrap(level.heading - chase.heading()) * side.turn_sign();
                     let (position, time) = chase.turned(level.ahead, turn);
-                    (turn, self.faces[level.face].slack(position, time))
+                    (turn, level.plane.slack(position, time))
                 }));
                 for gap in &pace.gaps {
                     let [(a, from), (b, to)] = gap.levels.map(|l| signed[l]);
                     let corner = &self.corners[gap.corner];
                     let touches = from.min(to) <= NO_SIGN_M && from.max(to) >= -NO_SIGN_M;
-                    if (a - b).abs() > PI || gap.single && !touches {
-                        if a.max(b) >= 0.0 {
+                    if (a - b).abs() > PI {
+                        if a.max(b) <= limits.turn {
                             self.seek(gap.corner, &chase, limits, &mut offer);
                         }
                         continue;
@@ -198,21 +198,16 @@ impl Pace {
             gaps: Vec::new(),
             others: Vec::new(),
         };
-        // levels `2 k` and `2 k + 1` of the k-th face that has any
+        // levels `k` and `k + 1` of a face that has any
         let mut first = vec![None; faces.len()];
-        for (face, f) in faces.iter().enumerate() {
+        for (first, f) in first.iter_mut().zip(faces) {
             let cosine = f.velocity_support / speed;
             if cosine.abs() < 1.0 {
-                first[face] = Some(pace.levels.len());
+                *first = Some(pace.levels.len());
                 let sine = (1.0 - cosine * cosine).sqrt();
                 for sign in [1.0, -1.0] {
                     let ahead = f.normal * cosine + to_port(f.normal) * (sign * sine);
-                    let heading = ahead.y.atan2(ahead.x);
-                    pace.levels.push(Level {
-                        ahead,
-                        heading,
-                        face,
-                    });
+                    pace.level(ahead, *f);
                 }
             }
         }
@@ -220,44 +215,75 @@ impl Pace {
             let around: Vec<usize> = (0..faces.len())
                 .filter(|k| corner.faces.contains(&faces[*k]))
                 .collect();
-            let faster = |sign: f64| {
-                around
-                    .iter()
-                    .all(|k| sign * faces[*k].velocity_support >= speed)
-            };
-            let beside = |own: usize, other: usize| {
-                let first = first[own]?;
-                let (own, other) = (faces[own].velocity_support, faces[other].velocity_support);
-                // directions about the normal where the other face runs away, about its opposite where
-                // it falls back; less than half a turn of them
-                (own * other >= 0.0).then_some([first, first + 1])
-            };
-            let gap = |levels, single| Gap {
-                corner: index,
-                levels,
-                single,
+            let all = |sign: f64| {
+                let faster = |k: &usize| sign * faces[*k].velocity_support >= speed;
+                around.iter().all(faster)
             };
             match around[..] {
                 // always approached, or always left
-                _ if faster(1.0) || faster(-1.0) => {}
-                [a, b] if let (Some(a), Some(b)) = (first[a], first[b]) => {
-                    pace.gaps
-                        .extend([gap([a, b], false), gap([a + 1, b + 1], false)]);
-                }
-                [a, b] if let Some(levels) = beside(a, b).or(beside(b, a)) => {
-                    pace.gaps.push(gap(levels, true));
-                }
+                _ if all(1.0) || all(-1.0) => {}
+                [a, b] => match (first[a], first[b]) {
+                    (Some(a), Some(b)) => {
+                        pace.gap(index, [a, b]);
+                        pace.gap(index, [a + 1, b + 1]);
+                    }
+                    (Some(first), None) => pace.fan(index, corner, first, &faces[b]),
+                    (None, Some(first)) => pace.fan(index, corner, first, &faces[a]),
+                    (None, None) => pace.others.push(index),
+                },
                 _ => pace.others.push(index),
             }
         }
         pace
+    }
+
+    fn level(&mut self, ahead: Vector, plane: HalfSpace) {
+        self.levels.push(Level {
+            ahead,
+            heading: heading_of(ahead),
+            plane,
+        });
+    }
+
+    fn gap(&mut self, corner: usize, levels: [usize; 2]) {
+        self.gaps.push(Gap { corner, levels });
+    }
+
+    /// Gaps from one level of a face to its other one: about its normal where the other face is always
+    /// approached, about the opposite where it is always left.
+    fn fan(&mut self, index: usize, corner: &Corner, first: usize, other: &HalfSpace) {
+        let own = self.levels[first].plane;
+        let from = heading_of(self.levels[first].ahead);
+        let half = (own.velocity_support / self.speed).acos();
+        let width = if other.velocity_support > 0.0 {
+            -2.0 * half
+        } else {
+            TAU - 2.0 * half
+        };
+        let mut before = first;
+        for k in 1..FAN {
+            let ahead = direction(from + width * k as f64 / FAN as f64);
+            let across = to_port(ahead * self.speed - corner.vertex.velocity).normalize();
+            let outward = across.dot(&(own.normal + other.normal)).signum();
+            let normal = across * outward;
+            let plane = HalfSpace {
+                normal,
+                velocity_support: normal.dot(&corner.vertex.velocity),
+                initial_support: normal.dot(&corner.vertex.origin),
+            };
+            let next = self.levels.len();
+            self.level(ahead, plane);
+            self.gap(index, [before, next]);
+            before = next;
+        }
+        self.gap(index, [before, first + 1]);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{Pose, direction};
+    use crate::frame::Pose;
     use crate::geometry::{ConvexPolygon, outer_disc};
     use rand::{Rng, SeedableRng};
 
