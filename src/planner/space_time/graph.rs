@@ -406,6 +406,13 @@ impl Space for Graph<'_> {
         }
     }
 
+    fn closer_bound(&mut self, state: &State) -> f64 {
+        match (&self.heuristic, state.kind) {
+            (None, _) | (_, NodeKind::End) => 0.0,
+            (Some(heuristic), _) => heuristic.closer_cost_to_go(&state.pose, state.time),
+        }
+    }
+
     fn is_goal(&self, state: &State) -> bool {
         state.kind == NodeKind::End
     }

@@ -12,6 +12,7 @@
 mod aims;
 mod approach;
 mod chain;
+mod closer;
 mod factor;
 mod graph;
 mod hazard;
