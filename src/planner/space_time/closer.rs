@@ -154,7 +154,7 @@ impl Closer<'_> {
         self.keep_out
             .bodies()
             .iter()
-            .flatten()
+            .flat_map(|b| &b.faces)
             .map(|face| time + self.reached_after(face, pose, time))
             .collect()
     }
@@ -183,12 +183,17 @@ impl Closer<'_> {
 
     /// Least mean squared error between two times outside every body and within the limits.
     fn outside(&self, reached: &[f64], from: f64, to: f64, limits: &[(Vector, f64)]) -> f64 {
-        let mut reached = reached.iter();
+        let mut rest = reached;
         let mut greatest = 0.0_f64;
         for body in self.keep_out.bodies() {
+            let (reached, others) = rest.split_at(body.faces.len());
+            rest = others;
+            if to < body.from || from > body.to {
+                continue;
+            }
             let (mut a, mut b) = (f64::INFINITY, f64::INFINITY);
             let mut joint = f64::INFINITY;
-            for (face, reached) in body.iter().zip(&mut reached) {
+            for (face, reached) in body.faces.iter().zip(reached) {
                 if *reached > to {
                     continue;
                 }

@@ -27,9 +27,7 @@ const STEP_S: f64 = 0.5;
 pub(crate) struct KeepOut {
     /// m² s, what is still to come at every multiple of [`STEP_S`]; decreasing.
     to_come: Vec<f64>,
-    /// The faces of every obstacle that the point on schedule is ever inside, and when it is last.
-    bodies: Vec<Vec<Face>>,
-    last_contact: f64,
+    bodies: Vec<Body>,
     /// Metres, the envelope of `E` there, and by how much it may fall from one instant to the next.
     least: Vec<f64>,
     fall: f64,
@@ -41,7 +39,6 @@ impl KeepOut {
         Self {
             to_come: Vec::new(),
             bodies: Vec::new(),
-            last_contact: 0.0,
             least: Vec::new(),
             fall: 0.0,
         }
@@ -57,17 +54,12 @@ impl KeepOut {
         // nobody arrives before this
         let until = (problem.desired.end() - own.pose.position).norm() / own.max_speed();
         let count = (until / STEP_S).floor().max(0.0) as usize;
-        let mut bodies: Vec<Vec<Face>> = hazards
-            .iter()
-            .map(|h| {
-                let faces = h.body.faces().iter();
-                faces.map(|f| Face::new(*f, leg, kappa)).collect()
-            })
-            .collect();
         let mut least = vec![0.0; count + 1];
-        let mut last_contact = 0.0_f64;
-        bodies.retain(|faces| {
-            let mut inside = false;
+        let mut bodies = Vec::new();
+        for hazard in hazards {
+            let faces = hazard.body.faces().iter();
+            let faces: Vec<Face> = faces.map(|f| Face::new(*f, leg, kappa)).collect();
+            let mut contact = None;
             for (k, least) in least.iter_mut().enumerate() {
                 let time = STEP_S * k as f64;
                 let depth = faces
@@ -75,13 +67,12 @@ impl KeepOut {
                     .map(|f| f.depth_at(time))
                     .fold(f64::INFINITY, f64::min);
                 if depth > 0.0 {
-                    inside = true;
+                    contact = Some((contact.map_or(time, |c: (f64, f64)| c.0), time));
                     *least = depth.max(*least);
-                    last_contact = last_contact.max(time);
                 }
             }
-            inside
-        });
+            bodies.extend(contact.map(|(from, to)| Body { faces, from, to }));
+        }
         let fall = rate(own.max_speed(), leg.speed, kappa) * STEP_S;
         for k in 1..least.len() {
             least[k] = least[k].max(least[k - 1] - fall);
@@ -97,7 +88,6 @@ impl KeepOut {
         Self {
             to_come,
             bodies,
-            last_contact,
             least,
             fall,
         }
@@ -112,13 +102,13 @@ impl KeepOut {
         }
     }
 
-    pub(crate) fn bodies(&self) -> &[Vec<Face>] {
+    pub(crate) fn bodies(&self) -> &[Body] {
         &self.bodies
     }
 
     /// When the point on schedule is inside an obstacle for the last time.
     pub(crate) fn last_contact(&self) -> f64 {
-        self.last_contact
+        self.bodies.iter().map(|b| b.to).fold(0.0, f64::max)
     }
 
     /// Least integral of the squared error still to come at a time, m² s.
@@ -134,6 +124,15 @@ impl KeepOut {
         let after = self.to_come.get(before).copied().unwrap_or(0.0);
         (self.cost_from(from) - after).max(0.0)
     }
+}
+
+/// An obstacle that the point on schedule is inside for some time.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    pub faces: Vec<Face>,
+    /// Seconds.
+    pub from: f64,
+    pub to: f64,
 }
 
 /// A face of an obstacle as seen from the point on schedule.
