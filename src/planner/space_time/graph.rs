@@ -1,4 +1,4 @@
-//! The space-time graph: departures from the route, interceptions of moving vertices, returns, the end.
+//! The space-time graph: lines from the route that touch moving vertices, courses held beyond them, ways back.
 //!
 //! Nodes and edges are made when the search asks for them. The graph decides on which side, in which
 //! order and whether to wait; `refinement` finds the numbers.
@@ -89,6 +89,7 @@ impl<'a> Graph<'a> {
         let aims = hazards
             .iter()
             .enumerate()
+            .filter(|_| !contacts.is_empty())
             .filter(|(_, h)| pieces.iter().any(|s| h.clearance_bound(s) < RELEVANT_M))
             .map(|(obstacle, h)| {
                 let body = PolytopeObstacle::new(
