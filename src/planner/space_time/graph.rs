@@ -25,7 +25,7 @@ use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
 
 /// Seconds before first contact at which a manoeuvre may begin, besides t = 0.
-const LEADS_S: [f64; 5] = [0.0, 12.0, 25.0, 45.0, 75.0];
+const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
 /// Angles at which the route is met again, radians.
 const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
 /// Seconds for which a course is held beyond a vertex, one after another.

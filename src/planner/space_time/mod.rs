@@ -55,7 +55,7 @@ const LEAST_RADIUS_M: f64 = 5e-4;
 const MAX_SIGNATURES: usize = 4;
 
 /// Expansions beyond the graph's best plan, to find such others.
-const FURTHER_EXPANDED: usize = 8;
+const FURTHER_EXPANDED: usize = 4;
 
 /// Plans one problem.
 ///
