@@ -1,11 +1,11 @@
 //! What own ship aims at: moving vertices of a body, where her line only just touches it.
 //!
-//! A line at speed `u` in direction `d` closes on a face with normal `n` at `u n.d - h_V(n)` m/s. It only
-//! just touches a moving vertex when one of its two faces is not left and the other not approached. For
-//! one face that is so along two directions, `n.d = h_V(n) / u`; between those of neighbouring faces the
-//! line touches the vertex they share, if it touches. Along such a direction the distance from the
-//! face is constant, so its sign at the two ends tells whether there is a line between them that touches,
-//! before any root is sought.
+//! Along a line at speed `u` in direction `d` the distance from a face with normal `n` grows by
+//! `u n.d - h_V(n)` m/s. The line only just touches a moving vertex when of the two faces there one is not
+//! left and the other not approached. The distance from a face is constant along two directions,
+//! `n.d = h_V(n) / u`; between those of neighbouring faces a line touches the vertex they share, if it
+//! touches. So the signs of the constant distances at the two ends tell whether one does, before any root
+//! is sought.
 
 use std::f64::consts::{PI, TAU};
 
