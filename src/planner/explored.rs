@@ -10,8 +10,6 @@ use crate::trajectory::Segment;
 pub enum NodeKind {
     /// Own ship at t = 0.
     Start,
-    /// A pose on the desired path at which a manoeuvre begins.
-    Departure,
     /// On an edge of an obstacle: a moving vertex.
     Vertex {
         /// Index of the obstacle.
@@ -21,6 +19,8 @@ pub enum NodeKind {
         /// Index of the velocity set's vertex.
         velocity: usize,
     },
+    /// Straight on from a vertex for a while.
+    Held,
     /// The end of the desired path.
     End,
 }

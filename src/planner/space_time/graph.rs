@@ -1,86 +1,52 @@
-//! The space-time graph: departures from the route, interceptions of moving vertices, returns, the end.
+//! The space-time graph: lines from the route that touch moving vertices, courses held beyond them, ways back.
 //!
 //! Nodes and edges are made when the search asks for them. The graph decides on which side, in which
 //! order and whether to wait; `refinement` finds the numbers.
 
 use std::cell::Cell;
 
+use super::aims::Aims;
 use super::chain::Chain;
 use super::hazard::{Hazard, first_met};
 use super::heuristic::Heuristic;
 use super::interception::{Chase, Limits};
 use super::keep_out::KeepOut;
+use super::node::State;
 use super::returning::return_to_line;
 use super::route::Route;
 use super::template::Ending;
-use crate::frame::{Pose, Side, heading_of};
+use crate::frame::{Side, heading_of};
 use crate::geometry::outer_simplified;
-use crate::obstacle::{MovingVertex, PolytopeObstacle, along_path};
+use crate::obstacle::{PolytopeObstacle, along_path};
 use crate::planner::cost::space_time_error;
-use crate::planner::{
-    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind, Problem, SearchKind,
-};
-use crate::search::{Fate, Search, Space};
+use crate::planner::{NodeKind, Problem, SearchKind};
+use crate::search::Space;
 use crate::trajectory::Segment;
+use crate::vessel::OwnShip;
 
 /// Seconds before first contact at which a manoeuvre may begin, besides t = 0.
-const LEADS_S: [f64; 5] = [0.0, 12.0, 25.0, 45.0, 75.0];
+const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
 /// Angles at which the route is met again, radians.
 const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
+/// Seconds for which a course is held beyond a vertex, one after another.
+const HOLDS_S: [f64; 3] = [20.0, 40.0, 80.0];
 /// Radians. Larger turns toward a vertex are not offered.
 const MAX_TURN: f64 = 2.0;
 /// Seconds. Later meetings with a vertex are not offered.
 const MAX_CHASE_S: f64 = 240.0;
 /// Vertices met one after another.
-const MAX_CHAIN: u8 = 3;
-/// Vertices of the simplified sets whose moving vertices are nodes.
-const INITIAL_VERTICES: usize = 6;
-const VELOCITY_VERTICES: usize = 3;
+const MAX_CHAIN: u8 = 5;
+/// Vertices at most of the sets whose moving vertices are nodes: others are simplified first.
+const INITIAL_VERTICES: usize = 24;
+const VELOCITY_VERTICES: usize = 12;
 /// Metres. Obstacles farther than this from the undisturbed motion are not met.
 const RELEVANT_M: f64 = 120.0;
 /// Seconds of the pieces in which that is looked at.
 const PIECE_S: f64 = 5.0;
 
-/// A node with the motion that leads to it.
-#[derive(Debug, Clone)]
-pub(crate) struct State {
-    pub kind: NodeKind,
-    pub pose: Pose,
-    pub time: f64,
-    /// From the node before.
-    pub motion: Vec<Segment>,
-    /// How a way to the end ends; of no meaning elsewhere.
-    pub ending: Ending,
-    chain: u8,
-    met: Cell<Option<usize>>,
-}
-
-/// Vertices of one obstacle at which own ship may aim.
-#[derive(Debug)]
-struct Aims {
-    obstacle: usize,
-    vertices: Vec<MovingVertex>,
-}
-
-impl Aims {
-    fn kind(&self, place: usize) -> NodeKind {
-        let (initial, velocity) = self.vertices[place].indices;
-        NodeKind::Vertex {
-            obstacle: self.obstacle,
-            initial,
-            velocity,
-        }
-    }
-
-    /// Around a body one edge at a time: from one of its vertices only the next two either way follow.
-    fn follows(&self, from: &State, place: usize) -> bool {
-        let n = self.vertices.len();
-        let Some(at) = (0..n).find(|k| self.kind(*k) == from.kind) else {
-            return true;
-        };
-        let apart = (place + n - at) % n;
-        apart != 0 && apart.min(n - apart) <= 2
-    }
+/// Own ship's speeds above zero.
+fn moving(own: &OwnShip) -> impl Iterator<Item = f64> + '_ {
+    own.speeds.iter().copied().filter(|u| *u > 0.0)
 }
 
 /// The graph of one problem.
@@ -123,17 +89,15 @@ impl<'a> Graph<'a> {
         let aims = hazards
             .iter()
             .enumerate()
+            .filter(|_| !contacts.is_empty())
             .filter(|(_, h)| pieces.iter().any(|s| h.clearance_bound(s) < RELEVANT_M))
             .map(|(obstacle, h)| {
-                let coarse = PolytopeObstacle::new(
+                let body = PolytopeObstacle::new(
                     "",
                     outer_simplified(h.body.initial(), INITIAL_VERTICES),
                     outer_simplified(h.body.velocity(), VELOCITY_VERTICES),
                 );
-                Aims {
-                    obstacle,
-                    vertices: coarse.moving_vertices(),
-                }
+                Aims::new(obstacle, &body, moving(problem.own))
             })
             .collect();
         let heuristic = (problem.search == SearchKind::AStar).then(|| Heuristic {
@@ -156,15 +120,7 @@ impl<'a> Graph<'a> {
 
     /// Own ship at t = 0.
     pub(crate) fn root(&self) -> State {
-        State {
-            kind: NodeKind::Start,
-            pose: self.problem.own.pose,
-            time: 0.0,
-            motion: Vec::new(),
-            ending: Ending::Follow,
-            chain: 0,
-            met: Cell::new(None),
-        }
+        State::start(self.problem.own.pose)
     }
 
     fn push(
@@ -173,6 +129,7 @@ impl<'a> Graph<'a> {
         kind: NodeKind,
         ending: Ending,
         motion: Vec<Segment>,
+        along: usize,
         from: &State,
     ) {
         let (pose, time) = motion
@@ -186,31 +143,36 @@ impl<'a> Graph<'a> {
             .map(|s| space_time_error(self.problem.desired, s, self.problem.time_weight))
             .sum();
         let chain = from.chain + u8::from(matches!(kind, NodeKind::Vertex { .. }));
+        let held = if kind == NodeKind::Held {
+            from.held + 1
+        } else {
+            0
+        };
         out.push((
             State {
                 kind,
                 pose,
                 time,
                 motion,
+                along,
                 ending,
                 chain,
+                held,
                 met: Cell::new(None),
             },
             cost,
         ));
     }
 
-    fn moving_speeds(&self) -> impl Iterator<Item = f64> + '_ {
-        self.problem.own.speeds.iter().copied().filter(|u| *u > 0.0)
-    }
-
-    /// Departures along the undisturbed motion, and the ways that never leave the route.
+    /// Ways to a first vertex from several places of the undisturbed motion, and those that never leave
+    /// the route. A departure is no node: it costs nothing and decides nothing.
     fn departures(&self, from: &State, out: &mut Vec<(State, f64)>) {
         self.push(
             out,
             NodeKind::End,
             Ending::Follow,
             self.undisturbed.to_vec(),
+            0,
             from,
         );
         if self.contacts.is_empty() {
@@ -227,8 +189,7 @@ impl<'a> Graph<'a> {
         times.dedup_by(|a, b| *a - *b < 2.0);
         self.paced(from, out);
         for &time in &times {
-            let motion = self.until(time);
-            self.push(out, NodeKind::Departure, Ending::Follow, motion, from);
+            self.interceptions(from, &self.until(time), out);
         }
     }
 
@@ -283,7 +244,7 @@ impl<'a> Graph<'a> {
                         corner.time,
                         &mut motion,
                     );
-                    self.push(out, NodeKind::End, Ending::Follow, motion, from);
+                    self.push(out, NodeKind::End, Ending::Follow, motion, 0, from);
                 }
             }
         }
@@ -314,33 +275,47 @@ impl<'a> Graph<'a> {
             .collect()
     }
 
-    fn interceptions(&self, from: &State, out: &mut Vec<(State, f64)>) {
+    /// Ways to the vertices at which a line only just touches, from a node or from where a motion `before`
+    /// along the route ends.
+    fn interceptions(&self, from: &State, before: &[Segment], out: &mut Vec<(State, f64)>) {
         let radius = self.problem.own.turning_radius;
+        let (pose, time) = before
+            .last()
+            .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
         let limits = Limits {
             turn: MAX_TURN,
-            time: (from.time + MAX_CHASE_S).min(self.problem.horizon),
+            time: (time + MAX_CHASE_S).min(self.problem.horizon),
         };
-        let chases = Side::BOTH.map(|side| Chase::new(&from.pose, from.time, 1.0, radius, side));
+        let chases = Side::BOTH.map(|side| Chase::new(&pose, time, 1.0, radius, side));
+        let mut scratch = Vec::new();
+        let first = out.len();
         for aims in &self.aims {
-            for (place, vertex) in aims.vertices.iter().enumerate() {
-                if !aims.follows(from, place) {
-                    continue;
+            aims.touched(&chases, limits, &mut scratch, |aim| {
+                if aim.kind == from.kind {
+                    return;
                 }
-                let kind = aims.kind(place);
-                for speed in self.moving_speeds() {
-                    for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
-                        let meeting =
-                            chase
-                                .at_speed(speed)
-                                .intercept(vertex.origin, vertex.velocity, limits);
-                        let Some(meeting) = meeting else { continue };
-                        let mut chain = Chain::new(from.pose, from.time, speed, radius);
-                        chain.arc(meeting.turn * radius * side.turn_sign());
-                        chain.line(meeting.line);
-                        self.push(out, kind, Ending::Follow, chain.segments, from);
-                    }
+                let mut chain = Chain::new(pose, time, aim.speed, radius);
+                chain.segments.extend_from_slice(before);
+                chain.arc(aim.meeting.turn * radius * aim.side.turn_sign());
+                chain.line(aim.meeting.line);
+                // a turn of no length is found to both sides
+                let known = out[first..].iter().any(|(s, _)| {
+                    s.kind == aim.kind
+                        && (s.time - chain.time).abs() < 1e-6
+                        && (s.pose.heading - chain.pose.heading).abs() < 1e-6
+                });
+                if known {
+                    return;
                 }
-            }
+                self.push(
+                    out,
+                    aim.kind,
+                    Ending::Follow,
+                    chain.segments,
+                    before.len(),
+                    from,
+                );
+            });
         }
     }
 
@@ -369,7 +344,7 @@ impl<'a> Graph<'a> {
                     let at = stretch.distance + along - stretch.from;
                     self.route.follow(at, chain.time, &mut chain.segments);
                     let ending = Ending::Return { leg, speed };
-                    self.push(out, NodeKind::End, ending, chain.segments, from);
+                    self.push(out, NodeKind::End, ending, chain.segments, 0, from);
                 }
             }
         }
@@ -382,39 +357,24 @@ impl<'a> Graph<'a> {
                 chain.arc(turn * radius * side.turn_sign());
                 chain.line(line);
                 let ending = Ending::Goal { side, speed };
-                self.push(out, NodeKind::End, ending, chain.segments, from);
+                self.push(out, NodeKind::End, ending, chain.segments, 0, from);
             }
         }
     }
 
-    /// Everything that a search made, with what is known of each edge.
-    pub(crate) fn explored(search: Search<State>) -> ExploredGraph {
-        let nodes = search.into_nodes();
-        let costs: Vec<f64> = nodes.iter().map(|n| n.cost).collect();
-        let mut graph = ExploredGraph::with_capacity(nodes.len(), nodes.len());
-        for node in nodes {
-            let state = node.state;
-            let index = graph.add_node(ExploredNode {
-                kind: state.kind,
-                pose: state.pose,
-                time: state.time,
-                cost: node.cost,
-                expanded: node.fate == Fate::Expanded,
-            });
-            let Some(parent) = node.parent else { continue };
-            let verdict = match (node.fate, state.met.get()) {
-                (_, Some(obstacle)) => EdgeVerdict::Blocked { obstacle },
-                (Fate::Queued | Fate::Rejected, None) => EdgeVerdict::Untested,
-                (Fate::Expanded | Fate::Goal, None) => EdgeVerdict::Free,
-            };
-            let edge = ExploredEdge {
-                segments: state.motion,
-                cost: node.cost - costs[parent],
-                verdict,
-            };
-            graph.add_edge(petgraph::graph::NodeIndex::new(parent), index, edge);
+    /// Straight on from a vertex: where a line only just touches a body, that is clear of it.
+    fn onward(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let hold = HOLDS_S.get(usize::from(from.held));
+        if let (Some(last), Some(hold)) = (from.motion.last(), hold) {
+            let mut chain = Chain::new(
+                from.pose,
+                from.time,
+                last.speed,
+                self.problem.own.turning_radius,
+            );
+            chain.line(last.speed * hold);
+            self.push(out, NodeKind::Held, Ending::Follow, chain.segments, 0, from);
         }
-        graph
     }
 }
 
@@ -424,12 +384,16 @@ impl Space for Graph<'_> {
     fn successors(&mut self, state: &State, out: &mut Vec<(State, f64)>) {
         match state.kind {
             NodeKind::Start => self.departures(state, out),
-            NodeKind::Departure => self.interceptions(state, out),
             NodeKind::Vertex { .. } => {
                 if state.chain < MAX_CHAIN {
-                    self.interceptions(state, out);
+                    self.interceptions(state, &[], out);
                 }
                 self.returns(state, out);
+                self.onward(state, out);
+            }
+            NodeKind::Held => {
+                self.returns(state, out);
+                self.onward(state, out);
             }
             NodeKind::End => {}
         }
@@ -440,6 +404,13 @@ impl Space for Graph<'_> {
             (None, _) | (_, NodeKind::End) => 0.0,
             (Some(heuristic), _) if heuristic.is_dead(&state.pose, state.time) => f64::INFINITY,
             (Some(heuristic), _) => heuristic.cost_to_go(&state.pose, state.time),
+        }
+    }
+
+    fn closer_bound(&mut self, state: &State) -> f64 {
+        match (&self.heuristic, state.kind) {
+            (None, _) | (_, NodeKind::End) => 0.0,
+            (Some(heuristic), _) => heuristic.closer_cost_to_go(&state.pose, state.time),
         }
     }
 

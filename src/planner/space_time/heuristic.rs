@@ -18,8 +18,10 @@
 //! closed form. For a polyline the distance `d` to the nearest leg replaces `c`: it shrinks by at most
 //! `u_max` per second and is zero at the end, `h = d³ / (3 u_max T_d)`.
 //!
-//! The obstacles give a second bound, [`KeepOut`]; the greater of two bounds is a bound.
+//! The obstacles give a second bound, [`KeepOut`]; the greater of two bounds is a bound. For nodes that would be
+//! expanded next there is a third, [`Closer`].
 
+use super::closer::Closer;
 use super::keep_out::KeepOut;
 use crate::frame::{Pose, cross, heading_of, wrap};
 use crate::trajectory::DesiredTrajectory;
@@ -44,12 +46,28 @@ pub(crate) struct Heuristic<'a> {
 impl Heuristic<'_> {
     /// Least space-time error of any way from here to the last waypoint, m².
     pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
-        let keep_out = |from: f64| self.keep_out.cost_from(from);
+        let keep_out = |from: f64| self.keep_out.cost_from(from) / self.desired.duration();
         let (across, lag) = self.way_back(pose, time);
         // bounds of separate stretches of time add up
         let both = across.cost + lag.cost + keep_out(time + across.span.max(lag.span));
         both.max(across.cost + keep_out(time + across.span))
             .max(keep_out(time))
+    }
+
+    /// The same, greater as a rule, for one straight leg; takes longer.
+    pub(crate) fn closer_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
+        let [leg] = self.desired.legs() else {
+            return 0.0;
+        };
+        let closer = Closer {
+            leg,
+            kappa: self.time_weight / (self.time_weight + leg.speed * leg.speed),
+            speed: self.max_speed,
+            radius: self.radius,
+            keep_out: &self.keep_out,
+        };
+        let arrival = (self.desired.end() - pose.position).norm() / self.max_speed;
+        closer.cost_to_go(pose, time, arrival) / self.desired.duration()
     }
 
     /// True when no way from here clears the obstacles.
@@ -132,8 +150,8 @@ impl Heuristic<'_> {
 
 /// A bound that holds for the next `span` seconds.
 #[derive(Debug, Clone, Copy)]
-struct Stretch {
-    cost: f64,
+pub(crate) struct Stretch {
+    pub cost: f64,
     span: f64,
 }
 
@@ -148,7 +166,7 @@ impl Stretch {
 
 /// Integral over `[0, duration]` of the squared positive part of `start + slope tau`, and until when that is
 /// positive; a decreasing ramp may run for ever.
-fn squared_ramp(start: f64, slope: f64, duration: f64) -> Stretch {
+pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> Stretch {
     if start <= 0.0 && slope <= 0.0 || !(duration > 0.0) {
         return Stretch {
             cost: 0.0,

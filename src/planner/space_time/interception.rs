@@ -3,11 +3,13 @@
 use std::f64::consts::TAU;
 
 use crate::frame::{Pose, Side, Vector, cross, to_port};
+use crate::obstacle::MovingVertex;
 
 /// What own ship sails: a turn and a line at one speed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Chase {
     position: Vector,
+    heading: f64,
     ahead: Vector,
     centre: Vector,
     radius: f64,
@@ -54,6 +56,7 @@ impl Chase {
         let centre = pose.position + to_port(ahead) * (sigma * radius);
         Self {
             position: pose.position,
+            heading: pose.heading,
             ahead,
             centre,
             radius,
@@ -66,6 +69,82 @@ impl Chase {
     /// The same chase at another speed.
     pub(crate) fn at_speed(&self, speed: f64) -> Self {
         Self { speed, ..*self }
+    }
+
+    pub(crate) fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Before the turn, radians.
+    pub(crate) fn heading(&self) -> f64 {
+        self.heading
+    }
+
+    /// Direction after a turn of this many radians.
+    pub(crate) fn after(&self, turn: f64) -> Vector {
+        let (sin, cos) = turn.sin_cos();
+        self.ahead * cos + to_port(self.ahead) * (self.sigma * sin)
+    }
+
+    /// Where and when a turn of this many radians, which leads into a direction, ends.
+    pub(crate) fn turned(&self, direction: Vector, turn: f64) -> (Vector, f64) {
+        let position = self.centre - to_port(direction) * (self.sigma * self.radius);
+        (position, self.time + self.radius * turn / self.speed)
+    }
+
+    /// The meeting with a moving vertex by a turn between two, where own ship's motion relative to the
+    /// vertex passes it on different sides.
+    pub(crate) fn touch(
+        &self,
+        vertex: &MovingVertex,
+        turns: [f64; 2],
+        limits: Limits,
+    ) -> Option<Interception> {
+        // moment of the relative position about the relative velocity, and its rate with the turn
+        let moment = |turn: f64| {
+            let direction = self.after(turn);
+            let (position, time) = self.turned(direction, turn);
+            let to = vertex.origin + vertex.velocity * time - position;
+            let velocity = direction * self.speed - vertex.velocity;
+            let turning = to_port(direction) * (self.sigma * self.speed);
+            let rate = cross(to, turning);
+            (cross(to, velocity), rate, to, velocity, time)
+        };
+        let [mut low, mut high] = turns;
+        let (at_low, at_high) = (moment(low).0, moment(high).0);
+        if (at_low < 0.0) == (at_high < 0.0) {
+            return None;
+        }
+        let mut turn = low + (high - low) * at_low / (at_low - at_high);
+        for _ in 0..MAX_ITERATIONS {
+            let (value, rate, ..) = moment(turn);
+            if (value < 0.0) == (at_low < 0.0) {
+                low = turn
+            } else {
+                high = turn
+            }
+            let newton = turn - value / rate;
+            let within = (newton - low) * (newton - high) <= 0.0;
+            let next = if within { newton } else { 0.5 * (low + high) };
+            let step = (next - turn).abs();
+            turn = next;
+            if step <= 1e-13 {
+                break;
+            }
+        }
+        let least = if self.sigma > 0.0 { -1e-11 } else { 1e-11 };
+        if turn < least || turn > limits.turn {
+            return None;
+        }
+        let turn = turn.max(0.0);
+        let (_, _, to, velocity, time) = moment(turn);
+        let after = to.dot(&velocity) / velocity.norm_squared();
+        let met = time + after;
+        (after >= 0.0 && met <= limits.time).then_some(Interception {
+            turn,
+            line: after * self.speed,
+            time: met,
+        })
     }
 
     /// The way to a fixed point: turn and line. `None` inside the turning circle.

@@ -14,8 +14,10 @@
 //! A node whose own error is below the envelope cannot be part of any plan.
 
 use super::hazard::Hazard;
-use crate::frame::cross;
+use crate::frame::{Vector, cross, heading_of};
+use crate::obstacle::HalfSpace;
 use crate::planner::Problem;
+use crate::trajectory::DesiredLeg;
 
 /// Seconds between two instants.
 const STEP_S: f64 = 0.5;
@@ -23,8 +25,9 @@ const STEP_S: f64 = 0.5;
 /// The bound by time.
 #[derive(Debug, Clone)]
 pub(crate) struct KeepOut {
-    /// m², what is still to come at every multiple of [`STEP_S`]; decreasing.
+    /// m² s, what is still to come at every multiple of [`STEP_S`]; decreasing.
     to_come: Vec<f64>,
+    bodies: Vec<Body>,
     /// Metres, the envelope of `E` there, and by how much it may fall from one instant to the next.
     least: Vec<f64>,
     fall: f64,
@@ -35,6 +38,7 @@ impl KeepOut {
     pub(crate) fn none() -> Self {
         Self {
             to_come: Vec::new(),
+            bodies: Vec::new(),
             least: Vec::new(),
             fall: 0.0,
         }
@@ -50,26 +54,25 @@ impl KeepOut {
         // nobody arrives before this
         let until = (problem.desired.end() - own.pose.position).norm() / own.max_speed();
         let count = (until / STEP_S).floor().max(0.0) as usize;
-        let depth = |k: usize| {
-            let time = STEP_S * k as f64;
-            let on_schedule = leg.start + leg.direction * (leg.speed * (time - leg.start_time));
-            hazards
-                .iter()
-                .map(|h| {
-                    h.body
-                        .faces()
-                        .iter()
-                        .map(|f| {
-                            let (along, across) =
-                                (leg.direction.dot(&f.normal), cross(leg.direction, f.normal));
-                            -f.slack(on_schedule, time)
-                                / (across * across + along * along / kappa).sqrt()
-                        })
-                        .fold(f64::INFINITY, f64::min)
-                })
-                .fold(0.0, f64::max)
-        };
-        let mut least: Vec<f64> = (0..=count).map(depth).collect();
+        let mut least = vec![0.0; count + 1];
+        let mut bodies = Vec::new();
+        for hazard in hazards {
+            let faces = hazard.body.faces().iter();
+            let faces: Vec<Face> = faces.map(|f| Face::new(*f, leg, kappa)).collect();
+            let mut contact = None;
+            for (k, least) in least.iter_mut().enumerate() {
+                let time = STEP_S * k as f64;
+                let depth = faces
+                    .iter()
+                    .map(|f| f.depth_at(time))
+                    .fold(f64::INFINITY, f64::min);
+                if depth > 0.0 {
+                    contact = Some((contact.map_or(time, |c: (f64, f64)| c.0), time));
+                    *least = depth.max(*least);
+                }
+            }
+            bodies.extend(contact.map(|(from, to)| Body { faces, from, to }));
+        }
         let fall = rate(own.max_speed(), leg.speed, kappa) * STEP_S;
         for k in 1..least.len() {
             least[k] = least[k].max(least[k - 1] - fall);
@@ -80,10 +83,11 @@ impl KeepOut {
         let mut to_come = vec![0.0; least.len()];
         for k in (1..least.len()).rev() {
             let between = (0.5 * (least[k - 1] + least[k] - fall)).max(0.0);
-            to_come[k - 1] = to_come[k] + between * between * STEP_S / problem.desired.duration();
+            to_come[k - 1] = to_come[k] + between * between * STEP_S;
         }
         Self {
             to_come,
+            bodies,
             least,
             fall,
         }
@@ -98,11 +102,69 @@ impl KeepOut {
         }
     }
 
-    /// Least space-time error still to come at a time, m².
+    pub(crate) fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// When the point on schedule is inside an obstacle for the last time.
+    pub(crate) fn last_contact(&self) -> f64 {
+        self.bodies.iter().map(|b| b.to).fold(0.0, f64::max)
+    }
+
+    /// Least integral of the squared error still to come at a time, m² s.
     pub(crate) fn cost_from(&self, time: f64) -> f64 {
         // the next instant: what lies before it is not counted
         let next = (time / STEP_S).ceil().max(0.0) as usize;
         self.to_come.get(next).copied().unwrap_or(0.0)
+    }
+
+    /// The same between two times.
+    pub(crate) fn cost_between(&self, from: f64, to: f64) -> f64 {
+        let before = (to / STEP_S).floor().max(0.0) as usize;
+        let after = self.to_come.get(before).copied().unwrap_or(0.0);
+        (self.cost_from(from) - after).max(0.0)
+    }
+}
+
+/// An obstacle that the point on schedule is inside for some time.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    pub faces: Vec<Face>,
+    /// Seconds.
+    pub from: f64,
+    pub to: f64,
+}
+
+/// A face of an obstacle as seen from the point on schedule.
+#[derive(Debug, Clone)]
+pub(crate) struct Face {
+    pub plane: HalfSpace,
+    /// Of its normal, radians.
+    pub heading: f64,
+    /// Its unit normal in the metric of the error, along and across the leg.
+    pub metric: Vector,
+    /// Depth of the point on schedule behind it, in that metric: metres at t = 0, and m/s.
+    depth: f64,
+    rate: f64,
+}
+
+impl Face {
+    fn new(plane: HalfSpace, leg: &DesiredLeg, kappa: f64) -> Self {
+        let along = leg.direction.dot(&plane.normal);
+        let metric = Vector::new(along / kappa.sqrt(), cross(leg.direction, plane.normal));
+        let scale = metric.norm();
+        let at_zero = leg.start - leg.direction * (leg.speed * leg.start_time);
+        Self {
+            plane,
+            heading: heading_of(plane.normal),
+            metric: metric / scale,
+            depth: -plane.slack(at_zero, 0.0) / scale,
+            rate: (plane.velocity_support - leg.speed * along) / scale,
+        }
+    }
+
+    pub(crate) fn depth_at(&self, time: f64) -> f64 {
+        self.depth + self.rate * time
     }
 }
 

@@ -9,8 +9,10 @@
 //! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
 //! plan is one of the candidates.
 
+mod aims;
 mod approach;
 mod chain;
+mod closer;
 mod factor;
 mod graph;
 mod hazard;
@@ -19,6 +21,7 @@ mod interception;
 mod keep_out;
 mod model;
 mod moments;
+mod node;
 mod quadratic;
 mod refinement;
 mod returning;
@@ -53,7 +56,7 @@ const LEAST_RADIUS_M: f64 = 5e-4;
 const MAX_SIGNATURES: usize = 4;
 
 /// Expansions beyond the graph's best plan, to find such others.
-const FURTHER_EXPANDED: usize = 8;
+const FURTHER_EXPANDED: usize = 4;
 
 /// Plans one problem.
 ///
@@ -157,12 +160,11 @@ fn plan_clear_of(problem: &Problem) -> Planned {
         // a slice at a time, so that the deadline is seen
         let slice = (search.counts().expanded + 50).min(budget);
         match search.next_goal(&mut graph, slice) {
-            Stop::Goal(node) => {
+            Stop::Goal(goal) => {
                 optimum.get_or_insert(search.counts());
-                let way = search.way_to(node);
-                let states: Vec<_> = way[1..].iter().map(|i| &search.nodes()[*i].state).collect();
-                selection.offer(search.nodes()[node].cost, &states);
-                if states.len() == 1 {
+                let way = node::way_to(&search, goal);
+                selection.offer(search.nodes()[goal].cost, &way.iter().collect::<Vec<_>>());
+                if way.len() == 1 {
                     break;
                 }
                 budget = budget.min(search.counts().expanded + FURTHER_EXPANDED);
@@ -213,6 +215,6 @@ fn plan_clear_of(problem: &Problem) -> Planned {
     Planned {
         outcome,
         stats,
-        explored: Graph::explored(search),
+        explored: node::explored(search),
     }
 }

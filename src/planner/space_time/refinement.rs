@@ -330,7 +330,9 @@ impl Refinement {
                 (self.lengths, self.model) = (trial, model);
                 self.keep(scene);
                 if share < 1.0 {
-                    self.radius = (2.0 * share * largest).clamp(SMALLEST_RADIUS_M, self.radius);
+                    self.radius = (2.0 * share * largest)
+                        .min(self.radius)
+                        .max(SMALLEST_RADIUS_M);
                 } else if gained > 0.6 * predicted && largest > 0.9 * self.radius {
                     self.radius = (1.7 * self.radius).min(LARGEST_RADIUS_M);
                 }

@@ -1,13 +1,13 @@
 //! Manoeuvres from which the refinement begins: the graph's plans, and canonical ones on both sides.
 
-use super::graph::State;
 use super::hazard::Hazard;
+use super::node::State;
 use super::quadratic::{MAX_VARIABLES, Row};
 use super::refinement::Seed;
 use super::route::Route;
 use super::template::{Ending, Slot, Template};
 use crate::frame::{Side, to_port};
-use crate::planner::{NodeKind, Problem};
+use crate::planner::Problem;
 use crate::trajectory::Segment;
 
 /// Speeds of the templates: the finite set's extremes, and the desired one.
@@ -282,7 +282,7 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
     let paces = Paces::of(problem);
     let (last, before) = way.split_last()?;
     let (departure, vertices) = before.split_first()?;
-    if departure.kind != NodeKind::Departure || vertices.is_empty() {
+    if vertices.is_empty() {
         return None;
     }
     let mut draft = Draft::default();

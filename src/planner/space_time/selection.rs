@@ -1,9 +1,9 @@
 //! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
 
 use super::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
-use super::graph::State;
 use super::hazard::first_met;
 use super::model::Scene;
+use super::node::State;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
 use super::seeds::{Canonical, Conflict, from_graph};
 use crate::frame::{Side, cross};
