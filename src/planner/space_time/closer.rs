@@ -31,7 +31,7 @@ use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::trajectory::DesiredLeg;
 
 /// Seconds of an interval.
-const INTERVAL_S: f64 = 8.0;
+const INTERVAL_S: f64 = 12.0;
 
 /// Radians from straight to the path toward straight ahead.
 const ASLANT: [f64; 6] = [-1.0, -0.4, 0.2, 0.7, 1.1, 1.57];
