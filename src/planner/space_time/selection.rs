@@ -34,7 +34,7 @@ const COMPACT: [Canonical; 3] = [
 ];
 
 /// The same where the way through the set is long beside the way around it, as when overtaking.
-const SLENDER: [Canonical; 6] = [
+const SLENDER: [Canonical; 4] = [
     Canonical {
         turn: 0.2,
         lead: 0.3,
@@ -58,18 +58,6 @@ const SLENDER: [Canonical; 6] = [
         lead: 0.3,
         reach: 0.9,
         slow: false,
-    },
-    Canonical {
-        turn: 1.0,
-        lead: 0.3,
-        reach: 0.9,
-        slow: false,
-    },
-    Canonical {
-        turn: 0.2,
-        lead: 0.3,
-        reach: 0.6,
-        slow: true,
     },
 ];
 
