@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::colregs::{self, Encounter};
 use crate::evaluation::{Evaluation, Request, SpaceTimeSet, evaluate};
 use crate::obstacle::PolytopeObstacle;
-use crate::planner::{Planned, Problem, space_time};
+use crate::planner::{NoPlan, Outcome, Planned, Problem, space_time};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Target};
 use crate::trajectory::Trajectory;
@@ -21,6 +21,8 @@ pub struct TargetSets {
     pub encounter: Encounter,
     /// Metres that the shape was drawn back to let own ship start outside; 0 when it was not.
     pub shape_reduced: f64,
+    /// Metres from the hard set to the farthest point of the full shape.
+    pub shape_reach: f64,
 }
 
 /// What a plan gave up.
@@ -78,6 +80,7 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
                 shaped: obstacle(shapes.shaped),
                 encounter,
                 shape_reduced: shapes.reduced,
+                shape_reach: shapes.reach,
             }
         }
         // taken as they are: own ship is a point, nothing is added
@@ -88,36 +91,55 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
                 hard,
                 encounter,
                 shape_reduced: 0.0,
+                shape_reach: 0.0,
             }
         }
     }
 }
 
-/// Plans a scenario and judges the plan. The clock is read around planning alone and enters no result
-/// but `plan_time`, unless the deadline ends the search.
+/// Plans a scenario and judges the plan. Where no plan keeps clear of the shapes, one that keeps clear of the
+/// hard sets alone is looked for, and what was given up is said. The clock is read around planning alone
+/// and enters no result but `plan_time`, unless the deadline ends the search.
 pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let shaped = scenario.compliance == Compliance::Shape;
-    let obstacles: Vec<PolytopeObstacle> = sets
-        .iter()
-        .map(|s| if shaped { &s.shaped } else { &s.hard }.clone())
-        .collect();
-    let relaxations = if shaped {
-        relaxations(&sets)
+    let deadline = Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX);
+    let begun = Instant::now();
+    let plan = |obstacles: &[PolytopeObstacle]| {
+        space_time::plan(&Problem {
+            own: &scenario.own_ship,
+            desired: &scenario.desired,
+            obstacles,
+            horizon: scenario.horizon,
+            time_weight: scenario.time_weight,
+            search: scenario.search,
+            deadline: deadline.saturating_sub(begun.elapsed()),
+        })
+    };
+    let hard = || -> Vec<PolytopeObstacle> { sets.iter().map(|s| s.hard.clone()).collect() };
+    let mut obstacles = if shaped {
+        sets.iter().map(|s| s.shaped.clone()).collect()
+    } else {
+        hard()
+    };
+    let mut relaxations = if shaped {
+        relaxations(&sets, |s| s.shape_reduced)
     } else {
         Vec::new()
     };
-    let problem = Problem {
-        own: &scenario.own_ship,
-        desired: &scenario.desired,
-        obstacles: &obstacles,
-        horizon: scenario.horizon,
-        time_weight: scenario.time_weight,
-        search: scenario.search,
-        deadline: Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX),
-    };
-    let begun = Instant::now();
-    let planned = space_time::plan(&problem);
+    let mut planned = plan(&obstacles);
+    let stuck = matches!(
+        planned.outcome,
+        Outcome::Infeasible(NoPlan::NoCandidate { .. })
+    );
+    if shaped && stuck && sets.iter().any(|s| s.shape_reach > 0.0) {
+        let obstacles_left = hard();
+        let again = plan(&obstacles_left);
+        if again.outcome.plan().is_some() {
+            (obstacles, planned) = (obstacles_left, again);
+            relaxations = self::relaxations(&sets, |s| s.shape_reach);
+        }
+    }
     let plan_time = begun.elapsed();
     let evaluation = planned
         .outcome
@@ -160,13 +182,14 @@ pub fn judge(
 }
 
 /// The shapes that were drawn back, the largest cut first.
-fn relaxations(sets: &[TargetSets]) -> Vec<Relaxation> {
-    let mut cut: Vec<&TargetSets> = sets.iter().filter(|s| s.shape_reduced > 0.0).collect();
-    cut.sort_by(|a, b| b.shape_reduced.total_cmp(&a.shape_reduced));
-    cut.into_iter()
+fn relaxations(sets: &[TargetSets], cut: impl Fn(&TargetSets) -> f64) -> Vec<Relaxation> {
+    let mut drawn: Vec<&TargetSets> = sets.iter().filter(|s| cut(s) > 0.0).collect();
+    drawn.sort_by(|a, b| cut(b).total_cmp(&cut(a)));
+    drawn
+        .into_iter()
         .map(|s| Relaxation::Domain {
             target: s.shaped.name().to_owned(),
-            amount: s.shape_reduced,
+            amount: cut(s),
         })
         .collect()
 }
@@ -283,5 +306,21 @@ mod tests {
                 .any(|v| v.what.starts_with("hull of 'other'"))
         );
         assert!(judged.space_time_error.abs() < 1e-9 && judged.delay.abs() < 1e-9);
+    }
+
+    /// Own ship starts at the edge of a shape that then grows over her: no plan is clear of it, one is clear of
+    /// the hard set, and the run says what was given up.
+    #[test]
+    fn where_no_plan_clears_the_shapes_one_that_clears_the_hard_sets_is_relaxed() {
+        use crate::simulation::{EncounterKind, Placement, random_encounter};
+        let drawn = random_encounter(EncounterKind::GiveWay, 104, Placement::Origin);
+        let run = run(drawn.expect("drawn").scenario);
+        assert!(run.sets[0].shape_reduced > 0.0 && run.planned.outcome.plan().is_some());
+        assert_eq!(run.obstacles[0], run.sets[0].hard);
+        let [Relaxation::Domain { amount, .. }] = &run.relaxations[..] else {
+            panic!("{:?}", run.relaxations);
+        };
+        assert!(*amount > run.sets[0].shape_reduced);
+        assert!(run.evaluation.is_some_and(|e| e.verified()));
     }
 }

@@ -23,6 +23,9 @@ pub struct Shapes {
     /// Metres by which the shape was drawn back to let own ship start outside: the largest distance
     /// of a point of the full shape from the one used. 0 when it was not.
     pub reduced: f64,
+    /// Metres from the hard set to the farthest point of the full shape: what giving it up altogether
+    /// would draw back.
+    pub reach: f64,
 }
 
 /// The initial sets of a tracked ship, `colregs.md` 3.3:
@@ -52,6 +55,7 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
             shaped: hard.clone(),
             hard,
             reduced: 0.0,
+            reach: 0.0,
         };
     }
     let shape = Shape {
@@ -64,6 +68,7 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
         around,
     };
     let shaped = shape.at(1.0, 1.0);
+    let reach = beyond(&shaped, &hard);
     let start = own.pose.position;
     let clear = |set: &ConvexPolygon| set.signed_distance(start) >= tolerance::START_M;
     if shaped.signed_distance(start) > 0.0 || hard.contains(start) {
@@ -71,6 +76,7 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
             hard,
             shaped,
             reduced: 0.0,
+            reach,
         };
     }
     let used = if clear(&shape.at(1.0, 0.0)) {
@@ -78,16 +84,20 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
     } else {
         shape.at(largest(|grown| clear(&shape.at(grown, 0.0))), 0.0)
     };
-    let reduced = shaped
-        .vertices()
-        .iter()
-        .map(|p| used.signed_distance(*p))
-        .fold(0.0, f64::max);
     Shapes {
         hard,
+        reduced: beyond(&shaped, &used),
         shaped: used,
-        reduced,
+        reach,
     }
+}
+
+/// The largest distance of a point of one set from the other, metres.
+fn beyond(set: &ConvexPolygon, other: &ConvexPolygon) -> f64 {
+    set.vertices()
+        .iter()
+        .map(|p| other.signed_distance(*p))
+        .fold(0.0, f64::max)
 }
 
 /// What a shape is made of, in the plane.
