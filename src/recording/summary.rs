@@ -169,8 +169,8 @@ fn violations(evaluation: &Evaluation) -> Vec<String> {
 fn relaxation(relaxation: &Relaxation) -> String {
     match relaxation {
         Relaxation::Domain { target, amount } => format!(
-            "- **Relaxed:** the shape around {target} was drawn back by {amount:.1} m, because own ship \
-             starts inside it."
+            "- **Relaxed:** the shape around {target} was drawn back by {amount:.1} m: own ship starts \
+             inside it, or no plan is clear of it."
         ),
     }
 }
