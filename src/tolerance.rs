@@ -24,6 +24,14 @@ pub const THIN: f64 = 1e-12;
 /// Radians. A vertex at which the boundary turns less than this is no vertex.
 pub const COLLINEAR_RAD: f64 = 1e-9;
 
+/// Relative. A shape matrix may miss symmetry, and its eigenvalues zero, by this fraction of its largest
+/// entry: nine digits written by hand or by another program.
+pub const SHAPE: f64 = 1e-9;
+
+/// Of 3. How far the smallest enclosing ellipse may be from the condition of its optimum; its area is
+/// then within 1e-8 of the least one.
+pub const LOEWNER: f64 = 1e-9;
+
 /// Seconds. Two instants closer than this are the same instant.
 pub const TIME_S: f64 = 1e-9;
 
