@@ -55,3 +55,16 @@ pub const INSTANT_S: f64 = 1e-8;
 
 /// Relative. Accuracy of integrals along a trajectory.
 pub const QUADRATURE: f64 = 1e-10;
+
+/// Metres. A face that a point is beyond by no more than this does not count against it in a risk: a risk
+/// divides by times near zero, and a point on the face must not be ruined by its last digit.
+pub const FACE_M: f64 = 1e-12;
+
+/// Dimensionless. A largest risk that is found by bisection is exact to this.
+pub const RISK: f64 = 1e-12;
+
+/// Seconds. Searches without a horizon end here, after 31 years.
+pub const FOREVER_S: f64 = 1e9;
+
+/// Metres. An arc that comes this near to an obstacle without an exact test of its own is in contact.
+pub const GRAZE_M: f64 = 1e-8;
