@@ -176,7 +176,7 @@ fn contact_is_the_first_instant_inside<O: SpaceTimeObstacle + std::fmt::Debug>(d
 fn peak_risk_is_the_largest_sample<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>) {
     let mut rng = seeded(104);
     let mut between = 0;
-    for case in 0..300 {
+    for case in 0..600 {
         let o = draw(&mut rng);
         let s = segment(&mut rng, case % 3 == 0);
         let peak = o.peak_risk(&s);

@@ -1,8 +1,8 @@
 //! Closest point of approach to an obstacle: paper eq. (26), formulas section 5.
 
 use super::contact::clip;
-use super::{PolytopeObstacle, SpaceTimeObstacle};
-use crate::frame::Vector;
+use super::{MovingVertex, PolytopeObstacle, SpaceTimeObstacle};
+use crate::frame::{Vector, cross};
 use crate::tolerance;
 
 /// The least distance to an obstacle and when it is reached.
@@ -41,29 +41,29 @@ pub(super) fn usable_horizon(position: Vector, velocity: Vector, horizon: f64) -
     })
 }
 
-/// The least of some candidates, and the earliest of those that tie.
-struct Earliest {
+/// The least of some candidates, and the least but one.
+struct Nearest {
     squared: f64,
     time: f64,
-    tied: bool,
+    next: f64,
 }
 
-impl Earliest {
-    fn offer(&mut self, offset: Vector, time: f64) {
-        let squared = offset.norm_squared();
+impl Nearest {
+    fn offer(&mut self, squared: f64, time: f64) {
         if squared < self.squared {
-            self.tied |= self.squared <= within_tie(squared);
+            self.next = self.squared;
             self.squared = squared;
             self.time = time;
-        } else {
-            self.tied |= squared <= within_tie(self.squared);
+        } else if squared < self.next {
+            self.next = squared;
         }
     }
-}
 
-fn within_tie(squared: f64) -> f64 {
-    // (d + e)² from above, without the root
-    squared + 2.0 * tolerance::LENGTH_M * (1.0 + squared)
+    /// True when another candidate may be as near.
+    fn is_tied(&self) -> bool {
+        // (d + e)² from above
+        self.next <= self.squared + 2.0 * tolerance::LENGTH_M * (1.0 + self.squared)
+    }
 }
 
 /// The closest approach to a polytope in closed form: contact by its faces; otherwise the nearest point of the
@@ -81,22 +81,19 @@ pub(super) fn polytope_approach(
     if let Some(inside) = clip(obstacle, position, velocity, 0.0, horizon, 0.0) {
         return ClosestApproach::contact(inside.start);
     }
-    let mut best = Earliest {
+    let mut best = Nearest {
         squared: f64::INFINITY,
         time: 0.0,
-        tied: false,
+        next: f64::INFINITY,
     };
-    let candidates = |offer: &mut dyn FnMut(Vector, f64)| {
-        each_candidate(obstacle, position, velocity, horizon, offer);
-    };
-    each_candidate(obstacle, position, velocity, horizon, |offset, time| {
-        best.offer(offset, time);
+    each_candidate(obstacle, position, velocity, horizon, |squared, time| {
+        best.offer(squared, time);
     });
     let distance = best.squared.sqrt();
     let mut time = best.time;
-    if best.tied && time > 0.0 {
-        candidates(&mut |offset, instant| {
-            if instant < time && offset.norm() <= distance + tolerance::LENGTH_M {
+    if time > 0.0 && best.is_tied() {
+        each_candidate(obstacle, position, velocity, horizon, |squared, instant| {
+            if instant < time && squared.sqrt() <= distance + tolerance::LENGTH_M {
                 time = instant;
             }
         });
@@ -108,40 +105,53 @@ pub(super) fn polytope_approach(
     }
 }
 
+/// Offers squared distances and their times, the nearest among them, and the earliest of those that tie.
+#[inline]
 fn each_candidate(
     obstacle: &PolytopeObstacle,
     position: Vector,
     velocity: Vector,
     horizon: f64,
-    mut offer: impl FnMut(Vector, f64),
+    mut offer: impl FnMut(f64, f64),
 ) {
-    let initial = obstacle.initial().vertices();
-    let mut from = initial[initial.len() - 1];
-    for to in initial {
-        offer(from_edge(position, from, *to), 0.0);
-        from = *to;
-    }
     let moving = obstacle.moving();
     for vertex in moving {
         let (arm, relative) = (position - vertex.origin, velocity - vertex.velocity);
-        let squared = relative.norm_squared();
-        let time = if squared > 0.0 {
-            (-arm.dot(&relative) / squared).clamp(0.0, horizon)
-        } else {
-            0.0
-        };
-        offer(arm + relative * time, time);
+        let closing = -arm.dot(&relative);
+        let mut time = 0.0;
+        if closing > 0.0 {
+            time = (closing / relative.norm_squared()).min(horizon);
+        }
+        offer((arm + relative * time).norm_squared(), time);
+    }
+    // the ends of the edges are vertices on their way
+    let initial = obstacle.initial().vertices();
+    let mut from = initial[initial.len() - 1];
+    for to in initial {
+        if let Some(squared) = beside_edge(position, from, *to) {
+            offer(squared, 0.0);
+        }
+        from = *to;
     }
     if horizon.is_finite() {
         let end = position + velocity * horizon;
-        let at = |i: usize| moving[i].origin + moving[i].velocity * horizon;
-        let mut from = at(moving.len() - 1);
-        for i in 0..moving.len() {
-            let to = at(i);
-            offer(from_edge(end, from, to), horizon);
+        let at = |vertex: &MovingVertex| vertex.origin + vertex.velocity * horizon;
+        let mut from = at(&moving[moving.len() - 1]);
+        for vertex in moving {
+            let to = at(vertex);
+            if let Some(squared) = beside_edge(end, from, to) {
+                offer(squared, horizon);
+            }
             from = to;
         }
     }
+}
+
+/// The squared distance from the line of an edge, where the nearest point is between its ends.
+fn beside_edge(point: Vector, from: Vector, to: Vector) -> Option<f64> {
+    let (arm, edge) = (point - from, to - from);
+    let (along, squared) = (arm.dot(&edge), edge.norm_squared());
+    (along > 0.0 && along < squared).then(|| cross(edge, arm).powi(2) / squared)
 }
 
 /// The shortest displacement from the edge to the point.
@@ -183,6 +193,7 @@ pub(super) fn searched_approach<O: SpaceTimeObstacle>(
     if !(low.1 < 0.0) || end <= 0.0 {
         return reached(0.0);
     }
+    let guess = if guess.is_finite() { guess } else { 1.0 };
     let mut high = guess.clamp(f64::min(1.0, end), end);
     let mut high = loop {
         let found = slope(high);

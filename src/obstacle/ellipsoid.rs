@@ -2,7 +2,6 @@
 //! of least trace that contains their sum in a known family. An outer set.
 
 use super::conservative_advancement::advanced_contact;
-use super::contact::Interval;
 use super::cpa::{ClosestApproach, searched_approach, usable_horizon};
 use super::risk::{Line, PeakRisk, level_of, peak_by_bisection};
 use super::{PolytopeObstacle, SpaceTimeObstacle, Support};
@@ -12,6 +11,9 @@ use crate::geometry::{
 };
 use crate::tolerance;
 use crate::trajectory::Segment;
+
+/// Most steps to a root; six are usual.
+pub(super) const MAX_STEPS: usize = 100;
 
 /// Every position that a target may reach, from outside: `O_t = E(p_o + p_v t, Q_t)` for `t >= 0` with
 ///
@@ -28,15 +30,15 @@ use crate::trajectory::Segment;
 #[derive(Debug, Clone, PartialEq)]
 pub struct EllipsoidObstacle {
     name: String,
-    initial: Ellipse,
-    velocity: Ellipse,
+    pub(super) initial: Ellipse,
+    pub(super) velocity: Ellipse,
     /// `r_o`, metres, and `r_v`, m/s.
-    roots: [f64; 2],
+    pub(super) roots: [f64; 2],
     /// Semi-axes of `Q_o / r_o` and of `Q_v / r_v`.
-    axes: [[Vector; 2]; 2],
+    pub(super) axes: [[Vector; 2]; 2],
     /// `det (Q_o / r_o + t Q_v / r_v)` as coefficients of 1, t, t²; none is negative.
-    determinant: [f64; 3],
-    flat: Option<PolytopeObstacle>,
+    pub(super) determinant: [f64; 3],
+    pub(super) flat: Option<PolytopeObstacle>,
 }
 
 /// A section in its own frame, about its centre.
@@ -171,7 +173,7 @@ impl EllipsoidObstacle {
     }
 
     /// `r_o + r_v t`, the root of the trace of `Q_t`: no point of the section is farther from its centre.
-    fn reach(&self, time: f64) -> f64 {
+    pub(super) fn reach(&self, time: f64) -> f64 {
         self.roots[0] + self.roots[1] * time
     }
 
@@ -188,7 +190,7 @@ impl EllipsoidObstacle {
 
     /// Positive outside, for `time > 0` of the sign of `y' Q_t^-1 y - 1`. A point as `O_0` drops the factor
     /// `t` that all terms then have.
-    fn excess(&self, y: Vector, time: f64) -> f64 {
+    pub(super) fn excess(&self, y: Vector, time: f64) -> f64 {
         let [still, growing] = self.adjugates(y);
         if self.roots[0] == 0.0 {
             growing - self.roots[1] * self.determinant[2] * time * time
@@ -198,88 +200,9 @@ impl EllipsoidObstacle {
     }
 
     /// Beyond the circle that contains the section: decides where the section is a segment or a point.
-    fn is_beyond(&self, y: Vector, time: f64) -> bool {
+    pub(super) fn is_beyond(&self, y: Vector, time: f64) -> bool {
         let reach = self.reach(time);
         y.norm_squared() > reach * reach
-    }
-
-    /// The interval during which a straight motion is inside: the sign of a cubic in t, whose turning points
-    /// part its roots; formulas section 3. O(1).
-    fn line_interval(&self, line: &Line) -> Option<Interval> {
-        if let Some(flat) = &self.flat {
-            let at = line.origin + line.velocity * line.start;
-            let duration = line.end - line.start;
-            return super::contact::clip(flat, at, line.velocity, line.start, duration, 0.0);
-        }
-        let end = line.end.min(tolerance::FOREVER_S);
-        if line.start > end {
-            return None;
-        }
-        let y = |t: f64| (line.origin - self.initial.center()) + self.relative(line) * t;
-        let value = |t: f64| self.excess(y(t), t);
-        // negated on purpose: a NaN is inside
-        let inside = |t: f64| !(value(t) > 0.0) && !self.is_beyond(y(t), t);
-        let mut cuts = [line.start, line.start, end, end];
-        for (cut, turn) in cuts[1..3].iter_mut().zip(self.turning_points(line)) {
-            if turn.is_finite() {
-                *cut = turn.clamp(line.start, end);
-            }
-        }
-        cuts.sort_by(f64::total_cmp);
-        let first = (0..4).find(|&i| inside(cuts[i]))?;
-        let last = (first..4).rev().find(|&i| inside(cuts[i]))?;
-        let outward = |at: f64, from: f64| super::contact::bisect(value, at, from).0;
-        Some(Interval {
-            start: if first == 0 {
-                cuts[0]
-            } else {
-                outward(cuts[first], cuts[first - 1])
-            },
-            end: if last == 3 {
-                cuts[3]
-            } else {
-                outward(cuts[last], cuts[last + 1])
-            },
-        })
-    }
-
-    fn relative(&self, line: &Line) -> Vector {
-        line.velocity - self.velocity.center()
-    }
-
-    /// Where the derivative of [`Self::excess`] along the line is zero. Expanded about the instant at which the
-    /// centres are nearest, so that a distant start costs no digits.
-    fn turning_points(&self, line: &Line) -> [f64; 2] {
-        let w = self.relative(line);
-        let start = line.origin - self.initial.center();
-        let about = if w.norm_squared() > 0.0 {
-            (-start.dot(&w) / w.norm_squared()).max(line.start)
-        } else {
-            line.start
-        };
-        let y = start + w * about;
-        // coefficients of (y + w s)' adj (y + w s)
-        let square = |axes: [Vector; 2]| {
-            axes.iter().fold([0.0; 3], |c, a| {
-                let (at, rate) = (cross(y, *a), cross(w, *a));
-                [c[0] + at * at, c[1] + 2.0 * at * rate, c[2] + rate * rate]
-            })
-        };
-        let [n, g] = [square(self.axes[0]), square(self.axes[1])];
-        let [d0, d1, d2] = self.determinant;
-        let [c1, c2, c3] = if self.roots[0] == 0.0 {
-            let grown = self.roots[1] * d2;
-            [g[1] - 2.0 * grown * about, g[2] - grown, 0.0]
-        } else {
-            let (r0, r1) = (self.reach(about), self.roots[1]);
-            let (e0, e1) = (d0 + about * (d1 + about * d2), d1 + 2.0 * d2 * about);
-            [
-                n[1] + g[0] + about * g[1] - (r0 * e1 + r1 * e0),
-                n[2] + g[1] + about * g[2] - (r0 * d2 + r1 * e1),
-                g[2] - r1 * d2,
-            ]
-        };
-        quadratic_roots(3.0 * c3, 2.0 * c2, c1).map(|s| about + s)
     }
 
     fn alpha_at(&self, y: Vector, time: f64) -> f64 {
@@ -316,7 +239,7 @@ impl EllipsoidObstacle {
                 return f64::INFINITY;
             }
         }
-        for _ in 0..100 {
+        for _ in 0..MAX_STEPS {
             let slope = k[1] + tau * (2.0 * k[2] + 3.0 * tau * k[3]);
             let next = (tau - found / slope).max(low);
             // from the right every step falls short of the root, until rounding
@@ -330,17 +253,6 @@ impl EllipsoidObstacle {
             }
         }
         tau / time
-    }
-}
-
-/// Both roots of `a s² + b s + c`; a root that is not there is infinite or NaN.
-fn quadratic_roots(a: f64, b: f64, c: f64) -> [f64; 2] {
-    let discriminant = b * b - 4.0 * a * c;
-    let q = -0.5 * (b + discriminant.max(0.0).sqrt().copysign(b));
-    if discriminant >= 0.0 {
-        [q / a, c / q]
-    } else {
-        [f64::NAN; 2]
     }
 }
 
@@ -405,7 +317,7 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
             return flat.first_contact(segment, depth);
         }
         if segment.is_valid() && !segment.is_arc() && depth == 0.0 {
-            return self.line_interval(&Line::of(segment)).map(|i| i.start);
+            return self.line_start(&Line::of(segment));
         }
         advanced_contact(self, segment, depth)
     }
@@ -459,8 +371,8 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
             start: 0.0,
             end,
         };
-        if let Some(inside) = self.line_interval(&line) {
-            return ClosestApproach::contact(inside.start);
+        if let Some(start) = self.line_start(&line) {
+            return ClosestApproach::contact(start);
         }
         let w = self.relative(&line);
         let guess = -(position - self.initial.center()).dot(&w) / w.norm_squared();
@@ -476,7 +388,7 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
                 start: 0.0,
                 end,
             };
-            self.line_interval(&line).is_some()
+            self.line_start(&line).is_some()
         })
     }
 }

@@ -8,6 +8,7 @@ pub mod contact;
 mod cpa;
 mod ellipse_sum;
 mod ellipsoid;
+mod ellipsoid_contact;
 mod polytope;
 mod projection;
 mod risk;

@@ -170,6 +170,10 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
             time: start,
         };
     }
+    // at t = 0 nothing but O_0 is in reach
+    if !(end > 0.0) {
+        return none;
+    }
     let highest = |u: f64| {
         let reach = |r: &Affine| r.slope * u + r.value;
         let mut best = rows[0];
