@@ -443,6 +443,54 @@ fn one_slab_is_the_polytope_and_so_are_slabs_of_one_set() {
     }
 }
 
+/// At t = 0 the cubic is zero all along the line of a segment, and around a point everywhere.
+#[test]
+fn on_the_line_of_a_flat_set_contact_begins_when_it_is_reached() {
+    let segment_shape = Matrix2::new(100.0, 0.0, 0.0, 0.0);
+    let growing =
+        Ellipse::new(Vector::zeros(), Matrix2::new(0.25, 0.0, 0.0, 0.01)).expect("a shape");
+    for shape in [segment_shape, Matrix2::zeros()] {
+        let initial = Ellipse::new(Vector::zeros(), shape).expect("a shape");
+        let o = EllipsoidObstacle::new("x", initial, growing);
+        for (own, speed) in [(100.0, 5.0), (100.0, 0.0), (-60.0, 0.0), (11.0, 0.0)] {
+            let line = Segment {
+                start: searoom::frame::Pose::new(Vector::new(own, 0.0), std::f64::consts::PI),
+                start_time: 0.0,
+                duration: 400.0,
+                speed,
+                turn_rate: 0.0,
+            };
+            let found = o.first_contact(&line, 0.0).expect("reached in the end");
+            let reach = |t: f64| o.support(Vector::new(own.signum(), 0.0), t).value;
+            let gap = (line.pose_at(found).position.x.abs() - reach(found)).abs();
+            assert!(found > 1.0 && gap < 1e-6, "{own} {speed} {found} {gap}");
+            let alpha = o.alpha(Vector::new(own, 0.0), found);
+            assert!(speed > 0.0 || (alpha - 1.0).abs() < 1e-6, "{alpha}");
+        }
+    }
+}
+
+#[test]
+fn numbers_that_overflow_are_contact() {
+    let mut rng = seeded(213);
+    let o = ellipsoid(&mut rng);
+    let lost = Segment {
+        speed: 1e305,
+        duration: 1e5,
+        turn_rate: 1e-7,
+        ..segment(&mut rng, true)
+    };
+    assert!(lost.is_valid() && o.first_contact(&lost, 0.0).is_some());
+    // a circle of a metre, run through more often than the digits of the time can tell
+    let whirl = Segment {
+        start_time: 10.0,
+        speed: 1e30,
+        turn_rate: 1e30,
+        ..lost
+    };
+    assert!(whirl.is_valid() && o.first_contact(&whirl, 0.0).is_some());
+}
+
 #[test]
 fn velocity_sets_out_of_order_are_refused() {
     let spell = |until| VelocitySpell {
@@ -548,5 +596,22 @@ fn degenerate_motion_of_degenerate_sets_is_answered() {
                 .max(0.0);
             assert!((found.distance - now).abs() < 1e-9 && found.time == 0.0);
         }
+    }
+}
+
+#[test]
+fn an_arc_against_the_outer_ellipse_errs_early_by_a_hundredth_of_a_micrometre() {
+    let circle = Ellipse::new(Vector::zeros(), Matrix2::identity() * 100.0).expect("a shape");
+    let o = EllipsoidObstacle::new("x", circle, Ellipse::point(Vector::zeros()));
+    // a circle of 20 m about (30, 0) comes as near as 10 m to the origin: it touches, and a hair more does not
+    for (shift, meets) in [(0.0, true), (-1e-7, true), (1e-7, false)] {
+        let arc = Segment {
+            start: searoom::frame::Pose::new(Vector::new(30.0 + shift, 20.0), std::f64::consts::PI),
+            start_time: 0.0,
+            duration: std::f64::consts::TAU * 20.0 / 5.0,
+            speed: 5.0,
+            turn_rate: 0.25,
+        };
+        assert_eq!(o.first_contact(&arc, 0.0).is_some(), meets, "{shift}");
     }
 }

@@ -14,8 +14,7 @@ const CHORD_RAD: f64 = 0.4;
 const MAX_TANGENTS: usize = 200;
 
 /// The first instant at which the segment is at least `depth` inside, by conservative advancement (Mirtich
-/// 1996): never later than the truth, and early only while less than [`tolerance::GRAZE_M`] away from that
-/// depth. A segment or depth that is not finite is in contact at once. Some ten distances on a line, some tens
+/// 1996): never later than the truth (but for a nanosecond where a set without interior starts to grow), and early only while less than [`tolerance::GRAZE_M`] away from that depth. A segment or depth that is not finite is in contact at once. Some ten distances on a line, some tens
 /// on an arc that comes near.
 pub(super) fn advanced_contact<O: SpaceTimeObstacle>(
     obstacle: &O,
@@ -52,7 +51,8 @@ pub(super) fn advanced_contact<O: SpaceTimeObstacle>(
         };
         let until = (time + duration).min(end);
         if !(until > time) {
-            return None;
+            // at the end; or a bend too sharp for the digits of the time, of which nothing is known
+            return (time < end).then_some(time);
         }
         let sagitta = bend * (until - time).powi(2);
         let velocity = (mover.position_at(until) - from) / (until - time);

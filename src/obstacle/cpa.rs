@@ -5,6 +5,12 @@ use super::{MovingVertex, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::{Vector, cross};
 use crate::tolerance;
 
+/// Most distances of a search; ten are usual.
+const MAX_LOOKS: usize = 200;
+
+/// Of own speed. A distance that changes more slowly than this does not change.
+const SLOPE: f64 = 1e-13;
+
 /// The least distance to an obstacle and when it is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosestApproach {
@@ -176,78 +182,94 @@ pub(super) fn searched_approach<O: SpaceTimeObstacle>(
     guess: f64,
 ) -> ClosestApproach {
     let end = horizon.min(tolerance::FOREVER_S);
-    let slope = |time: f64| {
+    let look = |time: f64| {
         let away = obstacle.signed_distance(position + velocity * time, time);
-        velocity.dot(&away.normal) - obstacle.support(away.normal, time).rate
-    };
-    let reached = |time: f64| {
-        let away = obstacle.signed_distance(position + velocity * time, time);
-        ClosestApproach {
-            distance: away.distance.max(0.0),
+        let slope = velocity.dot(&away.normal) - obstacle.support(away.normal, time).rate;
+        Look {
             time,
-            attained: true,
+            slope,
+            distance: away.distance.max(0.0),
         }
     };
-    let mut low = (0.0, slope(0.0));
+    let mut low = look(0.0);
     // a slope that is not a number ends the search where it is
-    if !(low.1 < 0.0) || end <= 0.0 {
-        return reached(0.0);
+    if !(low.slope < 0.0) || end <= 0.0 {
+        return low.reached();
     }
     let guess = if guess.is_finite() { guess } else { 1.0 };
-    let mut high = guess.clamp(f64::min(1.0, end), end);
-    let mut high = loop {
-        let found = slope(high);
-        if !(found < 0.0) {
-            break (high, found);
-        }
-        if high >= end {
-            let last = reached(end);
+    let mut high = look(guess.clamp(f64::min(1.0, end), end));
+    while high.slope < 0.0 {
+        if high.time >= end {
             return if horizon > end {
                 ClosestApproach {
                     time: f64::INFINITY,
                     attained: false,
-                    ..last
+                    ..high.reached()
                 }
             } else {
-                last
+                high.reached()
             };
         }
-        low = (high, found);
-        high = (2.0 * high).min(end);
-    };
-    // Illinois: the chord, with the weight of an end that stays put halved; the middle when it stalls
+        low = high;
+        high = look((2.0 * high.time).min(end));
+    }
+    let flat = SLOPE * velocity.norm();
+    // the chord, with the weight of an end that stays put reduced (Anderson and Björck 1973); the middle when
+    // that stalls
+    let (mut weight_low, mut weight_high) = (low.slope, high.slope);
     let mut side = 0_i32;
-    for _ in 0..200 {
-        let width = high.0 - low.0;
-        if width <= 4.0 * f64::EPSILON * high.0 {
+    for _ in 0..MAX_LOOKS {
+        let width = high.time - low.time;
+        if width <= 4.0 * f64::EPSILON * high.time {
             break;
         }
-        let chord = low.0 - low.1 * width / (high.1 - low.1);
-        let at = if side.abs() < 4 && chord > low.0 && chord < high.0 {
+        let chord = low.time - weight_low * width / (weight_high - weight_low);
+        let at = if side.abs() < 5 && chord > low.time && chord < high.time {
             chord
         } else {
             side = 0;
-            low.0 + 0.5 * width
+            low.time + 0.5 * width
         };
-        let found = slope(at);
-        if found < 0.0 {
+        let found = look(at);
+        if !(found.slope.abs() > flat) {
+            return found.reached();
+        }
+        if found.slope < 0.0 {
             if side < 0 {
-                high.1 *= 0.5;
+                weight_high *= reduction(found.slope, weight_low);
             }
             side = side.min(0) - 1;
-            low = (at, found);
-        } else if found > 0.0 {
+            (low, weight_low) = (found, found.slope);
+        } else {
             if side > 0 {
-                low.1 *= 0.5;
+                weight_low *= reduction(found.slope, weight_high);
             }
             side = side.max(0) + 1;
-            high = (at, found);
-        } else {
-            return reached(at);
-        }
-        if found.abs() <= 1e-14 * velocity.norm() {
-            return reached(at);
+            (high, weight_high) = (found, found.slope);
         }
     }
-    reached(high.0)
+    high.reached()
+}
+
+/// How near at one instant, and how fast that changes.
+#[derive(Clone, Copy)]
+struct Look {
+    time: f64,
+    slope: f64,
+    distance: f64,
+}
+
+impl Look {
+    fn reached(&self) -> ClosestApproach {
+        ClosestApproach {
+            distance: self.distance,
+            time: self.time,
+            attained: true,
+        }
+    }
+}
+
+fn reduction(found: f64, before: f64) -> f64 {
+    let share = 1.0 - found / before;
+    if share > 0.0 { share } else { 0.5 }
 }

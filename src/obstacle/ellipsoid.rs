@@ -188,15 +188,11 @@ impl EllipsoidObstacle {
             .map(|[a, b]| cross(y, a).powi(2) + cross(y, b).powi(2))
     }
 
-    /// Positive outside, for `time > 0` of the sign of `y' Q_t^-1 y - 1`. A point as `O_0` drops the factor
-    /// `t` that all terms then have.
+    /// For `time > 0` of the sign of `y' Q_t^-1 y - 1`. At t = 0 it is zero all along the line of an `O_0` that is
+    /// a segment, and everywhere around a point: [`Self::is_beyond`] tells these apart.
     pub(super) fn excess(&self, y: Vector, time: f64) -> f64 {
         let [still, growing] = self.adjugates(y);
-        if self.roots[0] == 0.0 {
-            growing - self.roots[1] * self.determinant[2] * time * time
-        } else {
-            still + time * growing - self.reach(time) * self.determinant_at(time)
-        }
+        still + time * growing - self.reach(time) * self.determinant_at(time)
     }
 
     /// Beyond the circle that contains the section: decides where the section is a segment or a point.
@@ -210,15 +206,12 @@ impl EllipsoidObstacle {
         let [still, growing] = self.adjugates(y);
         let [d0, d1, d2] = self.determinant;
         let [ro, rv] = self.roots;
-        // the section at tau is no larger than its circle: a first bound of tau, and the answer where flat
-        let beyond = norm - ro;
-        if !(still > ro * d0) && !(beyond > 0.0) {
+        if !(still > ro * d0) && !(norm > ro) {
             return 0.0;
         }
         if rv == 0.0 || time == 0.0 {
             return f64::INFINITY;
         }
-        let low = (beyond / rv).max(0.0);
         // (r_o + r_v tau) det(tau) - still - growing tau: convex, and positive from the root on
         let k = [
             ro * d0 - still,
@@ -227,10 +220,7 @@ impl EllipsoidObstacle {
             rv * d2,
         ];
         let value = |s: f64| k[0] + s * (k[1] + s * (k[2] + s * k[3]));
-        if low > 0.0 && value(low) >= 0.0 {
-            return low / time;
-        }
-        let mut tau = low.max(time);
+        let mut tau = time;
         let mut found = value(tau);
         while found < 0.0 {
             tau *= 2.0;
@@ -241,7 +231,7 @@ impl EllipsoidObstacle {
         }
         for _ in 0..MAX_STEPS {
             let slope = k[1] + tau * (2.0 * k[2] + 3.0 * tau * k[3]);
-            let next = (tau - found / slope).max(low);
+            let next = tau - found / slope;
             // from the right every step falls short of the root, until rounding
             if !(next < tau * (1.0 - f64::EPSILON)) {
                 break;

@@ -142,18 +142,13 @@ impl EllipsoidObstacle {
         };
         let [n, g] = [square(self.axes[0]), square(self.axes[1])];
         let [d0, d1, d2] = self.determinant;
-        let slopes = if self.roots[0] == 0.0 {
-            let grown = self.roots[1] * d2;
-            [g[1] - 2.0 * grown * about, g[2] - grown, 0.0]
-        } else {
-            let (r0, r1) = (self.reach(about), self.roots[1]);
-            let (e0, e1) = (d0 + about * (d1 + about * d2), d1 + 2.0 * d2 * about);
-            [
-                n[1] + g[0] + about * g[1] - (r0 * e1 + r1 * e0),
-                n[2] + g[1] + about * g[2] - (r0 * d2 + r1 * e1),
-                g[2] - r1 * d2,
-            ]
-        };
+        let (r0, r1) = (self.reach(about), self.roots[1]);
+        let (e0, e1) = (d0 + about * (d1 + about * d2), d1 + 2.0 * d2 * about);
+        let slopes = [
+            n[1] + g[0] + about * g[1] - (r0 * e1 + r1 * e0),
+            n[2] + g[1] + about * g[2] - (r0 * d2 + r1 * e1),
+            g[2] - r1 * d2,
+        ];
         Cubic { about, slopes }
     }
 }
