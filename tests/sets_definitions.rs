@@ -492,6 +492,31 @@ fn numbers_that_overflow_are_contact() {
 }
 
 #[test]
+fn the_risk_along_a_trajectory_is_the_largest_of_its_segments() {
+    use searoom::trajectory::Trajectory;
+    let mut rng = seeded(214);
+    let mut between = 0;
+    for case in 0..200 {
+        let o = polytope(&mut rng);
+        let first = segment(&mut rng, case % 2 == 0);
+        let second = Segment {
+            start: first.end(),
+            start_time: first.end_time(),
+            ..segment(&mut rng, case % 3 == 0)
+        };
+        let trajectory = Trajectory::new(vec![first, second]).expect("joined");
+        let peak = o.peak_risk_along(&trajectory);
+        let (a, b) = (o.peak_risk(&first), o.peak_risk(&second));
+        assert_eq!(peak.risk, a.risk.max(b.risk));
+        for t in trajectory.sample_times(0.5) {
+            assert!(o.risk(trajectory.pose_at(t).position, t) <= peak.risk + 1e-9);
+        }
+        between += usize::from(peak.risk > 0.0 && peak.risk < 1.0);
+    }
+    assert!(between > 10, "{between}");
+}
+
+#[test]
 fn velocity_sets_out_of_order_are_refused() {
     let spell = |until| VelocitySpell {
         until,

@@ -14,8 +14,9 @@ const CHORD_RAD: f64 = 0.4;
 const MAX_TANGENTS: usize = 200;
 
 /// The first instant at which the segment is at least `depth` inside, by conservative advancement (Mirtich
-/// 1996): never later than the truth (but for a nanosecond where a set without interior starts to grow), and early only while less than [`tolerance::GRAZE_M`] away from that depth. A segment or depth that is not finite is in contact at once. Some ten distances on a line, some tens
-/// on an arc that comes near.
+/// 1996). Early only while less than [`tolerance::GRAZE_M`] away from that depth; late never, but for a
+/// nanosecond where a set without interior starts to grow. A segment or depth that is not finite is in contact
+/// at once. Some ten distances on a line, some tens on an arc that comes near.
 pub(super) fn advanced_contact<O: SpaceTimeObstacle>(
     obstacle: &O,
     segment: &Segment,

@@ -4,7 +4,7 @@ use super::cpa::ClosestApproach;
 use super::risk::{PeakRisk, risk_of};
 use crate::frame::Vector;
 use crate::geometry::SignedDistance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, Trajectory};
 
 /// The support function of a section and how it changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +51,21 @@ pub trait SpaceTimeObstacle {
 
     /// The largest risk along a segment.
     fn peak_risk(&self, segment: &Segment) -> PeakRisk;
+
+    /// The largest risk along a trajectory: that of its segments, the first of those that tie.
+    fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
+        let mut peak = PeakRisk {
+            risk: 0.0,
+            time: trajectory.start_time(),
+        };
+        for segment in trajectory.segments() {
+            let here = self.peak_risk(segment);
+            if here.risk > peak.risk {
+                peak = here;
+            }
+        }
+        peak
+    }
 
     /// The set `O_alpha` with `alpha = 1 - risk`: to stay out of it is to stay at or below `risk`. Risk 0 is
     /// the set itself, and so is a risk that is not within `[0, 1]`.

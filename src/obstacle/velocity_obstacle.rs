@@ -1,6 +1,6 @@
 //! The velocity obstacle of a polytope as a region of velocities: paper eq. (26), formulas section 5.3.
 
-use super::PolytopeObstacle;
+use super::{HalfSpace, PolytopeObstacle};
 use crate::frame::{Vector, cross, to_port, to_starboard};
 use crate::geometry::ConvexPolygon;
 
@@ -25,7 +25,7 @@ pub struct VelocityObstacle {
 
 impl VelocityObstacle {
     /// For own ship at `position` at t = 0, within `horizon` seconds, which may be infinite. From a position in
-    /// `O_0`, or one that is not a number, every velocity. O((n + m)(n + m)).
+    /// `O_0`, or one that is not a number, every velocity. O(n + m).
     pub fn new(obstacle: &PolytopeObstacle, position: Vector, horizon: f64) -> Self {
         let (initial, velocity) = (obstacle.initial(), obstacle.velocity());
         if obstacle.contains(position, 0.0) {
@@ -50,11 +50,11 @@ impl VelocityObstacle {
         } else {
             horizon.max(0.0)
         };
-        let half_plane = |normal: Vector| {
-            let reach = (initial.support(normal) - normal.dot(&position)) / horizon;
+        let half_plane = |face: &HalfSpace| {
+            let reach = face.initial_support - face.normal.dot(&position);
             HalfPlane {
-                normal,
-                offset: velocity.support(normal) + reach,
+                normal: face.normal,
+                offset: face.velocity_support + reach / horizon,
             }
         };
         // the reach of the two sides is zero by construction, whatever the horizon
@@ -70,8 +70,7 @@ impl VelocityObstacle {
             obstacle
                 .faces()
                 .iter()
-                .map(|face| face.normal)
-                .filter(|n| n.dot(&starboard) <= 0.0 && n.dot(&port) <= 0.0)
+                .filter(|f| f.normal.dot(&starboard) <= 0.0 && f.normal.dot(&port) <= 0.0)
                 .map(half_plane),
         );
         Self { half_planes }
