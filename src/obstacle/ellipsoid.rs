@@ -332,7 +332,9 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
         match &self.flat {
             Some(flat) => flat.peak_risk(segment),
-            None => peak_by_bisection(self, segment),
+            None => peak_by_bisection(segment, |risk| {
+                self.at_risk(risk).first_contact(segment, 0.0)
+            }),
         }
     }
 

@@ -68,13 +68,17 @@ impl PolytopeObstacle {
     /// From the two sets, in O((n + m)²): faces and moving vertices are found once. Points and segments
     /// are exact.
     pub fn new(name: impl Into<String>, initial: ConvexPolygon, velocity: ConvexPolygon) -> Self {
-        let mut normals = initial.normals();
-        normals.extend(velocity.normals());
-        normals.sort_by(|a, b| a.y.atan2(a.x).total_cmp(&b.y.atan2(b.x)));
-        normals.dedup_by(|a, b| (*a - *b).norm() < 1e-12);
+        let with_angle = |n: Vector| (n.y.atan2(n.x), n);
+        let mut normals: Vec<(f64, Vector)> = [initial.normals(), velocity.normals()]
+            .into_iter()
+            .flatten()
+            .map(with_angle)
+            .collect();
+        normals.sort_by(|a, b| a.0.total_cmp(&b.0));
+        normals.dedup_by(|a, b| (a.1 - b.1).norm() < 1e-12);
         let faces: Vec<HalfSpace> = normals
             .into_iter()
-            .map(|normal| HalfSpace {
+            .map(|(_, normal)| HalfSpace {
                 normal,
                 velocity_support: velocity.support(normal),
                 initial_support: initial.support(normal),
@@ -225,7 +229,17 @@ impl SpaceTimeObstacle for PolytopeObstacle {
         if segment.is_valid() && !segment.is_arc() {
             polytope_peak(&self.faces, &self.spreads, &Line::of(segment))
         } else {
-            peak_by_bisection(self, segment)
+            // contact asks the faces alone
+            let mut level = self.clone();
+            peak_by_bisection(segment, |risk| {
+                let alpha = level_of(risk);
+                for (i, face) in level.faces.iter_mut().enumerate() {
+                    let nominal = self.spreads[i].nominal_rate;
+                    let rate = self.faces[i].velocity_support - nominal;
+                    face.velocity_support = nominal + alpha * rate;
+                }
+                contact::first_contact(&level, segment, 0.0)
+            })
         }
     }
 

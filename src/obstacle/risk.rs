@@ -1,7 +1,7 @@
 //! Risk: by how much the velocities of a target have to shrink before a point is out of reach; paper eqs.
 //! (22)-(25), formulas section 4.
 
-use super::{HalfSpace, SpaceTimeObstacle};
+use super::HalfSpace;
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::tolerance;
@@ -230,21 +230,25 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
 }
 
 /// The largest risk along any segment: the highest level whose set the segment meets, by bisection on the
-/// exact contact. Errs to the high side by at most [`tolerance::RISK`]; about 40 contacts.
-pub(super) fn peak_by_bisection<O: SpaceTimeObstacle>(obstacle: &O, segment: &Segment) -> PeakRisk {
-    let Some(first) = obstacle.first_contact(segment, 0.0) else {
+/// exact contact. `contact` gives the first contact with the set of a risk. Errs to the high side by at most
+/// [`tolerance::RISK`]; about 40 contacts.
+pub(super) fn peak_by_bisection(
+    segment: &Segment,
+    mut contact: impl FnMut(f64) -> Option<f64>,
+) -> PeakRisk {
+    let Some(first) = contact(0.0) else {
         return PeakRisk {
             risk: 0.0,
             time: segment.start_time,
         };
     };
-    if let Some(time) = obstacle.at_risk(1.0).first_contact(segment, 0.0) {
+    if let Some(time) = contact(1.0) {
         return PeakRisk { risk: 1.0, time };
     }
     let (mut met, mut clear, mut time) = (0.0, 1.0, first);
     while clear - met > tolerance::RISK {
         let risk = 0.5 * (met + clear);
-        match obstacle.at_risk(risk).first_contact(segment, 0.0) {
+        match contact(risk) {
             Some(instant) => (met, time) = (risk, instant),
             None => clear = risk,
         }

@@ -267,7 +267,9 @@ impl SpaceTimeObstacle for SlabObstacle {
 
     /// By bisection over exact contacts, to [`tolerance::RISK`].
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
-        peak_by_bisection(self, segment)
+        peak_by_bisection(segment, |risk| {
+            self.at_risk(risk).first_contact(segment, 0.0)
+        })
     }
 
     fn at_risk(&self, risk: f64) -> Self {
