@@ -102,7 +102,10 @@ fn the_search_for_the_closest_approach_agrees_with_the_closed_form() {
             let flat = flat.closest_approach(x, own, horizon);
             let nearly = nearly.closest_approach(x, own, horizon);
             assert!((exact.distance - flat.distance).abs() < 1e-9);
-            assert!((exact.distance - nearly.distance).abs() < 1e-3);
+            assert!(
+                (exact.distance - nearly.distance).abs() < 1e-3,
+                "{exact:?} {nearly:?} {a:?} {p:?} {v:?} {x:?} {own:?} {horizon}"
+            );
             if exact.distance > 1.0 {
                 // the width rounds the ends off, by some centimetres of the way
                 assert!(
@@ -154,6 +157,59 @@ fn a_distance_that_falls_for_ever_is_not_attained() {
     assert!(found.distance > 14.9 && found.distance < 15.1, "{found:?}");
     let limited = o.closest_approach(beside, Vector::new(1.0, 0.5), 50.0);
     assert!(limited.attained && limited.time == 50.0, "{limited:?}");
+}
+
+/// The derivative jumps where the nearest point rounds the end of a needle: chords alone crept.
+#[test]
+fn beside_the_end_of_a_needle_the_search_still_ends() {
+    let a = Vector::new(-28.85, -16.73);
+    let across = to_port(a).normalize() * 1e-4;
+    let needle = a * a.transpose() + across * across.transpose();
+    let initial = Ellipse::new(Vector::new(18.78, -9.35), needle).expect("a shape");
+    let o = EllipsoidObstacle::new("x", initial, Ellipse::point(Vector::new(0.815, 1.2)));
+    let (x, v) = (Vector::new(-150.7, 154.3), Vector::new(3.69, 2.87));
+    let found = o.closest_approach(x, v, 100.0);
+    let at = |t: f64| o.signed_distance(x + v * t, t).distance;
+    let least = (0..100_000)
+        .map(|i| at(f64::from(i) * 1e-3))
+        .fold(f64::INFINITY, f64::min);
+    assert!(found.distance <= least + 1e-9, "{found:?} {least}");
+}
+
+/// Across a segment of velocities its spread is zero but for rounding, which must not steer the descent.
+#[test]
+fn the_largest_risk_over_a_segment_of_velocities() {
+    let at = |x, y| Vector::new(x, y);
+    let o = PolytopeObstacle::new(
+        "x",
+        hull(&[
+            at(-46.30827663940356, -43.78531967927327),
+            at(-87.84681538759017, -28.32344102563171),
+        ]),
+        hull(&[
+            at(3.0889836874879917, -1.9728428804482787),
+            at(1.3447887713747981, -0.7744303115552711),
+        ]),
+    );
+    let s = Segment {
+        start: searoom::frame::Pose::new(
+            at(99.65467289116157, -41.06950535229376),
+            3.1943180518723153,
+        ),
+        start_time: 0.0,
+        duration: 34.054769876637884,
+        speed: 5.8175559313373135,
+        turn_rate: 0.0,
+    };
+    let sampled = (0..20_000)
+        .map(|i| f64::from(i) * s.duration / 20_000.0)
+        .map(|t| o.risk(s.pose_at(t).position, t))
+        .fold(0.0, f64::max);
+    let peak = o.peak_risk(&s);
+    assert!(
+        sampled > 0.01 && peak.risk >= sampled && peak.risk < sampled + 1e-3,
+        "{peak:?} {sampled}"
+    );
 }
 
 #[test]
@@ -251,7 +307,8 @@ fn every_sum_of_points_is_in_the_outer_ellipse_and_few_others_are_in_the_sum() {
             .fold(f64::NEG_INFINITY, f64::max);
         if excess > 1e-6 {
             assert!(!o.sum_contains(x, t), "{o:?} {x:?} {t} {excess}");
-        } else if excess < -1e-2 {
+        } else if excess < -1.0 {
+            // so much may lie between two of the directions
             assert!(o.sum_contains(x, t), "{o:?} {x:?} {t} {excess}");
             assert!(o.contains(x, t));
         }
@@ -473,8 +530,10 @@ fn on_the_line_of_a_flat_set_contact_begins_when_it_is_reached() {
 #[test]
 fn numbers_that_overflow_are_contact() {
     let mut rng = seeded(213);
-    let o = ellipsoid(&mut rng);
+    let circle = |r: f64| Ellipse::new(Vector::zeros(), Matrix2::identity() * r).expect("a shape");
+    let o = EllipsoidObstacle::new("x", circle(100.0), circle(1.0));
     let lost = Segment {
+        start_time: 0.0,
         speed: 1e305,
         duration: 1e5,
         turn_rate: 1e-7,

@@ -215,16 +215,19 @@ pub(super) fn searched_approach<O: SpaceTimeObstacle>(
     }
     let flat = SLOPE * velocity.norm();
     // the chord, with the weight of an end that stays put reduced (Anderson and Björck 1973); the middle when
-    // that stalls
+    // three steps have not halved the bracket, as where the nearest point rounds the end of a needle
     let (mut weight_low, mut weight_high) = (low.slope, high.slope);
     let mut side = 0_i32;
+    let mut widths = [f64::INFINITY; 3];
     for _ in 0..MAX_LOOKS {
         let width = high.time - low.time;
         if width <= 4.0 * f64::EPSILON * high.time {
             break;
         }
         let chord = low.time - weight_low * width / (weight_high - weight_low);
-        let at = if side.abs() < 5 && chord > low.time && chord < high.time {
+        let halved = width <= 0.5 * widths[0];
+        widths = [widths[1], widths[2], width];
+        let at = if halved && chord > low.time && chord < high.time {
             chord
         } else {
             side = 0;

@@ -58,9 +58,11 @@ impl FaceSpread {
     pub(super) fn of(face: &HalfSpace, centroid: Vector) -> Self {
         let nominal_rate = face.normal.dot(&centroid);
         let spread = face.velocity_support - nominal_rate;
+        // less than this is what rounding leaves of none
+        let none = tolerance::THIN * (face.velocity_support.abs() + nominal_rate.abs());
         Self {
             nominal_rate,
-            per_rate: if spread > 0.0 {
+            per_rate: if spread > none {
                 1.0 / spread
             } else {
                 f64::INFINITY

@@ -232,9 +232,10 @@ impl SpaceTimeObstacle for SlabObstacle {
                     start_time: part.start_time - slab.start,
                     ..part
                 };
+                // to and from the slab's own time costs a digit
                 slab.obstacle
                     .first_contact(&local, depth)
-                    .map(|t| t + slab.start)
+                    .map(|t| (t + slab.start).max(part.start_time).min(part.end_time()))
             })
     }
 

@@ -11,8 +11,13 @@ use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle};
 use searoom::target::VelocitySpell;
 use searoom::trajectory::Segment;
 
+/// The generator of one test; `SEAROOM_SEED` gives other cases.
 pub fn seeded(seed: u64) -> ChaCha8Rng {
-    ChaCha8Rng::seed_from_u64(seed)
+    let other: u64 = std::env::var("SEAROOM_SEED")
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(0);
+    ChaCha8Rng::seed_from_u64(seed.wrapping_add(other.wrapping_mul(1000)))
 }
 
 pub fn vector(rng: &mut ChaCha8Rng, scale: f64) -> Vector {
