@@ -53,13 +53,13 @@
 //! | --- | --- |
 //! | [`frame`] | the plane, poses, headings; the border to degrees and knots |
 //! | [`tolerance`] | every tolerance with its unit and its reason |
-//! | [`geometry`] | convex polygons, points and segments included |
+//! | [`geometry`] | convex polygons and ellipses, points and segments included |
 //! | [`search`] | A* and Dijkstra over a graph given by its successors |
 //! | [`trajectory`] | lines and arcs in time; the desired trajectory |
 //! | [`vessel`] | own ship and her limits; Dubins paths |
 //! | [`target`] | a tracked ship and what is not known of her |
 //! | [`colregs`] | roles by the rules of the road; the shapes that answer them |
-//! | [`obstacle`] | space-time sets; exact first contact of a line and an arc |
+//! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
 //! | [`planner`] | problem, plan, outcome; the space-time planner |
 //! | [`evaluation`] | judges any trajectory, sharing no collision code with the planner |
 //! | [`scenario`] | scenario files: every fault of a file at once |

@@ -7,6 +7,9 @@ use crate::vessel::Hull;
 /// Half the angle between two tangents of the faster arc: 5°, radians.
 const TANGENT_SPACING: f64 = std::f64::consts::PI / 36.0;
 
+/// The turn that one spell of a turning target stands for: 5°, radians.
+const TURN_OF_A_SPELL: f64 = std::f64::consts::PI / 36.0;
+
 /// How the initial set of a target is shaped for the rules of the road.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DomainKind {
@@ -27,6 +30,15 @@ pub enum DomainKind {
         /// To starboard.
         starboard: f64,
     },
+}
+
+/// A set of velocities and until when it holds: one of several, one after another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VelocitySpell {
+    /// Seconds from the scenario's start; infinite for the last.
+    pub until: f64,
+    /// Every velocity possible until then, m/s.
+    pub velocities: ConvexPolygon,
 }
 
 /// A tracked ship: nominal motion and what is not known of it.
@@ -66,11 +78,46 @@ impl ShipTrack {
     /// clipped at 0, and a course within `course_spread`. The faster arc is replaced by tangents at
     /// most 5° from their touching point: it reaches at most 0.4 % beyond the largest speed.
     pub fn outer_velocity_set(&self) -> ConvexPolygon {
+        self.outer_velocities_within(self.course_spread)
+    }
+
+    /// Outer sets of every velocity that she may have while she turns at up to `turn_rate` radians per second
+    /// to either side: her course at `t` is within `course_spread + turn_rate t`. Every set is that of the end
+    /// of its spell, when it is widest; a spell is at most as long as 5° of turn take, so a half-width is never
+    /// more than 5° too wide. From `horizon` seconds on, or from when they are, all courses are possible. A rate
+    /// of 0 gives one set; one that is not finite gives every course at once.
+    pub fn outer_velocity_spells(&self, turn_rate: f64, horizon: f64) -> Vec<VelocitySpell> {
+        let spell = |until, spread| VelocitySpell {
+            until,
+            velocities: self.outer_velocities_within(spread),
+        };
+        let rate = turn_rate.abs();
+        if rate == 0.0 {
+            return vec![spell(f64::INFINITY, self.course_spread)];
+        }
+        let all = std::f64::consts::PI;
+        let duration = TURN_OF_A_SPELL / rate;
+        let mut spells = Vec::new();
+        let mut start = 0.0;
+        while start < horizon && rate.is_finite() {
+            let until = f64::min(start + duration, horizon);
+            let spread = self.course_spread + rate * until;
+            if !(spread < all && until > start) {
+                break;
+            }
+            spells.push(spell(until, spread));
+            start = until;
+        }
+        spells.push(spell(f64::INFINITY, all));
+        spells
+    }
+
+    fn outer_velocities_within(&self, course_spread: f64) -> ConvexPolygon {
         let (slow, fast) = (
             (self.speed - self.speed_spread).max(0.0),
             self.speed + self.speed_spread,
         );
-        let spread = self.course_spread.min(std::f64::consts::PI);
+        let spread = course_spread.min(std::f64::consts::PI);
         let mut points = Vec::new();
         for edge in [-spread, spread] {
             let ahead = direction(self.pose.heading + edge);
@@ -177,6 +224,56 @@ mod tests {
                 let course = ship.pose.heading + rng.random_range(-1.0..=1.0) * ship.course_spread;
                 assert!(set.signed_distance(direction(course) * speed) <= 1e-9);
             }
+        }
+    }
+
+    fn turning_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
+        ShipTrack {
+            pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
+            speed: rng.random_range(0.0..10.0),
+            hull: Hull {
+                length: 50.0,
+                beam: 10.0,
+            },
+            position_std: 0.0,
+            speed_spread: rng.random_range(0.0..3.0),
+            course_spread: rng.random_range(0.0..1.0),
+            domain: DomainKind::Hull,
+        }
+    }
+
+    #[test]
+    fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
+        for _ in 0..200 {
+            let ship = turning_ship(&mut rng);
+            let rate = rng.random_range(0.0_f64..0.05);
+            let horizon = rng.random_range(1.0..400.0);
+            let spells = ship.outer_velocity_spells(rate, horizon);
+            assert!(spells.windows(2).all(|w| w[0].until < w[1].until));
+            for _ in 0..100 {
+                let t = rng.random_range(0.0..500.0);
+                let turned = ship.course_spread + rate * t;
+                let course = ship.pose.heading + rng.random_range(-1.0..=1.0) * turned;
+                let speed =
+                    (ship.speed + rng.random_range(-1.0..=1.0) * ship.speed_spread).max(0.0);
+                let now = spells.iter().find(|s| t <= s.until).expect("a last one");
+                let v = direction(course) * speed;
+                assert!(now.velocities.signed_distance(v) <= 1e-9, "{ship:?} {t}");
+                if t < horizon {
+                    let widest = ship.outer_velocities_within(turned + TURN_OF_A_SPELL + 1e-9);
+                    for v in now.velocities.vertices() {
+                        assert!(widest.signed_distance(*v) <= 0.005 * v.norm() + 1e-9);
+                    }
+                }
+            }
+        }
+        let ship = turning_ship(&mut rng);
+        assert_eq!(ship.outer_velocity_spells(0.0, 100.0).len(), 1);
+        for rate in [f64::NAN, f64::INFINITY] {
+            let all = ship.outer_velocity_spells(rate, 100.0);
+            assert_eq!(all.len(), 1);
+            assert!(all[0].velocities.contains(-ship.velocity()));
         }
     }
 

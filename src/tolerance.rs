@@ -24,6 +24,14 @@ pub const THIN: f64 = 1e-12;
 /// Radians. A vertex at which the boundary turns less than this is no vertex.
 pub const COLLINEAR_RAD: f64 = 1e-9;
 
+/// Relative. A shape matrix may miss symmetry, and its eigenvalues zero, by this fraction of its largest
+/// entry: nine digits written by hand or by another program.
+pub const SHAPE: f64 = 1e-9;
+
+/// Of 3. How far the smallest enclosing ellipse may be from the condition of its optimum; its area is
+/// then within 1e-8 of the least one.
+pub const LOEWNER: f64 = 1e-9;
+
 /// Seconds. Two instants closer than this are the same instant.
 pub const TIME_S: f64 = 1e-9;
 
@@ -47,3 +55,16 @@ pub const INSTANT_S: f64 = 1e-8;
 
 /// Relative. Accuracy of integrals along a trajectory.
 pub const QUADRATURE: f64 = 1e-10;
+
+/// Metres. A face that a point is beyond by no more than this does not count against it in a risk: a risk
+/// divides by times near zero, and a point on the face must not be ruined by its last digit.
+pub const FACE_M: f64 = 1e-12;
+
+/// Dimensionless. A largest risk that is found by bisection is exact to this.
+pub const RISK: f64 = 1e-12;
+
+/// Seconds. Searches without a horizon end here, after 31 years.
+pub const FOREVER_S: f64 = 1e9;
+
+/// Metres. An arc that comes this near to an obstacle without an exact test of its own is in contact.
+pub const GRAZE_M: f64 = 1e-8;

@@ -115,6 +115,7 @@ fn every_file_that_the_documents_link_to_is_there() {
     for name in [
         "README.md",
         "docs/scenario.md",
+        "docs/sets.md",
         "docs/space-time-planner.md",
         "docs/development.md",
     ] {

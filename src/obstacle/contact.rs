@@ -134,7 +134,8 @@ pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> 
     )
 }
 
-fn clip(
+/// The same for a motion from `position` at `start_time` with `velocity`; `duration` may be infinite.
+pub(super) fn clip(
     obstacle: &PolytopeObstacle,
     position: Vector,
     velocity: Vector,
@@ -283,7 +284,7 @@ impl Circle {
 
 /// Root of a monotone function between a point where it is `<= 0` and one where it is positive, as
 /// the pair (last point `<= 0`, first point `> 0`), adjacent to rounding.
-fn bisect(value: impl Fn(f64) -> f64, mut inside: f64, mut outside: f64) -> (f64, f64) {
+pub(super) fn bisect(value: impl Fn(f64) -> f64, mut inside: f64, mut outside: f64) -> (f64, f64) {
     let (mut fi, mut fo) = (value(inside), value(outside));
     for step in 0..100 {
         let width = outside - inside;

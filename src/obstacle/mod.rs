@@ -1,8 +1,26 @@
-//! Space-time obstacles: convex bodies that contain every position a target may reach, at every time.
+//! Space-time obstacles: sets that contain every position a target may reach, at every time.
+//!
+//! [`PolytopeObstacle`] is exact for its sets, [`EllipsoidObstacle`] is an outer set of its own,
+//! [`SlabObstacle`] has velocities that change with time. All three answer [`SpaceTimeObstacle`].
 
+mod conservative_advancement;
 pub mod contact;
+mod cpa;
+mod ellipse_sum;
+mod ellipsoid;
+mod ellipsoid_contact;
 mod polytope;
 mod projection;
+mod risk;
+mod slabs;
+mod space_time_obstacle;
+mod velocity_obstacle;
 
+pub use cpa::ClosestApproach;
+pub use ellipsoid::EllipsoidObstacle;
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
 pub use projection::{PathTime, along_path};
+pub use risk::PeakRisk;
+pub use slabs::{Slab, SlabError, SlabObstacle};
+pub use space_time_obstacle::{SpaceTimeObstacle, Support};
+pub use velocity_obstacle::{HalfPlane, VelocityObstacle};

@@ -1,7 +1,14 @@
 //! The polytope obstacle `O = {(x, t) : t >= 0, x in O_0 + t V}`, paper eqs. (2)-(9), in support form.
 
+use super::cpa::{ClosestApproach, from_edge, polytope_approach};
+use super::risk::{
+    FaceSpread, Line, PeakRisk, level_of, peak_by_bisection, polytope_alpha, polytope_peak,
+    scaled_velocities,
+};
+use super::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::trajectory::Segment;
 
 /// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a unit
 /// normal in the plane. Formulas section 1; the corrected eq. (9) is a positive multiple of it.
@@ -53,25 +60,35 @@ pub struct PolytopeObstacle {
     initial: ConvexPolygon,
     velocity: ConvexPolygon,
     faces: Vec<HalfSpace>,
+    spreads: Vec<FaceSpread>,
+    moving: Vec<MovingVertex>,
 }
 
 impl PolytopeObstacle {
-    /// From the two sets, in O((n + m) log(n + m)). Points and segments are exact.
+    /// From the two sets, in O((n + m)²): faces and moving vertices are found once. Points and segments
+    /// are exact.
     pub fn new(name: impl Into<String>, initial: ConvexPolygon, velocity: ConvexPolygon) -> Self {
-        let mut normals = initial.normals();
-        normals.extend(velocity.normals());
-        normals.sort_by(|a, b| a.y.atan2(a.x).total_cmp(&b.y.atan2(b.x)));
-        normals.dedup_by(|a, b| (*a - *b).norm() < 1e-12);
-        let faces = normals
+        let with_angle = |n: Vector| (n.y.atan2(n.x), n);
+        let mut normals: Vec<(f64, Vector)> = [initial.normals(), velocity.normals()]
             .into_iter()
-            .map(|normal| HalfSpace {
+            .flatten()
+            .map(with_angle)
+            .collect();
+        normals.sort_by(|a, b| a.0.total_cmp(&b.0));
+        normals.dedup_by(|a, b| (a.1 - b.1).norm() < 1e-12);
+        let faces: Vec<HalfSpace> = normals
+            .into_iter()
+            .map(|(_, normal)| HalfSpace {
                 normal,
                 velocity_support: velocity.support(normal),
                 initial_support: initial.support(normal),
             })
             .collect();
+        let centroid = velocity.centroid();
         Self {
             name: name.into(),
+            spreads: faces.iter().map(|f| FaceSpread::of(f, centroid)).collect(),
+            moving: moving_vertices(&initial, &velocity, &faces),
             initial,
             velocity,
             faces,
@@ -98,27 +115,18 @@ impl PolytopeObstacle {
         &self.faces
     }
 
-    /// The vertices of the sections for t > 0, counter-clockwise: at most n + m. O((n + m)²).
+    /// The vertices of the sections for t > 0, counter-clockwise: at most n + m.
     pub fn moving_vertices(&self) -> Vec<MovingVertex> {
-        let n = self.faces.len();
-        let mut vertices: Vec<MovingVertex> = (0..n)
-            .map(|i| {
-                // a direction strictly between two neighbouring normals has one support vertex in each set
-                let between = self.faces[i].normal + self.faces[(i + 1) % n].normal;
-                let (j, origin) = farthest(self.initial.vertices(), between);
-                let (k, velocity) = farthest(self.velocity.vertices(), between);
-                MovingVertex {
-                    indices: (j, k),
-                    origin,
-                    velocity,
-                }
-            })
-            .collect();
-        vertices.dedup_by_key(|v| v.indices);
-        while vertices.len() > 1 && vertices[0].indices == vertices[vertices.len() - 1].indices {
-            vertices.pop();
-        }
-        vertices
+        self.moving.clone()
+    }
+
+    pub(super) fn moving(&self) -> &[MovingVertex] {
+        &self.moving
+    }
+
+    /// The velocity obstacle as a region of half-planes, for own ship at `position` at t = 0.
+    pub fn velocity_obstacle(&self, position: Vector, horizon: f64) -> VelocityObstacle {
+        VelocityObstacle::new(self, position, horizon)
     }
 
     /// The section `O_t` for `t >= 0`, paper eq. (6). O(n + m).
@@ -154,6 +162,134 @@ impl PolytopeObstacle {
         // both negated on purpose: what is not known to be clear is not
         !(time < 0.0) && !(self.slack(position, time).value > 0.0)
     }
+}
+
+impl SpaceTimeObstacle for PolytopeObstacle {
+    fn name(&self) -> &str {
+        self.name()
+    }
+
+    fn support(&self, normal: Vector, time: f64) -> Support {
+        let rate = self.velocity.support(normal);
+        Support {
+            value: self.initial.support(normal) + rate * time,
+            rate,
+        }
+    }
+
+    /// O(n + m).
+    fn signed_distance(&self, position: Vector, time: f64) -> SignedDistance {
+        let slack = self.slack(position, time);
+        let inside = SignedDistance {
+            distance: slack.value,
+            normal: self.faces[slack.face].normal,
+        };
+        // negated on purpose: a NaN is handed on
+        if !(slack.value > 0.0) {
+            return inside;
+        }
+        let at = |v: &MovingVertex| v.origin + v.velocity * time;
+        let mut from = at(&self.moving[self.moving.len() - 1]);
+        let mut nearest = Vector::repeat(f64::INFINITY);
+        for vertex in &self.moving {
+            let to = at(vertex);
+            let offset = from_edge(position, from, to);
+            if offset.norm_squared() < nearest.norm_squared() {
+                nearest = offset;
+            }
+            from = to;
+        }
+        let distance = nearest.norm();
+        if distance > 0.0 {
+            SignedDistance {
+                distance,
+                normal: nearest / distance,
+            }
+        } else {
+            inside
+        }
+    }
+
+    fn contains(&self, position: Vector, time: f64) -> bool {
+        self.contains(position, time)
+    }
+
+    fn first_contact(&self, segment: &Segment, depth: f64) -> Option<f64> {
+        contact::first_contact(self, segment, depth)
+    }
+
+    /// O(n + m).
+    fn alpha(&self, position: Vector, time: f64) -> f64 {
+        polytope_alpha(&self.faces, &self.spreads, position, time)
+    }
+
+    /// In closed form on a line, O((n + m)²) at worst; on an arc by bisection over exact contacts, to
+    /// [`crate::tolerance::RISK`].
+    fn peak_risk(&self, segment: &Segment) -> PeakRisk {
+        if segment.is_valid() && !segment.is_arc() {
+            polytope_peak(&self.faces, &self.spreads, &Line::of(segment))
+        } else {
+            // contact asks the faces alone
+            let mut level = self.clone();
+            peak_by_bisection(segment, |risk| {
+                let alpha = level_of(risk);
+                for (i, face) in level.faces.iter_mut().enumerate() {
+                    let nominal = self.spreads[i].nominal_rate;
+                    let rate = self.faces[i].velocity_support - nominal;
+                    face.velocity_support = nominal + alpha * rate;
+                }
+                contact::first_contact(&level, segment, 0.0)
+            })
+        }
+    }
+
+    fn at_risk(&self, risk: f64) -> Self {
+        let velocity = scaled_velocities(&self.velocity, level_of(risk));
+        Self::new(self.name.clone(), self.initial.clone(), velocity)
+    }
+
+    /// In closed form, O(n + m).
+    fn closest_approach(
+        &self,
+        position: Vector,
+        velocity: Vector,
+        horizon: f64,
+    ) -> ClosestApproach {
+        polytope_approach(self, position, velocity, horizon)
+    }
+
+    /// By the faces, O(n + m); [`PolytopeObstacle::velocity_obstacle`] is the region.
+    fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool {
+        super::cpa::usable_horizon(position, velocity, horizon).is_none_or(|horizon| {
+            contact::clip(self, position, velocity, 0.0, horizon, 0.0).is_some()
+        })
+    }
+}
+
+/// Between two neighbouring normals each set has one support vertex.
+fn moving_vertices(
+    initial: &ConvexPolygon,
+    velocity: &ConvexPolygon,
+    faces: &[HalfSpace],
+) -> Vec<MovingVertex> {
+    let n = faces.len();
+    let mut vertices: Vec<MovingVertex> = (0..n)
+        .map(|i| {
+            let between = faces[i].normal + faces[(i + 1) % n].normal;
+            let (j, origin) = farthest(initial.vertices(), between);
+            let (k, velocity) = farthest(velocity.vertices(), between);
+            MovingVertex {
+                indices: (j, k),
+                origin,
+                velocity,
+            }
+        })
+        .collect();
+    vertices.dedup_by_key(|v| v.indices);
+    while vertices.len() > 1 && vertices[0].indices == vertices[vertices.len() - 1].indices {
+        vertices.pop();
+    }
+    vertices
 }
 
 fn farthest(points: &[Vector], n: Vector) -> (usize, Vector) {

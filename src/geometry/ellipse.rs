@@ -1,0 +1,479 @@
+//! Ellipses, flat ones included: a point has no semi-axis, a segment has one.
+
+use nalgebra::{Matrix2, SymmetricEigen};
+
+use super::ConvexPolygon;
+use crate::frame::{Vector, cross, direction, to_port};
+use crate::tolerance;
+
+/// Largest number of Newton steps to the nearest point; four are usual, and each adds digits.
+const MAX_STEPS: usize = 60;
+
+/// Why a centre and a matrix do not make an ellipse.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ShapeError {
+    /// A number of the centre that is not finite.
+    #[error("center coordinate {index} is {found}; it must be a finite number")]
+    CenterNotFinite {
+        /// Which coordinate, from 0.
+        index: usize,
+        /// What stands there.
+        found: f64,
+    },
+    /// A number of the matrix that is not finite.
+    #[error("shape matrix entry [{row}][{column}] is {found}; it must be a finite number")]
+    NotFinite {
+        /// From 0.
+        row: usize,
+        /// From 0.
+        column: usize,
+        /// What stands there.
+        found: f64,
+    },
+    /// The two entries off the diagonal differ.
+    #[error(
+        "shape matrix is not symmetric: [0][1] is {upper}, [1][0] is {lower}; they must be equal"
+    )]
+    NotSymmetric {
+        /// Entry `[0][1]`.
+        upper: f64,
+        /// Entry `[1][0]`.
+        lower: f64,
+    },
+    /// A negative eigenvalue.
+    #[error(
+        "shape matrix is not positive semidefinite: its least eigenvalue is {eigenvalue:.6e}; it must be >= 0"
+    )]
+    NotPositiveSemidefinite {
+        /// The least eigenvalue.
+        eigenvalue: f64,
+    },
+}
+
+/// How far a point is from a set, and which way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SignedDistance {
+    /// Euclidean distance, negative inside: minus the distance to the boundary.
+    pub distance: f64,
+    /// Outward unit normal at the nearest point of the boundary.
+    pub normal: Vector,
+}
+
+/// `E(p, Q) = {x : (x - p)' Q^-1 (x - p) <= 1}`, paper eq. (12), for a positive semidefinite `Q`: where
+/// `Q` is singular, `{x : n . (x - p) <= sqrt(n' Q n) for all n}`.
+///
+/// Kept as the centre and two orthogonal semi-axes, of which one or both may be zero, so that a thin
+/// ellipse loses no digits.
+///
+/// ```
+/// use nalgebra::Matrix2;
+/// use searoom::frame::Vector;
+/// use searoom::geometry::Ellipse;
+/// let ellipse = Ellipse::new(Vector::zeros(), Matrix2::new(100.0, 0.0, 0.0, 25.0))?;
+/// assert_eq!(ellipse.support(Vector::new(0.0, 1.0)), 5.0);
+/// assert!((ellipse.signed_distance(Vector::new(13.0, 0.0)).distance - 3.0).abs() < 1e-12);
+/// assert!(Ellipse::new(Vector::zeros(), Matrix2::new(1.0, 0.0, 0.0, -1.0)).is_err());
+/// # Ok::<(), searoom::geometry::ShapeError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ellipse {
+    center: Vector,
+    axes: [Vector; 2],
+}
+
+impl Ellipse {
+    /// From a centre and a shape matrix in squared units of it. The matrix has to be symmetric and
+    /// positive semidefinite to [`tolerance::SHAPE`] of its largest entry.
+    pub fn new(center: Vector, shape: Matrix2<f64>) -> Result<Self, ShapeError> {
+        if let Some(index) = (0..2).find(|&i| !center[i].is_finite()) {
+            let found = center[index];
+            return Err(ShapeError::CenterNotFinite { index, found });
+        }
+        for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let found = shape[(row, column)];
+            if !found.is_finite() {
+                return Err(ShapeError::NotFinite { row, column, found });
+            }
+        }
+        let (upper, lower) = (shape[(0, 1)], shape[(1, 0)]);
+        let allowed = tolerance::SHAPE * shape.amax();
+        if (upper - lower).abs() > allowed {
+            return Err(ShapeError::NotSymmetric { upper, lower });
+        }
+        // scaled, so that squares neither overflow nor vanish
+        let scale = shape.amax();
+        if scale == 0.0 {
+            return Ok(Self::point(center));
+        }
+        let eigen = SymmetricEigen::new((shape + shape.transpose()) * (0.5 / scale));
+        let eigenvalue = eigen.eigenvalues.min() * scale;
+        if !(eigenvalue >= -allowed) {
+            return Err(ShapeError::NotPositiveSemidefinite { eigenvalue });
+        }
+        let axis = |i: usize| {
+            let value = eigen.eigenvalues[i];
+            // rounding of the entries alone moves an eigenvalue by this much
+            let value = if value <= 4.0 * f64::EPSILON {
+                0.0
+            } else {
+                value
+            };
+            eigen.eigenvectors.column(i) * (value.sqrt() * scale.sqrt())
+        };
+        Ok(Self::from_axes(center, [axis(0), axis(1)]))
+    }
+
+    /// The point alone, `Q = 0`.
+    pub fn point(center: Vector) -> Self {
+        Self {
+            center,
+            axes: [Vector::zeros(); 2],
+        }
+    }
+
+    /// `{p + F z : |z| <= 1}` for the two columns of `F`, in any position to one another. They are made
+    /// orthogonal by one Jacobi rotation, which keeps the digits of a small semi-axis.
+    pub(crate) fn from_axes(center: Vector, columns: [Vector; 2]) -> Self {
+        let [f, g] = columns;
+        let angle = 0.5 * (2.0 * f.dot(&g)).atan2(f.norm_squared() - g.norm_squared());
+        let (sin, cos) = angle.sin_cos();
+        let (major, minor) = (f * cos + g * sin, g * cos - f * sin);
+        let axes = if minor.norm() > major.norm() {
+            [minor, major]
+        } else {
+            [major, minor]
+        };
+        Self { center, axes }
+    }
+
+    /// The centre `p`.
+    pub fn center(&self) -> Vector {
+        self.center
+    }
+
+    /// The two semi-axes, the longer first, orthogonal.
+    pub fn semi_axes(&self) -> [Vector; 2] {
+        self.axes
+    }
+
+    /// The shape matrix `Q`.
+    pub fn shape(&self) -> Matrix2<f64> {
+        let [a, b] = self.axes;
+        a * a.transpose() + b * b.transpose()
+    }
+
+    /// `pi a b`.
+    pub fn area(&self) -> f64 {
+        std::f64::consts::PI * self.axes[0].norm() * self.axes[1].norm()
+    }
+
+    /// `h(n) = n . p + sqrt(n' Q n)`. O(1).
+    pub fn support(&self, n: Vector) -> f64 {
+        n.dot(&self.center) + self.radius(n)
+    }
+
+    /// `sqrt(n' Q n)`: the support about the centre.
+    pub fn radius(&self, n: Vector) -> f64 {
+        n.dot(&self.axes[0]).hypot(n.dot(&self.axes[1]))
+    }
+
+    /// True when `p` is in the closed set. NaN is inside: what is not known to be clear is not. O(1).
+    pub fn contains(&self, p: Vector) -> bool {
+        let y = p - self.center;
+        let [a, b] = self.axes;
+        // the first alone would let a segment go on for ever; with an interior it holds the second
+        let across = cross(y, a).powi(2) + cross(y, b).powi(2);
+        !(across > (a.norm() * b.norm()).powi(2))
+            && !(y.norm_squared() > a.norm_squared() + b.norm_squared())
+    }
+
+    /// The signed distance of `p`; a segment and a point have no inside. NaN in, NaN out. Newton on the
+    /// secular equation `sum q_i z_i² / (q_i + s)² = 1` (formulas section 5.2), in the form in which every
+    /// step falls short of the root, to rounding.
+    pub fn signed_distance(&self, p: Vector) -> SignedDistance {
+        let [a, b] = self.axes;
+        let (major, minor) = (a.norm(), b.norm());
+        // any unit vector serves where the major axis is zero
+        let along = if major > 0.0 {
+            a / major
+        } else {
+            Vector::new(1.0, 0.0)
+        };
+        distance_in_frame(p - self.center, along, major, minor)
+    }
+
+    /// The set moved by `shift`.
+    pub fn translated(&self, shift: Vector) -> Self {
+        Self {
+            center: self.center + shift,
+            axes: self.axes,
+        }
+    }
+
+    /// The set turned by `angle` radians about the origin.
+    pub fn rotated(&self, angle: f64) -> Self {
+        let (s, c) = angle.sin_cos();
+        let turn = |p: Vector| Vector::new(c * p.x - s * p.y, s * p.x + c * p.y);
+        Self {
+            center: turn(self.center),
+            axes: self.axes.map(turn),
+        }
+    }
+
+    /// The set scaled about its own centre by `factor >= 0`.
+    pub fn scaled_about_center(&self, factor: f64) -> Self {
+        Self {
+            center: self.center,
+            axes: self.axes.map(|a| a * factor),
+        }
+    }
+
+    /// Points of the boundary, `count` of them, counter-clockwise; for pictures.
+    pub fn sampled_boundary(&self, count: usize) -> Vec<Vector> {
+        let [a, b] = self.axes;
+        let b = if cross(a, b) < 0.0 { -b } else { b };
+        (0..count)
+            .map(|i| {
+                let z = direction(std::f64::consts::TAU * i as f64 / count as f64);
+                self.center + a * z.x + b * z.y
+            })
+            .collect()
+    }
+
+    /// An outer polygon with `sides >= 3` edges: the image of the circumscribed regular polygon, so it
+    /// touches the ellipse at the middle of every edge and its area is `(k / pi) tan(pi / k)` times that
+    /// of the ellipse, 1.3 % more for 16 edges. A segment and a point are exact.
+    pub fn outer_polygon(&self, sides: usize) -> ConvexPolygon {
+        let [a, b] = self.axes;
+        if b == Vector::zeros() {
+            let ends = vec![self.center - a, self.center + a];
+            return ConvexPolygon::from_ccw(ends);
+        }
+        let b = if cross(a, b) < 0.0 { -b } else { b };
+        let half = std::f64::consts::PI / sides.max(3) as f64;
+        // a few roundings of the corners
+        let reach = (1.0 + 4.0 * f64::EPSILON) / half.cos();
+        let corners = (0..sides.max(3))
+            .map(|k| {
+                let z = direction(half * (2 * k + 1) as f64) * reach;
+                self.center + a * z.x + b * z.y
+            })
+            .collect();
+        ConvexPolygon::from_ccw(corners)
+    }
+}
+
+/// The signed distance of `y` from the ellipse about the origin with semi-axes `major` along the unit
+/// vector `along` and `minor` across it.
+pub(crate) fn distance_in_frame(
+    y: Vector,
+    along: Vector,
+    major: f64,
+    minor: f64,
+) -> SignedDistance {
+    let across = to_port(along);
+    let z = [y.dot(&along), y.dot(&across)];
+    let (distance, n) = distance_in_quadrant(z[0].abs(), z[1].abs(), major, minor);
+    SignedDistance {
+        distance,
+        normal: along * n[0].copysign(z[0]) + across * n[1].copysign(z[1]),
+    }
+}
+
+/// The same in the quadrant of positive coordinates: distance and normal.
+fn distance_in_quadrant(z0: f64, z1: f64, e0: f64, e1: f64) -> (f64, [f64; 2]) {
+    if !(z0.is_finite() && z1.is_finite()) {
+        return (f64::NAN, [f64::NAN; 2]);
+    }
+    if e1 <= tolerance::THIN * e0 {
+        // a segment, or a point
+        let beyond = (z0 - e0).max(0.0);
+        let distance = beyond.hypot(z1);
+        return if distance > 0.0 {
+            (distance, [beyond / distance, z1 / distance])
+        } else {
+            (0.0, [0.0, 1.0])
+        };
+    }
+    let (q1, gap) = (e1 * e1, (e0 - e1) * (e0 + e1));
+    let (p0, p1) = (e0 * z0, e1 * z1);
+    // sigma = q1 + s; each term of the sum is at most 1
+    let mut sigma = p1.max(p0 - gap);
+    if sigma <= 0.0 {
+        // on the major axis, between the centres of curvature: the nearest points are beside it
+        let x = if gap > 0.0 { e0 * p0 / gap } else { 0.0 };
+        let height = e1 * (1.0 - (x / e0).powi(2)).max(0.0).sqrt();
+        let normal = Vector::new(x * q1, height * e0 * e0).normalize();
+        return (-(x - z0).hypot(height), [normal.x, normal.y]);
+    }
+    for _ in 0..MAX_STEPS {
+        let (i0, i1) = (1.0 / (sigma + gap), 1.0 / sigma);
+        let (u0, u1) = (p0 * i0, p1 * i1);
+        let (t0, t1) = (u0 * u0, u1 * u1);
+        let sum = t0 + t1;
+        let step = sum * (sum.sqrt() - 1.0) / (t0 * i0 + t1 * i1);
+        if !(step > 2.0 * f64::EPSILON * sigma) {
+            break;
+        }
+        sigma += step;
+    }
+    let (n0, n1) = (z0 / (sigma + gap), z1 / sigma);
+    let norm = n0.hypot(n1);
+    ((sigma - q1) * norm, [n0 / norm, n1 / norm])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    pub fn random_ellipse(rng: &mut ChaCha8Rng) -> Ellipse {
+        let mut vector = || Vector::new(rng.random_range(-5.0..5.0), rng.random_range(-5.0..5.0));
+        let (center, a, b) = (vector(), vector(), vector());
+        let thin = [1.0, 1.0, 1e-3, 1e-7, 0.0][rng.random_range(0..5)];
+        Ellipse::from_axes(center, [a, b * thin])
+    }
+
+    /// Definition: the largest signed distance of a supporting line outside, the least inside.
+    fn searched(e: &Ellipse, p: Vector) -> f64 {
+        let at = |angle: f64| {
+            let n = direction(angle);
+            n.dot(&p) - e.support(n)
+        };
+        // uniform in the angle, and in the parameter of the boundary, which resolves a thin end
+        let [a, b] = e.semi_axes();
+        let mut angles: Vec<f64> = (0..1000)
+            .flat_map(|i| {
+                let angle = std::f64::consts::TAU * f64::from(i) / 1000.0 - 3.2;
+                let z = direction(angle);
+                let normal = a * (z.x * b.norm()) + b * (z.y * a.norm_squared() / b.norm());
+                let other = crate::frame::heading_of(normal);
+                [angle, angle + 6.0, other, other + std::f64::consts::TAU]
+            })
+            .filter(|angle| angle.is_finite())
+            .collect();
+        angles.sort_by(f64::total_cmp);
+        let refined = |i: usize| {
+            let (mut low, mut high) = (angles[i - 1], angles[i + 1]);
+            for _ in 0..100 {
+                let (a, b) = (low + (high - low) * 0.382, low + (high - low) * 0.618);
+                if at(a) > at(b) {
+                    high = b;
+                } else {
+                    low = a;
+                }
+            }
+            at(0.5 * (low + high))
+        };
+        (1..angles.len() - 1)
+            .filter(|&i| at(angles[i]) >= at(angles[i - 1]).max(at(angles[i + 1])))
+            .map(refined)
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    #[test]
+    fn distance_matches_a_search_over_supporting_lines() {
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        let mut inside = 0;
+        for _ in 0..2000 {
+            let e = random_ellipse(&mut rng);
+            let p = if rng.random_bool(0.3) {
+                // near the axes, where the nearest point is not unique
+                let [a, b] = e.semi_axes();
+                let (s, t) = (rng.random_range(-1.5..1.5), rng.random_range(-1e-6..1e-6));
+                e.center() + a * s + b * t
+            } else {
+                Vector::new(rng.random_range(-9.0..9.0), rng.random_range(-9.0..9.0))
+            };
+            let found = e.signed_distance(p);
+            let slow = searched(&e, p);
+            assert!(
+                (found.distance - slow).abs() < 1e-9,
+                "{e:?} {p:?} {slow} {found:?}"
+            );
+            assert!((found.normal.norm() - 1.0).abs() < 1e-12);
+            let n = found.normal;
+            let by_normal = n.dot(&p) - e.support(n);
+            assert!((by_normal - slow).abs() < 1e-9, "{e:?} {p:?}");
+            if slow.abs() > 1e-9 {
+                assert_eq!(e.contains(p), slow < 0.0, "{e:?} {p:?}");
+            }
+            inside += usize::from(slow < 0.0);
+        }
+        assert!(inside > 300);
+    }
+
+    #[test]
+    fn matrices_that_are_no_shape_are_refused_by_what_is_found() {
+        let at = Vector::new(1.0, 2.0);
+        let found = |a, b, c, d| Ellipse::new(at, Matrix2::new(a, b, c, d));
+        assert!(matches!(
+            found(1.0, 0.5, 0.4, 1.0),
+            Err(ShapeError::NotSymmetric { .. })
+        ));
+        assert!(matches!(
+            found(1.0, 2.0, 2.0, 1.0),
+            Err(ShapeError::NotPositiveSemidefinite { eigenvalue }) if (eigenvalue + 1.0).abs() < 1e-12
+        ));
+        assert!(matches!(
+            found(1.0, f64::NAN, 0.0, 1.0),
+            Err(ShapeError::NotFinite {
+                row: 0,
+                column: 1,
+                ..
+            })
+        ));
+        assert!(matches!(
+            Ellipse::new(Vector::new(0.0, f64::INFINITY), Matrix2::identity()),
+            Err(ShapeError::CenterNotFinite { index: 1, .. })
+        ));
+        for singular in [[1.0, 1.0, 1.0], [4.0, 0.0, 0.0], [0.0, 0.0, 0.0]] {
+            let [a, b, c] = singular;
+            let e = found(a, b, b, c).expect("singular is a set");
+            assert_eq!(e.semi_axes()[1].norm(), 0.0);
+            assert!((e.shape() - Matrix2::new(a, b, b, c)).amax() < 1e-14);
+        }
+        for extreme in [1e-300, 1e300] {
+            let e = found(extreme, 0.0, 0.0, extreme * 1e-6).expect("a shape");
+            assert!((e.semi_axes()[0].norm() / extreme.sqrt() - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_shape_is_given_back() {
+        let mut rng = ChaCha8Rng::seed_from_u64(12);
+        for _ in 0..1000 {
+            let e = random_ellipse(&mut rng);
+            let again = Ellipse::new(e.center(), e.shape()).expect("a shape");
+            assert!((again.shape() - e.shape()).amax() < 1e-12 * (1.0 + e.shape().amax()));
+        }
+    }
+
+    #[test]
+    fn the_circumscribed_polygon_contains_and_touches() {
+        let mut rng = ChaCha8Rng::seed_from_u64(13);
+        for _ in 0..300 {
+            let e = random_ellipse(&mut rng);
+            let polygon = e.outer_polygon(16);
+            for p in e.sampled_boundary(97) {
+                assert!(polygon.signed_distance(p) <= 1e-12);
+            }
+            let ratio = 16.0 / std::f64::consts::PI * (std::f64::consts::PI / 16.0).tan();
+            assert!((polygon.area() - ratio * e.area()).abs() < 1e-9);
+            assert!(polygon.vertices().len() <= 16);
+        }
+    }
+
+    #[test]
+    fn not_a_number_is_inside() {
+        let e = Ellipse::point(Vector::zeros());
+        assert!(e.contains(Vector::new(f64::NAN, 100.0)));
+        assert!(
+            e.signed_distance(Vector::new(f64::NAN, 0.0))
+                .distance
+                .is_nan()
+        );
+        assert!(e.contains(Vector::zeros()) && !e.contains(Vector::new(1e-150, 0.0)));
+    }
+}

@@ -1,0 +1,259 @@
+//! Risk: by how much the velocities of a target have to shrink before a point is out of reach; paper eqs.
+//! (22)-(25), formulas section 4.
+
+use super::HalfSpace;
+use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// The largest risk along a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeakRisk {
+    /// In `[0, 1]`. Where it is found by bisection it errs to the high side, by at most
+    /// [`tolerance::RISK`].
+    pub risk: f64,
+    /// Seconds: an instant at which it is attained; the start where the risk is 0 throughout.
+    pub time: f64,
+}
+
+/// `1 - alpha`, clipped to `[0, 1]`; 1 where alpha is not a number.
+pub(super) fn risk_of(alpha: f64) -> f64 {
+    if alpha.is_nan() {
+        1.0
+    } else {
+        (1.0 - alpha).clamp(0.0, 1.0)
+    }
+}
+
+/// The level `1 - risk` of a set; 1, the whole set, for a risk outside `[0, 1]`.
+pub(super) fn level_of(risk: f64) -> f64 {
+    if (0.0..=1.0).contains(&risk) {
+        1.0 - risk
+    } else {
+        1.0
+    }
+}
+
+/// `v + alpha (V - v)` about the centroid `v`, paper eq. (22).
+pub(super) fn scaled_velocities(velocity: &ConvexPolygon, alpha: f64) -> ConvexPolygon {
+    if alpha == 1.0 {
+        return velocity.clone();
+    }
+    let center = velocity.centroid();
+    let scale = |v: &Vector| center + (v - center) * alpha;
+    ConvexPolygon::from_ccw(velocity.vertices().iter().map(scale).collect())
+}
+
+/// What alpha moves of one face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FaceSpread {
+    /// `n . v` for the centroid `v` of the velocities, m/s.
+    pub nominal_rate: f64,
+    /// `1 / (h_V(n) - n . v)`, s/m; infinite where alpha does not move the face.
+    pub per_rate: f64,
+}
+
+impl FaceSpread {
+    pub(super) fn of(face: &HalfSpace, centroid: Vector) -> Self {
+        let nominal_rate = face.normal.dot(&centroid);
+        let spread = face.velocity_support - nominal_rate;
+        // less than this is what rounding leaves of none
+        let none = tolerance::THIN * (face.velocity_support.abs() + nominal_rate.abs());
+        Self {
+            nominal_rate,
+            per_rate: if spread > none {
+                1.0 / spread
+            } else {
+                f64::INFINITY
+            },
+        }
+    }
+}
+
+/// `alpha* = max over faces of (n . (x - v t) - h_O0(n)) / (t (h_V(n) - n . v))`, formulas section 4. O(n + m).
+pub(super) fn polytope_alpha(
+    faces: &[HalfSpace],
+    spreads: &[FaceSpread],
+    position: Vector,
+    time: f64,
+) -> f64 {
+    if time < 0.0 {
+        return f64::INFINITY;
+    }
+    let mut most = 0.0_f64;
+    for (face, spread) in faces.iter().zip(spreads) {
+        let beyond = face.normal.dot(&position) - spread.nominal_rate * time - face.initial_support;
+        if beyond.is_nan() {
+            return 0.0;
+        }
+        if beyond > tolerance::FACE_M {
+            most = most.max(beyond * spread.per_rate);
+        }
+    }
+    // 0 / 0 at the start, within O_0
+    if most == 0.0 { 0.0 } else { most / time }
+}
+
+/// A straight motion: own ship at `origin` at t = 0, with `velocity`, from `start` to `end`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    pub origin: Vector,
+    pub velocity: Vector,
+    pub start: f64,
+    pub end: f64,
+}
+
+impl Line {
+    /// A straight segment, from t = 0 on.
+    pub(super) fn of(segment: &Segment) -> Self {
+        let velocity = segment.start.ahead() * segment.speed;
+        Self {
+            origin: segment.start.position - velocity * segment.start_time,
+            velocity,
+            start: segment.start_time.max(0.0),
+            end: segment.end_time(),
+        }
+    }
+}
+
+/// `a u + b`.
+#[derive(Debug, Clone, Copy)]
+struct Affine {
+    slope: f64,
+    value: f64,
+}
+
+/// The largest risk along a straight motion, in closed form. With `u = 1 / t` every face's ratio is affine,
+/// so alpha is a maximum of affine functions; its least value is found by descending from both ends to where
+/// the lowest two of them cross, in at most as many steps as there are faces.
+pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &Line) -> PeakRisk {
+    let none = PeakRisk {
+        risk: 0.0,
+        time: line.start,
+    };
+    let certain = PeakRisk { risk: 1.0, ..none };
+    // the part of the motion that no face which alpha cannot move forbids
+    let (mut start, mut end) = (line.start, line.end);
+    let mut rows = Vec::with_capacity(faces.len() + 1);
+    rows.push(Affine {
+        slope: 0.0,
+        value: 0.0,
+    });
+    for (face, spread) in faces.iter().zip(spreads) {
+        let at_zero = face.normal.dot(&line.origin) - face.initial_support;
+        let rate = face.normal.dot(&line.velocity) - spread.nominal_rate;
+        if (at_zero + rate).is_nan() {
+            return certain;
+        }
+        if spread.per_rate.is_finite() {
+            rows.push(Affine {
+                slope: at_zero * spread.per_rate,
+                value: rate * spread.per_rate,
+            });
+        } else if rate > 0.0 {
+            end = end.min((tolerance::FACE_M - at_zero) / rate);
+        } else if rate < 0.0 {
+            start = start.max((tolerance::FACE_M - at_zero) / rate);
+        } else if at_zero > tolerance::FACE_M {
+            return none;
+        }
+    }
+    if start > end || end < 0.0 {
+        return none;
+    }
+    let at = |time: f64| {
+        let position = line.origin + line.velocity * time;
+        polytope_alpha(faces, spreads, position, time)
+    };
+    if at(start) == 0.0 {
+        return PeakRisk {
+            risk: 1.0,
+            time: start,
+        };
+    }
+    // at t = 0 nothing but O_0 is in reach
+    if !(end > 0.0) {
+        return none;
+    }
+    let highest = |u: f64| {
+        let reach = |r: &Affine| r.slope * u + r.value;
+        let mut best = rows[0];
+        for row in &rows[1..] {
+            if reach(row) > reach(&best) {
+                best = *row;
+            }
+        }
+        best
+    };
+    let (low, high) = (1.0 / end, 1.0 / start);
+    let mut left = highest(low);
+    let mut right = if high.is_finite() {
+        highest(high)
+    } else {
+        let steeper = |a: &&Affine, b: &&Affine| {
+            a.slope
+                .total_cmp(&b.slope)
+                .then(a.value.total_cmp(&b.value))
+        };
+        *rows.iter().max_by(steeper).unwrap_or(&rows[0])
+    };
+    let mut u = if left.slope >= 0.0 {
+        low
+    } else if right.slope <= 0.0 {
+        high
+    } else {
+        f64::NAN
+    };
+    if u.is_nan() {
+        u = low;
+        for _ in 0..rows.len() {
+            u = ((right.value - left.value) / (left.slope - right.slope)).clamp(low, high);
+            let best = highest(u);
+            let (found, known) = (best.slope * u + best.value, left.slope * u + left.value);
+            if !(found > known + tolerance::RISK * known.abs()) || best.slope == 0.0 {
+                break;
+            }
+            if best.slope < 0.0 {
+                left = best;
+            } else {
+                right = best;
+            }
+        }
+    }
+    let time = (1.0 / u).clamp(start, end);
+    let best = highest(u);
+    // both are alpha at that instant; rounding errs to the high side of the risk
+    let alpha = at(time).min((best.slope * u + best.value).max(0.0));
+    PeakRisk {
+        risk: risk_of(alpha),
+        time,
+    }
+}
+
+/// The largest risk along any segment: the highest level whose set the segment meets, by bisection on the
+/// exact contact. `contact` gives the first contact with the set of a risk. Errs to the high side by at most
+/// [`tolerance::RISK`]; about 40 contacts.
+pub(super) fn peak_by_bisection(
+    segment: &Segment,
+    mut contact: impl FnMut(f64) -> Option<f64>,
+) -> PeakRisk {
+    let Some(first) = contact(0.0) else {
+        return PeakRisk {
+            risk: 0.0,
+            time: segment.start_time,
+        };
+    };
+    if let Some(time) = contact(1.0) {
+        return PeakRisk { risk: 1.0, time };
+    }
+    let (mut met, mut clear, mut time) = (0.0, 1.0, first);
+    while clear - met > tolerance::RISK {
+        let risk = 0.5 * (met + clear);
+        match contact(risk) {
+            Some(instant) => (met, time) = (risk, instant),
+            None => clear = risk,
+        }
+    }
+    PeakRisk { risk: clear, time }
+}

@@ -1,0 +1,84 @@
+//! What every obstacle answers, whatever its sets are made of.
+
+use super::cpa::ClosestApproach;
+use super::risk::{PeakRisk, risk_of};
+use crate::frame::Vector;
+use crate::geometry::SignedDistance;
+use crate::trajectory::{Segment, Trajectory};
+
+/// The support function of a section and how it changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Support {
+    /// `h(n, t) = max over O_t of n . x`, metres.
+    pub value: f64,
+    /// Its derivative in time from above, m/s: how fast the boundary moves outward.
+    pub rate: f64,
+}
+
+/// A set in space-time that contains every position a target may reach: its sections `O_t`, `t >= 0`, are
+/// convex, each given by its support function. East-north frame, metres, seconds from the scenario's start.
+///
+/// Fails closed: a position or velocity that is not a number is inside, at distance NaN, at risk 1. Before
+/// t = 0 there is no obstacle.
+pub trait SpaceTimeObstacle {
+    /// The target's name.
+    fn name(&self) -> &str;
+
+    /// Support of the section at `time >= 0` in the direction of the unit vector `normal`.
+    fn support(&self, normal: Vector, time: f64) -> Support;
+
+    /// Euclidean distance from the section at `time >= 0`, negative inside, and the outward normal at the
+    /// nearest point of its boundary.
+    fn signed_distance(&self, position: Vector, time: f64) -> SignedDistance;
+
+    /// True when the point is in the closed set.
+    fn contains(&self, position: Vector, time: f64) -> bool;
+
+    /// The first instant at which the segment is at least `depth` metres inside, or `None`. A segment or depth
+    /// that is not finite is in contact at once. At depth 0 touching counts.
+    fn first_contact(&self, segment: &Segment, depth: f64) -> Option<f64>;
+
+    /// `alpha*`, the least `alpha >= 0` for which the point is in `O_alpha`, the set with the velocities
+    /// scaled by alpha about their centre, paper eqs. (22)-(24). It is at most 1 just inside the set and
+    /// may exceed 1 outside; infinite where no scaling reaches, and before t = 0.
+    fn alpha(&self, position: Vector, time: f64) -> f64;
+
+    /// `risk = 1 - alpha*`, at least 0, paper eq. (25): 0 outside the set, 1 where even the target that keeps
+    /// the centre of its velocities is. Not a probability.
+    fn risk(&self, position: Vector, time: f64) -> f64 {
+        risk_of(self.alpha(position, time))
+    }
+
+    /// The largest risk along a segment.
+    fn peak_risk(&self, segment: &Segment) -> PeakRisk;
+
+    /// The largest risk along a trajectory: that of its segments, the first of those that tie.
+    fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
+        let mut peak = PeakRisk {
+            risk: 0.0,
+            time: trajectory.start_time(),
+        };
+        for segment in trajectory.segments() {
+            let here = self.peak_risk(segment);
+            if here.risk > peak.risk {
+                peak = here;
+            }
+        }
+        peak
+    }
+
+    /// The set `O_alpha` with `alpha = 1 - risk`: to stay out of it is to stay at or below `risk`. Risk 0 is
+    /// the set itself, and so is a risk that is not within `[0, 1]`.
+    fn at_risk(&self, risk: f64) -> Self
+    where
+        Self: Sized;
+
+    /// Least distance, and its earliest time, of own ship at `position` at t = 0 with constant `velocity`, over
+    /// `[0, horizon]`, paper eq. (26). `horizon` may be infinite.
+    fn closest_approach(&self, position: Vector, velocity: Vector, horizon: f64)
+    -> ClosestApproach;
+
+    /// True when `velocity`, kept from `position` at t = 0, meets the set within `[0, horizon]`: membership of
+    /// the velocity obstacle `{v : position + v t in O_t for some t}`. `horizon` may be infinite.
+    fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool;
+}

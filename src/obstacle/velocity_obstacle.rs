@@ -1,0 +1,118 @@
+//! The velocity obstacle of a polytope as a region of velocities: paper eq. (26), formulas section 5.3.
+
+use super::{HalfSpace, PolytopeObstacle};
+use crate::frame::{Vector, cross, to_port, to_starboard};
+use crate::geometry::ConvexPolygon;
+
+/// `normal . v <= offset` in the plane of velocities, with a unit normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfPlane {
+    /// Outward unit normal.
+    pub normal: Vector,
+    /// m/s.
+    pub offset: f64,
+}
+
+/// Every velocity of own ship that meets the obstacle within the horizon, as an intersection of half-planes;
+/// convex, and unbounded away from the target where the horizon is infinite or own ship's place is near.
+///
+/// `V ⊕ (O_0 - x) / T ⊕ cone(O_0 - x)`: exact for a finite horizon `T`. For an infinite one it is the closure,
+/// which adds the velocities that come arbitrarily near and never touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VelocityObstacle {
+    half_planes: Vec<HalfPlane>,
+}
+
+impl VelocityObstacle {
+    /// For own ship at `position` at t = 0, within `horizon` seconds, which may be infinite. From a position in
+    /// `O_0`, or one that is not a number, every velocity. O(n + m).
+    pub fn new(obstacle: &PolytopeObstacle, position: Vector, horizon: f64) -> Self {
+        let (initial, velocity) = (obstacle.initial(), obstacle.velocity());
+        if obstacle.contains(position, 0.0) {
+            return Self {
+                half_planes: Vec::new(),
+            };
+        }
+        // within half a turn, so that one of two directions is always to starboard of the other
+        let mut starboard = initial.vertices()[0] - position;
+        let mut port = starboard;
+        for vertex in &initial.vertices()[1..] {
+            let ray = vertex - position;
+            if cross(starboard, ray) < 0.0 {
+                starboard = ray;
+            }
+            if cross(port, ray) > 0.0 {
+                port = ray;
+            }
+        }
+        let horizon = if horizon.is_nan() {
+            f64::INFINITY
+        } else {
+            horizon.max(0.0)
+        };
+        let half_plane = |face: &HalfSpace| {
+            let reach = face.initial_support - face.normal.dot(&position);
+            HalfPlane {
+                normal: face.normal,
+                offset: face.velocity_support + reach / horizon,
+            }
+        };
+        // the reach of the two sides is zero by construction, whatever the horizon
+        let side = |normal: Vector| HalfPlane {
+            normal,
+            offset: velocity.support(normal),
+        };
+        let mut half_planes = vec![
+            side(to_starboard(starboard).normalize()),
+            side(to_port(port).normalize()),
+        ];
+        half_planes.extend(
+            obstacle
+                .faces()
+                .iter()
+                .filter(|f| f.normal.dot(&starboard) <= 0.0 && f.normal.dot(&port) <= 0.0)
+                .map(half_plane),
+        );
+        Self { half_planes }
+    }
+
+    /// The half-planes; none means every velocity.
+    pub fn half_planes(&self) -> &[HalfPlane] {
+        &self.half_planes
+    }
+
+    /// True when the velocity, m/s, is in the region. NaN is inside. O(half-planes).
+    pub fn contains(&self, velocity: Vector) -> bool {
+        // negated on purpose: what is not known to be clear is not
+        !self
+            .half_planes
+            .iter()
+            .any(|h| h.normal.dot(&velocity) > h.offset)
+    }
+
+    /// The part of the region with both components within `limit` m/s, for pictures; `None` where it is empty.
+    pub fn clipped(&self, limit: f64) -> Option<ConvexPolygon> {
+        let mut polygon = vec![
+            Vector::new(-limit, -limit),
+            Vector::new(limit, -limit),
+            Vector::new(limit, limit),
+            Vector::new(-limit, limit),
+        ];
+        for h in &self.half_planes {
+            let beyond = |v: &Vector| h.normal.dot(v) - h.offset;
+            let mut kept = Vec::with_capacity(polygon.len() + 1);
+            for (i, a) in polygon.iter().enumerate() {
+                let b = &polygon[(i + 1) % polygon.len()];
+                let (fa, fb) = (beyond(a), beyond(b));
+                if fa <= 0.0 {
+                    kept.push(*a);
+                }
+                if (fa <= 0.0) != (fb <= 0.0) {
+                    kept.push(a + (b - a) * (fa / (fa - fb)));
+                }
+            }
+            polygon = kept;
+        }
+        ConvexPolygon::hull(&polygon).ok()
+    }
+}
