@@ -42,6 +42,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "assessment",
+        &["obstacle", "trajectory", "geometry", "frame", "tolerance"],
+    ),
+    (
         "planner",
         &[
             "obstacle",
@@ -132,6 +136,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "target",
             "colregs",
             "obstacle",
+            "assessment",
             "planner",
             "evaluation",
             "scenario",
