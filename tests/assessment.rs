@@ -51,7 +51,11 @@ fn situation<'a>(rng: &mut ChaCha8Rng, obstacles: &'a [TargetObstacle]) -> Situa
         pose: Pose::new(Vector::zeros(), rng.random_range(-PI..PI)),
         speed: rng.random_range(1.0..8.0),
         max_speed: 9.0,
-        horizon: if rng.random_bool(0.8) { 300.0 } else { f64::INFINITY },
+        horizon: if rng.random_bool(0.8) {
+            300.0
+        } else {
+            f64::INFINITY
+        },
         obstacles,
     }
 }
@@ -71,20 +75,32 @@ fn sampled(step: f64, last: f64, free: impl Fn(f64) -> bool) -> Option<f64> {
 }
 
 /// The closed form is never later than the samples, free itself, and what lies before it is not.
-fn holds(exact: Option<f64>, sampled: Option<f64>, step: f64, free: impl Fn(f64) -> bool, what: &str) {
+fn holds(
+    exact: Option<f64>,
+    sampled: Option<f64>,
+    step: f64,
+    free: impl Fn(f64) -> bool,
+    what: &str,
+) {
     match (exact, sampled) {
         (Some(exact), sampled) => {
             assert!(free(exact), "{what}: {exact} is not free");
             assert!(exact >= 0.0);
             if let Some(sampled) = sampled {
-                assert!(exact <= sampled + 1e-8, "{what}: {exact}, sampled {sampled}");
+                assert!(
+                    exact <= sampled + 1e-8,
+                    "{what}: {exact}, sampled {sampled}"
+                );
             }
             for i in 0..((exact - 1e-8) / step).max(0.0) as usize {
                 assert!(!free(i as f64 * step), "{what}: {i} before {exact}");
             }
             // and up to the boundary itself
             let before = exact - 1e-6;
-            assert!(before <= 0.0 || !free(before), "{what}: {exact} is not the first");
+            assert!(
+                before <= 0.0 || !free(before),
+                "{what}: {exact} is not the first"
+            );
         }
         (None, Some(sampled)) => panic!("{what}: none, sampled {sampled}"),
         (None, None) => {}
@@ -132,7 +148,10 @@ fn the_least_alteration_is_that_of_a_dense_search() {
         }
         changed += usize::from(found.speed.is_some_and(|c| c != 0.0));
     }
-    assert!(turned > 100 && none > 5 && changed > 50, "{turned} {none} {changed}");
+    assert!(
+        turned > 100 && none > 5 && changed > 50,
+        "{turned} {none} {changed}"
+    );
 }
 
 fn mirrored(obstacle: &TargetObstacle) -> TargetObstacle {
@@ -197,7 +216,10 @@ fn a_mirrored_scene_has_the_mirrored_answer() {
 fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
     let around = |center: Vector| {
         let sides = [(10.0, -5.0), (10.0, 5.0), (-10.0, 5.0), (-10.0, -5.0)];
-        let corners: Vec<Vector> = sides.iter().map(|&(x, y)| center + Vector::new(x, y)).collect();
+        let corners: Vec<Vector> = sides
+            .iter()
+            .map(|&(x, y)| center + Vector::new(x, y))
+            .collect();
         ConvexPolygon::hull(&corners).expect("finite")
     };
     let at = |center: Vector, velocity: Vector| -> TargetObstacle {
@@ -223,7 +245,10 @@ fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
         speed: Some(0.0),
     };
     assert_eq!(still(&[at(Vector::zeros(), Vector::zeros())], 5.0), nothing);
-    assert_eq!(still(&[at(Vector::new(0.0, 900.0), Vector::zeros())], 5.0), held);
+    assert_eq!(
+        still(&[at(Vector::new(0.0, 900.0), Vector::zeros())], 5.0),
+        held
+    );
     assert_eq!(still(&[], 5.0), held);
     // stopped, with a target on its way to her: turning does not help, way on does
     let stopped = still(&[at(Vector::new(0.0, 400.0), Vector::new(0.0, -2.0))], 0.0);

@@ -93,13 +93,13 @@ impl Search<'_> {
             };
             let end = match &cover.regions {
                 // a region that does not hold it holds it but for rounding
-                Some(regions) => regions
-                    .iter()
-                    .find(|r| r.contains(velocity(turn)))
-                    .map_or(Some(turn), |region| {
+                Some(regions) => regions.iter().find(|r| r.contains(velocity(turn))).map_or(
+                    Some(turn),
+                    |region| {
                         let clockwise = |angle: f64| sign * (angle - pose.heading);
                         turn_out_of(region, clockwise, speed, turn)
-                    }),
+                    },
+                ),
                 None => {
                     let inside = |v| self.covered_by(cover, v);
                     let on_circle = |at: f64, factor: f64| velocity(at) * factor;
