@@ -177,6 +177,7 @@ const NEVER: &[(&str, &str)] = &[
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
     ("parry2d_f64", &["geometry/", "map.rs", "obstacle/index.rs"]),
+    ("kuva", &["report/figure/"]),
     ("clap", &["cli/", "main.rs"]),
     ("to_degrees", &["frame.rs"]),
     ("to_radians", &["frame.rs"]),
@@ -405,6 +406,7 @@ fn every_border_can_be_broken() {
         ("report/table.rs", "use crate::recording::Recording;"),
         ("colregs/domain.rs", "use crate::cli::output;"),
         ("target.rs", "use rerun::RecordingStream;"),
+        ("report/table.rs", "use kuva::plot::LinePlot;"),
         ("trajectory/mod.rs", "use parry2d_f64::math::Point;"),
         ("report/table.rs", "#[derive(clap::ValueEnum)] enum A { B }"),
         (

@@ -834,3 +834,42 @@ fn what_an_assessment_cannot_read_is_named() {
         .stdout(is_empty())
         .stderr(contains("mixed.toml").and(contains("targets[1].velocity_set")));
 }
+
+#[test]
+fn an_assessment_can_be_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = "scenarios/colregs/give-way.toml";
+    let drawn = |name: &str| {
+        let file = folder.path().join(name);
+        searoom(&[
+            "assess",
+            scenario,
+            "--section",
+            "0",
+            "--section",
+            "100",
+            "--figure",
+            text(&file),
+        ])
+        .success()
+        .stderr(is_empty())
+        .stdout(contains("Give-way"));
+        fs::read(&file).expect("written")
+    };
+    let svg = drawn("new/a.svg");
+    assert!(svg.starts_with(b"<svg"));
+    assert_eq!(svg, drawn("b.SVG"), "the same bytes");
+    assert!(drawn("a.png").starts_with(b"\x89PNG\r\n\x1a\n"));
+    for (name, said) in [
+        ("a.pdf", "allowed: one of the two"),
+        ("a", "neither in .svg nor in .png"),
+        ("a.svg/b.svg", "the folder cannot be made"),
+        (".", "neither"),
+    ] {
+        let path = folder.path().join("new").join(name);
+        searoom(&["assess", scenario, "--figure", text(&path)])
+            .code(2)
+            .stdout(is_empty())
+            .stderr(contains(said));
+    }
+}

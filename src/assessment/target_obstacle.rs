@@ -27,6 +27,10 @@ impl Section {
 
 /// The obstacle of one target.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a scenario has a few, and they are lent"
+)]
 pub enum TargetObstacle {
     /// Two polygons.
     Polytope(PolytopeObstacle),
@@ -65,6 +69,15 @@ impl TargetObstacle {
             Self::Polytope(obstacle) => Section::Polygon(obstacle.section(time)),
             Self::Ellipsoid(obstacle) => Section::Ellipse(obstacle.outer_section(time)),
             Self::Slabs(obstacle) => Section::Polygon(obstacle.section(time)),
+        }
+    }
+
+    /// The set `O_alpha` with `alpha = 1 - risk`: where the risk is at least that. Risk 0 is the set itself.
+    pub fn at_risk(&self, risk: f64) -> Self {
+        match self {
+            Self::Polytope(obstacle) => Self::Polytope(obstacle.at_risk(risk)),
+            Self::Ellipsoid(obstacle) => Self::Ellipsoid(obstacle.at_risk(risk)),
+            Self::Slabs(obstacle) => Self::Slabs(obstacle.at_risk(risk)),
         }
     }
 

@@ -61,6 +61,9 @@ pub struct AssessArgs {
     /// The sets with the domains around them instead of the hard ones
     #[arg(long)]
     pub shaped: bool,
+    /// Draw sections, risk at the times of the sections, and dCPA: a file ending in .svg or .png
+    #[arg(long, value_name = "PATH")]
+    pub figure: Option<PathBuf>,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,

@@ -5,9 +5,11 @@ use searoom::frame::Vector;
 use searoom::pipeline;
 use searoom::report::assessment_text;
 use searoom::report::document::AssessmentDocument;
+use searoom::report::figure::assessment_figure;
 use searoom::scenario::{Scenario, ScenarioError};
 
 use super::args::AssessArgs;
+use super::figure;
 use super::output::Output;
 use super::rows;
 use super::runner::guarded;
@@ -21,6 +23,13 @@ pub fn assess(args: &AssessArgs, output: &Output) -> Status {
             "{}: a folder; `assess` takes one scenario",
             file.display()
         ));
+        return Status::BadInput;
+    }
+    // before anything is computed
+    if let Some(path) = &args.figure
+        && let Err(error) = figure::prepare(path)
+    {
+        output.error(&format_args!("{error:#}"));
         return Status::BadInput;
     }
     match guarded(|| read(args)) {
@@ -96,7 +105,17 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
         obstacles: &obstacles,
     };
     let assessment = answer(&situation, query);
-    if args.json {
+    let drawn = match &args.figure {
+        Some(path) => match assessment_figure(&situation, &query.sections).write(path) {
+            Ok(()) => Status::Good,
+            Err(error) => {
+                output.error(&error);
+                Status::BadInput
+            }
+        },
+        None => Status::Good,
+    };
+    drawn.max(if args.json {
         output.document(&AssessmentDocument::of(
             &scenario.title,
             scenario.horizon,
@@ -106,5 +125,5 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
     } else {
         let text = assessment_text(&scenario.title, args.shaped, &situation, &assessment);
         output.result(&text)
-    }
+    })
 }

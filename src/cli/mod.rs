@@ -3,6 +3,7 @@
 mod args;
 mod assess;
 mod check;
+mod figure;
 mod files;
 mod output;
 mod plan;

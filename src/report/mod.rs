@@ -3,6 +3,7 @@
 
 mod assessment;
 pub mod document;
+pub mod figure;
 mod summary;
 mod table;
 mod words;
