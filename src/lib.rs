@@ -66,7 +66,7 @@
 //! | [`scenario`] | scenario files: every fault of a file at once |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
 //! | [`simulation`] | random encounters, and targets that do anything their sets allow |
-//! | [`report`] | tables and JSON documents |
+//! | [`report`] | tables, JSON documents and figures |
 //! | `recording` | Rerun recordings (feature `recording`, on by default) |
 //!
 //! # Example

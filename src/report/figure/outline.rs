@@ -181,3 +181,68 @@ pub fn square(limit: f64) -> ConvexPolygon {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     ConvexPolygon::from_ccw(corners.map(|(x, y)| Vector::new(x, y) * limit).to_vec())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::obstacle::SlabObstacle;
+    use crate::target::VelocitySpell;
+
+    fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
+        let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+        let corners = corners.map(|(x, y)| center + Vector::new(x * length, y * beam));
+        ConvexPolygon::from_ccw(corners.to_vec())
+    }
+
+    /// What is drawn against the closest approach itself.
+    #[test]
+    fn the_velocities_drawn_are_those_that_come_so_near() {
+        let (place, way) = (Vector::new(300.0, 80.0), Vector::new(-2.0, -0.5));
+        let spells = [(70.0, 0.2), (f64::INFINITY, 0.9)].map(|(until, wide)| VelocitySpell {
+            until,
+            velocities: rectangle(way, wide, wide),
+        });
+        let ellipse = |center: Vector, a: f64, b: f64| {
+            Ellipse::from_axes(center, [Vector::new(a, 0.0), Vector::new(0.0, b)])
+        };
+        let targets: [TargetObstacle; 3] = [
+            PolytopeObstacle::new("", rectangle(place, 30.0, 10.0), rectangle(way, 0.4, 0.2))
+                .into(),
+            EllipsoidObstacle::new("", ellipse(place, 30.0, 10.0), ellipse(way, 0.4, 0.2)).into(),
+            SlabObstacle::new("", rectangle(place, 30.0, 10.0), spells.to_vec())
+                .expect("increasing")
+                .into(),
+        ];
+        let (position, limit) = (Vector::new(-10.0, 5.0), 12.0);
+        for horizon in [200.0, f64::INFINITY] {
+            let approach = Approaching { position, horizon };
+            for (target, distance) in targets
+                .iter()
+                .flat_map(|t| [0.0, 25.0, 120.0].map(|d| (t, d)))
+            {
+                let drawn = sampled_velocities_within(target, &approach, distance, limit);
+                for i in 0..61 * 61 {
+                    let v = Vector::new(f64::from(i % 61) - 30.0, f64::from(i / 61) - 30.0) * 0.2;
+                    let nearest = target.as_obstacle().closest_approach(position, v, horizon);
+                    let beyond = drawn.iter().map(|d| d.signed_distance(v));
+                    let beyond = beyond.fold(f64::INFINITY, f64::min);
+                    let near = nearest.distance <= distance * 1.002 + 1e-6;
+                    assert!(beyond > -0.01 || near, "{distance} {v:?} {nearest:?}");
+                    let far = nearest.distance >= distance - 1e-6;
+                    assert!(beyond < 0.01 || far, "{distance} {v:?} {nearest:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_area_is_the_polygon_that_it_fills() {
+        let Some(Plot::Band(band)) = area(&rectangle(Vector::zeros(), 2.0, 1.0), "#000000", 1.0)
+        else {
+            panic!("a band");
+        };
+        assert_eq!(band.x, [-2.0, 2.0]);
+        assert_eq!((band.y_lower, band.y_upper), (vec![-1.0; 2], vec![1.0; 2]));
+        assert!(area(&ConvexPolygon::point(Vector::zeros()), "#000000", 1.0).is_none());
+    }
+}

@@ -30,8 +30,8 @@ const COVERED: Stroke = Stroke {
     dashed: true,
 };
 
-/// Sections that the covered part is drawn from.
-const SWEEP: usize = 200;
+/// Sections that the covered part of ellipses is drawn from; between them its sides are all but straight.
+const SWEEP: usize = 12;
 
 /// Pieces of a side of the space-time body; dashes need some length.
 const SIDE: usize = 25;
