@@ -219,9 +219,10 @@ pub(crate) fn reduce_matrix(lower: &Matrix, solved: &[Row], free: usize) -> Matr
             }
         }
     }
-    for i in 0..free {
-        for k in 0..i {
-            reduced[k][i] = reduced[i][k];
+    for i in 1..free {
+        let (above, below) = reduced.split_at_mut(i);
+        for (row, mirrored) in above.iter_mut().zip(&below[0]) {
+            row[i] = *mirrored;
         }
     }
     reduced
