@@ -52,6 +52,8 @@ pub(crate) struct Conflict {
     pub through: f64,
     /// Metres to starboard and to port that clear the set throughout.
     pub offsets: [f64; 2],
+    /// Metres astern that clear the set throughout, and the time at which so many are needed.
+    pub astern: (f64, f64),
 }
 
 impl Conflict {
@@ -62,7 +64,12 @@ impl Conflict {
 
     /// Metres sailed inside over the shortest way around.
     pub(crate) fn slenderness(&self) -> f64 {
-        self.through / self.offsets[0].min(self.offsets[1]).max(1.0)
+        self.through / self.nearest_offset().max(1.0)
+    }
+
+    /// Metres to the nearer side.
+    pub(crate) fn nearest_offset(&self) -> f64 {
+        self.offsets[0].min(self.offsets[1])
     }
 
     /// The contact of one hazard with the undisturbed motion, from first to last instant.
@@ -74,6 +81,7 @@ impl Conflict {
             to: from,
             through: 0.0,
             offsets: [0.0; 2],
+            astern: (0.0, from),
         };
         for k in 0..=CONFLICT_SAMPLES {
             let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
@@ -86,6 +94,10 @@ impl Conflict {
                 continue;
             }
             conflict.to = time;
+            let behind = hazard.way_out(pose.position, time, -pose.ahead());
+            if behind > conflict.astern.0 {
+                conflict.astern = (behind, time);
+            }
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
                 *offset = offset.max(hazard.way_out(pose.position, time, beam));
@@ -101,6 +113,9 @@ impl Conflict {
 
 /// Radians at which a canonical manoeuvre returns, the flattest that fits.
 const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
+
+/// Radians.
+const WAITING_TURN: f64 = 0.4;
 
 /// Instants at which a conflict's width is taken.
 const CONFLICT_SAMPLES: usize = 24;
@@ -274,6 +289,45 @@ impl Canonical {
         );
         draft.seed(Ending::Return { leg, speed: fast })
     }
+}
+
+/// A manoeuvre that lets the target pass ahead: as late as will do, own ship slows down and loses way by a
+/// turn of [`WAITING_TURN`] to the side, twice as far back, and on to the route.
+pub(crate) fn waiting(
+    problem: &Problem,
+    side: Side,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (slow, normal, fast) = (paces.slow, paces.normal, paces.fast);
+    let (lag, due) = conflict.astern;
+    let begin = due - lag / (normal - slow * WAITING_TURN.cos());
+    let arc = WAITING_TURN * problem.own.turning_radius;
+    let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
+    // negated on purpose: a NaN is no seed
+    if !(normal > slow && begin > 0.0 && lines.is_finite()) {
+        return None;
+    }
+    let back = side.opposite();
+    let mut draft = Draft::default();
+    draft.runs(&paces, begin * normal, 0.0, 0.0);
+    draft.turn(side, &[(fast, 0.0), (slow, arc)]);
+    draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
+    draft.spare(&[
+        Slot::Arc { side, speed: fast },
+        Slot::Line { speed: slow },
+        Slot::Line { speed: fast },
+    ]);
+    draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
+    draft.line(&[(slow, 0.4 * lines)]);
+    draft.spare(&[Slot::Line { speed: normal }]);
+    draft.line(&[(fast, 0.0)]);
+    draft.turn(back, &[(fast, 0.0)]);
+    draft.spare(&[Slot::Line { speed: normal }]);
+    draft.line(&[(fast, 0.0)]);
+    draft.turn(back, &[(fast, 0.0)]);
+    draft.seed(Ending::Return { leg, speed: fast })
 }
 
 /// A plan of the graph as a seed: its arcs and lines in its own order, each with the other speeds beside

@@ -5,7 +5,7 @@ use super::hazard::first_met;
 use super::model::Scene;
 use super::node::State;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
-use super::seeds::{Canonical, Conflict, from_graph};
+use super::seeds::{Canonical, Conflict, from_graph, waiting};
 use crate::frame::{Side, cross};
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
@@ -66,6 +66,9 @@ const SLENDER_FROM: f64 = 2.5;
 
 /// A side whose offset is this many times the other's gets one manoeuvre only.
 const FAR_SIDE: f64 = 1.8;
+
+/// Way lost over way around below which waiting is tried as well.
+const WORTH_WAITING: f64 = 0.85;
 
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
@@ -162,6 +165,10 @@ impl<'a> Selection<'a> {
         let mut seeds = std::mem::take(&mut self.seeds);
         let leg = problem.desired.legs().len() - 1;
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
+            if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
+                let both = Side::BOTH.into_iter();
+                seeds.extend(both.filter_map(|side| waiting(problem, side, conflict, leg)));
+            }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             for side in Side::BOTH {
