@@ -1,6 +1,7 @@
 //! Space-time obstacles: convex bodies that contain every position a target may reach, at every time.
 
 pub mod contact;
+mod meeting;
 mod polytope;
 mod projection;
 
