@@ -416,6 +416,7 @@ mod tests {
             lead: 0.9,
             reach: 1.0,
             slow: false,
+            rush: 0.0,
         };
         let conflict = Conflict {
             from: 140.0,

@@ -182,10 +182,15 @@ impl Refinement {
         self.model.cost + self.penalty * self.model.violation
     }
 
-    /// What the manoeuvre at hand will cost once it is clear, to first order: the missing metres at the
-    /// multipliers of the last step, m².
-    pub(crate) fn expected_cost(&self) -> f64 {
-        self.model.cost + self.price * self.model.violation
+    /// Sum of the multipliers of the last step: what a missing metre costs to first order, m²/m.
+    pub(crate) fn price(&self) -> f64 {
+        self.price
+    }
+
+    /// What the manoeuvre at hand will cost once it is clear, to first order, m²: the missing metres at the
+    /// multipliers of its last step, or at `least` where those are smaller.
+    pub(crate) fn expected_cost(&self, least: f64) -> f64 {
+        self.model.cost + self.price.max(least) * self.model.violation
     }
 
     /// Gives up: another one is ahead.

@@ -132,6 +132,8 @@ pub(crate) struct Canonical {
     pub reach: f64,
     /// The turn out at the least speed, not at the greatest.
     pub slow: bool,
+    /// Share of the time before it that is sailed at the greatest speed.
+    pub rush: f64,
 }
 
 /// Slots and lengths while they are put together.
@@ -245,7 +247,12 @@ impl Canonical {
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
             .max(0.0);
         let mut draft = Draft::default();
-        draft.runs(&paces, lead, 0.0, 0.0);
+        draft.runs(
+            &paces,
+            (1.0 - self.rush) * lead,
+            self.rush * departure * fast,
+            0.0,
+        );
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();
