@@ -259,10 +259,10 @@ mod tests {
                     let moved = [e - c * place[1], n + c * place[0], t];
                     dot3(rates, if i == slot { own } else { moved })
                 };
-                for i in 0..=slot {
+                for (i, row) in slow.iter_mut().enumerate().take(slot + 1) {
                     slow_gradient[i] += scale * value * of(i);
-                    for k in 0..=i {
-                        slow[i][k] += scale * of(i) * of(k);
+                    for (k, sum) in row.iter_mut().enumerate().take(i + 1) {
+                        *sum += scale * of(i) * of(k);
                     }
                 }
             }
@@ -302,13 +302,13 @@ mod tests {
                 solved[slot - free][i]
             }
         };
-        for i in 0..free {
-            for k in 0..free {
+        for (i, row) in reduced.iter().enumerate().take(free) {
+            for (k, found) in row.iter().enumerate().take(free) {
                 let sum: f64 = (0..all)
                     .flat_map(|a| (0..all).map(move |b| (a, b)))
                     .map(|(a, b)| rate(a, i) * lower[a.max(b)][a.min(b)] * rate(b, k))
                     .sum();
-                assert!((reduced[i][k] - sum).abs() < 1e-9, "slots {i} {k}");
+                assert!((found - sum).abs() < 1e-9, "slots {i} {k}");
             }
         }
     }
