@@ -117,6 +117,11 @@ const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 /// Radians.
 const WAITING_TURN: f64 = 0.4;
 
+/// Metres by which own ship goes on beyond the route behind a target that she let pass, and radians at which she
+/// comes back.
+const OVERSHOOT_M: f64 = 50.0;
+const OVERSHOOT_RETURN: f64 = 0.15;
+
 /// Instants at which a conflict's width is taken.
 const CONFLICT_SAMPLES: usize = 24;
 
@@ -303,17 +308,19 @@ impl Canonical {
 pub(crate) fn waiting(
     problem: &Problem,
     side: Side,
+    across: bool,
     conflict: &Conflict,
     leg: usize,
 ) -> Option<Seed> {
     let paces = Paces::of(problem);
     let (slow, normal, fast) = (paces.slow, paces.normal, paces.fast);
     let (lag, due) = conflict.astern;
-    let begin = due - lag / (normal - slow * WAITING_TURN.cos());
+    let needed = lag / (normal - slow * WAITING_TURN.cos());
+    let begin = (due - needed).max(0.0);
     let arc = WAITING_TURN * problem.own.turning_radius;
     let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
     // negated on purpose: a NaN is no seed
-    if !(normal > slow && begin > 0.0 && lines.is_finite()) {
+    if !(normal > slow && needed < 1.3 * due && lines.is_finite()) {
         return None;
     }
     let back = side.opposite();
@@ -329,6 +336,18 @@ pub(crate) fn waiting(
     draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
     draft.line(&[(slow, 0.4 * lines)]);
     draft.spare(&[Slot::Line { speed: normal }]);
+    if across {
+        let (sine, cosine) = WAITING_TURN.sin_cos();
+        let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
+        draft.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
+        draft.turn(back, &[(fast, 0.0)]);
+        draft.turn(
+            side,
+            &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
+        );
+        draft.line(&[(fast, 0.0)]);
+        return draft.seed(Ending::Return { leg, speed: fast });
+    }
     draft.line(&[(fast, 0.0)]);
     draft.turn(back, &[(fast, 0.0)]);
     draft.spare(&[Slot::Line { speed: normal }]);

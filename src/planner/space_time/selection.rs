@@ -187,8 +187,13 @@ impl<'a> Selection<'a> {
         let leg = problem.desired.legs().len() - 1;
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
             if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
-                let both = Side::BOTH.into_iter();
-                seeds.extend(both.filter_map(|side| waiting(problem, side, conflict, leg)));
+                for across in [false, true] {
+                    seeds.extend(
+                        Side::BOTH
+                            .into_iter()
+                            .filter_map(|side| waiting(problem, side, across, conflict, leg)),
+                    );
+                }
             }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
