@@ -9,6 +9,7 @@ mod cpa;
 mod ellipse_sum;
 mod ellipsoid;
 mod ellipsoid_contact;
+mod meeting;
 mod polytope;
 mod projection;
 mod risk;

@@ -22,6 +22,7 @@ mod keep_out;
 mod model;
 mod moments;
 mod node;
+mod outside;
 mod quadratic;
 mod refinement;
 mod returning;
@@ -46,8 +47,9 @@ use route::Route;
 use seeds::Conflict;
 use selection::Selection;
 
-/// Expansions of one search at most: the bound on its memory. Typical searches need a hundredth.
-const MAX_EXPANDED: usize = 20_000;
+/// Expansions of one search at most: the bound on its memory and time. Alone a search needs some tens; among
+/// ten targets no plan came of more than this.
+const MAX_EXPANDED: usize = 2_000;
 
 /// Metres. Sets narrower than twice this are grown by it.
 const LEAST_RADIUS_M: f64 = 5e-4;

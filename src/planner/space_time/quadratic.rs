@@ -167,9 +167,9 @@ impl Programme<'_> {
                 worst = (v, Some(kind));
             }
         };
-        for i in 0..self.size {
-            look(Kind::Low(i), (x[i] - self.low[i]) * scales.low[i]);
-            look(Kind::High(i), (self.high[i] - x[i]) * scales.high[i]);
+        for (i, x) in x.iter().enumerate().take(self.size) {
+            look(Kind::Low(i), (x - self.low[i]) * scales.low[i]);
+            look(Kind::High(i), (self.high[i] - x) * scales.high[i]);
         }
         for (r, scale) in scales.rows.iter().enumerate() {
             // left out rows have no weight
