@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::frame::{Pose, Vector};
-use crate::target::{DomainKind, ShipTrack};
+use crate::target::{DomainKind, Representation, ShipTrack};
 use crate::vessel::Hull;
 
 const RADIUS: f64 = 100.0;
@@ -73,11 +73,7 @@ fn below(upper: f64) -> SpaceTimeSet {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
         ConvexPolygon::hull(&points).expect("finite")
     };
-    SpaceTimeSet {
-        name: "below".to_owned(),
-        initial: set(&corners),
-        velocity: set(&speeds),
-    }
+    SpaceTimeSet::polytope("below", set(&corners), set(&speeds))
 }
 
 fn ship(y: f64, speed: f64) -> Target {
@@ -93,8 +89,10 @@ fn ship(y: f64, speed: f64) -> Target {
             position_std: 2.0,
             speed_spread: 0.5,
             course_spread: 0.02,
+            turn_rate: 0.0,
             domain: DomainKind::Hull,
         }),
+        representation: Representation::Polytope,
     }
 }
 
@@ -107,6 +105,7 @@ fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Eva
         sets,
         horizon: 400.0,
         time_weight: 25.0,
+        max_risk: 0.0,
     })
 }
 
@@ -242,16 +241,15 @@ fn the_depth_decides_on_an_arc() {
 fn a_set_crossed_between_any_two_samples_is_found() {
     // a needle that own ship meets for a hundredth of a second
     let at = plan()[0].pose_at(17.0).position;
-    let thin = |half: f64| SpaceTimeSet {
-        name: "needle".to_owned(),
-        initial: ConvexPolygon::hull(&[
+    let thin = |half: f64| {
+        let initial = ConvexPolygon::hull(&[
             at + Vector::new(-half, 30.0),
             at + Vector::new(half, 30.0),
             at + Vector::new(half, -30.0),
             at + Vector::new(-half, -30.0),
         ])
-        .expect("finite"),
-        velocity: ConvexPolygon::point(Vector::zeros()),
+        .expect("finite");
+        SpaceTimeSet::polytope("needle", initial, ConvexPolygon::point(Vector::zeros()))
     };
     for half in [0.025, 1e-4, 2e-6, 0.0] {
         assert_eq!(
@@ -306,6 +304,7 @@ fn what_is_not_a_number_is_never_verified() {
         sets: &[],
         horizon: f64::NAN,
         time_weight: 25.0,
+        max_risk: 0.0,
     });
     assert_eq!(words(&found), ["start", "turn", "arrival"]);
 }

@@ -251,6 +251,7 @@ mod tests {
     use crate::planner::space_time::graph::Graph;
     use crate::planner::space_time::hazard::Hazard;
     use crate::planner::space_time::node::State;
+    use crate::planner::space_time::part::parts;
     use crate::planner::space_time::plan;
     use crate::planner::space_time::route::Route;
     use crate::planner::{Problem, SearchKind};
@@ -282,7 +283,8 @@ mod tests {
         let route = Route::new(problem).expect("a route");
         let mut undisturbed = Vec::new();
         route.follow(0.0, 0.0, &mut undisturbed);
-        let hazards: Vec<Hazard> = problem.obstacles.iter().map(Hazard::new).collect();
+        let parts = parts(problem.obstacles, problem.horizon);
+        let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
         let mut graph = Graph::new(problem, &hazards, &route, &undisturbed);
         let mut search = Search::new(graph.root());
         let mut joints: Vec<(State, f64)> = Vec::new();

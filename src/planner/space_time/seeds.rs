@@ -65,9 +65,12 @@ impl Conflict {
         self.through / self.offsets[0].min(self.offsets[1]).max(1.0)
     }
 
-    /// The contact of one hazard with the undisturbed motion, from first to last instant.
-    pub(crate) fn of(hazard: &Hazard, undisturbed: &[Segment]) -> Option<Self> {
-        let from = undisturbed.iter().find_map(|s| hazard.first_contact(s))?;
+    /// The contact of one obstacle, given by its hazards, with the undisturbed motion, from first to last instant.
+    pub(crate) fn of(hazards: &[Hazard], undisturbed: &[Segment]) -> Option<Self> {
+        let from = hazards
+            .iter()
+            .filter_map(|h| undisturbed.iter().find_map(|s| h.first_contact(s)))
+            .min_by(f64::total_cmp)?;
         let end = undisturbed.last()?.end_time();
         let mut conflict = Self {
             from,
@@ -82,9 +85,13 @@ impl Conflict {
                 .find(|s| s.end_time() >= time)
                 .or(undisturbed.last())?;
             let pose = segment.pose_at(time);
-            if hazard.body.slack(pose.position, time).value > 0.0 {
+            let inside = |h: &&Hazard| {
+                h.slack(pose.position, time)
+                    .is_some_and(|slack| !(slack > 0.0))
+            };
+            let Some(hazard) = hazards.iter().find(inside) else {
                 continue;
-            }
+            };
             conflict.to = time;
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
