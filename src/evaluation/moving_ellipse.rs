@@ -123,33 +123,20 @@ impl MovingEllipse {
             normal.dot(&position) - self.line(normal, time).support
         };
         let step = std::f64::consts::TAU / DIRECTIONS as f64;
+        let mut sampled = [0.0; DIRECTIONS];
+        for (k, value) in sampled.iter_mut().enumerate() {
+            *value = beyond(step * k as f64);
+        }
+        // inside there may be several local maxima
         let (mut angle, mut best) = (0.0, f64::NEG_INFINITY);
-        for k in 0..DIRECTIONS {
-            let found = beyond(step * k as f64);
-            if found > best {
-                (angle, best) = (step * k as f64, found);
-            }
-        }
-        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let (mut low, mut high) = (angle - step, angle + step);
-        let (mut left, mut right) = (high - golden * 2.0 * step, low + golden * 2.0 * step);
-        let (mut at_left, mut at_right) = (beyond(left), beyond(right));
-        for _ in 0..GOLDEN_STEPS {
-            if at_left > at_right {
-                high = right;
-                (right, at_right) = (left, at_left);
-                left = high - golden * (high - low);
-                at_left = beyond(left);
-            } else {
-                low = left;
-                (left, at_left) = (right, at_right);
-                right = low + golden * (high - low);
-                at_right = beyond(right);
-            }
-        }
-        for (other, found) in [(left, at_left), (right, at_right)] {
-            if found > best {
-                (angle, best) = (other, found);
+        for (k, here) in sampled.iter().enumerate() {
+            let before = sampled[(k + DIRECTIONS - 1) % DIRECTIONS];
+            let after = sampled[(k + 1) % DIRECTIONS];
+            if *here >= before && *here >= after {
+                let (other, found) = golden_maximum(step * k as f64, step, beyond);
+                if found > best {
+                    (angle, best) = (other, found);
+                }
             }
         }
         let normal = direction(angle);
@@ -160,4 +147,28 @@ impl MovingEllipse {
             lower: best - rate.abs() * half - bend,
         }
     }
+}
+
+/// The largest value of a function, and where, within a distance of a place: by golden section.
+fn golden_maximum(place: f64, reach: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut low, mut high) = (place - reach, place + reach);
+    let (mut left, mut right) = (high - golden * 2.0 * reach, low + golden * 2.0 * reach);
+    let (mut at_left, mut at_right) = (value(left), value(right));
+    for _ in 0..GOLDEN_STEPS {
+        if at_left > at_right {
+            high = right;
+            (right, at_right) = (left, at_left);
+            left = high - golden * (high - low);
+            at_left = value(left);
+        } else {
+            low = left;
+            (left, at_left) = (right, at_right);
+            right = low + golden * (high - low);
+            at_right = value(right);
+        }
+    }
+    [(left, at_left), (right, at_right)]
+        .into_iter()
+        .fold((place, value(place)), |a, b| if b.1 > a.1 { b } else { a })
 }

@@ -255,3 +255,154 @@ fn polygon(list: &Entry, range: Range) -> Option<ConvexPolygon> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::scenario::Scenario;
+    use crate::target::{Motion, Representation};
+
+    const LEAST: &str = r#"
+title = "least"
+horizon_s = 400
+own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }
+mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1500, north_m = 0 }] }
+[[targets]]
+name = "sets"
+"#;
+    const POLYGON: &str = "initial_set = { vertices_m = [[700, 0], [710, 0], [700, 10]] }\n";
+    const ELLIPSE: &str = "initial_set = { center_m = [700, 0], shape_m2 = [[9, 1], [1, 4]] }\n";
+    const VELOCITIES: &str = "velocity_set = { vertices_mps = [[1, 0], [0, 1]] }\n";
+    const ROUND: &str =
+        "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = [[0.1, 0], [0, 0]] }\n";
+
+    fn read(sets: &[&str]) -> Result<Scenario, Vec<String>> {
+        Scenario::parse(&format!("{LEAST}{}", sets.concat())).map_err(|faults| {
+            let short = |path: &str| path.replace("targets[0].", "");
+            faults.iter().map(|f| short(&f.path)).collect()
+        })
+    }
+
+    #[test]
+    fn every_kind_is_read() {
+        let ellipses = read(&[ELLIPSE, ROUND]).expect("valid");
+        let Motion::Ellipses { initial, velocity } = &ellipses.targets[0].motion else {
+            panic!("ellipses");
+        };
+        assert!((initial.shape()[(0, 1)] - 1.0).abs() < 1e-12 && velocity.center().y == 1.0);
+        assert!(read(&[ELLIPSE, ROUND, "representation = \"ellipsoid\""]).is_ok());
+        let around = read(&[POLYGON, VELOCITIES, "representation = \"ellipsoid\""]);
+        assert_eq!(
+            around.expect("valid").targets[0].representation,
+            Representation::Ellipsoid
+        );
+        let several = "velocity_sets = [{ until_s = 60, vertices_mps = [[1, 0]] }, { vertices_mps = [[0, 0]] }]";
+        let several = read(&[POLYGON, several]).expect("valid");
+        let Motion::Spells { spells, .. } = &several.targets[0].motion else {
+            panic!("spells");
+        };
+        assert_eq!(spells[0].until, 60.0);
+        assert_eq!(several.targets[0].changes()[0], 60.0);
+        let at = several.targets[0].position_at(100.0);
+        assert!((at.x - (700.0 + 10.0 / 3.0 + 60.0)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn every_mistake_is_one_fault_with_its_place() {
+        for (sets, paths) in [
+            (vec![ELLIPSE, VELOCITIES], vec!["velocity_set"]),
+            (vec![POLYGON, ROUND], vec!["velocity_set"]),
+            (vec![POLYGON], vec!["velocity_set"]),
+            (vec![VELOCITIES], vec!["initial_set"]),
+            (
+                vec![
+                    "initial_set = { center_m = [1, 2], shape_m2 = [[9, 1], [2, 4]] }\n",
+                    "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = [[1, 2], [2, 1]] }",
+                ],
+                vec!["initial_set.shape_m2", "velocity_set.shape_m2_per_s2"],
+            ),
+            (
+                vec![
+                    "initial_set = { center_m = [1, inf], shape_m2 = [[9, 1], [2]] }\n",
+                    "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = 4 }",
+                ],
+                vec![
+                    "initial_set.center_m[1]",
+                    "initial_set.shape_m2[1]",
+                    "velocity_set.shape_m2_per_s2",
+                ],
+            ),
+            (
+                vec![
+                    "initial_set = { center_m = [1, 2], shape_m2 = [[9]], vertices_m = [[1, 2]] }\n",
+                    ROUND,
+                ],
+                vec!["initial_set.vertices_m", "initial_set.shape_m2"],
+            ),
+            (
+                vec![
+                    POLYGON,
+                    "velocity_sets = [{ until_s = 60, vertices_mps = [[1, 0]] }, { until_s = 60, vertices_mps = [] }, { until_s = 70, vertices_mps = [[0, 0]] }]",
+                ],
+                vec![
+                    "velocity_sets[1].until_s",
+                    "velocity_sets[1].vertices_mps",
+                    "velocity_sets[2].until_s",
+                ],
+            ),
+            (
+                vec![POLYGON, "velocity_sets = [{ vertices_mps = [[1, 0]] }, {}]"],
+                vec!["velocity_sets[0].until_s", "velocity_sets[1].vertices_mps"],
+            ),
+            (vec![POLYGON, "velocity_sets = []"], vec!["velocity_sets"]),
+            (
+                vec![ELLIPSE, "velocity_sets = [{ vertices_mps = [[1, 0]] }]"],
+                vec!["velocity_sets"],
+            ),
+            (
+                vec![
+                    POLYGON,
+                    VELOCITIES,
+                    "velocity_sets = [{ vertices_mps = [[1, 0]] }]",
+                ],
+                vec!["velocity_set"],
+            ),
+            (
+                vec![ELLIPSE, ROUND, "representation = \"polytope\""],
+                vec!["representation"],
+            ),
+            (
+                vec![
+                    POLYGON,
+                    "velocity_sets = [{ vertices_mps = [[1, 0]] }]\n",
+                    "representation = \"ellipsoid\"",
+                ],
+                vec!["representation"],
+            ),
+            (
+                vec![POLYGON, VELOCITIES, "turn_rate_deg_per_s = 0"],
+                vec!["turn_rate_deg_per_s"],
+            ),
+        ] {
+            let mut found = read(&sets).expect_err("faulty");
+            found.sort();
+            let mut paths = paths.clone();
+            paths.sort();
+            assert_eq!(found, paths, "{sets:?}");
+        }
+    }
+
+    #[test]
+    fn a_ship_that_may_turn_is_no_ellipsoid() {
+        let ship = "position = { east_m = 900, north_m = 0 }\ncourse_deg = 0\nspeed_mps = 4\nlength_m = 50\nbeam_m = 10\n";
+        assert!(read(&[ship, "turn_rate_deg_per_s = 0.1"]).is_ok());
+        let both = [
+            ship,
+            "turn_rate_deg_per_s = 0.1\nrepresentation = \"ellipsoid\"",
+        ];
+        assert_eq!(read(&both).expect_err("faulty"), ["representation"]);
+        assert_eq!(
+            read(&[ship, "turn_rate_deg_per_s = -0.1"]).expect_err("faulty"),
+            ["turn_rate_deg_per_s"]
+        );
+    }
+}

@@ -257,6 +257,7 @@ mod tests {
     use crate::planner::{Problem, SearchKind};
     use crate::search::{Search, Space, Stop};
     use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
+    use crate::target::{Motion, Representation, Target};
 
     /// The same graph without its bound.
     struct Blind<'a, 'b>(&'b mut Graph<'a>);
@@ -319,6 +320,17 @@ mod tests {
         nearest
     }
 
+    fn ellipsoid(target: &mut Target) {
+        target.representation = Representation::Ellipsoid;
+    }
+
+    fn turning(target: &mut Target) {
+        target.representation = Representation::Polytope;
+        if let Motion::Ship(ship) = &mut target.motion {
+            ship.turn_rate = 7e-4;
+        }
+    }
+
     #[test]
     fn no_way_costs_less_than_its_bounds() {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
@@ -329,20 +341,23 @@ mod tests {
         });
         let mut greatest = 0.0_f64;
         for drawn in encounters.chain(traffic) {
-            let scenario = drawn.expect("drawn").scenario;
-            let obstacles: Vec<_> = pipeline::sets(&scenario)
-                .into_iter()
-                .map(|s| s.shaped)
-                .collect();
-            greatest = greatest.max(nearest(&Problem {
-                own: &scenario.own_ship,
-                desired: &scenario.desired,
-                obstacles: &obstacles,
-                horizon: scenario.horizon,
-                time_weight: scenario.time_weight,
-                search: SearchKind::AStar,
-                deadline: Duration::from_secs(60),
-            }));
+            let mut scenario = drawn.expect("drawn").scenario;
+            for change in [|_: &mut Target| {}, ellipsoid, turning] {
+                scenario.targets.iter_mut().for_each(change);
+                let obstacles: Vec<_> = pipeline::sets(&scenario)
+                    .into_iter()
+                    .map(|s| s.shaped)
+                    .collect();
+                greatest = greatest.max(nearest(&Problem {
+                    own: &scenario.own_ship,
+                    desired: &scenario.desired,
+                    obstacles: &obstacles,
+                    horizon: scenario.horizon,
+                    time_weight: scenario.time_weight,
+                    search: SearchKind::AStar,
+                    deadline: Duration::from_secs(60),
+                }));
+            }
         }
         assert!(greatest > 0.8, "the bound is idle: {greatest}");
     }
