@@ -126,6 +126,13 @@ pub fn wrap(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;
     }
+    // one turn off, as most are: the same without a division
+    if angle > PI && angle < 9.0 {
+        return angle - TAU;
+    }
+    if angle > -TAU && angle <= -PI {
+        return angle + TAU;
+    }
     let wrapped = angle.rem_euclid(TAU);
     if wrapped > PI { wrapped - TAU } else { wrapped }
 }

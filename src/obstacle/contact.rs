@@ -6,9 +6,10 @@
 
 use std::f64::consts::{PI, TAU};
 
+pub use super::meeting::meets;
 use super::{HalfSpace, PolytopeObstacle};
 use crate::frame::{Vector, heading_of, to_port};
-use crate::trajectory::{Mover, Segment};
+use crate::trajectory::Segment;
 
 /// A time interval, seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +21,7 @@ pub struct Interval {
 }
 
 /// Longest arc, radians, that one chord stands for in the quick test.
-const CHORD_RAD: f64 = 0.4;
+pub(super) const CHORD_RAD: f64 = 0.4;
 
 /// The first instant at which the segment is at least `depth` metres inside the obstacle, or `None`.
 /// A segment or depth that is not finite is in contact at once. Obstacles exist from t = 0 on.
@@ -41,82 +42,6 @@ pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64)
             .map(|i| i.start)
     } else {
         line_contact(obstacle, segment, depth).map(|i| i.start)
-    }
-}
-
-/// True when the segment is at least `depth` metres inside the obstacle at some time: the decision alone,
-/// several times faster than [`first_contact`] on arcs. An arc is compared with its chords, halved until
-/// they decide; what stays open at a sagitta below a hundredth of the depth or a nanometre is contact.
-pub fn meets(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64) -> bool {
-    if !(segment.is_valid() && depth.is_finite()) {
-        return true;
-    }
-    if !segment.is_arc() {
-        return segment.end_time() >= 0.0 && line_contact(obstacle, segment, depth).is_some();
-    }
-    let count = (segment.turn_rate.abs() * segment.duration / CHORD_RAD)
-        .ceil()
-        .max(1.0);
-    let duration = segment.duration / count;
-    let mover = Mover::new(segment);
-    let arc = Arc {
-        obstacle,
-        mover,
-        radius: segment.radius().abs(),
-        rate: segment.turn_rate,
-        depth,
-    };
-    let mut from = segment.start.position;
-    (0..count as usize).any(|k| {
-        let start = segment.start_time + duration * k as f64;
-        let to = mover.position_at(start + duration);
-        let met = arc.meets(from, to, start, duration);
-        from = to;
-        met
-    })
-}
-
-/// An arc and a depth, for [`meets`].
-struct Arc<'a> {
-    obstacle: &'a PolytopeObstacle,
-    mover: Mover,
-    radius: f64,
-    rate: f64,
-    depth: f64,
-}
-
-impl Arc<'_> {
-    fn meets(&self, from: Vector, to: Vector, start: f64, duration: f64) -> bool {
-        // the chord at equal times is within the sagitta of the arc
-        let sagitta = self.radius * (self.rate * duration).powi(2) / 8.0;
-        let velocity = (to - from) / duration;
-        let nearly = clip(
-            self.obstacle,
-            from,
-            velocity,
-            start,
-            duration,
-            self.depth - sagitta,
-        );
-        if nearly.is_none() {
-            return false;
-        }
-        if sagitta < (0.01 * self.depth).max(1e-9)
-            || clip(
-                self.obstacle,
-                from,
-                velocity,
-                start,
-                duration,
-                self.depth + sagitta,
-            )
-            .is_some()
-        {
-            return true;
-        }
-        let half = duration / 2.0;
-        let middle = self.mover.position_at(start + half);
-        self.meets(from, middle, start, half) || self.meets(middle, to, start + half, half)
     }
 }
 

@@ -10,6 +10,7 @@ mod cpa;
 mod ellipse_sum;
 mod ellipsoid;
 mod ellipsoid_contact;
+mod meeting;
 mod polytope;
 mod projection;
 mod representation;

@@ -5,6 +5,7 @@ use super::part::Window;
 use super::template::{Leg, Sailed};
 use crate::frame::{Vector, to_port, to_starboard};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::tolerance;
 
 /// Metres. Approaches closer than this become rows.
 const NEAR_M: f64 = 60.0;
@@ -120,10 +121,10 @@ fn approaches_of<S: Shape>(
             continue;
         }
         if hazard.clearance_bound(segment) > NEAR_M {
-            local_minima(shape, &mut chords, &mut found);
+            local_minima((shape, hazard, sailed), &mut chords, &mut found);
             continue;
         }
-        let Span { first, last, cut } = Span::of(l, hazard.window);
+        let Span { first, last } = Span::of(l, hazard.window);
         let count = (segment.turn_rate.abs() * segment.duration * (last - first) / chord)
             .ceil()
             .max(1.0);
@@ -134,7 +135,6 @@ fn approaches_of<S: Shape>(
                 time,
                 fraction,
                 slack: shape.slack(position, time),
-                cut: false,
             }
         };
         // each sample is the one before turned about the centre of the arc
@@ -150,10 +150,7 @@ fn approaches_of<S: Shape>(
             (segment.start.position, l.ahead)
         };
         let mut arm = to_starboard(ahead) * segment.radius();
-        let mut from = Sample {
-            cut: cut[0],
-            ..sample(first, start)
-        };
+        let mut from = sample(first, start);
         for k in 1..=count as usize {
             let fraction = first + (last - first) * (k as f64 / count);
             let position = if segment.is_arc() {
@@ -164,8 +161,7 @@ fn approaches_of<S: Shape>(
             } else {
                 from.position + l.ahead * (segment.length() * (last - first))
             };
-            let mut to = sample(fraction, position);
-            to.cut = cut[1] && k == count as usize;
+            let to = sample(fraction, position);
             let mut piece = Chord::new(shape, leg, &from, &to);
             if count > 1.0 && piece.least.is_mixed() {
                 let at = sample(piece.least.fraction, l.along(piece.least.fraction).0);
@@ -175,16 +171,15 @@ fn approaches_of<S: Shape>(
             from = to;
         }
     }
-    local_minima(shape, &mut chords, &mut found);
+    local_minima((shape, hazard, sailed), &mut chords, &mut found);
     found
 }
 
-/// What of a leg is sailed while a part is in force, as fractions of it, and which ends the window cuts.
+/// What of a leg is sailed while a part is in force, as fractions of it.
 #[derive(Debug, Clone, Copy)]
 struct Span {
     first: f64,
     last: f64,
-    cut: [bool; 2],
 }
 
 impl Span {
@@ -192,7 +187,6 @@ impl Span {
         let whole = Self {
             first: 0.0,
             last: 1.0,
-            cut: [false; 2],
         };
         let Some(window) = window else {
             return whole;
@@ -203,13 +197,26 @@ impl Span {
         Self {
             first,
             last: last.max(first),
-            cut: [window.start > s.start_time, window.end < s.end_time()],
         }
     }
 }
 
+/// Own ship's velocity at a minimum that is at the edge of a window: its instant is fixed, not its share of the leg.
+fn velocity_at_edge<F>(hazard: &Hazard, sailed: &Sailed, least: &Minimum<F>) -> Option<Vector> {
+    let window = hazard.window?;
+    let leg = &sailed.legs[least.leg];
+    let time = leg.segment.start_time + leg.segment.duration * least.fraction;
+    let near = |edge: f64| (time - edge).abs() <= tolerance::TIME_S;
+    (near(window.start) || near(window.end))
+        .then(|| leg.along(least.fraction).1 * leg.segment.speed)
+}
+
 /// Moves the local minima of a run of chords to `found`.
-fn local_minima<S: Shape>(shape: &S, chords: &mut Vec<Chord<S::Face>>, found: &mut Vec<Approach>) {
+fn local_minima<S: Shape>(
+    (shape, hazard, sailed): (&S, &Hazard, &Sailed),
+    chords: &mut Vec<Chord<S::Face>>,
+    found: &mut Vec<Approach>,
+) {
     for i in 0..chords.len() {
         let here = &chords[i].least;
         let before = if i > 0 {
@@ -235,15 +242,11 @@ fn local_minima<S: Shape>(shape: &S, chords: &mut Vec<Chord<S::Face>>, found: &m
                 (next.least.faces[0].0, 1.0 - weight),
             ];
         }
+        let edge = velocity_at_edge(hazard, sailed, here);
         let mut rates = [0.0; 3];
         for (face, weight) in faces {
             let (normal, speed) = shape.plane(face);
-            // at the edge of a window the instant is fixed, not the share of the leg
-            let clock = if here.cut {
-                normal.dot(&chords[i].velocity)
-            } else {
-                speed
-            };
+            let clock = edge.map_or(speed, |velocity| normal.dot(&velocity));
             for (sum, rate) in rates.iter_mut().zip([normal.x, normal.y, -clock]) {
                 *sum += weight * rate;
             }
@@ -265,8 +268,6 @@ struct Sample<F> {
     time: f64,
     fraction: f64,
     slack: Slack<F>,
-    /// True where a window ends within the leg.
-    cut: bool,
 }
 
 /// The least slack on a chord.
@@ -277,7 +278,6 @@ struct Minimum<F> {
     slack: f64,
     /// Faces that attain it with their weights.
     faces: [(F, f64); 2],
-    cut: bool,
 }
 
 impl<F> Minimum<F> {
@@ -292,7 +292,6 @@ impl<F> Minimum<F> {
 #[derive(Debug, Clone, Copy)]
 struct Chord<F> {
     least: Minimum<F>,
-    velocity: Vector,
     /// m/s of the slack at the start and at the end.
     start_rate: f64,
     end_rate: f64,
@@ -312,7 +311,6 @@ impl<F: Copy> Chord<F> {
             fraction: s.fraction,
             slack: s.slack.value,
             faces: [(s.slack.face, 1.0), (s.slack.face, 0.0)],
-            cut: s.cut,
         };
         let least = if start_rate >= 0.0 {
             end(from)
@@ -343,12 +341,10 @@ impl<F: Copy> Chord<F> {
                 fraction: from.fraction + (to.fraction - from.fraction) * best.0 / width,
                 slack: best.1,
                 faces: best.2,
-                cut: false,
             }
         };
         Self {
             least,
-            velocity,
             start_rate,
             end_rate,
         }

@@ -10,7 +10,7 @@
 //!
 //! *Between two instants* a concave function is at least the chord between its values there, and at least
 //! the lesser of them. Two half-planes at right angles, toward the path and ahead, add their squares; of
-//! those in other directions, [`ASLANT`], the greatest counts.
+//! those in other directions, aslant, the greatest counts.
 //!
 //! *Faces.* Outside a body she is beyond one of its faces. One from whose outer side she is `need > 0` metres
 //! away, itself moving at `h_V`, she is beyond only when `max(0, P(s)) - h_V s >= need`; the left side is
@@ -25,143 +25,190 @@
 //!
 //! After the last contact, and once she has turned, the ramps are integrated to their ends.
 
+use std::f64::consts::{PI, TAU};
+
 use super::heuristic::squared_ramp;
 use super::keep_out::{Face, KeepOut};
+use super::outside::{LIMITS, Outside, View, WAYS, greater, lesser, squared_chord};
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::trajectory::DesiredLeg;
 
 /// Seconds of an interval.
 const INTERVAL_S: f64 = 12.0;
 
-/// Radians from straight to the path toward straight ahead.
-const ASLANT: [f64; 6] = [-1.0, -0.4, 0.2, 0.7, 1.1, 1.57];
-
 /// What the bound depends on beside the node.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub(crate) struct Closer<'a> {
-    pub leg: &'a DesiredLeg,
-    /// `kappa` of the error's metric.
-    pub kappa: f64,
+    leg: &'a DesiredLeg,
+    /// Heading of the leg, radians.
+    course: f64,
+    /// `kappa` of the error's metric, and its root.
+    kappa: f64,
+    root: f64,
     /// m/s, positive.
-    pub speed: f64,
+    speed: f64,
     /// Metres.
-    pub radius: f64,
-    pub keep_out: &'a KeepOut,
+    radius: f64,
+    /// From starboard of the leg, and from port.
+    views: [View; 2],
 }
 
-/// A direction in which own ship makes way at last.
-#[derive(Debug, Clone, Copy)]
-struct Way {
-    angle: f64,
-    sine: f64,
+/// How far the ways are off own ship's heading.
+struct Ways {
+    angles: [f64; WAYS],
+    cosines: [f64; WAYS],
+    sines: [f64; WAYS],
+    greatest: f64,
+    radius: f64,
 }
 
-impl Way {
-    fn new(angle: f64) -> Self {
+impl Ways {
+    fn new(heading: f64, headings: &[f64; WAYS], radius: f64) -> Self {
+        let angles = headings.map(|h| between(heading, h));
+        let (mut cosines, mut sines) = ([0.0; WAYS], [0.0; WAYS]);
+        for (k, angle) in angles.iter().enumerate() {
+            (sines[k], cosines[k]) = angle.sin_cos();
+        }
         Self {
-            angle,
-            sine: angle.sin(),
+            angles,
+            cosines,
+            sines,
+            greatest: angles.into_iter().fold(0.0, f64::max),
+            radius,
         }
     }
 
     /// Metres made good at most after so many metres sailed.
-    fn made_good(self, sailed: f64, radius: f64) -> f64 {
-        let left = self.angle - sailed / radius;
-        let way = if left > 0.0 {
-            radius * (self.sine - left.sin())
-        } else {
-            sailed - radius * (self.angle - self.sine)
-        };
-        way.max(0.0)
+    fn made_good(&self, sailed: f64) -> [f64; WAYS] {
+        let (turned, r) = (sailed / self.radius, self.radius);
+        if turned >= self.greatest {
+            return std::array::from_fn(|k| {
+                greater(sailed - r * (self.angles[k] - self.sines[k]), 0.0)
+            });
+        }
+        let (sin, cos) = turned.sin_cos();
+        std::array::from_fn(|k| {
+            let way = if self.angles[k] > turned {
+                // the sine of what is left to turn
+                let left = self.sines[k] * cos - self.cosines[k] * sin;
+                r * (self.sines[k] - left)
+            } else {
+                sailed - r * (self.angles[k] - self.sines[k])
+            };
+            way.max(0.0)
+        })
     }
 }
 
-/// A half-plane that own ship cannot be beyond: its outer normal in the error's metric.
-#[derive(Debug, Clone, Copy)]
-struct Limit {
-    metric: Vector,
-    scale: f64,
-    way: Way,
+/// The angle between two headings of at most half a turn, radians.
+fn between(a: f64, b: f64) -> f64 {
+    let apart = (a - b).abs();
+    if apart > PI { TAU - apart } else { apart }
 }
 
-impl Closer<'_> {
+impl<'a> Closer<'a> {
+    pub(crate) fn new(
+        leg: &'a DesiredLeg,
+        kappa: f64,
+        speed: f64,
+        radius: f64,
+        keep_out: &KeepOut,
+    ) -> Self {
+        let root = kappa.sqrt();
+        Self {
+            leg,
+            course: heading_of(leg.direction),
+            kappa,
+            root,
+            speed,
+            radius,
+            views: [1.0, -1.0].map(|side| View::new(side, root, keep_out)),
+        }
+    }
+
     /// Least integral of the squared error from a pose at a time to the arrival, which is at least
     /// `arrival` seconds away; m² s.
-    pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64, arrival: f64) -> f64 {
-        let (leg, kappa, u, r) = (self.leg, self.kappa, self.speed, self.radius);
+    pub(crate) fn cost_to_go(
+        &self,
+        keep_out: &KeepOut,
+        pose: &Pose,
+        time: f64,
+        arrival: f64,
+    ) -> f64 {
+        let (leg, kappa, u) = (self.leg, self.kappa, self.speed);
         let offset = pose.position - leg.start;
         let across = cross(leg.direction, offset);
         let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
-        let heading = wrap(pose.heading - heading_of(leg.direction));
         // from here the point on schedule is at `(lag + u_d tau, -across)`, along and across the leg
-        let side = -across.signum();
-        let root = kappa.sqrt();
-        let limits = ASLANT.map(|slant| {
-            let normal = Vector::new(slant.sin(), side * slant.cos());
-            let metric = Vector::new(normal.x / root, normal.y);
-            let scale = metric.norm();
-            Limit {
-                metric: metric / scale,
-                scale,
-                way: Way::new(wrap(heading - heading_of(normal)).abs()),
-            }
-        });
-        let beyond = |tau: f64| {
-            let due = Vector::new(root * (lag + leg.speed * tau), -across);
-            limits.map(|l| l.metric.dot(&due) - l.way.made_good(u * tau, r) / l.scale)
-        };
-        let aside = Way::new((side * heading.sin()).clamp(-1.0, 1.0).acos());
-        let ahead = Way::new(heading.abs());
+        let view = &self.views[usize::from(across.is_sign_positive())];
+        let heading = wrap(pose.heading - self.course);
+        let ways = Ways::new(heading, &view.headings, self.radius);
         let slope = if lag >= 0.0 {
             leg.speed - u
         } else {
             -leg.speed - u
         };
-        let back = |tau: f64| {
+        // how far the point on schedule is from the path, late, and beyond the limits, at least
+        let apart = |tau: f64| {
+            let made_good = ways.made_good(u * tau);
             let late = if lag >= 0.0 {
-                lag + leg.speed * tau - ahead.made_good(u * tau, r)
+                lag + leg.speed * tau - made_good[1]
             } else {
                 -lag + slope * tau
             };
-            (across.abs() - aside.made_good(u * tau, r), late)
+            let due = Vector::new(self.root * (lag + leg.speed * tau), -across);
+            let beyond: [f64; LIMITS] = std::array::from_fn(|k| {
+                let limit = &view.limits[k];
+                limit.metric.dot(&due) - made_good[k + 2] / limit.scale
+            });
+            ((across.abs() - made_good[0], late), beyond)
         };
-        let reached = self.reached(pose, time);
-        let turned = aside.angle.max(ahead.angle) * r / u;
-        let until = arrival.min(turned.max(self.keep_out.last_contact() - time));
+        let reached = self.reached(keep_out, pose, time);
+        let turned = ways.angles[0].max(ways.angles[1]) * self.radius / u;
+        let until = arrival.min(turned.max(keep_out.last_contact() - time));
         let (mut from, mut sum) = (0.0, 0.0);
-        let (mut here, mut apart) = (back(0.0), beyond(0.0));
+        let (mut back, mut beyond) = apart(0.0);
         while from < until {
             let to = (from + INTERVAL_S).min(until);
-            let (next, beyond) = (back(to), beyond(to));
-            let mut least = squared_chord(here.0, next.0) + kappa * squared_chord(here.1, next.1);
-            let mut lesser = limits.map(|l| (l.metric, 0.0));
-            for (k, lesser) in lesser.iter_mut().enumerate() {
-                least = least.max(squared_chord(apart[k], beyond[k]));
-                lesser.1 = apart[k].min(beyond[k]);
+            let next = apart(to);
+            let mut least =
+                squared_chord(back.0, next.0.0) + kappa * squared_chord(back.1, next.0.1);
+            let mut limits = [0.0; LIMITS];
+            for (k, limit) in limits.iter_mut().enumerate() {
+                least = greater(least, squared_chord(beyond[k], next.1[k]));
+                *limit = lesser(beyond[k], next.1[k]);
             }
-            least = least.max(self.outside(&reached, time + from, time + to, &lesser));
-            let envelope = self.keep_out.cost_between(time + from, time + to);
+            let outside = Outside {
+                keep_out,
+                view,
+                reached: &reached,
+                limits,
+            };
+            least = outside.least(least, time + from, time + to);
+            let envelope = keep_out.cost_between(time + from, time + to);
             sum += (least * (to - from)).max(envelope);
-            (from, here, apart) = (to, next, beyond);
+            from = to;
+            (back, beyond) = next;
         }
-        let rest = squared_ramp(here.0, -u, f64::INFINITY).cost
-            + kappa * squared_ramp(here.1, slope, arrival - from).cost;
-        sum + rest.max(self.keep_out.cost_from(time + from))
+        let rest = squared_ramp(back.0, -u, f64::INFINITY).cost
+            + kappa * squared_ramp(back.1, slope, arrival - from).cost;
+        sum + rest.max(keep_out.cost_from(time + from))
     }
 
     /// The earliest time at which own ship can be beyond each face of each body.
-    fn reached(&self, pose: &Pose, time: f64) -> Vec<f64> {
-        self.keep_out
+    fn reached(&self, keep_out: &KeepOut, pose: &Pose, time: f64) -> Vec<f64> {
+        let heading = wrap(pose.heading);
+        keep_out
             .bodies()
             .iter()
             .flat_map(|b| &b.faces)
-            .map(|face| time + self.reached_after(face, pose, time))
+            .map(|face| time + self.reached_after(face, pose.position, heading, time))
             .collect()
     }
 
     /// Seconds; infinite when never.
-    fn reached_after(&self, face: &Face, pose: &Pose, time: f64) -> f64 {
-        let need = -face.plane.slack(pose.position, time);
+    fn reached_after(&self, face: &Face, position: Vector, heading: f64, time: f64) -> f64 {
+        let need = -face.plane.slack(position, time);
         let faster = self.speed - face.plane.velocity_support;
         if need <= 0.0 {
             return 0.0;
@@ -169,7 +216,7 @@ impl Closer<'_> {
         if faster <= 0.0 {
             return f64::INFINITY;
         }
-        let angle = wrap(face.heading - pose.heading).abs();
+        let angle = between(face.heading, heading);
         let turned = (need + self.radius * (angle - angle.sin())) / faster;
         if turned < self.radius * angle / self.speed {
             need / faster
@@ -180,72 +227,12 @@ impl Closer<'_> {
             turned
         }
     }
-
-    /// Least mean squared error between two times outside every body and within the limits.
-    fn outside(&self, reached: &[f64], from: f64, to: f64, limits: &[(Vector, f64)]) -> f64 {
-        let mut rest = reached;
-        let mut greatest = 0.0_f64;
-        for body in self.keep_out.bodies() {
-            let (reached, others) = rest.split_at(body.faces.len());
-            rest = others;
-            if to < body.from || from > body.to {
-                continue;
-            }
-            let (mut a, mut b) = (f64::INFINITY, f64::INFINITY);
-            let mut joint = f64::INFINITY;
-            for (face, reached) in body.faces.iter().zip(reached) {
-                if *reached > to {
-                    continue;
-                }
-                let (start, end) = (face.depth_at(from), face.depth_at(to));
-                (a, b) = (a.min(start), b.min(end));
-                let depth = start.min(end).max(0.0);
-                if depth < joint {
-                    let both = limits
-                        .iter()
-                        .map(|(m, beyond)| outside_both(depth, *beyond, -m.dot(&face.metric)))
-                        .fold(depth, f64::max);
-                    joint = joint.min(both);
-                }
-            }
-            greatest = greatest.max(squared_chord(a, b)).max(joint * joint);
-        }
-        greatest
-    }
-}
-
-/// Least length of a vector with at least these components along two unit vectors with this product.
-fn outside_both(a: f64, b: f64, cosine: f64) -> f64 {
-    let sine = 1.0 - cosine * cosine;
-    if a <= 0.0 || sine < 1e-9 {
-        return a.max(b).max(0.0);
-    }
-    if b <= cosine * a {
-        a
-    } else if b > 0.0 && a <= cosine * b {
-        b
-    } else {
-        ((a * a + b * b - 2.0 * cosine * a * b) / sine).sqrt()
-    }
-}
-
-/// Mean of the squared positive part along a line from `a` to `b`.
-fn squared_chord(a: f64, b: f64) -> f64 {
-    let (low, high) = (a.min(b), a.max(b));
-    if high <= 0.0 {
-        0.0
-    } else if low >= 0.0 {
-        (a * a + a * b + b * b) / 3.0
-    } else {
-        high * high * high / (3.0 * (high - low))
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use std::time::Duration;
 
-    use super::*;
     use crate::pipeline;
     use crate::planner::cost::space_time_error;
     use crate::planner::space_time::graph::Graph;
@@ -360,32 +347,5 @@ mod tests {
             }
         }
         assert!(greatest > 0.8, "the bound is idle: {greatest}");
-    }
-
-    #[test]
-    fn outside_both_is_the_least_of_a_dense_scan() {
-        for (a, b, angle) in [
-            (1.0, 0.5, 0.3_f64),
-            (1.0, 0.9, 2.0),
-            (0.7, -0.3, 1.9),
-            (0.2, 1.0, 1.2),
-            (-1.0, 0.4, 0.9),
-        ] {
-            let mut least = f64::INFINITY;
-            for i in -400..=400 {
-                for k in -400..=400 {
-                    let v = Vector::new(f64::from(i), f64::from(k)) * 0.01;
-                    let second = v.x * angle.cos() + v.y * angle.sin();
-                    if v.x >= a && second >= b {
-                        least = least.min(v.norm());
-                    }
-                }
-            }
-            let found = outside_both(a, b, angle.cos());
-            assert!(
-                (found - least).abs() < 0.02,
-                "{a} {b} {angle}: {found} {least}"
-            );
-        }
     }
 }

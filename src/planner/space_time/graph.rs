@@ -99,12 +99,9 @@ impl<'a> Graph<'a> {
                 Aims::new(h, &body, moving(problem.own))
             })
             .collect();
-        let heuristic = (problem.search == SearchKind::AStar).then(|| Heuristic {
-            desired: problem.desired,
-            time_weight: problem.time_weight,
-            max_speed: problem.own.max_speed(),
-            radius: problem.own.turning_radius,
-            keep_out: KeepOut::new(problem, hazards),
+        let heuristic = (problem.search == SearchKind::AStar).then(|| {
+            let keep_out = KeepOut::new(problem, hazards);
+            Heuristic::new(problem.desired, problem.time_weight, problem.own, keep_out)
         });
         Self {
             problem,

@@ -63,6 +63,8 @@ impl<'a> Hazard<'a> {
     }
 
     /// What of a segment is sailed while the part is in force, by the clock of the part.
+    #[cold]
+    #[inline(never)]
     fn meanwhile(window: &Window, segment: &Segment) -> Option<Segment> {
         if segment.start_time > window.end || segment.end_time() < window.start {
             return None;
@@ -76,6 +78,7 @@ impl<'a> Hazard<'a> {
 
     /// A lower bound of the distance between the segment and the part, metres; negative says nothing, and
     /// infinity that the part is not in force.
+    #[inline]
     pub(crate) fn clearance_bound(&self, segment: &Segment) -> f64 {
         match &self.window {
             None => self.local_clearance_bound(segment),
@@ -84,6 +87,7 @@ impl<'a> Hazard<'a> {
         }
     }
 
+    #[inline]
     fn local_clearance_bound(&self, segment: &Segment) -> f64 {
         let half = 0.5 * segment.duration;
         let middle = segment.start_time + half;

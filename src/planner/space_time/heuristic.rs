@@ -25,6 +25,7 @@ use super::closer::Closer;
 use super::keep_out::KeepOut;
 use crate::frame::{Pose, cross, heading_of, wrap};
 use crate::trajectory::DesiredTrajectory;
+use crate::vessel::OwnShip;
 
 /// Intervals of the lower sum while own ship turns.
 const STEPS: usize = 6;
@@ -32,18 +33,44 @@ const STEPS: usize = 6;
 /// The bound for one problem.
 #[derive(Debug)]
 pub(crate) struct Heuristic<'a> {
-    pub desired: &'a DesiredTrajectory,
+    desired: &'a DesiredTrajectory,
     /// m²/s².
-    pub time_weight: f64,
+    time_weight: f64,
     /// m/s, positive.
-    pub max_speed: f64,
+    max_speed: f64,
     /// Metres.
-    pub radius: f64,
+    radius: f64,
     /// What the obstacles cost.
-    pub keep_out: KeepOut,
+    keep_out: KeepOut,
+    /// For one straight leg.
+    closer: Option<Closer<'a>>,
 }
 
-impl Heuristic<'_> {
+impl<'a> Heuristic<'a> {
+    pub(crate) fn new(
+        desired: &'a DesiredTrajectory,
+        time_weight: f64,
+        own: &OwnShip,
+        keep_out: KeepOut,
+    ) -> Self {
+        let (max_speed, radius) = (own.max_speed(), own.turning_radius);
+        let closer = match desired.legs() {
+            [leg] => {
+                let kappa = time_weight / (time_weight + leg.speed * leg.speed);
+                Some(Closer::new(leg, kappa, max_speed, radius, &keep_out))
+            }
+            _ => None,
+        };
+        Self {
+            desired,
+            time_weight,
+            max_speed,
+            radius,
+            keep_out,
+            closer,
+        }
+    }
+
     /// Least space-time error of any way from here to the last waypoint, m².
     pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
         let keep_out = |from: f64| self.keep_out.cost_from(from) / self.desired.duration();
@@ -56,18 +83,11 @@ impl Heuristic<'_> {
 
     /// The same, greater as a rule, for one straight leg; takes longer.
     pub(crate) fn closer_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
-        let [leg] = self.desired.legs() else {
+        let Some(closer) = &self.closer else {
             return 0.0;
         };
-        let closer = Closer {
-            leg,
-            kappa: self.time_weight / (self.time_weight + leg.speed * leg.speed),
-            speed: self.max_speed,
-            radius: self.radius,
-            keep_out: &self.keep_out,
-        };
         let arrival = (self.desired.end() - pose.position).norm() / self.max_speed;
-        closer.cost_to_go(pose, time, arrival) / self.desired.duration()
+        closer.cost_to_go(&self.keep_out, pose, time, arrival) / self.desired.duration()
     }
 
     /// True when no way from here clears the obstacles.
@@ -211,13 +231,18 @@ mod tests {
         for round in 0..3000 {
             let points = if round % 3 == 0 { &bent } else { &straight };
             let desired = DesiredTrajectory::new(points, &[5.0, 5.0]).expect("valid");
-            let bound = Heuristic {
-                desired: &desired,
-                time_weight: 25.0,
-                max_speed: 6.0,
-                radius: 100.0,
-                keep_out: KeepOut::none(),
+            let own = OwnShip {
+                pose: Pose::new(Vector::zeros(), 0.0),
+                speed: 5.0,
+                hull: crate::vessel::Hull {
+                    length: 0.0,
+                    beam: 0.0,
+                },
+                turning_radius: 100.0,
+                speeds: vec![6.0],
+                safety_margin: 0.0,
             };
+            let bound = Heuristic::new(&desired, 25.0, &own, KeepOut::none());
             let mut pose = Pose::new(
                 Vector::new(
                     rng.random_range(0.0..1300.0),

@@ -128,13 +128,15 @@ impl KeepOut {
     /// Least integral of the squared error still to come at a time, m² s.
     pub(crate) fn cost_from(&self, time: f64) -> f64 {
         // the next instant: what lies before it is not counted
-        let next = (time / STEP_S).ceil().max(0.0) as usize;
+        let steps = (time / STEP_S).max(0.0);
+        let before = steps as usize;
+        let next = before + usize::from(steps > before as f64);
         self.to_come.get(next).copied().unwrap_or(0.0)
     }
 
     /// The same between two times.
     pub(crate) fn cost_between(&self, from: f64, to: f64) -> f64 {
-        let before = (to / STEP_S).floor().max(0.0) as usize;
+        let before = (to / STEP_S).max(0.0) as usize;
         let after = self.to_come.get(before).copied().unwrap_or(0.0);
         (self.cost_from(from) - after).max(0.0)
     }

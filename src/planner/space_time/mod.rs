@@ -22,6 +22,7 @@ mod keep_out;
 mod model;
 mod moments;
 mod node;
+mod outside;
 mod part;
 mod quadratic;
 mod refinement;
@@ -47,8 +48,9 @@ use route::Route;
 use seeds::Conflict;
 use selection::Selection;
 
-/// Expansions of one search at most: the bound on its memory. Typical searches need a hundredth.
-const MAX_EXPANDED: usize = 20_000;
+/// Expansions of one search at most: the bound on its memory and time. Alone a search needs some tens; among
+/// ten targets no plan came of more than this.
+const MAX_EXPANDED: usize = 2_000;
 
 /// Plans of the graph that are refined, each passing the targets on other sides.
 const MAX_SIGNATURES: usize = 4;

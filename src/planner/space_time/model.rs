@@ -401,12 +401,14 @@ mod tests {
             lead: 0.9,
             reach: 1.0,
             slow: false,
+            rush: 0.0,
         };
         let conflict = Conflict {
             from: 140.0,
             to: 180.0,
             through: 200.0,
             offsets: [80.0, 90.0],
+            astern: (90.0, 160.0),
         };
         for (side, goal) in [
             (Side::Starboard, false),

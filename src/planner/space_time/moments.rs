@@ -227,3 +227,89 @@ pub(crate) fn reduce_matrix(lower: &Matrix, solved: &[Row], free: usize) -> Matr
     }
     reduced
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+
+    /// The sum over points and pairs of slots that the moments stand for.
+    #[test]
+    fn moments_give_the_sum_over_all_points_and_pairs() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+        let n = 9;
+        let motors: Vec<Motor> = (0..n)
+            .map(|_| [(); 4].map(|()| rng.random_range(-1.0..1.0)))
+            .collect();
+        let mut moments = Moments::new();
+        let (mut gradient, mut lower) =
+            ([0.0; MAX_VARIABLES], [[0.0; MAX_VARIABLES]; MAX_VARIABLES]);
+        let (mut slow_gradient, mut slow) = (gradient, lower);
+        for _ in 0..60 {
+            let slot = rng.random_range(0..n);
+            let place = [(); 2].map(|()| rng.random_range(-3.0..3.0));
+            let own = [(); 3].map(|()| rng.random_range(-1.0..1.0));
+            let mut residuals = Residuals::default();
+            for _ in 0..2 {
+                let (scale, value) = (rng.random_range(0.1..2.0), rng.random_range(-2.0..2.0));
+                let rates: [f64; 3] = [(); 3].map(|()| rng.random_range(-1.0..1.0));
+                residuals.add(scale, value, rates);
+                let of = |i: usize| {
+                    let [e, n, t, c] = motors[i];
+                    let moved = [e - c * place[1], n + c * place[0], t];
+                    dot3(rates, if i == slot { own } else { moved })
+                };
+                for (i, row) in slow.iter_mut().enumerate().take(slot + 1) {
+                    slow_gradient[i] += scale * value * of(i);
+                    for (k, sum) in row.iter_mut().enumerate().take(i + 1) {
+                        *sum += scale * of(i) * of(k);
+                    }
+                }
+            }
+            moments.add(slot, place, own, &residuals);
+        }
+        moments.finish(&motors, &mut gradient, &mut lower);
+        for i in 0..n {
+            assert!((gradient[i] - slow_gradient[i]).abs() < 1e-9, "slot {i}");
+            for k in 0..=i {
+                assert!((lower[i][k] - slow[i][k]).abs() < 1e-9, "slots {i} {k}");
+            }
+        }
+    }
+
+    /// `T' H T` with the rates of the solved slots below the identity.
+    #[test]
+    fn a_reduced_matrix_is_the_product_with_the_rates() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(8);
+        let (free, all) = (6, 8);
+        let mut lower = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+        for (i, row) in lower.iter_mut().enumerate().take(all) {
+            row[..=i]
+                .iter_mut()
+                .for_each(|h| *h = rng.random_range(-1.0..1.0));
+        }
+        let mut solved = [[0.0; MAX_VARIABLES]; 2];
+        for row in &mut solved {
+            row[..free]
+                .iter_mut()
+                .for_each(|r| *r = rng.random_range(-1.0..1.0));
+        }
+        let reduced = reduce_matrix(&lower, &solved, free);
+        let rate = |slot: usize, i: usize| {
+            if slot < free {
+                f64::from(u8::from(slot == i))
+            } else {
+                solved[slot - free][i]
+            }
+        };
+        for (i, row) in reduced.iter().enumerate().take(free) {
+            for (k, found) in row.iter().enumerate().take(free) {
+                let sum: f64 = (0..all)
+                    .flat_map(|a| (0..all).map(move |b| (a, b)))
+                    .map(|(a, b)| rate(a, i) * lower[a.max(b)][a.min(b)] * rate(b, k))
+                    .sum();
+                assert!((found - sum).abs() < 1e-9, "slots {i} {k}");
+            }
+        }
+    }
+}

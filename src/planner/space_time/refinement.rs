@@ -34,6 +34,10 @@ const MAX_BACKTRACKS: usize = 2;
 /// Share of what the box allows that an unmet row asks for.
 const REACHABLE: f64 = 0.8;
 
+/// By how much a missing metre is dearer for a refinement that has come to rest inside a set, and how often.
+const DEARER: f64 = 6.0;
+const MAX_RAISES: usize = 3;
+
 /// Relative decrease that is no progress.
 const STALLED: f64 = 1e-3;
 
@@ -71,6 +75,7 @@ pub(crate) struct Refinement {
     still: [bool; MAX_VARIABLES],
     radius: f64,
     stalled: usize,
+    raised: usize,
     steps: usize,
     finished: bool,
     overtaken: bool,
@@ -127,6 +132,7 @@ impl Refinement {
             still: [false; MAX_VARIABLES],
             radius: FIRST_RADIUS_M,
             stalled: 0,
+            raised: 0,
             steps: 0,
             finished: false,
             overtaken: false,
@@ -176,10 +182,15 @@ impl Refinement {
         self.model.cost + self.penalty * self.model.violation
     }
 
-    /// What the manoeuvre at hand will cost once it is clear, to first order: the missing metres at the
-    /// multipliers of the last step, m².
-    pub(crate) fn expected_cost(&self) -> f64 {
-        self.model.cost + self.price * self.model.violation
+    /// Sum of the multipliers of the last step: what a missing metre costs to first order, m²/m.
+    pub(crate) fn price(&self) -> f64 {
+        self.price
+    }
+
+    /// What the manoeuvre at hand will cost once it is clear, to first order, m²: the missing metres at the
+    /// multipliers of its last step, or at `least` where those are smaller.
+    pub(crate) fn expected_cost(&self, least: f64) -> f64 {
+        self.model.cost + self.price.max(least) * self.model.violation
     }
 
     /// Gives up: another one is ahead.
@@ -257,7 +268,16 @@ impl Refinement {
     /// One step.
     pub(crate) fn step(&mut self, scene: &Scene) {
         self.steps += 1;
-        if self.steps >= MAX_STEPS || !self.advance(scene) {
+        let advanced = self.advance(scene);
+        if !advanced && self.model.least_slack < 0.0 && self.raised < MAX_RAISES {
+            // at rest in a set: what is missing is worth more
+            self.raised += 1;
+            self.penalty *= DEARER;
+            self.radius = FIRST_RADIUS_M;
+            self.stalled = 0;
+            return;
+        }
+        if self.steps >= MAX_STEPS || !advanced {
             self.finished = true;
             self.restore(scene);
         }

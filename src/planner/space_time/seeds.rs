@@ -52,6 +52,8 @@ pub(crate) struct Conflict {
     pub through: f64,
     /// Metres to starboard and to port that clear the set throughout.
     pub offsets: [f64; 2],
+    /// Metres astern that clear the set throughout, and the time at which so many are needed.
+    pub astern: (f64, f64),
 }
 
 impl Conflict {
@@ -62,7 +64,12 @@ impl Conflict {
 
     /// Metres sailed inside over the shortest way around.
     pub(crate) fn slenderness(&self) -> f64 {
-        self.through / self.offsets[0].min(self.offsets[1]).max(1.0)
+        self.through / self.nearest_offset().max(1.0)
+    }
+
+    /// Metres to the nearer side.
+    pub(crate) fn nearest_offset(&self) -> f64 {
+        self.offsets[0].min(self.offsets[1])
     }
 
     /// The contact of one obstacle, given by its hazards, with the undisturbed motion, from first to last instant.
@@ -77,6 +84,7 @@ impl Conflict {
             to: from,
             through: 0.0,
             offsets: [0.0; 2],
+            astern: (0.0, from),
         };
         for k in 0..=CONFLICT_SAMPLES {
             let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
@@ -93,6 +101,10 @@ impl Conflict {
                 continue;
             };
             conflict.to = time;
+            let behind = hazard.way_out(pose.position, time, -pose.ahead());
+            if behind > conflict.astern.0 {
+                conflict.astern = (behind, time);
+            }
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
                 *offset = offset.max(hazard.way_out(pose.position, time, beam));
@@ -109,6 +121,14 @@ impl Conflict {
 /// Radians at which a canonical manoeuvre returns, the flattest that fits.
 const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 
+/// Radians.
+const WAITING_TURN: f64 = 0.4;
+
+/// Metres by which own ship goes on beyond the route behind a target that she let pass, and radians at which she
+/// comes back.
+const OVERSHOOT_M: f64 = 50.0;
+const OVERSHOOT_RETURN: f64 = 0.15;
+
 /// Instants at which a conflict's width is taken.
 const CONFLICT_SAMPLES: usize = 24;
 
@@ -124,6 +144,8 @@ pub(crate) struct Canonical {
     pub reach: f64,
     /// The turn out at the least speed, not at the greatest.
     pub slow: bool,
+    /// Share of the time before it that is sailed at the greatest speed.
+    pub rush: f64,
 }
 
 /// Slots and lengths while they are put together.
@@ -237,7 +259,12 @@ impl Canonical {
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
             .max(0.0);
         let mut draft = Draft::default();
-        draft.runs(&paces, lead, 0.0, 0.0);
+        draft.runs(
+            &paces,
+            (1.0 - self.rush) * lead,
+            self.rush * departure * fast,
+            0.0,
+        );
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();
@@ -281,6 +308,59 @@ impl Canonical {
         );
         draft.seed(Ending::Return { leg, speed: fast })
     }
+}
+
+/// A manoeuvre that lets the target pass ahead: as late as will do, own ship slows down and loses way by a
+/// turn of [`WAITING_TURN`] to the side, twice as far back, and on to the route.
+pub(crate) fn waiting(
+    problem: &Problem,
+    side: Side,
+    across: bool,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (slow, normal, fast) = (paces.slow, paces.normal, paces.fast);
+    let (lag, due) = conflict.astern;
+    let needed = lag / (normal - slow * WAITING_TURN.cos());
+    let begin = (due - needed).max(0.0);
+    let arc = WAITING_TURN * problem.own.turning_radius;
+    let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
+    // negated on purpose: a NaN is no seed
+    if !(normal > slow && needed < 1.3 * due && lines.is_finite()) {
+        return None;
+    }
+    let back = side.opposite();
+    let mut draft = Draft::default();
+    draft.runs(&paces, begin * normal, 0.0, 0.0);
+    draft.turn(side, &[(fast, 0.0), (slow, arc)]);
+    draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
+    draft.spare(&[
+        Slot::Arc { side, speed: fast },
+        Slot::Line { speed: slow },
+        Slot::Line { speed: fast },
+    ]);
+    draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
+    draft.line(&[(slow, 0.4 * lines)]);
+    draft.spare(&[Slot::Line { speed: normal }]);
+    if across {
+        let (sine, cosine) = WAITING_TURN.sin_cos();
+        let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
+        draft.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
+        draft.turn(back, &[(fast, 0.0)]);
+        draft.turn(
+            side,
+            &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
+        );
+        draft.line(&[(fast, 0.0)]);
+        return draft.seed(Ending::Return { leg, speed: fast });
+    }
+    draft.line(&[(fast, 0.0)]);
+    draft.turn(back, &[(fast, 0.0)]);
+    draft.spare(&[Slot::Line { speed: normal }]);
+    draft.line(&[(fast, 0.0)]);
+    draft.turn(back, &[(fast, 0.0)]);
+    draft.seed(Ending::Return { leg, speed: fast })
 }
 
 /// A plan of the graph as a seed: its arcs and lines in its own order, each with the other speeds beside

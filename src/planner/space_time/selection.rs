@@ -5,59 +5,80 @@ use super::hazard::{Hazard, by_obstacle, first_met};
 use super::model::Scene;
 use super::node::State;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
-use super::seeds::{Canonical, Conflict, from_graph};
+use super::seeds::{Canonical, Conflict, from_graph, waiting};
 use crate::frame::{Side, cross};
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
 
 /// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin. Chosen from
 /// 152 of all angles, leads and offsets, for 400 encounters: the set that together comes nearest to the best.
-const COMPACT: [Canonical; 3] = [
+const COMPACT: [Canonical; 4] = [
     Canonical {
         turn: 1.4,
         lead: 0.6,
         reach: 0.6,
         slow: false,
+        rush: 0.0,
     },
     Canonical {
         turn: 1.0,
         lead: 1.0,
         reach: 0.9,
         slow: true,
+        rush: 0.0,
     },
     Canonical {
         turn: 0.4,
         lead: 1.4,
         reach: 0.6,
         slow: false,
+        rush: 0.0,
+    },
+    Canonical {
+        turn: 0.5,
+        lead: 0.3,
+        reach: 0.9,
+        slow: false,
+        rush: 0.5,
     },
 ];
 
 /// The same where the way through the set is long beside the way around it, as when overtaking.
-const SLENDER: [Canonical; 4] = [
+const SLENDER: [Canonical; 5] = [
     Canonical {
         turn: 0.2,
         lead: 0.3,
         reach: 0.6,
         slow: false,
+        rush: 0.0,
     },
     Canonical {
         turn: 0.2,
         lead: 1.0,
         reach: 0.9,
         slow: false,
+        rush: 0.0,
     },
     Canonical {
         turn: 0.7,
         lead: 0.3,
         reach: 0.6,
         slow: true,
+        rush: 0.0,
     },
     Canonical {
         turn: 0.4,
         lead: 0.3,
         reach: 0.9,
         slow: false,
+        rush: 0.0,
+    },
+    Canonical {
+        turn: 0.5,
+        lead: 0.3,
+        reach: 0.9,
+        slow: false,
+        rush: 0.5,
     },
 ];
 
@@ -66,6 +87,9 @@ const SLENDER_FROM: f64 = 2.5;
 
 /// A side whose offset is this many times the other's gets one manoeuvre only.
 const FAR_SIDE: f64 = 1.8;
+
+/// Way lost over way around below which waiting is tried as well.
+const WORTH_WAITING: f64 = 0.85;
 
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
@@ -163,6 +187,15 @@ impl<'a> Selection<'a> {
         let mut seeds = std::mem::take(&mut self.seeds);
         let leg = problem.desired.legs().len() - 1;
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
+            if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
+                for across in [false, true] {
+                    seeds.extend(
+                        Side::BOTH
+                            .into_iter()
+                            .filter_map(|side| waiting(problem, side, across, conflict, leg)),
+                    );
+                }
+            }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             for side in Side::BOTH {
@@ -252,13 +285,20 @@ impl<'a> Selection<'a> {
     }
 }
 
-/// Stops what has fallen behind after so many rounds.
+/// Stops what has fallen behind after so many rounds. A missing metre costs at least the median of what it
+/// costs them: one that is stuck deep inside a set sees no price at all.
 fn race(running: &mut [Refinement], rounds: usize) {
     let places = PLACES.iter().rev().find(|(from, _)| *from <= rounds);
     let places = places.map_or(running.len(), |p| p.1);
     let mut going: Vec<&mut Refinement> =
         running.iter_mut().filter(|r| !r.is_overtaken()).collect();
-    going.sort_by(|a, b| a.expected_cost().total_cmp(&b.expected_cost()));
+    if going.is_empty() {
+        return;
+    }
+    let mut prices: Vec<f64> = going.iter().map(|r| r.price()).collect();
+    prices.sort_by(f64::total_cmp);
+    let usual = prices[(prices.len() - 1) / 2];
+    going.sort_by(|a, b| a.expected_cost(usual).total_cmp(&b.expected_cost(usual)));
     for refinement in going.into_iter().skip(places) {
         refinement.stop();
     }
