@@ -23,6 +23,7 @@ fn body() -> PolytopeObstacle {
         position_std: 0.0,
         speed_spread: 0.4,
         course_spread: 0.08,
+        turn_rate: 0.0,
         domain: DomainKind::Hull,
     };
     let initial = ship

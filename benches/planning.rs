@@ -4,13 +4,13 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use searoom::obstacle::PolytopeObstacle;
+use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::planner::{Outcome, Problem, SearchKind, space_time};
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 
-fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [PolytopeObstacle]) -> Problem<'a> {
+fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,
@@ -22,7 +22,7 @@ fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [PolytopeObstacle]) -> Pro
     }
 }
 
-fn shaped(scenario: &Scenario) -> Vec<PolytopeObstacle> {
+fn shaped(scenario: &Scenario) -> Vec<Obstacle> {
     pipeline::sets(scenario)
         .into_iter()
         .map(|s| s.shaped)

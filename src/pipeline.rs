@@ -3,20 +3,24 @@
 use std::time::{Duration, Instant};
 
 use crate::colregs::{self, Encounter};
-use crate::evaluation::{Evaluation, Request, SpaceTimeSet, evaluate};
-use crate::obstacle::PolytopeObstacle;
+use crate::evaluation::{Evaluation, Request, SetShape, SpaceTimeSet, evaluate};
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::{
+    EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+};
 use crate::planner::{NoPlan, Outcome, Planned, Problem, space_time};
 use crate::scenario::{Compliance, Scenario};
-use crate::target::{Motion, Target};
+use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
+use crate::tolerance;
 use crate::trajectory::Trajectory;
 
 /// The sets of one target, own ship's footprint folded in.
 #[derive(Debug, Clone)]
 pub struct TargetSets {
     /// Hulls, margin and position uncertainty: safety is claimed on this one.
-    pub hard: PolytopeObstacle,
+    pub hard: Obstacle,
     /// With the domain's shape around it: what the planner keeps out of when shapes are asked for.
-    pub shaped: PolytopeObstacle,
+    pub shaped: Obstacle,
     /// The encounter that the shape is for, judged along the undisturbed desired trajectory.
     pub encounter: Encounter,
     /// Metres that the shape was drawn back to let own ship start outside; 0 when it was not.
@@ -35,6 +39,13 @@ pub enum Relaxation {
         /// Metres, the largest cut.
         amount: f64,
     },
+    /// The plan enters the set of a target, at a risk that was accepted.
+    Risk {
+        /// Name of the target.
+        target: String,
+        /// The largest risk along the plan, eq. (25), in `(0, 1)`.
+        amount: f64,
+    },
 }
 
 /// One scenario, planned and judged.
@@ -44,12 +55,16 @@ pub struct Run {
     pub scenario: Scenario,
     /// The sets, in the order of the scenario's targets.
     pub sets: Vec<TargetSets>,
-    /// The obstacles that the plan was made against, in the same order.
-    pub obstacles: Vec<PolytopeObstacle>,
+    /// The obstacles that the plan was made against, in the same order: the level sets `O_alpha`,
+    /// `alpha = 1 - max_risk`.
+    pub obstacles: Vec<Obstacle>,
     /// The planner's answer.
     pub planned: Planned,
     /// What had to be given up, most important first; empty when nothing.
     pub relaxations: Vec<Relaxation>,
+    /// The largest risk along the plan, per target in the same order, against the sets of which `obstacles` are the
+    /// level sets; empty when there is no plan.
+    pub risks: Vec<PeakRisk>,
     /// The independent judgement of the plan; `None` when there is no plan.
     pub evaluation: Option<Evaluation>,
     /// Wall-clock time of planning alone.
@@ -69,30 +84,87 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
     let own = &scenario.own_ship;
     let (desired, horizon) = (&scenario.desired, scenario.horizon);
     let encounter = colregs::encounter(own, desired, target, horizon);
-    let velocity = target.velocity_set();
-    let obstacle = |initial| PolytopeObstacle::new(target.name.clone(), initial, velocity.clone());
+    // taken as they are: own ship is a point, nothing is added
+    let outright = |obstacle: Obstacle| TargetSets {
+        shaped: obstacle.clone(),
+        hard: obstacle,
+        encounter,
+        shape_reduced: 0.0,
+        shape_reach: 0.0,
+    };
     match &target.motion {
         Motion::Ship(ship) => {
             let risk = colregs::first_risk(own, desired, ship, horizon);
             let shapes = colregs::shapes(own, ship, risk.as_ref());
+            let hard = ship_obstacle(target, ship, shapes.hard, horizon);
+            let shaped = ship_obstacle(target, ship, shapes.shaped, horizon);
+            // the ellipse around a shape that was drawn back may contain own ship again
+            let start = own.pose.position;
+            if shaped.contains(start, 0.0) && !hard.contains(start, 0.0) {
+                return TargetSets {
+                    shape_reduced: shapes.reach,
+                    shape_reach: shapes.reach,
+                    ..outright(hard)
+                };
+            }
             TargetSets {
-                hard: obstacle(shapes.hard),
-                shaped: obstacle(shapes.shaped),
+                hard,
+                shaped,
                 encounter,
                 shape_reduced: shapes.reduced,
                 shape_reach: shapes.reach,
             }
         }
-        // taken as they are: own ship is a point, nothing is added
-        Motion::Sets { initial, .. } => {
-            let hard = obstacle(initial.clone());
-            TargetSets {
-                shaped: hard.clone(),
-                hard,
-                encounter,
-                shape_reduced: 0.0,
-                shape_reach: 0.0,
-            }
+        Motion::Sets { initial, velocity } => outright(represented(
+            target.representation,
+            PolytopeObstacle::new(target.name.clone(), initial.clone(), velocity.clone()),
+        )),
+        Motion::Ellipses { initial, velocity } => {
+            outright(EllipsoidObstacle::new(target.name.clone(), *initial, *velocity).into())
+        }
+        Motion::Spells { initial, spells } => {
+            outright(one_after_another(target, initial.clone(), spells.clone()))
+        }
+    }
+}
+
+fn represented(representation: Representation, polytope: PolytopeObstacle) -> Obstacle {
+    match representation {
+        Representation::Polytope => polytope.into(),
+        Representation::Ellipsoid => EllipsoidObstacle::outer_of(&polytope).into(),
+    }
+}
+
+fn ship_obstacle(
+    target: &Target,
+    ship: &ShipTrack,
+    initial: ConvexPolygon,
+    horizon: f64,
+) -> Obstacle {
+    if ship.turn_rate > 0.0 {
+        let spells = ship.outer_velocity_spells(ship.turn_rate, horizon);
+        return one_after_another(target, initial, spells);
+    }
+    let polytope = PolytopeObstacle::new(target.name.clone(), initial, ship.outer_velocity_set());
+    represented(target.representation, polytope)
+}
+
+fn one_after_another(
+    target: &Target,
+    initial: ConvexPolygon,
+    spells: Vec<VelocitySpell>,
+) -> Obstacle {
+    // one polytope of all velocities together contains the slabs: should their ends ever not increase
+    let all: Vec<_> = spells
+        .iter()
+        .flat_map(|s| s.velocities.vertices().iter().copied())
+        .collect();
+    match SlabObstacle::new(target.name.clone(), initial.clone(), spells) {
+        Ok(slabs) => slabs.into(),
+        Err(_) => {
+            let velocity = ConvexPolygon::hull(&all)
+                .unwrap_or_else(|_| ConvexPolygon::point(crate::frame::Vector::zeros()));
+            PolytopeObstacle::new(target.name.clone(), initial, velocity).into()
         }
     }
 }
@@ -105,7 +177,7 @@ pub fn run(scenario: Scenario) -> Run {
     let shaped = scenario.compliance == Compliance::Shape;
     let deadline = Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX);
     let begun = Instant::now();
-    let plan = |obstacles: &[PolytopeObstacle]| {
+    let plan = |obstacles: &[Obstacle]| {
         space_time::plan(&Problem {
             own: &scenario.own_ship,
             desired: &scenario.desired,
@@ -116,12 +188,18 @@ pub fn run(scenario: Scenario) -> Run {
             deadline: deadline.saturating_sub(begun.elapsed()),
         })
     };
-    let hard = || -> Vec<PolytopeObstacle> { sets.iter().map(|s| s.hard.clone()).collect() };
-    let mut obstacles = if shaped {
-        sets.iter().map(|s| s.shaped.clone()).collect()
-    } else {
-        hard()
+    let at_risk = |set: &Obstacle| {
+        if scenario.max_risk > 0.0 {
+            set.at_risk(scenario.max_risk)
+        } else {
+            set.clone()
+        }
     };
+    let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
+    let level_sets = |used: fn(&TargetSets) -> &Obstacle| -> Vec<Obstacle> {
+        sets.iter().map(|s| at_risk(used(s))).collect()
+    };
+    let mut obstacles = level_sets(used);
     let mut relaxations = if shaped {
         relaxations(&sets, |s| s.shape_reduced)
     } else {
@@ -133,14 +211,23 @@ pub fn run(scenario: Scenario) -> Run {
         Outcome::Infeasible(NoPlan::NoCandidate { .. })
     );
     if shaped && stuck && sets.iter().any(|s| s.shape_reach > 0.0) {
-        let obstacles_left = hard();
+        let obstacles_left = level_sets(|s| &s.hard);
         let again = plan(&obstacles_left);
         if again.outcome.plan().is_some() {
             (obstacles, planned) = (obstacles_left, again);
             relaxations = self::relaxations(&sets, |s| s.shape_reach);
+            used = |s| &s.hard;
         }
     }
     let plan_time = begun.elapsed();
+    let risks: Vec<PeakRisk> = planned.outcome.plan().map_or_else(Vec::new, |plan| {
+        sets.iter()
+            .map(|s| peak_risk(used(s), &plan.trajectory))
+            .collect()
+    });
+    if scenario.max_risk > 0.0 {
+        relaxations.extend(risks_taken(&sets, &risks));
+    }
     let evaluation = planned
         .outcome
         .plan()
@@ -151,23 +238,67 @@ pub fn run(scenario: Scenario) -> Run {
         obstacles,
         planned,
         relaxations,
+        risks,
         evaluation,
         plan_time,
     }
 }
 
+/// The largest risk along a trajectory. One that is nowhere deeper than [`tolerance::DEPTH_M`] in the set, which may
+/// touch it, is at none: a set without spread is at risk 1 on its very boundary.
+fn peak_risk(set: &Obstacle, trajectory: &Trajectory) -> PeakRisk {
+    let enters = |s| set.first_contact(s, tolerance::DEPTH_M).is_some();
+    if trajectory.segments().iter().any(enters) {
+        set.peak_risk_along(trajectory)
+    } else {
+        PeakRisk {
+            risk: 0.0,
+            time: trajectory.start_time(),
+        }
+    }
+}
+
+/// The targets whose sets a plan enters, the greatest risk first.
+fn risks_taken(sets: &[TargetSets], risks: &[PeakRisk]) -> Vec<Relaxation> {
+    let mut taken: Vec<(&TargetSets, &PeakRisk)> = sets
+        .iter()
+        .zip(risks)
+        .filter(|(_, peak)| peak.risk > 0.0)
+        .collect();
+    taken.sort_by(|a, b| b.1.risk.total_cmp(&a.1.risk));
+    taken
+        .into_iter()
+        .map(|(s, peak)| Relaxation::Risk {
+            target: s.hard.name().to_owned(),
+            amount: peak.risk,
+        })
+        .collect()
+}
+
 /// The independent judgement of a trajectory against the obstacles that it was planned against.
-pub fn judge(
-    scenario: &Scenario,
-    obstacles: &[PolytopeObstacle],
-    trajectory: &Trajectory,
-) -> Evaluation {
+pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajectory) -> Evaluation {
+    let shape = |o: &Obstacle| match o {
+        Obstacle::Polytope(o) => SetShape::Polygons {
+            initial: o.initial().clone(),
+            spells: vec![VelocitySpell {
+                until: f64::INFINITY,
+                velocities: o.velocity().clone(),
+            }],
+        },
+        Obstacle::Ellipsoid(o) => SetShape::Ellipses {
+            initial: *o.initial(),
+            velocity: *o.velocity(),
+        },
+        Obstacle::Slabs(o) => SetShape::Polygons {
+            initial: o.initial().clone(),
+            spells: o.spells().to_vec(),
+        },
+    };
     let sets: Vec<SpaceTimeSet> = obstacles
         .iter()
         .map(|o| SpaceTimeSet {
             name: o.name().to_owned(),
-            initial: o.initial().clone(),
-            velocity: o.velocity().clone(),
+            shape: shape(o),
         })
         .collect();
     evaluate(&Request {
@@ -178,6 +309,7 @@ pub fn judge(
         sets: &sets,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
+        max_risk: scenario.max_risk,
     })
 }
 
@@ -205,6 +337,10 @@ mod tests {
     use crate::vessel::{Hull, OwnShip};
     use std::f64::consts::{FRAC_PI_2, PI};
 
+    fn polytope(o: &Obstacle) -> &PolytopeObstacle {
+        o.as_polytope().expect("a polytope")
+    }
+
     fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
         let points = [Vector::zeros(), Vector::new(1500.0, 0.0)];
         Scenario {
@@ -225,10 +361,12 @@ mod tests {
             targets: vec![Target {
                 name: "other".to_owned(),
                 motion: Motion::Ship(target),
+                representation: Representation::Polytope,
             }],
             search: SearchKind::AStar,
             compliance,
             time_weight: 25.0,
+            max_risk: 0.0,
             deadline: 5.0,
         }
     }
@@ -244,6 +382,7 @@ mod tests {
             position_std: 0.0,
             speed_spread: 0.5,
             course_spread: 0.08,
+            turn_rate: 0.0,
             domain: DomainKind::Colregs,
         }
     }
@@ -257,7 +396,7 @@ mod tests {
         assert_eq!(shaped.obstacles[0], shaped.sets[0].shaped);
         assert_eq!(hard.obstacles[0], hard.sets[0].hard);
         assert!(shaped.relaxations.is_empty() && hard.relaxations.is_empty());
-        let areas = |run: &Run| run.obstacles[0].initial().area();
+        let areas = |run: &Run| polytope(&run.obstacles[0]).initial().area();
         assert!(areas(&shaped) > 2.0 * areas(&hard));
     }
 
@@ -270,7 +409,7 @@ mod tests {
             [Relaxation::Domain { target, amount }] if target == "other" && *amount > 1.0
         ));
         let start = relaxed.scenario.own_ship.pose.position;
-        assert!(relaxed.obstacles[0].slack(start, 0.0).value > 0.0);
+        assert!(polytope(&relaxed.obstacles[0]).slack(start, 0.0).value > 0.0);
         // the hard sets were never shaped
         assert!(
             run(scenario(target, Compliance::None))

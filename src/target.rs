@@ -1,7 +1,7 @@
 //! A target: a tracked ship as two sets, where she may be now and every velocity she may take.
 
 use crate::frame::{Pose, Vector, direction};
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::vessel::Hull;
 
 /// Half the angle between two tangents of the faster arc: 5°, radians.
@@ -9,6 +9,9 @@ const TANGENT_SPACING: f64 = std::f64::consts::PI / 36.0;
 
 /// The turn that one spell of a turning target stands for: 5°, radians.
 const TURN_OF_A_SPELL: f64 = std::f64::consts::PI / 36.0;
+
+/// Sides of the polygon that stands for an ellipse in figures: 0.12 % beyond it at most.
+const SET_SIDES: usize = 64;
 
 /// How the initial set of a target is shaped for the rules of the road.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +59,9 @@ pub struct ShipTrack {
     pub speed_spread: f64,
     /// Half-width of the course, radians.
     pub course_spread: f64,
+    /// How fast she may turn to either side, radians per second, not negative: her course at `t` is within
+    /// `course_spread + turn_rate t`.
+    pub turn_rate: f64,
     /// The shape asked for.
     pub domain: DomainKind,
 }
@@ -159,6 +165,29 @@ pub enum Motion {
         /// Every velocity it may take, m/s.
         velocity: ConvexPolygon,
     },
+    /// The same, as ellipses.
+    Ellipses {
+        /// Where it may be at t = 0, metres.
+        initial: Ellipse,
+        /// Every velocity it may take, m/s.
+        velocity: Ellipse,
+    },
+    /// The same with velocity sets one after another.
+    Spells {
+        /// Where it may be at t = 0, metres.
+        initial: ConvexPolygon,
+        /// In order of time; the ends increase and the last one's is infinite.
+        spells: Vec<VelocitySpell>,
+    },
+}
+
+/// What the sets of a target are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Representation {
+    /// Polygons as they are.
+    Polytope,
+    /// The smallest ellipses around them.
+    Ellipsoid,
 }
 
 /// A target.
@@ -168,6 +197,8 @@ pub struct Target {
     pub name: String,
     /// What is known of it.
     pub motion: Motion,
+    /// What its sets are made of; of no meaning where ellipses or several velocity sets are given.
+    pub representation: Representation,
 }
 
 impl Target {
@@ -176,14 +207,39 @@ impl Target {
         match &self.motion {
             Motion::Ship(ship) => ship.pose_at(time).position,
             Motion::Sets { initial, velocity } => initial.centroid() + velocity.centroid() * time,
+            Motion::Ellipses { initial, velocity } => initial.center() + velocity.center() * time,
+            Motion::Spells { initial, spells } => stretches(spells, time)
+                .fold(initial.centroid(), |at, (duration, velocities)| {
+                    at + velocities.centroid() * duration
+                }),
         }
     }
 
-    /// Every velocity it may take, m/s.
-    pub fn velocity_set(&self) -> ConvexPolygon {
+    /// Where a target whose sets are given outright may be at `time >= 0`, metres: the sum of its sets, of ellipses
+    /// from outside, by their circumscribed 64-gons. `None` for a tracked ship.
+    pub fn outer_set_at(&self, time: f64) -> Option<ConvexPolygon> {
         match &self.motion {
-            Motion::Ship(ship) => ship.outer_velocity_set(),
-            Motion::Sets { velocity, .. } => velocity.clone(),
+            Motion::Ship(_) => None,
+            Motion::Sets { initial, velocity } => {
+                Some(initial.minkowski_sum(&velocity.scaled(time)))
+            }
+            Motion::Ellipses { initial, velocity } => {
+                let [initial, velocity] = [initial, velocity].map(|e| e.outer_polygon(SET_SIDES));
+                Some(initial.minkowski_sum(&velocity.scaled(time)))
+            }
+            Motion::Spells { initial, spells } => Some(
+                stretches(spells, time).fold(initial.clone(), |set, (duration, velocities)| {
+                    set.minkowski_sum(&velocities.scaled(duration))
+                }),
+            ),
+        }
+    }
+
+    /// The instants at which its velocity set changes, seconds.
+    pub fn changes(&self) -> Vec<f64> {
+        match &self.motion {
+            Motion::Spells { spells, .. } => spells.iter().map(|s| s.until).collect(),
+            Motion::Ship(_) | Motion::Sets { .. } | Motion::Ellipses { .. } => Vec::new(),
         }
     }
 
@@ -191,9 +247,18 @@ impl Target {
     pub fn ship(&self) -> Option<&ShipTrack> {
         match &self.motion {
             Motion::Ship(ship) => Some(ship),
-            Motion::Sets { .. } => None,
+            Motion::Sets { .. } | Motion::Ellipses { .. } | Motion::Spells { .. } => None,
         }
     }
+}
+
+/// For how long each velocity set holds until `time`, seconds.
+fn stretches(spells: &[VelocitySpell], time: f64) -> impl Iterator<Item = (f64, &ConvexPolygon)> {
+    let starts = std::iter::once(0.0).chain(spells.iter().map(|s| s.until));
+    starts
+        .zip(spells)
+        .map(move |(start, s)| (s.until.min(time) - start, &s.velocities))
+        .filter(|(duration, _)| *duration > 0.0)
 }
 
 #[cfg(test)]
@@ -215,6 +280,7 @@ mod tests {
                 position_std: 0.0,
                 speed_spread: rng.random_range(0.0..3.0),
                 course_spread: rng.random_range(0.0..3.5),
+                turn_rate: 0.0,
                 domain: DomainKind::Hull,
             };
             let set = ship.outer_velocity_set();
@@ -238,6 +304,7 @@ mod tests {
             position_std: 0.0,
             speed_spread: rng.random_range(0.0..3.0),
             course_spread: rng.random_range(0.0..1.0),
+            turn_rate: 0.0,
             domain: DomainKind::Hull,
         }
     }
@@ -289,6 +356,7 @@ mod tests {
             position_std: 0.0,
             speed_spread: 0.0,
             course_spread: 0.0,
+            turn_rate: 0.0,
             domain: DomainKind::Hull,
         };
         assert_eq!(ship.outer_velocity_set().vertices().len(), 1);

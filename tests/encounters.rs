@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use searoom::colregs::Role;
 use searoom::frame::{Side, Vector, direction};
 use searoom::geometry::ConvexPolygon;
-use searoom::obstacle::PolytopeObstacle;
+use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::planner::{Outcome, Problem, SearchKind};
 use searoom::scenario::Scenario;
@@ -73,7 +73,7 @@ struct Record {
     seed: u64,
     drawn: Drawn,
     roles: Vec<Role>,
-    obstacles: Vec<PolytopeObstacle>,
+    obstacles: Vec<Obstacle>,
     plan: Option<(Trajectory, f64)>,
     /// In words, where there is no plan.
     refusal: String,
@@ -405,7 +405,7 @@ fn every_plan_among_many_is_clear_of_all() {
     assert!(broken.is_empty(), "{broken:#?}");
 }
 
-fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [PolytopeObstacle]) -> Problem<'a> {
+fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,

@@ -119,7 +119,7 @@ fn the_scenarios_in_the_documents_are_sound() {
     let targets = blocks(&guide, "toml");
     assert_eq!(targets.len(), 1);
     let both = Scenario::parse(&format!("{}\n{}", whole[0], targets[0])).expect("no faults");
-    assert_eq!(both.targets.len(), scenario.targets.len() + 1);
+    assert_eq!(both.targets.len(), scenario.targets.len() + 3);
 }
 
 /// The README's example, line by line.

@@ -42,12 +42,12 @@ fn turning_and_moving_the_scene_changes_no_judgement_and_no_shape() {
                 ),
                 (here.shape_reduced, there.shape_reduced),
                 (
-                    here.hard.initial().area().sqrt(),
-                    there.hard.initial().area().sqrt(),
+                    here.hard.outer_section(0.0).area().sqrt(),
+                    there.hard.outer_section(0.0).area().sqrt(),
                 ),
                 (
-                    here.shaped.initial().area().sqrt(),
-                    there.shaped.initial().area().sqrt(),
+                    here.shaped.outer_section(0.0).area().sqrt(),
+                    there.shaped.outer_section(0.0).area().sqrt(),
                 ),
             ];
             for (a, b) in pairs {

@@ -621,6 +621,7 @@ fn a_target_that_turns_stays_in_its_slabs() {
             position_std: 0.0,
             speed_spread: rng.random_range(0.0..1.0),
             course_spread: rng.random_range(0.0..0.2),
+            turn_rate: 0.0,
             domain: DomainKind::Hull,
         };
         let rate: f64 = rng.random_range(0.001..0.03);

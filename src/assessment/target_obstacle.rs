@@ -3,7 +3,8 @@
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{
-    EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle, VelocityObstacle,
+    EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    VelocityObstacle,
 };
 
 /// A section `O_t`, metres.
@@ -117,5 +118,15 @@ impl From<EllipsoidObstacle> for TargetObstacle {
 impl From<SlabObstacle> for TargetObstacle {
     fn from(obstacle: SlabObstacle) -> Self {
         Self::Slabs(obstacle)
+    }
+}
+
+impl From<Obstacle> for TargetObstacle {
+    fn from(obstacle: Obstacle) -> Self {
+        match obstacle {
+            Obstacle::Polytope(polytope) => polytope.into(),
+            Obstacle::Ellipsoid(ellipsoid) => (*ellipsoid).into(),
+            Obstacle::Slabs(slabs) => slabs.into(),
+        }
     }
 }

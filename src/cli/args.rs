@@ -102,6 +102,9 @@ pub struct Shared {
     /// Compliance instead of the scenario's: none (hulls only), shape (domains)
     #[arg(long, value_name = "C", value_parser = compliance)]
     pub compliance: Option<Compliance>,
+    /// Risk that the plan may accept instead of the scenario's: 0 to below 1
+    #[arg(long, value_name = "R", value_parser = max_risk)]
+    pub max_risk: Option<f64>,
     /// Write a Rerun recording: a file ending in .rrd, or a folder
     #[arg(long, value_name = "PATH")]
     pub rrd: Option<PathBuf>,
@@ -122,6 +125,9 @@ impl Shared {
         }
         if let Some(compliance) = self.compliance {
             scenario.compliance = compliance;
+        }
+        if let Some(max_risk) = self.max_risk {
+            scenario.max_risk = max_risk;
         }
     }
 }
@@ -166,6 +172,14 @@ fn compliance(word: &str) -> Result<Compliance, String> {
         "shape" => Ok(Compliance::Shape),
         "rules" => Err(unbuilt(word, "none, shape")),
         _ => Err("allowed: none, shape".to_owned()),
+    }
+}
+
+fn max_risk(word: &str) -> Result<f64, String> {
+    let allowed = format!("allowed: {}", Scenario::max_risk_allowed());
+    match word.parse() {
+        Ok(risk) if Scenario::allows_max_risk(risk) => Ok(risk + 0.0),
+        _ => Err(allowed),
     }
 }
 

@@ -2,14 +2,14 @@
 
 use std::process::ExitCode;
 
-use searoom::pipeline::Run;
+use searoom::pipeline::{Relaxation, Run};
 
 /// The highest of a run wins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
     /// All planned and verified.
     Good,
-    /// At least one scenario without a collision-free plan.
+    /// At least one scenario without a collision-free plan: none, or one that enters a set at an accepted risk.
     NoPlan,
     /// Bad input or usage, or a result that cannot be written.
     BadInput,
@@ -22,7 +22,14 @@ impl Status {
     pub fn of(run: &Run) -> Self {
         match (run.planned.outcome.plan(), &run.evaluation) {
             (None, _) => Self::NoPlan,
-            (Some(_), Some(evaluation)) if evaluation.verified() => Self::Good,
+            (Some(_), Some(evaluation)) if evaluation.verified() => {
+                let risked = |r: &Relaxation| matches!(r, Relaxation::Risk { .. });
+                if run.relaxations.iter().any(risked) {
+                    Self::NoPlan
+                } else {
+                    Self::Good
+                }
+            }
             (Some(_), _) => Self::InternalFault,
         }
     }

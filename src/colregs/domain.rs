@@ -228,6 +228,7 @@ mod tests {
             position_std: 2.0,
             speed_spread: 0.5,
             course_spread: 0.1,
+            turn_rate: 0.0,
             domain: DomainKind::Colregs,
         }
     }

@@ -2,7 +2,6 @@
 
 use super::role::{Role, SteadyShip, raw_role};
 use crate::frame::{Pose, Vector, cross, heading_of, relative_bearing, wrap};
-use crate::geometry::ConvexPolygon;
 use crate::target::{Motion, ShipTrack, Target};
 use crate::trajectory::{DesiredLeg, DesiredTrajectory};
 use crate::vessel::OwnShip;
@@ -119,9 +118,27 @@ pub fn encounter(
                     both.signed_distance(position(time) - ship.pose_at(time).position)
                 })
             }
-            Motion::Sets { initial, velocity } => least(from, until, |time| {
-                section(initial, velocity, time).signed_distance(position(time))
-            }),
+            // convex between two changes of the velocities
+            Motion::Sets { .. } | Motion::Ellipses { .. } | Motion::Spells { .. } => {
+                let mut ends: Vec<f64> = target.changes();
+                ends.retain(|&end| end > from && end < until);
+                ends.push(until);
+                let mut start = from;
+                let mut best: Option<Closest> = None;
+                for end in ends {
+                    let here = least(start, end, |time| {
+                        target
+                            .outer_set_at(time)
+                            .map_or(f64::INFINITY, |set| set.signed_distance(position(time)))
+                    });
+                    if best.as_ref().is_none_or(|b| here.distance < b.distance) {
+                        best = Some(here);
+                    }
+                    start = end;
+                }
+                let Some(best) = best else { continue };
+                best
+            }
         };
         if closest.distance < found.undisturbed_dcpa {
             found.undisturbed_dcpa = closest.distance;
@@ -146,10 +163,6 @@ fn steady_on(leg: &DesiredLeg, time: f64) -> SteadyShip {
         ),
         speed: leg.speed,
     }
-}
-
-fn section(initial: &ConvexPolygon, velocity: &ConvexPolygon, time: f64) -> ConvexPolygon {
-    initial.minkowski_sum(&velocity.scaled(time))
 }
 
 struct Closest {
@@ -194,7 +207,8 @@ fn least(from: f64, until: f64, distance: impl Fn(f64) -> f64) -> Closest {
 mod tests {
     use super::super::role::tests::{fixtures, ship};
     use super::*;
-    use crate::target::DomainKind;
+    use crate::geometry::ConvexPolygon;
+    use crate::target::{DomainKind, Representation};
     use crate::vessel::Hull;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -208,6 +222,7 @@ mod tests {
             position_std: 0.0,
             speed_spread: 0.0,
             course_spread: 0.0,
+            turn_rate: 0.0,
             domain: DomainKind::Colregs,
         }
     }
@@ -235,6 +250,7 @@ mod tests {
         Target {
             name: "other".to_owned(),
             motion: Motion::Ship(track),
+            representation: Representation::Polytope,
         }
     }
 
@@ -346,6 +362,7 @@ mod tests {
                 initial: square(10.0).translated(Vector::new(300.0, 100.0)),
                 velocity: square(0.5),
             },
+            representation: Representation::Polytope,
         };
         let desired = line(&[(0.0, 0.0), (600.0, 0.0)], 6.0);
         let found = encounter(&own_ship(), &desired, &target, 400.0);

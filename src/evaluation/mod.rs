@@ -4,18 +4,22 @@ mod clearance;
 mod cost;
 mod least;
 mod motion;
+mod moving_ellipse;
+mod moving_slabs;
 mod quadrature;
 mod space_time_set;
 
-pub use space_time_set::SpaceTimeSet;
+pub use space_time_set::{SetShape, SpaceTimeSet};
 
 use clearance::{Body, least_distance};
 use least::Least;
+use moving_ellipse::MovingEllipse;
+use moving_slabs::MovingSlabs;
 use space_time_set::MovingSet;
 
 use crate::frame::{Side, relative_bearing};
-use crate::geometry::{ConvexPolygon, outer_disc};
-use crate::target::{Motion, Target};
+use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
+use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::OwnShip;
@@ -97,6 +101,9 @@ pub struct Request<'a> {
     pub horizon: f64,
     /// `q` of eq. (30), m²/s².
     pub time_weight: f64,
+    /// The risk of eq. (25) that was accepted, in `[0, 1)`: the sets are those of it already, the hulls are judged
+    /// with velocities that are scaled about their centre by what is left of 1.
+    pub max_risk: f64,
 }
 
 /// Judges a trajectory: start, joints, turning radius, speeds and arrival; every set in continuous time,
@@ -113,11 +120,10 @@ pub fn evaluate(request: &Request) -> Evaluation {
         .sets
         .iter()
         .map(|set| {
-            let moving = MovingSet::new(&set.initial, &set.velocity);
-            let least = least_distance(segments, Body::POINT, &moving);
+            let least = set.shape.least_distance(segments);
             if judged {
                 let label = format!("set of '{}'", set.name);
-                violations.extend(collision(&label, &least, moving.has_interior()));
+                violations.extend(collision(&label, &least, set.shape.has_interior()));
             }
             least
         })
@@ -130,7 +136,7 @@ pub fn evaluate(request: &Request) -> Evaluation {
                 margin.see(least.value, least.time);
             }
         }
-        let (passage, clearance) = passage(request.own, segments, target, &margin);
+        let (passage, clearance) = passage(request, segments, target, &margin);
         // explicit sets are judged above, as sets
         if judged && target.ship().is_some() {
             let label = format!("hull of '{}'", target.name);
@@ -189,29 +195,64 @@ fn collision(label: &str, least: &Least, has_interior: bool) -> Option<Violation
     })
 }
 
-/// How a target is met, and its least clearance as found.
+/// The velocities of a ship scaled about their centre by `1 - risk`: the centroid of the polygon, or the centre of the
+/// smallest ellipse around it, as her representation has it.
+fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<VelocitySpell> {
+    let scaled = |spell: &VelocitySpell| {
+        let set = &spell.velocities;
+        let center = match target.representation {
+            Representation::Polytope => set.centroid(),
+            Representation::Ellipsoid => outer_enclosing_ellipse(set).center(),
+        };
+        VelocitySpell {
+            until: spell.until,
+            velocities: set
+                .translated(-center)
+                .scaled(1.0 - risk)
+                .translated(center),
+        }
+    };
+    spells.iter().map(scaled).collect()
+}
+
+/// How a target is met, and the least clearance that has to be kept: to every hull she may have at the accepted
+/// risk.
 fn passage(
-    own: &OwnShip,
+    request: &Request,
     segments: &[Segment],
     target: &Target,
     margin: &Least,
 ) -> (Passage, Least) {
-    let (closest, clearance) = match &target.motion {
+    let (closest, worst, kept) = match &target.motion {
         Motion::Ship(ship) => {
-            let body = Body::hull(&own.hull);
+            let body = Body::hull(&request.own.hull);
             let hull = ship.hull.polygon(&ship.pose);
             let nominal = MovingSet::new(&hull, &ConvexPolygon::point(ship.velocity()));
             let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
-            let worst = MovingSet::new(&hull.minkowski_sum(&unknown), &ship.outer_velocity_set());
-            (
-                least_distance(segments, body, &nominal),
-                least_distance(segments, body, &worst),
-            )
+            let initial = hull.minkowski_sum(&unknown);
+            let spells = ship.outer_velocity_spells(ship.turn_rate, request.horizon);
+            let worst = MovingSlabs::new(&initial, &spells).least_distance(segments, body);
+            let kept = if request.max_risk > 0.0 {
+                let spells = at_risk(&spells, target, request.max_risk);
+                MovingSlabs::new(&initial, &spells).least_distance(segments, body)
+            } else {
+                worst
+            };
+            (least_distance(segments, body, &nominal), worst, kept)
         }
         Motion::Sets { initial, velocity } => {
             let set = MovingSet::new(initial, velocity);
             let least = least_distance(segments, Body::POINT, &set);
-            (least, least)
+            (least, least, least)
+        }
+        Motion::Ellipses { initial, velocity } => {
+            let least = MovingEllipse::new(initial, velocity).least_distance(segments);
+            (least, least, least)
+        }
+        Motion::Spells { initial, spells } => {
+            let slabs = MovingSlabs::new(initial, spells);
+            let least = slabs.least_distance(segments, Body::POINT);
+            (least, least, least)
         }
     };
     let passing_side = segments
@@ -230,11 +271,11 @@ fn passage(
         dcpa: closest.value,
         tcpa: closest.time,
         passing_side,
-        min_clearance: clearance.value,
+        min_clearance: worst.value,
         min_margin: margin.value,
         min_margin_time: margin.time,
     };
-    (passage, clearance)
+    (passage, kept)
 }
 
 #[cfg(test)]

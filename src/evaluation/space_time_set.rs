@@ -1,17 +1,86 @@
 //! A moving set as the checker sees it: sections from matched vertices, faces from supports.
 
+use super::clearance::Body;
+use super::least::Least;
+use super::moving_ellipse::MovingEllipse;
+use super::moving_slabs::MovingSlabs;
 use crate::frame::{Vector, to_starboard};
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::target::VelocitySpell;
+use crate::trajectory::Segment;
 
-/// A set that a plan was made against: every position in `initial + t velocity`, `t >= 0`.
+/// A set that a plan was made against.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpaceTimeSet {
     /// The target's name.
     pub name: String,
-    /// `O_0`, metres.
-    pub initial: ConvexPolygon,
-    /// `V`, m/s.
-    pub velocity: ConvexPolygon,
+    /// What it is made of.
+    pub shape: SetShape,
+}
+
+/// What a set is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SetShape {
+    /// Every position that is reached from `O_0` (metres) with the velocity sets (m/s), one after another; the last
+    /// one holds for ever.
+    Polygons {
+        /// `O_0`.
+        initial: ConvexPolygon,
+        /// Not empty, in order of time.
+        spells: Vec<VelocitySpell>,
+    },
+    /// The ellipse of least trace around `O_0 + t V` at every `t`: an outer set of the sum.
+    Ellipses {
+        /// `O_0`, metres.
+        initial: Ellipse,
+        /// `V`, m/s.
+        velocity: Ellipse,
+    },
+}
+
+impl SpaceTimeSet {
+    /// `initial + t velocity`, `t >= 0`; metres and m/s.
+    pub fn polytope(
+        name: impl Into<String>,
+        initial: ConvexPolygon,
+        velocity: ConvexPolygon,
+    ) -> Self {
+        let spell = VelocitySpell {
+            until: f64::INFINITY,
+            velocities: velocity,
+        };
+        Self {
+            name: name.into(),
+            shape: SetShape::Polygons {
+                initial,
+                spells: vec![spell],
+            },
+        }
+    }
+}
+
+impl SetShape {
+    /// The least signed distance of own ship's position along a chain of segments.
+    pub(super) fn least_distance(&self, segments: &[Segment]) -> Least {
+        match self {
+            Self::Polygons { initial, spells } => {
+                MovingSlabs::new(initial, spells).least_distance(segments, Body::POINT)
+            }
+            Self::Ellipses { initial, velocity } => {
+                MovingEllipse::new(initial, velocity).least_distance(segments)
+            }
+        }
+    }
+
+    /// False when a section is a point or a segment for a while.
+    pub(super) fn has_interior(&self) -> bool {
+        match self {
+            Self::Polygons { initial, spells } => MovingSlabs::new(initial, spells).has_interior(),
+            Self::Ellipses { initial, velocity } => {
+                MovingEllipse::new(initial, velocity).has_interior()
+            }
+        }
+    }
 }
 
 /// A vertex of the section: `initial + t velocity`.
@@ -48,7 +117,7 @@ impl Face {
     }
 }
 
-/// [`SpaceTimeSet`] prepared for distances: for `t > 0` each vertex of the section is one vertex of
+/// `O_0 + t V` prepared for distances: for `t > 0` each vertex of the section is one vertex of
 /// `O_0` that moves with one vertex of `V`, and each face moves along its normal.
 #[derive(Debug, Clone)]
 pub(super) struct MovingSet {

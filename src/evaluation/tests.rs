@@ -2,8 +2,11 @@
 
 use super::*;
 use crate::frame::{Pose, Vector};
-use crate::target::{DomainKind, ShipTrack};
+use crate::geometry::Ellipse;
+use crate::target::{DomainKind, Representation, ShipTrack};
 use crate::vessel::Hull;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 const RADIUS: f64 = 100.0;
 
@@ -73,11 +76,7 @@ fn below(upper: f64) -> SpaceTimeSet {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
         ConvexPolygon::hull(&points).expect("finite")
     };
-    SpaceTimeSet {
-        name: "below".to_owned(),
-        initial: set(&corners),
-        velocity: set(&speeds),
-    }
+    SpaceTimeSet::polytope("below", set(&corners), set(&speeds))
 }
 
 fn ship(y: f64, speed: f64) -> Target {
@@ -93,8 +92,10 @@ fn ship(y: f64, speed: f64) -> Target {
             position_std: 2.0,
             speed_spread: 0.5,
             course_spread: 0.02,
+            turn_rate: 0.0,
             domain: DomainKind::Hull,
         }),
+        representation: Representation::Polytope,
     }
 }
 
@@ -107,6 +108,7 @@ fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Eva
         sets,
         horizon: 400.0,
         time_weight: 25.0,
+        max_risk: 0.0,
     })
 }
 
@@ -242,16 +244,15 @@ fn the_depth_decides_on_an_arc() {
 fn a_set_crossed_between_any_two_samples_is_found() {
     // a needle that own ship meets for a hundredth of a second
     let at = plan()[0].pose_at(17.0).position;
-    let thin = |half: f64| SpaceTimeSet {
-        name: "needle".to_owned(),
-        initial: ConvexPolygon::hull(&[
+    let thin = |half: f64| {
+        let initial = ConvexPolygon::hull(&[
             at + Vector::new(-half, 30.0),
             at + Vector::new(half, 30.0),
             at + Vector::new(half, -30.0),
             at + Vector::new(-half, -30.0),
         ])
-        .expect("finite"),
-        velocity: ConvexPolygon::point(Vector::zeros()),
+        .expect("finite");
+        SpaceTimeSet::polytope("needle", initial, ConvexPolygon::point(Vector::zeros()))
     };
     for half in [0.025, 1e-4, 2e-6, 0.0] {
         assert_eq!(
@@ -306,6 +307,7 @@ fn what_is_not_a_number_is_never_verified() {
         sets: &[],
         horizon: f64::NAN,
         time_weight: 25.0,
+        max_risk: 0.0,
     });
     assert_eq!(words(&found), ["start", "turn", "arrival"]);
 }
@@ -319,4 +321,122 @@ fn margins_go_to_the_target_of_their_name() {
     assert!((passage.min_margin - 3.0).abs() < 1e-6, "{passage:?}");
     let bottom = plan()[3].start_time + plan()[3].duration / 2.0;
     assert!((passage.min_margin_time - bottom).abs() < 0.1);
+}
+
+fn line(from: Vector, heading: f64, duration: f64) -> Segment {
+    Segment {
+        start: Pose::new(from, heading),
+        start_time: 0.0,
+        duration,
+        speed: 5.0,
+        turn_rate: 0.0,
+    }
+}
+
+fn round(initial: Ellipse, velocity: Ellipse) -> SpaceTimeSet {
+    SpaceTimeSet {
+        name: "round".to_owned(),
+        shape: SetShape::Ellipses { initial, velocity },
+    }
+}
+
+fn disc(center: Vector, radius: f64) -> Ellipse {
+    let axes = [Vector::new(radius, 0.0), Vector::new(0.0, radius)];
+    Ellipse::from_axes(center, axes)
+}
+
+#[test]
+fn a_growing_disc_is_met_to_a_micrometre() {
+    // two discs: exact, radius 50 + 0.5 t, its centre at (400 + t, 0)
+    let middle = Vector::new(400.0, 0.0);
+    let set = round(disc(middle, 50.0), disc(Vector::new(1.0, 0.0), 0.5));
+    // own ship abeam at speed 5 relative 4: past the growing disc along a tangent of its cone
+    let moved = Vector::new(4.0, 0.0);
+    let sine = 0.5 / moved.norm();
+    let cosine = (1.0 - sine * sine).sqrt();
+    for (depth, met) in [(2e-6, true), (-2e-6, false), (0.5, true), (-0.5, false)] {
+        let from = Vector::new(0.0, (50.0 - depth + 400.0 * sine) / cosine);
+        let passed = line(from, 0.0, 200.0);
+        let found = judge(&[passed], std::slice::from_ref(&set), &[]);
+        assert_eq!(words(&found).contains(&"set".to_owned()), met, "{depth}");
+    }
+}
+
+#[test]
+fn distances_of_ellipses_match_a_dense_scan() {
+    let mut rng = ChaCha8Rng::seed_from_u64(77);
+    for case in 0..150 {
+        let mut ellipse = |scale: f64, thin: bool| {
+            let mut vector =
+                || Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale;
+            let (center, a) = (vector(), vector());
+            let b = crate::frame::to_port(a) * if thin { 0.0 } else { 0.4 };
+            Ellipse::from_axes(center, [a, b])
+        };
+        let set = (ellipse(30.0, case % 3 == 0), ellipse(1.0, case % 4 == 0));
+        let moving = MovingEllipse::new(&set.0, &set.1);
+        let s = Segment {
+            start: Pose::new(
+                Vector::new(rng.random_range(-80.0..80.0), rng.random_range(-80.0..80.0)),
+                rng.random_range(-3.0..3.0),
+            ),
+            start_time: rng.random_range(0.0..5.0),
+            duration: rng.random_range(1.0..20.0),
+            speed: rng.random_range(0.0..8.0),
+            turn_rate: [0.0, 0.1, -0.2][case % 3],
+        };
+        // the section as an ellipse, and the distance to that
+        let at = |time: f64| {
+            let root = |e: &Ellipse| e.shape().trace().sqrt();
+            let (ro, rv) = (root(&set.0), root(&set.1));
+            let q = (set.0.shape() / ro + set.1.shape() * (time / rv)) * (ro + rv * time);
+            let center = set.0.center() + set.1.center() * time;
+            let section = Ellipse::new(center, q).expect("a shape");
+            section.signed_distance(s.pose_at(time).position).distance
+        };
+        let found = moving.least_distance(&[s]);
+        let scan = (0..=2000)
+            .map(|i| at(s.start_time + s.duration * f64::from(i) / 2000.0))
+            .fold(f64::INFINITY, f64::min);
+        assert!(found.certified, "{case}");
+        // a shape matrix keeps half of the digits of a thin axis
+        assert!(
+            (at(found.time) - found.value).abs() < 1e-6,
+            "{case} {found:?} {}",
+            at(found.time)
+        );
+        assert!(
+            found.value <= scan + 1e-6 && scan - found.value < 0.1,
+            "{case} {found:?} {scan}"
+        );
+    }
+}
+
+#[test]
+fn slabs_are_judged_within_their_time() {
+    // at rest for 60 s, then away at 5 m/s northwards
+    let square = ConvexPolygon::hull(&[
+        Vector::new(280.0, -10.0),
+        Vector::new(320.0, -10.0),
+        Vector::new(320.0, 10.0),
+        Vector::new(280.0, 10.0),
+    ])
+    .expect("finite");
+    let spell = |until, north| VelocitySpell {
+        until,
+        velocities: ConvexPolygon::point(Vector::new(0.0, north)),
+    };
+    let judged = |until: f64| {
+        let set = SpaceTimeSet {
+            name: "slabs".to_owned(),
+            shape: SetShape::Polygons {
+                initial: square.clone(),
+                spells: vec![spell(until, 0.0), spell(f64::INFINITY, 5.0)],
+            },
+        };
+        let found = judge(&[line(Vector::zeros(), 0.0, 300.0)], &[set], &[]);
+        words(&found).contains(&"set".to_owned())
+    };
+    // own ship is beside it from 56 s to 64 s; it needs 2 s to clear her way
+    assert!(!judged(54.0 - 1e-5) && judged(54.0 + 1e-5) && judged(60.0));
 }

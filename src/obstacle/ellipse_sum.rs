@@ -19,6 +19,36 @@ impl EllipsoidObstacle {
             + time * self.velocity().radius(normal)
     }
 
+    /// The largest of [`SpaceTimeObstacle::support`] over [`Self::sum_support`], both about the centre, in all
+    /// directions and up to `horizon`: the sum grown about its centre by this factor contains this set until then. At
+    /// least 1; infinite where `O_0` is flat and `V` is not along it. O(1).
+    ///
+    /// With `rho = sqrt(n' Q_o n / n' Q_v n) / d` and `tau = t / d` the squared ratio is
+    /// `1 + tau (rho - 1)² / (rho + tau)²`: largest at `tau = rho`, and for the extreme `rho`, the roots of the
+    /// generalised eigenvalues.
+    pub fn largest_ratio_to_sum(&self, horizon: f64) -> f64 {
+        let [still, growing] = self.roots;
+        if self.is_flat() || still == 0.0 || growing == 0.0 {
+            return 1.0;
+        }
+        let delay = still / growing;
+        let [d0, d1, d2] = self.determinant;
+        let root = d1 + (d1 * d1 - 4.0 * d0 * d2).max(0.0).sqrt();
+        let ratio = |square: f64| {
+            let rho = (square / delay).sqrt();
+            let tau = rho.min(horizon / delay);
+            if rho.is_infinite() {
+                (1.0 + tau).sqrt()
+            } else if rho > 0.0 {
+                (1.0 + tau * ((rho - 1.0) / (rho + tau)).powi(2)).sqrt()
+            } else {
+                f64::INFINITY
+            }
+        };
+        let least = if d0 > 0.0 { 2.0 * d0 / root } else { 0.0 };
+        ratio(least).max(ratio(root / (2.0 * d2)))
+    }
+
     /// True when the point is in the closed sum `O_0 ⊕ t V`, `t >= 0`, which the section of this obstacle
     /// contains. NaN is inside.
     ///

@@ -108,6 +108,11 @@ impl EllipsoidObstacle {
         self.flat.is_some()
     }
 
+    /// The polytope that the set is, exactly, where it is flat.
+    pub fn flat(&self) -> Option<&PolytopeObstacle> {
+        self.flat.as_ref()
+    }
+
     /// `O_0 = E(p_o, Q_o)`, metres.
     pub fn initial(&self) -> &Ellipse {
         &self.initial

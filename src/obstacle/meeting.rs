@@ -6,7 +6,7 @@ use crate::frame::{Vector, to_port};
 use crate::trajectory::{Mover, Segment};
 
 /// True when the segment is at least `depth` metres inside the obstacle at some time: the decision alone,
-/// many times faster than [`first_contact`] on arcs. An arc is compared with its chords, halved until
+/// many times faster than `first_contact` on arcs. An arc is compared with its chords, halved until
 /// they decide or one face alone does; what stays open at a sagitta below a hundredth of the depth or a nanometre is contact.
 pub fn meets(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64) -> bool {
     if !(segment.is_valid() && depth.is_finite()) {

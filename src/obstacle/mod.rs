@@ -1,7 +1,8 @@
 //! Space-time obstacles: sets that contain every position a target may reach, at every time.
 //!
 //! [`PolytopeObstacle`] is exact for its sets, [`EllipsoidObstacle`] is an outer set of its own,
-//! [`SlabObstacle`] has velocities that change with time. All three answer [`SpaceTimeObstacle`].
+//! [`SlabObstacle`] has velocities that change with time. All three answer [`SpaceTimeObstacle`];
+//! [`Obstacle`] is any of them.
 
 mod conservative_advancement;
 pub mod contact;
@@ -12,6 +13,7 @@ mod ellipsoid_contact;
 mod meeting;
 mod polytope;
 mod projection;
+mod representation;
 mod risk;
 mod slabs;
 mod space_time_obstacle;
@@ -21,6 +23,7 @@ pub use cpa::ClosestApproach;
 pub use ellipsoid::EllipsoidObstacle;
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
 pub use projection::{PathTime, along_path};
+pub use representation::Obstacle;
 pub use risk::PeakRisk;
 pub use slabs::{Slab, SlabError, SlabObstacle};
 pub use space_time_obstacle::{SpaceTimeObstacle, Support};

@@ -180,6 +180,11 @@ impl SlabObstacle {
         &self.initial
     }
 
+    /// The velocity sets in order of time, m/s.
+    pub fn spells(&self) -> &[VelocitySpell] {
+        &self.spells
+    }
+
     /// The slabs in order of time; the first starts at 0, the last has no end.
     pub fn slabs(&self) -> &[Slab] {
         &self.slabs

@@ -8,7 +8,7 @@ pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeK
 
 use std::time::Duration;
 
-use crate::obstacle::PolytopeObstacle;
+use crate::obstacle::Obstacle;
 use crate::trajectory::{DesiredTrajectory, Trajectory};
 use crate::vessel::OwnShip;
 
@@ -29,7 +29,7 @@ pub struct Problem<'a> {
     /// Where she is meant to be, and when.
     pub desired: &'a DesiredTrajectory,
     /// The sets to stay out of, own ship's footprint folded in.
-    pub obstacles: &'a [PolytopeObstacle],
+    pub obstacles: &'a [Obstacle],
     /// Seconds: arrival must not be later; the obstacles are known until then.
     pub horizon: f64,
     /// `q` of eq. (30), m²/s².

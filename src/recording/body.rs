@@ -1,11 +1,11 @@
-//! The body of a polytope obstacle in space-time, as a mesh.
+//! The body of an obstacle in space-time, as a mesh.
 
 use rerun::Mesh3D;
 
 use super::scene::Scene;
 use crate::frame::{Vector, direction, heading_of, wrap_positive};
 use crate::geometry::ConvexPolygon;
-use crate::obstacle::PolytopeObstacle;
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 
 /// A vertex of the section as it moves: `place + time * velocity`. These lines are the edges of the
 /// space-time polytope.
@@ -20,6 +20,97 @@ pub struct MovingVertex {
 impl MovingVertex {
     pub fn at(&self, time: f64) -> Vector {
         self.place + self.velocity * time
+    }
+}
+
+/// Sides, and stretches of time, of the polytopes that stand for an ellipsoid in pictures.
+const ROUND_SIDES: usize = 32;
+const ROUND_STRETCHES: usize = 8;
+
+/// A stretch of time within which the section is a polygon whose vertices move in straight lines.
+#[derive(Debug)]
+pub struct Stretch {
+    from: f64,
+    to: f64,
+    /// Counter-clockwise.
+    vertices: Vec<MovingVertex>,
+    /// Of the side from the vertex before to each vertex: its normal, and how fast it moves outward.
+    sides: Vec<(Vector, f64)>,
+}
+
+impl Stretch {
+    fn polytope(set: &PolytopeObstacle, from: f64, to: f64) -> Self {
+        let by_the_clock = |v: MovingVertex| MovingVertex {
+            place: v.place - v.velocity * from,
+            ..v
+        };
+        let faces = set.faces().iter();
+        Self {
+            from,
+            to,
+            vertices: moving_vertices(set).into_iter().map(by_the_clock).collect(),
+            sides: faces.map(|f| (f.normal, f.velocity_support)).collect(),
+        }
+    }
+
+    fn round(set: &EllipsoidObstacle, from: f64, to: f64) -> Self {
+        let step = std::f64::consts::TAU / ROUND_SIDES as f64;
+        let (first, last) = (set.outer_section(from), set.outer_section(to));
+        let vertices = (0..ROUND_SIDES).map(|k| {
+            let normal = direction(step * (k as f64 + 0.5));
+            let [a, b] = [&first, &last].map(|e| e.boundary_point(normal));
+            let velocity = (b - a) / (to - from).max(f64::MIN_POSITIVE);
+            MovingVertex {
+                place: a - velocity * from,
+                velocity,
+            }
+        });
+        let middle = 0.5 * (from + to);
+        let sides = (0..ROUND_SIDES).map(|k| {
+            let normal = direction(step * k as f64);
+            (normal, set.support(normal, middle).rate)
+        });
+        Self {
+            from,
+            to,
+            vertices: vertices.collect(),
+            sides: sides.collect(),
+        }
+    }
+
+    /// The section at a time, closed.
+    pub fn ring(&self, scene: &Scene, time: f64) -> Vec<[f32; 3]> {
+        let lifted = |v: &MovingVertex| scene.lifted(v.at(time), time);
+        let mut ring: Vec<_> = self.vertices.iter().map(lifted).collect();
+        ring.extend(ring.first().copied());
+        ring
+    }
+
+    pub fn contains(&self, time: f64) -> bool {
+        (self.from..=self.to).contains(&time)
+    }
+}
+
+/// The stretches from t = 0 to the scene's end: exact for polytopes and slabs, chords of an ellipsoid.
+pub fn stretches(scene: &Scene, set: &Obstacle) -> Vec<Stretch> {
+    let end = scene.end;
+    match set {
+        Obstacle::Polytope(o) => vec![Stretch::polytope(o, 0.0, end)],
+        Obstacle::Ellipsoid(o) => match o.flat() {
+            Some(flat) => vec![Stretch::polytope(flat, 0.0, end)],
+            None => (0..ROUND_STRETCHES)
+                .map(|k| {
+                    let at = |k: usize| end * k as f64 / ROUND_STRETCHES as f64;
+                    Stretch::round(o, at(k), at(k + 1))
+                })
+                .collect(),
+        },
+        Obstacle::Slabs(o) => o
+            .slabs()
+            .iter()
+            .filter(|slab| slab.start() < end)
+            .map(|slab| Stretch::polytope(slab.obstacle(), slab.start(), slab.end().min(end)))
+            .collect(),
     }
 }
 
@@ -48,34 +139,36 @@ fn extreme(set: &ConvexPolygon, along: Vector) -> Vector {
         .unwrap_or_else(Vector::zeros)
 }
 
-/// The body from t = 0 to the scene's end: one flat side per face, and the last section on top. Every
+/// The body from t = 0 to the scene's end: one flat side per face and stretch, and the last section on top. Every
 /// side has its own corners, so that its normal is flat.
-pub fn mesh(scene: &Scene, set: &PolytopeObstacle) -> Mesh3D {
-    let vertices = moving_vertices(set);
-    let count = vertices.len();
+pub fn mesh(scene: &Scene, stretches: &[Stretch]) -> Mesh3D {
     let mut corners: Vec<[f32; 3]> = Vec::new();
     let mut normals: Vec<[f32; 3]> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
-    for (i, face) in set.faces().iter().enumerate() {
-        let ends = [vertices[(i + count - 1) % count], vertices[i]];
-        let base = corners.len() as u32;
-        for time in [0.0, scene.end] {
-            corners.extend(ends.map(|v| scene.lifted(v.at(time), time)));
+    for stretch in stretches {
+        let vertices = &stretch.vertices;
+        let count = vertices.len();
+        for (i, (outward, speed)) in stretch.sides.iter().enumerate() {
+            let ends = [vertices[(i + count - 1) % count], vertices[i]];
+            let base = corners.len() as u32;
+            for time in [stretch.from, stretch.to] {
+                corners.extend(ends.map(|v| scene.lifted(v.at(time), time)));
+            }
+            let rise = -speed / scene.metres_per_second;
+            let length = (1.0 + rise * rise).sqrt();
+            let normal = [outward.x, outward.y, rise].map(|n| (n / length) as f32);
+            normals.extend([normal; 4]);
+            triangles.extend([[base, base + 1, base + 3], [base, base + 3, base + 2]]);
         }
-        let rise = -face.velocity_support / scene.metres_per_second;
-        let length = (1.0 + rise * rise).sqrt();
-        let normal = [face.normal.x, face.normal.y, rise].map(|n| (n / length) as f32);
-        normals.extend([normal; 4]);
-        triangles.extend([[base, base + 1, base + 3], [base, base + 3, base + 2]]);
     }
-    let base = corners.len() as u32;
-    corners.extend(
-        vertices
-            .iter()
-            .map(|v| scene.lifted(v.at(scene.end), scene.end)),
-    );
-    normals.extend(std::iter::repeat_n([0.0, 0.0, 1.0], count));
-    triangles.extend((2..count as u32).map(|i| [base, base + i - 1, base + i]));
+    if let Some(last) = stretches.last() {
+        let base = corners.len() as u32;
+        let top = last.vertices.iter();
+        corners.extend(top.map(|v| scene.lifted(v.at(last.to), last.to)));
+        let count = last.vertices.len();
+        normals.extend(std::iter::repeat_n([0.0, 0.0, 1.0], count));
+        triangles.extend((2..count as u32).map(|i| [base, base + i - 1, base + i]));
+    }
     Mesh3D::new(corners)
         .with_vertex_normals(normals)
         .with_triangle_indices(triangles)

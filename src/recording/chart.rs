@@ -8,6 +8,7 @@ use super::scene::{Bounds, Scene, desired_leg, flat, round_down};
 use super::style::{self, Pace};
 use super::{MAP, path};
 use crate::frame::Vector;
+use crate::obstacle::SpaceTimeObstacle;
 use crate::target::Target;
 
 /// Degrees of turn between two drawn points of an arc, radians.

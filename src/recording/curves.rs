@@ -6,7 +6,7 @@ use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeCo
 use super::scene::{Motion, Scene, desired_leg};
 use super::{TIMELINE, style};
 use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap};
-use crate::obstacle::PolytopeObstacle;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::target::Target;
 use crate::tolerance;
 
@@ -95,12 +95,11 @@ fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 /// sample; negative in overlap, no number after arrival.
 pub fn clearances(scene: &Scene, target: &Target) -> Vec<f64> {
     let own = &scene.run.scenario.own_ship.hull;
-    let sets = target_set(target);
     let at = |&time: &f64| {
         let own = own.polygon(&scene.motion.pose_at(time));
-        let clearance = match (target.ship(), &sets) {
+        let clearance = match (target.ship(), target.outer_set_at(time)) {
             (Some(ship), _) => own.separation(&ship.hull.polygon(&ship.pose_at(time))),
-            (None, Some(set)) => own.separation(&set.section(time)),
+            (None, Some(set)) => own.separation(&set),
             (None, None) => f64::NAN,
         };
         scene.motion.until_arrival(time, clearance)
@@ -108,24 +107,13 @@ pub fn clearances(scene: &Scene, target: &Target) -> Vec<f64> {
     scene.samples.iter().map(at).collect()
 }
 
-fn target_set(target: &Target) -> Option<PolytopeObstacle> {
-    match &target.motion {
-        crate::target::Motion::Sets { initial, velocity } => Some(PolytopeObstacle::new(
-            target.name.clone(),
-            initial.clone(),
-            velocity.clone(),
-        )),
-        crate::target::Motion::Ship(_) => None,
-    }
-}
-
 fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let sets = &scene.run.sets;
     if sets.is_empty() {
         return Ok(());
     }
-    let hard: Vec<&PolytopeObstacle> = sets.iter().map(|s| &s.hard).collect();
-    let shaped: Vec<&PolytopeObstacle> = sets.iter().map(|s| &s.shaped).collect();
+    let hard: Vec<&Obstacle> = sets.iter().map(|s| &s.hard).collect();
+    let shaped: Vec<&Obstacle> = sets.iter().map(|s| &s.shaped).collect();
     let mut series = vec![Series {
         name: "hard sets",
         color: style::own_ship(),
@@ -157,10 +145,10 @@ fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
 
 /// Metres from own ship's centre to the nearest of the sets at every sample; negative inside, no number after
 /// arrival.
-pub fn margins(scene: &Scene, sets: &[&PolytopeObstacle]) -> Vec<f64> {
+pub fn margins(scene: &Scene, sets: &[&Obstacle]) -> Vec<f64> {
     let at = |&time: &f64| {
         let own = scene.motion.pose_at(time).position;
-        let margins = sets.iter().map(|s| s.section(time).signed_distance(own));
+        let margins = sets.iter().map(|s| s.signed_distance(own, time).distance);
         let least = margins.fold(f64::INFINITY, f64::min);
         scene.motion.until_arrival(time, least)
     };

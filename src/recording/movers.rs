@@ -10,7 +10,7 @@ use super::scene::{Motion, Scene, flat, round_down};
 use super::{MAP, TIMELINE, TRAILS, path, style};
 use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
-use crate::obstacle::PolytopeObstacle;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::target::Target;
 
 /// The hard set is drawn strong, the shaped one thin and weak.
@@ -58,14 +58,17 @@ fn log_sections(
     rec: &RecordingStream,
     scene: &Scene,
     entity: rerun::EntityPath,
-    set: &PolytopeObstacle,
+    set: &Obstacle,
     (color, radius): (Color, Radius),
 ) -> RecordingStreamResult<()> {
     let look = LineStrips2D::update_fields()
         .with_colors([color])
         .with_radii([radius]);
     rec.log_static(entity.clone(), &look)?;
-    let outlines = scene.moments.iter().map(|&t| outline(&set.section(t)));
+    let outlines = scene
+        .moments
+        .iter()
+        .map(|&t| outline(&set.outer_section(t)));
     let columns = LineStrips2D::update_fields()
         .with_strips(outlines)
         .columns_of_unit_batches()?;

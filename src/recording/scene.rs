@@ -5,6 +5,7 @@ use rerun::TimeColumn;
 
 use super::TIMELINE;
 use crate::frame::{Pose, Vector, heading_of};
+use crate::obstacle::Obstacle;
 use crate::pipeline::Run;
 use crate::tolerance;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
@@ -208,13 +209,18 @@ fn steps(end: f64, step: f64) -> Vec<f64> {
     times
 }
 
+/// Of the last section that is drawn.
+fn corners(set: &Obstacle, end: f64) -> usize {
+    set.outer_section(end).vertices().len()
+}
+
 fn moment_step(run: &Run, end: f64) -> f64 {
-    let corners: usize = run
+    let each: usize = run
         .sets
         .iter()
-        .map(|s| s.hard.faces().len() + s.shaped.faces().len() + 2)
+        .map(|s| corners(&s.hard, end) + corners(&s.shaped, end) + 2)
         .sum();
-    let rows = (SECTION_BYTES / (8.0 * corners.max(1) as f64)).min(MOMENTS);
+    let rows = (SECTION_BYTES / (8.0 * each.max(1) as f64)).min(MOMENTS);
     (end / rows)
         .ceil()
         .clamp(MOMENT_STEP_S.0, MOMENT_STEP_S.1)

@@ -5,12 +5,12 @@ use rerun::{
     Transform3D, ViewCoordinates,
 };
 
-use super::body::{mesh, moving_vertices};
+use super::body::{mesh, stretches};
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
 use super::scene::{Bounds, Scene};
 use super::{VOLUME, path, style};
 use crate::frame::{Vector, to_port};
-use crate::obstacle::PolytopeObstacle;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
 /// Of the sides of a shaped body.
 const SHAPED_ALPHA: u8 = 16;
@@ -125,22 +125,19 @@ fn log_body(
     rec: &RecordingStream,
     scene: &Scene,
     entity: rerun::EntityPath,
-    set: &PolytopeObstacle,
+    set: &Obstacle,
     (index, alpha): (usize, u8),
 ) -> RecordingStreamResult<()> {
     let color = style::target(index);
-    let body = mesh(scene, set).with_albedo_factor(style::translucent(color, alpha).0);
-    let vertices = moving_vertices(set);
+    let stretches = stretches(scene, set);
+    let body = mesh(scene, &stretches).with_albedo_factor(style::translucent(color, alpha).0);
     let strength = 0.3 + f32::from(alpha) / 100.0;
     let faint = style::toward_background(color, strength);
     let mut lines = Lines::default();
     for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * scene.end) {
-        let mut ring: Vec<_> = vertices
-            .iter()
-            .map(|v| scene.lifted(v.at(time), time))
-            .collect();
-        ring.extend(ring.first().copied());
-        lines.add(ring, faint, 0.6);
+        if let Some(stretch) = stretches.iter().find(|s| s.contains(time)) {
+            lines.add(stretch.ring(scene, time), faint, 0.6);
+        }
     }
     let lines = lines.archetype();
     let parts: [&dyn AsComponents; 2] = [&body, &lines];
@@ -176,8 +173,12 @@ fn log_motions(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
     }
     let mut lines = Lines::default();
     for (index, target) in scene.run.scenario.targets.iter().enumerate() {
-        let ends = [0.0, scene.end].map(|t| scene.lifted(target.position_at(t), t));
-        lines.add(ends.to_vec(), style::target(index), 1.0);
+        let mut times = vec![0.0];
+        times.extend(target.changes().into_iter().filter(|&t| t < scene.end));
+        times.push(scene.end);
+        let places = times.iter();
+        let strip = places.map(|&t| scene.lifted(target.position_at(t), t));
+        lines.add(strip.collect(), style::target(index), 1.0);
     }
     rec.log_static(path(&[VOLUME, "targets"]), &lines.archetype())
 }

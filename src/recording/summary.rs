@@ -10,6 +10,7 @@ use super::movers::vector_seconds;
 use super::scene::{Motion, Scene};
 use crate::evaluation::Evaluation;
 use crate::frame::{Side, deg_from_radians, knots_from_mps};
+use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Relaxation;
 use crate::planner::{Outcome, Plan};
 use crate::scenario::Compliance;
@@ -172,6 +173,9 @@ fn relaxation(relaxation: &Relaxation) -> String {
             "- **Relaxed:** the shape around {target} was drawn back by {amount:.1} m: own ship starts \
              inside it, or no plan is clear of it."
         ),
+        Relaxation::Risk { target, amount } => format!(
+            "- **Relaxed:** the set of {target} is entered, at a risk of up to {amount:.3}, which was accepted."
+        ),
     }
 }
 
@@ -181,8 +185,8 @@ fn targets_table(scene: &Scene) -> String {
         return "No targets.".to_owned();
     }
     let mut table = String::from(
-        "| target | own ship is | CPA undisturbed | CPA planned | passes to | worst-case clearance | margin to set |\n\
-         |---|---|---|---|---|---|---|",
+        "| target | own ship is | CPA undisturbed | CPA planned | passes to | worst-case clearance | margin to set | largest risk |\n\
+         |---|---|---|---|---|---|---|---|",
     );
     for (index, sets) in run.sets.iter().enumerate() {
         let encounter = &sets.encounter;
@@ -204,6 +208,13 @@ fn targets_table(scene: &Scene) -> String {
                 p.min_margin
             ),
             None => write!(table, " – | – | – | – |"),
+        };
+        let _ = match run.risks.get(index) {
+            Some(peak) if peak.risk > 0.0 => {
+                write!(table, " {:.3} at {:.0} s |", peak.risk, peak.time)
+            }
+            Some(_) => write!(table, " 0 |"),
+            None => write!(table, " – |"),
         };
     }
     table

@@ -127,6 +127,8 @@ pub struct Summary {
     pub delay: Option<f64>,
     /// Least distance to any hull a target may have, metres; `None` without targets.
     pub clearance: Option<f64>,
+    /// The largest risk along the plan, of any target; `None` without targets.
+    pub max_risk: Option<f64>,
     /// Nodes expanded.
     pub expanded: usize,
     /// Wall-clock milliseconds of planning.
@@ -177,6 +179,11 @@ impl Summary {
             clearance: evaluation
                 .map(|e| e.min_clearance)
                 .filter(|clearance| clearance.is_finite()),
+            max_risk: run
+                .risks
+                .iter()
+                .map(|peak| peak.risk)
+                .max_by(f64::total_cmp),
             expanded: run.planned.stats.expanded,
             milliseconds: run.plan_time.as_secs_f64() * 1e3,
         }

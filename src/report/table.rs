@@ -4,14 +4,15 @@ use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets
 
 use super::summary::{Meeting, Summary, Verdict};
 use crate::frame::Side;
-use crate::pipeline::Run;
+use crate::obstacle::SpaceTimeObstacle;
+use crate::pipeline::{Relaxation, Run};
 use crate::planner::Outcome;
 
 /// Targets of one scenario that a row names; the rest is counted.
 const NAMED: usize = 3;
 
 /// Units below the names, so that the table fits a terminal.
-const HEADER: [&str; 11] = [
+const HEADER: [&str; 12] = [
     "scenario",
     "outcome",
     "encounter",
@@ -20,13 +21,14 @@ const HEADER: [&str; 11] = [
     "J\n[m²]",
     "delay\n[s]",
     "clearance\n[m]",
+    "risk",
     "nodes\nexpanded",
     "time\n[ms]",
     "verified",
 ];
 
 /// Columns with numbers.
-const NUMBERS: std::ops::Range<usize> = 5..10;
+const NUMBERS: std::ops::Range<usize> = 5..11;
 
 /// One line of a suite's table.
 #[derive(Debug, Clone)]
@@ -89,6 +91,7 @@ fn cells(summary: &Summary) -> Vec<Cell> {
         text(summary.space_time_error.map(square_metres)),
         text(summary.delay.map(signed)),
         text(summary.clearance.map(|metres| format!("{metres:.1}"))),
+        text(summary.max_risk.map(|risk| format!("{risk:.2}"))),
         Cell::new(summary.expanded),
         Cell::new(format!("{:.2}", summary.milliseconds)),
         match summary.verified {
@@ -159,6 +162,24 @@ fn passing(meeting: &Meeting) -> String {
     }
 }
 
+/// The largest risk, and whose and when where there is one.
+fn risk_text(run: &Run, largest: f64) -> String {
+    let mut text = format!("{largest:.3} at most");
+    if run.scenario.max_risk > 0.0 {
+        text.push_str(&format!(" ({} accepted)", run.scenario.max_risk));
+    }
+    for (sets, peak) in run.sets.iter().zip(&run.risks) {
+        if peak.risk > 0.0 {
+            let name = sets.hard.name();
+            text.push_str(&format!(
+                ", {:.3} with '{name}' at {:.0} s",
+                peak.risk, peak.time
+            ));
+        }
+    }
+    text
+}
+
 /// The verdict and the costs of one run, aligned.
 pub fn plan_text(run: &Run) -> String {
     let summary = Summary::of(run);
@@ -181,11 +202,16 @@ pub fn plan_text(run: &Run) -> String {
         ),
         Outcome::Solved(_) => {}
     }
-    for crate::pipeline::Relaxation::Domain { target, amount } in &run.relaxations {
-        say(
-            "relaxed",
-            format!("the domain of '{target}' was drawn back by {amount:.1} m"),
-        );
+    for given_up in &run.relaxations {
+        let what = match given_up {
+            Relaxation::Domain { target, amount } => {
+                format!("the domain of '{target}' was drawn back by {amount:.1} m")
+            }
+            Relaxation::Risk { target, amount } => {
+                format!("the set of '{target}' is entered, at a risk of up to {amount:.3}")
+            }
+        };
+        say("relaxed", what);
     }
     if summary.meetings.is_empty() {
         say("encounter", "none".to_owned());
@@ -235,6 +261,9 @@ pub fn plan_text(run: &Run) -> String {
         if let Some(clearance) = summary.clearance {
             say("clearance", format!("{clearance:.1} m"));
         }
+        if let Some(risk) = summary.max_risk {
+            say("risk", risk_text(run, risk));
+        }
         for violation in &evaluation.violations {
             say(
                 "violation",
@@ -279,6 +308,7 @@ mod tests {
             space_time_error: Some(12345.6),
             delay: Some(-0.04),
             clearance: None,
+            max_risk: Some(0.25),
             expanded: 7,
             milliseconds: 1.234,
         }

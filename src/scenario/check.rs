@@ -50,6 +50,7 @@ pub(super) fn scenario(mut root: Section) -> Option<Scenario> {
         targets: targets?,
         search: planner.search.unwrap_or(SearchKind::AStar),
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
+        max_risk: planner.max_risk.unwrap_or(0.0),
         deadline: planner.deadline.unwrap_or(DEFAULT_DEADLINE),
     })
 }
@@ -241,6 +242,7 @@ struct PlannerFields {
     search: Option<SearchKind>,
     compliance: Option<Compliance>,
     time_weight: Option<f64>,
+    max_risk: Option<f64>,
     deadline: Option<f64>,
 }
 
@@ -264,7 +266,6 @@ fn planner(mut section: Section) -> PlannerFields {
     );
     section.not_built("risk_weight_m");
     section.not_built("optimal_control");
-    section.only_zero("max_risk");
     let fields = PlannerFields {
         search: section.choice(
             "search",
@@ -282,6 +283,7 @@ fn planner(mut section: Section) -> PlannerFields {
             ],
         ),
         time_weight: section.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
+        max_risk: section.number("max_risk", limits::RISK),
         deadline: section.number("deadline_s", limits::DURATION),
     };
     section.finish();

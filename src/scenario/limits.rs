@@ -33,6 +33,16 @@ pub(super) const VELOCITY: Range = Range::within(100.0);
 pub(super) const COURSE: Range = Range::within(360.0);
 /// Degrees, half a full circle to either side.
 pub(super) const COURSE_SPREAD: Range = Range::between(0.0, 180.0);
+/// Degrees per second.
+pub(super) const TURN_RATE: Range = Range::between(0.0, 90.0);
+/// Of 1: a plan that accepts certainty would keep clear of nothing but the expected target.
+pub(super) const RISK: Range = Range::between(0.0, 0.999_999);
+/// m² and m²/s², the entries of a shape matrix.
+pub(super) const AREA: Range = Range::within(1e14);
+/// See [`AREA`].
+pub(super) const VELOCITY_AREA: Range = Range::within(1e4);
+/// Velocity sets of one target: each has the edges of all before it.
+pub(super) const VELOCITY_SETS: usize = 50;
 /// m²/s², the weight of time.
 pub(super) const TIME_WEIGHT: Range = Range::between(0.0, 1e6);
 

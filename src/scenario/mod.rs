@@ -1,6 +1,7 @@
 //! A scenario: read from a file, checked in full, then without invalid state.
 
 mod check;
+mod explicit_sets;
 mod fault;
 mod file;
 mod limits;
@@ -45,6 +46,8 @@ pub struct Scenario {
     pub compliance: Compliance,
     /// `q` of eq. (30), m²/s².
     pub time_weight: f64,
+    /// The risk of eq. (25) that the plan may accept, in `[0, 1)`.
+    pub max_risk: f64,
     /// Wall-clock budget of one plan, seconds.
     pub deadline: f64,
 }
@@ -91,6 +94,16 @@ impl Scenario {
             file: file.to_owned(),
             faults,
         })
+    }
+
+    /// True for what `max_risk` may be.
+    pub fn allows_max_risk(risk: f64) -> bool {
+        limits::RISK.contains(risk)
+    }
+
+    /// What `max_risk` may be, in words.
+    pub fn max_risk_allowed() -> String {
+        limits::RISK.to_string()
     }
 
     /// Checks the text of a scenario file. The error holds every fault, in order of lines.

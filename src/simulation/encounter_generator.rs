@@ -10,7 +10,7 @@ use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_por
 use crate::geometry::outer_disc;
 use crate::planner::SearchKind;
 use crate::scenario::{Compliance, Scenario};
-use crate::target::{DomainKind, Motion, ShipTrack, Target};
+use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::trajectory::{DesiredTrajectory, TrajectoryError};
 use crate::vessel::{Hull, OwnShip};
 
@@ -236,6 +236,7 @@ fn scene(
             ),
             ..ship
         }),
+        representation: Representation::Polytope,
     });
     let waypoints = [Vector::zeros(), Vector::new(PATH_LENGTH, 0.0)];
     let waypoints = waypoints.map(|w| origin.world_coordinates(w));
@@ -256,6 +257,7 @@ fn scene(
             search: SearchKind::AStar,
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,
+            max_risk: 0.0,
             deadline: DEADLINE,
         },
         kinds,
@@ -301,6 +303,7 @@ fn draw(kind: EncounterKind, rng: &mut ChaCha8Rng) -> Option<ShipTrack> {
         position_std,
         speed_spread,
         course_spread,
+        turn_rate: 0.0,
         domain: DomainKind::Colregs,
     };
     let own = |time: f64| Pose::new(Vector::new(OWN_SPEED * time, 0.0), 0.0);

@@ -11,6 +11,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::polytopes;
 use searoom::frame::{Pose, cross, heading_of, wrap};
 use searoom::planner::Problem;
 use searoom::trajectory::DesiredLeg;
@@ -171,7 +172,7 @@ impl Bound {
                 })
                 .fold(f64::INFINITY, f64::min)
         };
-        problem.obstacles.iter().map(of_set).fold(0.0, f64::max)
+        polytopes(problem).map(of_set).fold(0.0, f64::max)
     }
 }
 

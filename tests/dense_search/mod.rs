@@ -20,6 +20,7 @@ mod tests;
 use std::collections::HashMap;
 
 use searoom::frame::{Pose, Vector, cross, heading_of, wrap};
+use searoom::obstacle::PolytopeObstacle;
 use searoom::planner::Problem;
 use searoom::trajectory::{DesiredLeg, Segment, Trajectory};
 
@@ -126,7 +127,7 @@ impl DenseSearch {
         let [leg] = problem.desired.legs() else {
             panic!("the dense search knows one straight leg only");
         };
-        let fastest_set = problem.obstacles.iter().map(|o| o.velocity().reach());
+        let fastest_set = polytopes(problem).map(|o| o.velocity().reach());
         let scene = Scene {
             problem,
             leg: *leg,
@@ -338,11 +339,7 @@ impl Scene<'_> {
         let slack = |elapsed: f64| {
             let position = segment.pose_after(elapsed).position;
             let time = segment.start_time + elapsed;
-            let slacks = self
-                .problem
-                .obstacles
-                .iter()
-                .map(|o| o.slack(position, time).value);
+            let slacks = polytopes(self.problem).map(|o| o.slack(position, time).value);
             slacks.fold(f64::INFINITY, f64::min)
         };
         // touching is no contact
@@ -456,7 +453,7 @@ pub fn recheck(problem: &Problem, found: &Found) {
     for i in 0..count {
         let t = 0.01 * (i as f64 + 0.5);
         let position = trajectory.pose_at(t).position;
-        for o in problem.obstacles {
+        for o in polytopes(problem) {
             assert!(o.slack(position, t).value > -0.1, "inside at {t}");
         }
         integral += 0.01 * desired.nearest(position, t, problem.time_weight).error;
@@ -467,6 +464,12 @@ pub fn recheck(problem: &Problem, found: &Found) {
         "{cost} {}",
         found.cost
     );
+}
+
+/// The obstacles: the dense search knows polytopes only.
+fn polytopes<'a>(problem: &Problem<'a>) -> impl Iterator<Item = &'a PolytopeObstacle> {
+    let obstacles = problem.obstacles.iter();
+    obstacles.map(|o| o.as_polytope().expect("a polytope"))
 }
 
 fn trace(states: &[State], mut at: usize, closing: Vec<Segment>) -> Trajectory {

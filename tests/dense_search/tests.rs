@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::*;
 use searoom::geometry::outer_disc;
-use searoom::obstacle::PolytopeObstacle;
+use searoom::obstacle::Obstacle;
 use searoom::planner::SearchKind;
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
@@ -16,7 +16,7 @@ fn scene(kind: EncounterKind, seed: u64, placement: Placement) -> Scenario {
 }
 
 /// The sets that safety is claimed on, from their definition.
-fn hard_sets(scenario: &Scenario) -> Vec<PolytopeObstacle> {
+fn hard_sets(scenario: &Scenario) -> Vec<Obstacle> {
     let own = &scenario.own_ship;
     let ships = scenario.targets.iter().filter_map(|t| t.ship());
     ships
@@ -24,12 +24,12 @@ fn hard_sets(scenario: &Scenario) -> Vec<PolytopeObstacle> {
             let reach = own.hull.half_diagonal() + own.safety_margin + 3.0 * ship.position_std;
             let hull = ship.hull.polygon(&ship.pose);
             let initial = hull.minkowski_sum(&outer_disc(reach, ship.pose.heading));
-            PolytopeObstacle::new("hard", initial, ship.outer_velocity_set())
+            PolytopeObstacle::new("hard", initial, ship.outer_velocity_set()).into()
         })
         .collect()
 }
 
-fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [PolytopeObstacle]) -> Problem<'a> {
+fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,

@@ -9,7 +9,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::hazard::Hazard;
 use super::interception::{Chase, Interception, Limits};
+use super::part::Window;
 use crate::frame::{Side, Vector, direction, heading_of, to_port, wrap};
 use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
@@ -68,6 +70,7 @@ struct Pace {
 #[derive(Debug)]
 pub(crate) struct Aims {
     obstacle: usize,
+    window: Option<Window>,
     corners: Vec<Corner>,
     paces: Vec<Pace>,
 }
@@ -82,9 +85,9 @@ pub(crate) struct Aim {
 }
 
 impl Aims {
-    /// `body` is the obstacle with this index, or stands for it.
+    /// `body` is that of the hazard, or stands for it.
     pub(crate) fn new(
-        obstacle: usize,
+        hazard: &Hazard,
         body: &PolytopeObstacle,
         speeds: impl Iterator<Item = f64>,
     ) -> Self {
@@ -105,10 +108,17 @@ impl Aims {
             .collect();
         let paces = speeds.map(|u| Pace::new(faces, &corners, u)).collect();
         Self {
-            obstacle,
+            obstacle: hazard.obstacle,
+            window: hazard.window,
             corners,
             paces,
         }
+    }
+
+    /// When the clock of these corners starts, and how long they are in force, seconds.
+    pub(crate) fn window(&self) -> (f64, f64) {
+        self.window
+            .map_or((0.0, f64::INFINITY), |w| (w.start, w.end - w.start))
     }
 
     fn kind(&self, corner: usize) -> NodeKind {
@@ -285,6 +295,7 @@ mod tests {
     use super::*;
     use crate::frame::Pose;
     use crate::geometry::{ConvexPolygon, outer_disc};
+    use crate::planner::space_time::part::{Body, Part};
     use rand::{Rng, SeedableRng};
 
     /// Every corner is sought one by one; what only just touches has to be among what is found.
@@ -307,7 +318,12 @@ mod tests {
                 outer_disc(rng.random_range(20.0..150.0), 0.3).translated(centre),
                 ConvexPolygon::hull(&spread).expect("a set"),
             );
-            let aims = Aims::new(0, &body, speeds.into_iter());
+            let part = Part {
+                obstacle: 0,
+                window: None,
+                body: Body::Polytope(body.clone()),
+            };
+            let aims = Aims::new(&Hazard::new(&part), &body, speeds.into_iter());
             let pose = Pose::new(Vector::new(0.0, 0.0), rng.random_range(-3.1..3.1));
             let time = rng.random_range(0.0..60.0);
             if body.contains(pose.position, time) {

@@ -1,9 +1,11 @@
-//! Where a manoeuvre comes closest to an obstacle: the local minima of the slack in time.
+//! Where a manoeuvre comes closest to a part of an obstacle: the local minima of the slack in time.
 
 use super::hazard::Hazard;
-use super::template::Sailed;
+use super::part::Window;
+use super::template::{Leg, Sailed};
 use crate::frame::{Vector, to_port, to_starboard};
-use crate::obstacle::Slack;
+use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::tolerance;
 
 /// Metres. Approaches closer than this become rows.
 const NEAR_M: f64 = 60.0;
@@ -15,6 +17,9 @@ pub(crate) const FINE_CHORD_RAD: f64 = 0.05;
 /// Cuts of one minimum at most.
 const MAX_CUTS: usize = 30;
 
+/// Metres. A smooth minimum is found to this.
+const SETTLED_M: f64 = 1e-7;
+
 /// A local minimum of the slack along a manoeuvre.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Approach {
@@ -23,58 +28,142 @@ pub(crate) struct Approach {
     pub fraction: f64,
     /// Metres.
     pub slack: f64,
-    /// Faces that attain it with their weights: mixed so, the slack's rate in time vanishes.
-    pub faces: [(usize, f64); 2],
+    /// Of the slack per metre east, metre north and second of the place: of the face that attains it, or of two
+    /// mixed so that the slack's rate along the manoeuvre vanishes.
+    pub rates: [f64; 3],
+}
+
+/// What the slack is taken to: for a motion along a line it is convex in time.
+trait Shape {
+    /// What attains the slack.
+    type Face: Copy;
+
+    /// Metres, and what attains it.
+    fn slack(&self, position: Vector, time: f64) -> Slack<Self::Face>;
+
+    /// Its outward normal, and how fast it moves that way, m/s.
+    fn plane(&self, face: Self::Face) -> (Vector, f64);
+
+    /// True when no better minimum lies between: `gap` metres below `found` is what its neighbours allow.
+    fn is_settled(found: Self::Face, neighbours: [Self::Face; 2], gap: f64) -> bool;
+}
+
+/// A signed distance or a lower bound of it.
+#[derive(Debug, Clone, Copy)]
+struct Slack<F> {
+    value: f64,
+    face: F,
+}
+
+impl Shape for PolytopeObstacle {
+    type Face = usize;
+
+    fn slack(&self, position: Vector, time: f64) -> Slack<usize> {
+        let slack = self.slack(position, time);
+        Slack {
+            value: slack.value,
+            face: slack.face,
+        }
+    }
+
+    fn plane(&self, face: usize) -> (Vector, f64) {
+        let face = &self.faces()[face];
+        (face.normal, face.velocity_support)
+    }
+
+    fn is_settled(found: usize, neighbours: [usize; 2], _: f64) -> bool {
+        neighbours.contains(&found)
+    }
+}
+
+impl Shape for EllipsoidObstacle {
+    type Face = (Vector, f64);
+
+    fn slack(&self, position: Vector, time: f64) -> Slack<(Vector, f64)> {
+        let found = self.signed_distance(position, time);
+        Slack {
+            value: found.distance,
+            face: (found.normal, self.support(found.normal, time).rate),
+        }
+    }
+
+    fn plane(&self, face: (Vector, f64)) -> (Vector, f64) {
+        face
+    }
+
+    fn is_settled(_: (Vector, f64), _: [(Vector, f64); 2], gap: f64) -> bool {
+        // negated on purpose: a NaN ends the search
+        !(gap > SETTLED_M)
+    }
 }
 
 /// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`]; arcs are cut into chords of `chord`
 /// radians at most.
 pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed, chord: f64) -> Vec<Approach> {
-    let mut chords: Vec<Chord> = Vec::with_capacity(64);
+    match hazard.round {
+        Some(ellipsoid) => approaches_of(ellipsoid, hazard, sailed, chord),
+        None => approaches_of(hazard.body, hazard, sailed, chord),
+    }
+}
+
+fn approaches_of<S: Shape>(
+    shape: &S,
+    hazard: &Hazard,
+    sailed: &Sailed,
+    chord: f64,
+) -> Vec<Approach> {
+    let mut chords: Vec<Chord<S::Face>> = Vec::with_capacity(64);
     let mut found: Vec<Approach> = Vec::new();
+    let clock = hazard.start();
     for (leg, l) in sailed.legs.iter().enumerate() {
         let segment = &l.segment;
         if segment.duration <= 0.0 {
             continue;
         }
         if hazard.clearance_bound(segment) > NEAR_M {
-            local_minima(&mut chords, &mut found);
+            local_minima((shape, hazard, sailed), &mut chords, &mut found);
             continue;
         }
-        let count = (segment.turn_rate.abs() * segment.duration / chord)
+        let Span { first, last } = Span::of(l, hazard.window);
+        let count = (segment.turn_rate.abs() * segment.duration * (last - first) / chord)
             .ceil()
             .max(1.0);
         let sample = |fraction: f64, position: Vector| {
-            let time = segment.start_time + segment.duration * fraction;
+            let time = segment.start_time + segment.duration * fraction - clock;
             Sample {
                 position,
                 time,
                 fraction,
-                slack: hazard.body.slack(position, time),
+                slack: shape.slack(position, time),
             }
         };
         // each sample is the one before turned about the centre of the arc
-        let turn = segment.turn_rate * segment.duration / count;
+        let turn = segment.turn_rate * segment.duration * (last - first) / count;
         let (sin, cos) = if segment.is_arc() {
             turn.sin_cos()
         } else {
             (0.0, 1.0)
         };
-        let mut arm = to_starboard(l.ahead) * segment.radius();
-        let mut from = sample(0.0, segment.start.position);
+        let (start, ahead) = if first > 0.0 {
+            l.along(first)
+        } else {
+            (segment.start.position, l.ahead)
+        };
+        let mut arm = to_starboard(ahead) * segment.radius();
+        let mut from = sample(first, start);
         for k in 1..=count as usize {
-            let fraction = k as f64 / count;
+            let fraction = first + (last - first) * (k as f64 / count);
             let position = if segment.is_arc() {
                 let turned = arm * cos + to_port(arm) * sin;
                 let moved = turned - arm;
                 arm = turned;
                 from.position + moved
             } else {
-                from.position + l.ahead * segment.length()
+                from.position + l.ahead * (segment.length() * (last - first))
             };
             let to = sample(fraction, position);
-            let mut piece = Chord::new(hazard, leg, &from, &to);
-            if count > 1.0 && piece.least.faces[1].1 != 0.0 {
+            let mut piece = Chord::new(shape, leg, &from, &to);
+            if count > 1.0 && piece.least.is_mixed() {
                 let at = sample(piece.least.fraction, l.along(piece.least.fraction).0);
                 piece.least.slack = at.slack.value;
             }
@@ -82,12 +171,52 @@ pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed, chord: f64) -> Vec<Ap
             from = to;
         }
     }
-    local_minima(&mut chords, &mut found);
+    local_minima((shape, hazard, sailed), &mut chords, &mut found);
     found
 }
 
+/// What of a leg is sailed while a part is in force, as fractions of it.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    first: f64,
+    last: f64,
+}
+
+impl Span {
+    fn of(leg: &Leg, window: Option<Window>) -> Self {
+        let whole = Self {
+            first: 0.0,
+            last: 1.0,
+        };
+        let Some(window) = window else {
+            return whole;
+        };
+        let s = &leg.segment;
+        let fraction = |time: f64| ((time - s.start_time) / s.duration).clamp(0.0, 1.0);
+        let (first, last) = (fraction(window.start), fraction(window.end));
+        Self {
+            first,
+            last: last.max(first),
+        }
+    }
+}
+
+/// Own ship's velocity at a minimum that is at the edge of a window: its instant is fixed, not its share of the leg.
+fn velocity_at_edge<F>(hazard: &Hazard, sailed: &Sailed, least: &Minimum<F>) -> Option<Vector> {
+    let window = hazard.window?;
+    let leg = &sailed.legs[least.leg];
+    let time = leg.segment.start_time + leg.segment.duration * least.fraction;
+    let near = |edge: f64| (time - edge).abs() <= tolerance::TIME_S;
+    (near(window.start) || near(window.end))
+        .then(|| leg.along(least.fraction).1 * leg.segment.speed)
+}
+
 /// Moves the local minima of a run of chords to `found`.
-fn local_minima(chords: &mut Vec<Chord>, found: &mut Vec<Approach>) {
+fn local_minima<S: Shape>(
+    (shape, hazard, sailed): (&S, &Hazard, &Sailed),
+    chords: &mut Vec<Chord<S::Face>>,
+    found: &mut Vec<Approach>,
+) {
     for i in 0..chords.len() {
         let here = &chords[i].least;
         let before = if i > 0 {
@@ -99,63 +228,89 @@ fn local_minima(chords: &mut Vec<Chord>, found: &mut Vec<Approach>) {
         if !(here.slack < before && here.slack <= after && here.slack < NEAR_M) {
             continue;
         }
-        let mut approach = *here;
+        let mut faces = here.faces;
         // at a joint the two sides share the instant: its faces are one falling, one rising
         if let Some(next) = chords.get(i + 1)
             && next.least.slack - here.slack < 1e-9
-            && here.faces[1].1 == 0.0
+            && !here.is_mixed()
             && chords[i].end_rate < 0.0
             && next.start_rate > 0.0
         {
             let weight = next.start_rate / (next.start_rate - chords[i].end_rate);
-            approach.faces = [
+            faces = [
                 (here.faces[0].0, weight),
                 (next.least.faces[0].0, 1.0 - weight),
             ];
         }
-        found.push(approach);
+        let edge = velocity_at_edge(hazard, sailed, here);
+        let mut rates = [0.0; 3];
+        for (face, weight) in faces {
+            let (normal, speed) = shape.plane(face);
+            let clock = edge.map_or(speed, |velocity| normal.dot(&velocity));
+            for (sum, rate) in rates.iter_mut().zip([normal.x, normal.y, -clock]) {
+                *sum += weight * rate;
+            }
+        }
+        found.push(Approach {
+            leg: here.leg,
+            fraction: here.fraction,
+            slack: here.slack,
+            rates,
+        });
     }
     chords.clear();
 }
 
 /// An instant of a segment with its slack.
 #[derive(Debug, Clone, Copy)]
-struct Sample {
+struct Sample<F> {
     position: Vector,
     time: f64,
     fraction: f64,
-    slack: Slack,
+    slack: Slack<F>,
 }
 
-/// A straight piece between two samples, with the least slack on it. Along it the slack is a convex,
-/// piecewise linear function, so tangents of a falling and a rising face are intersected until they meet.
+/// The least slack on a chord.
 #[derive(Debug, Clone, Copy)]
-struct Chord {
-    least: Approach,
+struct Minimum<F> {
+    leg: usize,
+    fraction: f64,
+    slack: f64,
+    /// Faces that attain it with their weights.
+    faces: [(F, f64); 2],
+}
+
+impl<F> Minimum<F> {
+    fn is_mixed(&self) -> bool {
+        self.faces[1].1 != 0.0
+    }
+}
+
+/// A straight piece between two samples, with the least slack on it. Along it the slack is a convex
+/// function, of a polytope piecewise linear, so tangents of a falling and a rising face are intersected until they
+/// meet.
+#[derive(Debug, Clone, Copy)]
+struct Chord<F> {
+    least: Minimum<F>,
     /// m/s of the slack at the start and at the end.
     start_rate: f64,
     end_rate: f64,
 }
 
-impl Chord {
-    fn new(hazard: &Hazard, leg: usize, from: &Sample, to: &Sample) -> Self {
-        let faces = hazard.body.faces();
+impl<F: Copy> Chord<F> {
+    fn new<S: Shape<Face = F>>(shape: &S, leg: usize, from: &Sample<F>, to: &Sample<F>) -> Self {
         let width = (to.time - from.time).max(1e-12);
         let velocity = (to.position - from.position) / width;
-        let rate = |face: usize| faces[face].normal.dot(&velocity) - faces[face].velocity_support;
-        let (start_rate, end_rate) = (rate(from.slack.face), rate(to.slack.face));
-        let approach = |fraction, slack, faces| Approach {
-            leg,
-            fraction,
-            slack,
-            faces,
+        let rate = |face: F| {
+            let (normal, speed) = shape.plane(face);
+            normal.dot(&velocity) - speed
         };
-        let end = |s: &Sample| {
-            approach(
-                s.fraction,
-                s.slack.value,
-                [(s.slack.face, 1.0), (s.slack.face, 0.0)],
-            )
+        let (start_rate, end_rate) = (rate(from.slack.face), rate(to.slack.face));
+        let end = |s: &Sample<F>| Minimum {
+            leg,
+            fraction: s.fraction,
+            slack: s.slack.value,
+            faces: [(s.slack.face, 1.0), (s.slack.face, 0.0)],
         };
         let least = if start_rate >= 0.0 {
             end(from)
@@ -168,12 +323,11 @@ impl Chord {
                 let (fall, rise) = (rate(a.1.face), rate(b.1.face));
                 let s = (a.0 + (b.1.value - a.1.value - rise * (b.0 - a.0)) / (fall - rise))
                     .clamp(a.0, b.0);
-                let g = hazard
-                    .body
-                    .slack(from.position + velocity * s, from.time + s);
+                let g = shape.slack(from.position + velocity * s, from.time + s);
                 let weight = rise / (rise - fall);
                 best = (s, g.value, [(a.1.face, weight), (b.1.face, 1.0 - weight)]);
-                if g.face == a.1.face || g.face == b.1.face || !(s > a.0 && s < b.0) {
+                let gap = g.value - a.1.value - fall * (s - a.0);
+                if S::is_settled(g.face, [a.1.face, b.1.face], gap) || !(s > a.0 && s < b.0) {
                     break;
                 }
                 if rate(g.face) < 0.0 {
@@ -182,8 +336,12 @@ impl Chord {
                     b = (s, g)
                 }
             }
-            let fraction = from.fraction + (to.fraction - from.fraction) * best.0 / width;
-            approach(fraction, best.1, best.2)
+            Minimum {
+                leg,
+                fraction: from.fraction + (to.fraction - from.fraction) * best.0 / width,
+                slack: best.1,
+                faces: best.2,
+            }
         };
         Self {
             least,

@@ -238,11 +238,13 @@ mod tests {
     use crate::planner::space_time::graph::Graph;
     use crate::planner::space_time::hazard::Hazard;
     use crate::planner::space_time::node::State;
+    use crate::planner::space_time::part::parts;
     use crate::planner::space_time::plan;
     use crate::planner::space_time::route::Route;
     use crate::planner::{Problem, SearchKind};
     use crate::search::{Search, Space, Stop};
     use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
+    use crate::target::{Motion, Representation, Target};
 
     /// The same graph without its bound.
     struct Blind<'a, 'b>(&'b mut Graph<'a>);
@@ -269,7 +271,8 @@ mod tests {
         let route = Route::new(problem).expect("a route");
         let mut undisturbed = Vec::new();
         route.follow(0.0, 0.0, &mut undisturbed);
-        let hazards: Vec<Hazard> = problem.obstacles.iter().map(Hazard::new).collect();
+        let parts = parts(problem.obstacles, problem.horizon);
+        let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
         let mut graph = Graph::new(problem, &hazards, &route, &undisturbed);
         let mut search = Search::new(graph.root());
         let mut joints: Vec<(State, f64)> = Vec::new();
@@ -304,6 +307,17 @@ mod tests {
         nearest
     }
 
+    fn ellipsoid(target: &mut Target) {
+        target.representation = Representation::Ellipsoid;
+    }
+
+    fn turning(target: &mut Target) {
+        target.representation = Representation::Polytope;
+        if let Motion::Ship(ship) = &mut target.motion {
+            ship.turn_rate = 7e-4;
+        }
+    }
+
     #[test]
     fn no_way_costs_less_than_its_bounds() {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
@@ -314,20 +328,23 @@ mod tests {
         });
         let mut greatest = 0.0_f64;
         for drawn in encounters.chain(traffic) {
-            let scenario = drawn.expect("drawn").scenario;
-            let obstacles: Vec<_> = pipeline::sets(&scenario)
-                .into_iter()
-                .map(|s| s.shaped)
-                .collect();
-            greatest = greatest.max(nearest(&Problem {
-                own: &scenario.own_ship,
-                desired: &scenario.desired,
-                obstacles: &obstacles,
-                horizon: scenario.horizon,
-                time_weight: scenario.time_weight,
-                search: SearchKind::AStar,
-                deadline: Duration::from_secs(60),
-            }));
+            let mut scenario = drawn.expect("drawn").scenario;
+            for change in [|_: &mut Target| {}, ellipsoid, turning] {
+                scenario.targets.iter_mut().for_each(change);
+                let obstacles: Vec<_> = pipeline::sets(&scenario)
+                    .into_iter()
+                    .map(|s| s.shaped)
+                    .collect();
+                greatest = greatest.max(nearest(&Problem {
+                    own: &scenario.own_ship,
+                    desired: &scenario.desired,
+                    obstacles: &obstacles,
+                    horizon: scenario.horizon,
+                    time_weight: scenario.time_weight,
+                    search: SearchKind::AStar,
+                    deadline: Duration::from_secs(60),
+                }));
+            }
         }
         assert!(greatest > 0.8, "the bound is idle: {greatest}");
     }

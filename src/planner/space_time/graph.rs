@@ -7,7 +7,7 @@ use std::cell::Cell;
 
 use super::aims::Aims;
 use super::chain::Chain;
-use super::hazard::{Hazard, first_met};
+use super::hazard::{Hazard, by_obstacle, first_met};
 use super::heuristic::Heuristic;
 use super::interception::{Chase, Limits};
 use super::keep_out::KeepOut;
@@ -69,9 +69,9 @@ impl<'a> Graph<'a> {
         route: &'a Route,
         undisturbed: &'a [Segment],
     ) -> Self {
-        let mut contacts: Vec<f64> = hazards
-            .iter()
-            .filter_map(|h| undisturbed.iter().find_map(|s| h.first_contact(s)))
+        let first = |h: &Hazard| undisturbed.iter().find_map(|s| h.first_contact(s));
+        let mut contacts: Vec<f64> = by_obstacle(hazards)
+            .filter_map(|parts| parts.iter().filter_map(first).min_by(f64::total_cmp))
             .collect();
         contacts.sort_by(f64::total_cmp);
         contacts.dedup_by(|a, b| *a - *b < LEADS_S[3]);
@@ -88,16 +88,15 @@ impl<'a> Graph<'a> {
             .collect();
         let aims = hazards
             .iter()
-            .enumerate()
             .filter(|_| !contacts.is_empty())
-            .filter(|(_, h)| pieces.iter().any(|s| h.clearance_bound(s) < RELEVANT_M))
-            .map(|(obstacle, h)| {
+            .filter(|h| pieces.iter().any(|s| h.clearance_bound(s) < RELEVANT_M))
+            .map(|h| {
                 let body = PolytopeObstacle::new(
                     "",
                     outer_simplified(h.body.initial(), INITIAL_VERTICES),
                     outer_simplified(h.body.velocity(), VELOCITY_VERTICES),
                 );
-                Aims::new(obstacle, &body, moving(problem.own))
+                Aims::new(h, &body, moving(problem.own))
             })
             .collect();
         let heuristic = (problem.search == SearchKind::AStar).then(|| {
@@ -209,14 +208,18 @@ impl<'a> Graph<'a> {
             };
             let start = leg.start + leg.direction * stretch.from;
             let length = stretch.to - stretch.from;
+            // by the clock of the part
+            let clock = hazard.start();
+            let until = hazard.window.map_or(f64::INFINITY, |w| w.end);
             let corners = along_path(
                 hazard.body,
                 start,
                 leg.direction,
                 length,
-                self.problem.horizon,
+                until.min(self.problem.horizon) - clock,
             );
-            for corner in corners {
+            for mut corner in corners {
+                corner.time += clock;
                 let goal = stretch.distance + corner.distance;
                 for speed in [own.min_speed(), own.max_speed()] {
                     let Some(departure) = self.leave_schedule(goal, corner.time, speed) else {
@@ -287,8 +290,24 @@ impl<'a> Graph<'a> {
         let mut scratch = Vec::new();
         let first = out.len();
         for aims in &self.aims {
-            aims.touched(&chases, limits, &mut scratch, |aim| {
-                if aim.kind == from.kind {
+            let (clock, until) = aims.window();
+            if time > clock + until {
+                continue;
+            }
+            let by_its_clock;
+            let chases = if clock == 0.0 {
+                &chases
+            } else {
+                by_its_clock =
+                    Side::BOTH.map(|side| Chase::new(&pose, time - clock, 1.0, radius, side));
+                &by_its_clock
+            };
+            let limits = Limits {
+                time: (limits.time - clock).min(until),
+                ..limits
+            };
+            aims.touched(chases, limits, &mut scratch, |aim| {
+                if aim.kind == from.kind || aim.meeting.time < 0.0 {
                     return;
                 }
                 let mut chain = Chain::new(pose, time, aim.speed, radius);

@@ -1,17 +1,28 @@
-//! The obstacles of one problem with what a quick test needs.
+//! The parts of the obstacles of one problem with what a quick test needs.
 
+use super::part::{Body, Part, Window};
 use crate::frame::Vector;
-use crate::obstacle::{PolytopeObstacle, contact};
+use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
 use crate::trajectory::Segment;
 
 /// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of what a checker
 /// rejects.
 pub(crate) const TOUCH_M: f64 = 1e-7;
 
-/// An obstacle inside a growing disc that moves with its middle.
+/// A part of an obstacle inside a growing disc that moves with its middle.
 #[derive(Debug)]
 pub(crate) struct Hazard<'a> {
+    /// Index of the obstacle.
+    pub obstacle: usize,
+    /// The part, where it is a polytope; of an ellipsoid, the polytope around it. Its time counts from the window's
+    /// start.
     pub body: &'a PolytopeObstacle,
+    /// A polytope within the part: to be clear of the part is to be clear of it.
+    pub within: &'a PolytopeObstacle,
+    /// The part, where it is an ellipsoid.
+    pub round: Option<&'a EllipsoidObstacle>,
+    /// When the part is in force; `None` for ever.
+    pub window: Option<Window>,
     centre: Vector,
     drift: Vector,
     radius: f64,
@@ -19,19 +30,65 @@ pub(crate) struct Hazard<'a> {
 }
 
 impl<'a> Hazard<'a> {
-    pub(crate) fn new(body: &'a PolytopeObstacle) -> Self {
+    pub(crate) fn new(part: &'a Part) -> Self {
+        let (body, within, round) = match &part.body {
+            Body::Polytope(polytope) => (polytope, polytope, None),
+            Body::Ellipsoid(e) => (&e.around, &e.within, Some(&e.exact)),
+        };
         let (centre, drift) = (body.initial().centroid(), body.velocity().centroid());
+        let (radius, growth) = match round {
+            // the root of the trace of the outer section is the sum of those of the two sets
+            Some(e) => (root_of_trace(e.initial()), root_of_trace(e.velocity())),
+            None => (
+                body.initial().translated(-centre).reach(),
+                body.velocity().translated(-drift).reach(),
+            ),
+        };
         Self {
+            obstacle: part.obstacle,
             body,
+            within,
+            round,
+            window: part.window,
             centre,
             drift,
-            radius: body.initial().translated(-centre).reach(),
-            growth: body.velocity().translated(-drift).reach(),
+            radius,
+            growth,
         }
     }
 
-    /// A lower bound of the distance between the segment and the obstacle, metres; negative says nothing.
+    /// Seconds: when the clock of the part starts.
+    pub(crate) fn start(&self) -> f64 {
+        self.window.map_or(0.0, |w| w.start)
+    }
+
+    /// What of a segment is sailed while the part is in force, by the clock of the part.
+    #[cold]
+    #[inline(never)]
+    fn meanwhile(window: &Window, segment: &Segment) -> Option<Segment> {
+        if segment.start_time > window.end || segment.end_time() < window.start {
+            return None;
+        }
+        let part = segment.between(window.start, window.end);
+        Some(Segment {
+            start_time: part.start_time - window.start,
+            ..part
+        })
+    }
+
+    /// A lower bound of the distance between the segment and the part, metres; negative says nothing, and
+    /// infinity that the part is not in force.
+    #[inline]
     pub(crate) fn clearance_bound(&self, segment: &Segment) -> f64 {
+        match &self.window {
+            None => self.local_clearance_bound(segment),
+            Some(window) => Self::meanwhile(window, segment)
+                .map_or(f64::INFINITY, |s| self.local_clearance_bound(&s)),
+        }
+    }
+
+    #[inline]
+    fn local_clearance_bound(&self, segment: &Segment) -> f64 {
         let half = 0.5 * segment.duration;
         let middle = segment.start_time + half;
         let apart = segment.pose_after(half).position - self.centre - self.drift * middle;
@@ -39,45 +96,106 @@ impl<'a> Hazard<'a> {
         apart.norm() - closing - self.radius - self.growth * segment.end_time()
     }
 
+    /// Metres from the section, negative inside: of a polytope the slack, of an ellipsoid the distance; `None` while the
+    /// part is not in force.
+    pub(crate) fn slack(&self, position: Vector, time: f64) -> Option<f64> {
+        if let Some(w) = &self.window
+            && !(time >= w.start && time <= w.end)
+        {
+            return None;
+        }
+        let local = time - self.start();
+        Some(match self.round {
+            Some(ellipsoid) => ellipsoid.signed_distance(position, local).distance,
+            None => self.body.slack(position, local).value,
+        })
+    }
+
     /// Metres from a point inside to the boundary of the section in a direction.
     pub(crate) fn way_out(&self, position: Vector, time: f64, toward: Vector) -> f64 {
+        let local = time - self.start();
         self.body
             .faces()
             .iter()
             .filter(|f| f.normal.dot(&toward) > 1e-9)
-            .map(|f| (-f.slack(position, time)).max(0.0) / f.normal.dot(&toward))
+            .map(|f| (-f.slack(position, local)).max(0.0) / f.normal.dot(&toward))
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Position and velocity relative to the middle of the obstacle.
+    /// Position and velocity relative to the middle of the part; `None` while it is not in force.
     pub(crate) fn relative(
         &self,
         position: Vector,
         velocity: Vector,
         time: f64,
-    ) -> (Vector, Vector) {
-        (
-            position - self.centre - self.drift * time,
+    ) -> Option<(Vector, Vector)> {
+        if let Some(w) = &self.window
+            && !(time >= w.start && time <= w.end)
+        {
+            return None;
+        }
+        Some((
+            position - self.centre - self.drift * (time - self.start()),
             velocity - self.drift,
-        )
+        ))
     }
 
     /// The first instant at which the segment is inside, deeper than touching.
     pub(crate) fn first_contact(&self, segment: &Segment) -> Option<f64> {
-        if self.clearance_bound(segment) > 0.0 {
+        let Some(window) = &self.window else {
+            return self.local_contact(segment);
+        };
+        let local = Self::meanwhile(window, segment)?;
+        self.local_contact(&local).map(|t| t + window.start)
+    }
+
+    fn local_contact(&self, segment: &Segment) -> Option<f64> {
+        if self.local_clearance_bound(segment) > 0.0 {
             return None;
         }
-        contact::first_contact(self.body, segment, TOUCH_M)
+        match self.round {
+            Some(ellipsoid) => round_contact(ellipsoid, segment),
+            None => contact::first_contact(self.body, segment, TOUCH_M),
+        }
     }
+
+    /// True when the segment is inside, deeper than touching.
+    pub(crate) fn meets(&self, segment: &Segment) -> bool {
+        match &self.window {
+            None => self.local_meets(segment),
+            Some(window) => {
+                Self::meanwhile(window, segment).is_some_and(|local| self.local_meets(&local))
+            }
+        }
+    }
+
+    fn local_meets(&self, segment: &Segment) -> bool {
+        self.local_clearance_bound(segment) <= 0.0
+            && match self.round {
+                Some(ellipsoid) => round_contact(ellipsoid, segment).is_some(),
+                None => contact::meets(self.body, segment, TOUCH_M),
+            }
+    }
+}
+
+fn root_of_trace(set: &crate::geometry::Ellipse) -> f64 {
+    let [a, b] = set.semi_axes();
+    a.norm().hypot(b.norm())
+}
+
+/// A line that does not touch at all is decided in closed form.
+fn round_contact(ellipsoid: &EllipsoidObstacle, segment: &Segment) -> Option<f64> {
+    if !segment.is_arc() {
+        ellipsoid.first_contact(segment, 0.0)?;
+    }
+    ellipsoid.first_contact(segment, TOUCH_M)
 }
 
 /// The first obstacle, in their order, that the first segment to meet any meets deeper than touching.
 pub(crate) fn first_met(hazards: &[Hazard], segments: &[Segment]) -> Option<usize> {
-    segments.iter().find_map(|s| {
-        hazards
-            .iter()
-            .position(|h| h.clearance_bound(s) <= 0.0 && contact::meets(h.body, s, TOUCH_M))
-    })
+    segments
+        .iter()
+        .find_map(|s| hazards.iter().find(|h| h.meets(s)).map(|h| h.obstacle))
 }
 
 /// The first contact of a chain of segments with any obstacle: `(obstacle, time)`; of several at one
@@ -86,12 +204,18 @@ pub(crate) fn first_contact(hazards: &[Hazard], segments: &[Segment]) -> Option<
     for segment in segments {
         let hit = hazards
             .iter()
-            .enumerate()
-            .filter_map(|(i, h)| h.first_contact(segment).map(|t| (i, t)))
+            .filter_map(|h| h.first_contact(segment).map(|t| (h.obstacle, t)))
             .min_by(|a, b| a.1.total_cmp(&b.1));
         if hit.is_some() {
             return hit;
         }
     }
     None
+}
+
+/// The hazards of each obstacle, in their order.
+pub(crate) fn by_obstacle<'h, 'a>(
+    hazards: &'h [Hazard<'a>],
+) -> impl Iterator<Item = &'h [Hazard<'a>]> {
+    hazards.chunk_by(|a, b| a.obstacle == b.obstacle)
 }

@@ -12,6 +12,10 @@
 //! `max over tau' of E(tau') - rho |tau - tau'|` bounds it too, and between two instants `D` apart
 //! `e >= (E_a + E_b - rho D) / 2`. Summed over the time that remains until anybody could have arrived.
 //! A node whose own error is below the envelope cannot be part of any plan.
+//!
+//! Of an ellipsoid the faces are those of a polytope within it: who is outside the ellipsoid is outside of that. A part
+//! that is in force for a while counts at the instants of its window alone; `E` is asked at instants only, so nothing
+//! else changes. Such parts are left out of [`KeepOut::bodies`].
 
 use super::hazard::Hazard;
 use crate::frame::{Vector, cross, heading_of};
@@ -57,11 +61,19 @@ impl KeepOut {
         let mut least = vec![0.0; count + 1];
         let mut bodies = Vec::new();
         for hazard in hazards {
-            let faces = hazard.body.faces().iter();
-            let faces: Vec<Face> = faces.map(|f| Face::new(*f, leg, kappa)).collect();
+            let faces = hazard.within.faces().iter();
+            let faces: Vec<Face> = faces
+                .map(|f| Face::new(by_the_clock(f, hazard.start()), leg, kappa))
+                .collect();
             let mut contact = None;
             for (k, least) in least.iter_mut().enumerate() {
                 let time = STEP_S * k as f64;
+                if hazard
+                    .window
+                    .is_some_and(|w| !(time >= w.start && time <= w.end))
+                {
+                    continue;
+                }
                 let depth = faces
                     .iter()
                     .map(|f| f.depth_at(time))
@@ -71,6 +83,8 @@ impl KeepOut {
                     *least = depth.max(*least);
                 }
             }
+            // the closer bound takes its faces to hold for ever
+            let contact = contact.filter(|_| hazard.window.is_none());
             bodies.extend(contact.map(|(from, to)| Body { faces, from, to }));
         }
         let fall = rate(own.max_speed(), leg.speed, kappa) * STEP_S;
@@ -125,6 +139,14 @@ impl KeepOut {
         let before = (to / STEP_S).max(0.0) as usize;
         let after = self.to_come.get(before).copied().unwrap_or(0.0);
         (self.cost_from(from) - after).max(0.0)
+    }
+}
+
+/// A face whose clock starts at a time, by the scenario's clock.
+fn by_the_clock(face: &HalfSpace, start: f64) -> HalfSpace {
+    HalfSpace {
+        initial_support: face.initial_support - face.velocity_support * start,
+        ..*face
     }
 }
 

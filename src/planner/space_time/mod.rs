@@ -23,6 +23,7 @@ mod model;
 mod moments;
 mod node;
 mod outside;
+mod part;
 mod quadratic;
 mod refinement;
 mod returning;
@@ -34,15 +35,15 @@ mod template;
 use std::time::Instant;
 
 use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
-use crate::geometry::outer_disc;
-use crate::obstacle::PolytopeObstacle;
+use crate::obstacle::SpaceTimeObstacle;
 use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 use approach::FINE_CHORD_RAD;
 use graph::Graph;
-use hazard::{Hazard, TOUCH_M, first_contact};
+use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact};
 use model::Scene;
+use part::parts;
 use route::Route;
 use seeds::Conflict;
 use selection::Selection;
@@ -50,9 +51,6 @@ use selection::Selection;
 /// Expansions of one search at most: the bound on its memory and time. Alone a search needs some tens; among
 /// ten targets no plan came of more than this.
 const MAX_EXPANDED: usize = 2_000;
-
-/// Metres. Sets narrower than twice this are grown by it.
-const LEAST_RADIUS_M: f64 = 5e-4;
 
 /// Plans of the graph that are refined, each passing the targets on other sides.
 const MAX_SIGNATURES: usize = 4;
@@ -67,26 +65,9 @@ const FURTHER_EXPANDED: usize = 4;
 /// cheapest of the candidates, not proven the cheapest of all: see the docs on its quality. The same
 /// problem gives the same plan unless the deadline strikes.
 pub fn plan(problem: &Problem) -> Planned {
-    let widened: Vec<PolytopeObstacle> = problem.obstacles.iter().map(outer_widened).collect();
-    plan_clear_of(&Problem {
-        obstacles: &widened,
-        ..problem.clone()
-    })
-}
-
-/// An outer approximation of an obstacle that starts without an interior: grown by [`LEAST_RADIUS_M`],
-/// so that touching it, which is allowed, is not meeting it.
-fn outer_widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
-    let initial = obstacle.initial();
-    let narrow = initial
-        .normals()
-        .iter()
-        .any(|n| initial.support(*n) + initial.support(-n) < 2.0 * LEAST_RADIUS_M);
-    if !narrow {
-        return obstacle.clone();
-    }
-    let grown = initial.minkowski_sum(&outer_disc(LEAST_RADIUS_M, 0.0));
-    PolytopeObstacle::new(obstacle.name(), grown, obstacle.velocity().clone())
+    let parts = parts(problem.obstacles, problem.horizon);
+    let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
+    plan_clear_of(problem, &hazards)
 }
 
 /// Own ship starts at the last waypoint: she has arrived.
@@ -110,7 +91,7 @@ fn already_there(problem: &Problem) -> Planned {
     }
 }
 
-fn plan_clear_of(problem: &Problem) -> Planned {
+fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
     let started = Instant::now();
     let out_of_time = || started.elapsed() >= problem.deadline;
     let refuse = |reason| Planned {
@@ -119,12 +100,13 @@ fn plan_clear_of(problem: &Problem) -> Planned {
         explored: ExploredGraph::new(),
     };
     let own = problem.own;
-    for o in problem.obstacles {
-        let slack = o.slack(own.pose.position, 0.0).value;
-        // negated on purpose: a NaN is inside
-        if !(slack >= -TOUCH_M) {
+    for hazard in hazards {
+        if let Some(slack) = hazard.slack(own.pose.position, 0.0)
+            // negated on purpose: a NaN is inside
+            && !(slack >= -TOUCH_M)
+        {
             return refuse(NoPlan::StartInside {
-                target: o.name().to_owned(),
+                target: problem.obstacles[hazard.obstacle].name().to_owned(),
                 depth: -slack,
             });
         }
@@ -145,13 +127,12 @@ fn plan_clear_of(problem: &Problem) -> Planned {
             horizon: problem.horizon,
         });
     }
-    let hazards: Vec<Hazard> = problem.obstacles.iter().map(Hazard::new).collect();
-    let mut graph = Graph::new(problem, &hazards, &route, &undisturbed);
+    let mut graph = Graph::new(problem, hazards, &route, &undisturbed);
     let mut search = Search::new(graph.root());
     let scene = Scene {
         problem,
         route: &route,
-        hazards: &hazards,
+        hazards,
         chord: FINE_CHORD_RAD,
     };
     let mut selection = Selection::new(scene);
@@ -180,10 +161,9 @@ fn plan_clear_of(problem: &Problem) -> Planned {
             break;
         }
     }
-    let contact = first_contact(&hazards, &undisturbed);
+    let contact = first_contact(hazards, &undisturbed);
     if contact.is_some() {
-        let mut conflicts: Vec<Conflict> = hazards
-            .iter()
+        let mut conflicts: Vec<Conflict> = by_obstacle(hazards)
             .filter_map(|h| Conflict::of(h, &undisturbed))
             .collect();
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));

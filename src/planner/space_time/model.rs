@@ -8,7 +8,6 @@ use super::quadratic::{Constraint, MAX_VARIABLES, Matrix, Row};
 use super::route::Route;
 use super::template::{Ending, Owner, Place, Sailed, Template};
 use crate::frame::to_port;
-use crate::obstacle::HalfSpace;
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4, space_time_error};
 use crate::trajectory::Segment;
@@ -80,7 +79,7 @@ impl Scene<'_> {
                 let missing = MARGIN_M - approach.slack;
                 violation = missing.max(violation);
                 least_slack = least_slack.min(approach.slack);
-                let coefficients = self.approach_row(hazard, &sailed, &approach, &joining);
+                let coefficients = self.approach_row(&sailed, &approach, &joining);
                 rows.push(Constraint {
                     coefficients: reduce(&coefficients, solved, free),
                     bound: missing,
@@ -280,25 +279,8 @@ impl Scene<'_> {
     }
 
     /// Rates of the slack at an approach.
-    fn approach_row(
-        &self,
-        hazard: &Hazard,
-        sailed: &Sailed,
-        approach: &Approach,
-        joining: &(Row, Row),
-    ) -> Row {
-        let mut of = [0.0; 3];
-        for (face, weight) in approach.faces {
-            let HalfSpace {
-                normal,
-                velocity_support,
-                ..
-            } = hazard.body.faces()[face];
-            let rates = [normal.x, normal.y, -velocity_support];
-            for (o, rate) in of.iter_mut().zip(rates) {
-                *o += weight * rate;
-            }
-        }
+    fn approach_row(&self, sailed: &Sailed, approach: &Approach, joining: &(Row, Row)) -> Row {
+        let of = approach.rates;
         let leg = &sailed.legs[approach.leg];
         match (sailed.place(approach.leg, approach.fraction), leg.owner) {
             (Some(place), _) => sailed.rates(&place, of),
@@ -364,6 +346,7 @@ mod tests {
     use crate::geometry::outer_disc;
     use crate::obstacle::PolytopeObstacle;
     use crate::planner::SearchKind;
+    use crate::planner::space_time::part::parts;
     use crate::planner::space_time::seeds::{Canonical, Conflict};
     use crate::planner::space_time::template::Slot;
     use crate::trajectory::DesiredTrajectory;
@@ -393,7 +376,8 @@ mod tests {
             "x",
             outer_disc(60.0, 0.1).translated(Vector::new(1300.0, -10.0)),
             velocity.expect("finite"),
-        )];
+        )
+        .into()];
         let problem = Problem {
             own: &own,
             desired: &desired,
@@ -404,7 +388,8 @@ mod tests {
             deadline: std::time::Duration::from_secs(5),
         };
         let route = Route::new(&problem).expect("a route");
-        let hazards = [Hazard::new(&obstacles[0])];
+        let parts = parts(&obstacles, problem.horizon);
+        let hazards = [Hazard::new(&parts[0])];
         let scene = Scene {
             problem: &problem,
             route: &route,

@@ -17,6 +17,9 @@ const JOINS: [f64; 10] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0, 14.0];
 /// Turning radii. A waypoint nearer than this to the last one, without room for its corner, is not passed.
 const SKIPPED_RADII: f64 = 4.0;
 
+/// Metres. No change of speed is closer to another: what is left of a piece shrinks below its rounding otherwise.
+const SHORTEST_M: f64 = 1e-3;
+
 /// Metres between two returns to schedule where the desired speed is not one of own ship's.
 const ALTERNATION_M: f64 = 400.0;
 
@@ -296,6 +299,10 @@ impl Route {
         while end - at > tolerance::LENGTH_M {
             let piece = &self.pieces[self.piece_at(at)];
             let step = (piece.distance + piece.length).min(end) - at;
+            if step < tolerance::LENGTH_M {
+                at = past(at, step);
+                continue;
+            }
             let part = segment(
                 piece.pose_after(at - piece.distance),
                 time,
@@ -325,11 +332,15 @@ impl Route {
             let index = self.piece_at(at);
             let piece = &self.pieces[index];
             let left = piece.distance + piece.length - at;
+            if left < tolerance::LENGTH_M {
+                at = past(at, left);
+                continue;
+            }
             let (speed, length) = self.pace(piece, at, left, time);
-            let step = if left - length < tolerance::LENGTH_M {
+            let step = if left - length < SHORTEST_M {
                 left
             } else {
-                length
+                length.max(SHORTEST_M)
             };
             let pose = piece.pose_after(at - piece.distance);
             let late = time - self.due_at(at);
@@ -424,6 +435,11 @@ impl Route {
             .min_by(|a, b| (a - speed).abs().total_cmp(&(b - speed).abs()))
             .unwrap_or(speed)
     }
+}
+
+/// A distance after a remainder that may be less than a rounding: always a greater one.
+fn past(at: f64, step: f64) -> f64 {
+    (at + step).max(at.next_up())
 }
 
 /// Places on the path at which own ship may join it: `(leg, metres along it)`.

@@ -72,9 +72,12 @@ impl Conflict {
         self.offsets[0].min(self.offsets[1])
     }
 
-    /// The contact of one hazard with the undisturbed motion, from first to last instant.
-    pub(crate) fn of(hazard: &Hazard, undisturbed: &[Segment]) -> Option<Self> {
-        let from = undisturbed.iter().find_map(|s| hazard.first_contact(s))?;
+    /// The contact of one obstacle, given by its hazards, with the undisturbed motion, from first to last instant.
+    pub(crate) fn of(hazards: &[Hazard], undisturbed: &[Segment]) -> Option<Self> {
+        let from = hazards
+            .iter()
+            .filter_map(|h| undisturbed.iter().find_map(|s| h.first_contact(s)))
+            .min_by(f64::total_cmp)?;
         let end = undisturbed.last()?.end_time();
         let mut conflict = Self {
             from,
@@ -90,9 +93,13 @@ impl Conflict {
                 .find(|s| s.end_time() >= time)
                 .or(undisturbed.last())?;
             let pose = segment.pose_at(time);
-            if hazard.body.slack(pose.position, time).value > 0.0 {
+            let inside = |h: &&Hazard| {
+                h.slack(pose.position, time)
+                    .is_some_and(|slack| !(slack > 0.0))
+            };
+            let Some(hazard) = hazards.iter().find(inside) else {
                 continue;
-            }
+            };
             conflict.to = time;
             let behind = hazard.way_out(pose.position, time, -pose.ahead());
             if behind > conflict.astern.0 {

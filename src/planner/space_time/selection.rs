@@ -1,7 +1,7 @@
 //! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
 
 use super::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
-use super::hazard::first_met;
+use super::hazard::{Hazard, by_obstacle, first_met};
 use super::model::Scene;
 use super::node::State;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
@@ -155,16 +155,17 @@ impl<'a> Selection<'a> {
     /// On which side each target is passed: the sign of its relative bearing rate at the least distance
     /// of the middles.
     fn signature(&self, motion: &[Segment]) -> Vec<bool> {
-        self.scene
-            .hazards
-            .iter()
-            .map(|h| {
+        by_obstacle(self.scene.hazards)
+            .map(|hazards| {
                 let mut nearest = (f64::INFINITY, false);
                 for s in motion {
                     for k in 0..=4 {
                         let t = s.start_time + s.duration * f64::from(k) / 4.0;
-                        let (r, w) = h.relative(s.pose_at(t).position, s.velocity_at(t), t);
-                        if r.norm() < nearest.0 {
+                        let (position, velocity) = (s.pose_at(t).position, s.velocity_at(t));
+                        let relative = |h: &Hazard| h.relative(position, velocity, t);
+                        if let Some((r, w)) = hazards.iter().find_map(relative)
+                            && r.norm() < nearest.0
+                        {
                             nearest = (r.norm(), cross(w, r) > 0.0);
                         }
                     }

@@ -76,8 +76,8 @@ pub struct CostDocument {
     pub duration_s: f64,
     pub length_m: f64,
     pub delay_s: f64,
-    /// Zero for a plan that was found clear of its sets, null for one that was not.
-    pub max_risk: Option<f64>,
+    /// Against the sets of which `obstacles` are the level sets.
+    pub max_risk: f64,
     /// Null without targets.
     pub min_clearance_m: Option<f64>,
 }
@@ -139,16 +139,38 @@ pub struct TrajectoryDocument {
 
 /// A convex set of positions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct InitialSetDocument {
-    /// `[east, north]`, counter-clockwise.
-    pub vertices_m: Vec<[f64; 2]>,
+#[serde(untagged)]
+pub enum InitialSetDocument {
+    /// Its vertices.
+    Polygon {
+        /// `[east, north]`, counter-clockwise.
+        vertices_m: Vec<[f64; 2]>,
+    },
+    /// An ellipse.
+    Ellipse {
+        /// `[east, north]`.
+        center_m: [f64; 2],
+        /// The rows of the shape matrix.
+        shape_m2: [[f64; 2]; 2],
+    },
 }
 
 /// A convex set of velocities.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct VelocitySetDocument {
-    /// `[east, north]`, counter-clockwise.
-    pub vertices_mps: Vec<[f64; 2]>,
+#[serde(untagged)]
+pub enum VelocitySetDocument {
+    /// Its vertices.
+    Polygon {
+        /// `[east, north]`, counter-clockwise.
+        vertices_mps: Vec<[f64; 2]>,
+    },
+    /// An ellipse.
+    Ellipse {
+        /// `[east, north]`.
+        center_mps: [f64; 2],
+        /// The rows of the shape matrix.
+        shape_m2_per_s2: [[f64; 2]; 2],
+    },
 }
 
 /// A space-time obstacle.
@@ -178,4 +200,8 @@ pub struct EncounterDocument {
     pub undisturbed_dcpa_m: Option<f64>,
     pub undisturbed_tcpa_s: Option<f64>,
     pub passing_side: Option<String>,
+    /// The largest risk along the plan.
+    pub max_risk: Option<f64>,
+    /// When; null where the risk is 0.
+    pub max_risk_t_s: Option<f64>,
 }

@@ -9,8 +9,8 @@ use super::parts::{
     ViolationDocument,
 };
 use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading};
-use crate::geometry::ConvexPolygon;
-use crate::obstacle::PolytopeObstacle;
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::{Outcome, Plan};
 use crate::report::summary::Verdict;
@@ -37,6 +37,8 @@ pub struct PlanDocument {
     pub compliance: String,
     pub objective: String,
     pub time_weight_m2_per_s2: f64,
+    /// The risk that the plan may accept: `obstacles` are the level sets of it.
+    pub max_risk: f64,
     pub horizon_s: f64,
     pub own_ship: OwnShipDocument,
     pub mission: MissionDocument,
@@ -72,6 +74,7 @@ impl PlanDocument {
             compliance: scenario.compliance.word().to_owned(),
             objective: words::OBJECTIVE.to_owned(),
             time_weight_m2_per_s2: scenario.time_weight,
+            max_risk: scenario.max_risk,
             horizon_s: scenario.horizon,
             own_ship: own_ship(run),
             mission: mission(run),
@@ -110,7 +113,7 @@ impl PlanDocument {
             obstacles: run
                 .obstacles
                 .iter()
-                .map(|set| obstacle(set, scenario.horizon))
+                .flat_map(|set| obstacles(set, scenario.horizon))
                 .collect(),
             encounters: encounters(run),
         }
@@ -138,8 +141,7 @@ fn position(p: Vector) -> PositionDocument {
 }
 
 fn vertices(polygon: &ConvexPolygon) -> Vec<[f64; 2]> {
-    let plain = |p: &Vector| [p.x + 0.0, p.y + 0.0];
-    polygon.vertices().iter().map(plain).collect()
+    polygon.vertices().iter().copied().map(plain).collect()
 }
 
 pub(super) fn timing(run: &Run) -> TimingDocument {
@@ -155,6 +157,12 @@ fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
             target: target.clone(),
             amount: *amount,
             unit: "m".to_owned(),
+        },
+        Relaxation::Risk { target, amount } => RelaxationDocument {
+            kind: "risk".to_owned(),
+            target: target.clone(),
+            amount: *amount,
+            unit: "1".to_owned(),
         },
     }
 }
@@ -193,8 +201,7 @@ pub(super) fn cost(run: &Run) -> Option<CostDocument> {
         duration_s: evaluation.duration,
         length_m: evaluation.length,
         delay_s: evaluation.delay,
-        // outside of a set the risk is zero; inside it is not computed
-        max_risk: evaluation.verified().then_some(0.0),
+        max_risk: run.risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
     })
 }
@@ -234,17 +241,58 @@ fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
     }
 }
 
-fn obstacle(set: &PolytopeObstacle, horizon: f64) -> ObstacleDocument {
-    ObstacleDocument {
+/// One entry, or one per slab: its initial set is the section at its start, and its time counts from there.
+fn obstacles(set: &Obstacle, horizon: f64) -> Vec<ObstacleDocument> {
+    let entry = |valid_s, initial_set, velocity_set| ObstacleDocument {
         name: set.name().to_owned(),
-        valid_s: [0.0, horizon],
-        initial_set: InitialSetDocument {
-            vertices_m: vertices(set.initial()),
-        },
-        velocity_set: VelocitySetDocument {
-            vertices_mps: vertices(set.velocity()),
-        },
+        valid_s,
+        initial_set,
+        velocity_set,
+    };
+    let polytope = |o: &PolytopeObstacle, valid_s| {
+        entry(
+            valid_s,
+            InitialSetDocument::Polygon {
+                vertices_m: vertices(o.initial()),
+            },
+            VelocitySetDocument::Polygon {
+                vertices_mps: vertices(o.velocity()),
+            },
+        )
+    };
+    match set {
+        Obstacle::Polytope(o) => vec![polytope(o, [0.0, horizon])],
+        Obstacle::Ellipsoid(o) => vec![entry(
+            [0.0, horizon],
+            InitialSetDocument::Ellipse {
+                center_m: plain(o.initial().center()),
+                shape_m2: rows(o.initial()),
+            },
+            VelocitySetDocument::Ellipse {
+                center_mps: plain(o.velocity().center()),
+                shape_m2_per_s2: rows(o.velocity()),
+            },
+        )],
+        Obstacle::Slabs(o) => o
+            .slabs()
+            .iter()
+            .filter(|slab| slab.start() < horizon)
+            .map(|slab| polytope(slab.obstacle(), [slab.start(), slab.end().min(horizon)]))
+            .collect(),
     }
+}
+
+fn plain(p: Vector) -> [f64; 2] {
+    // +0.0 turns a negative zero into zero
+    [p.x + 0.0, p.y + 0.0]
+}
+
+fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
+    let q = ellipse.shape();
+    [
+        plain(Vector::new(q[(0, 0)], q[(0, 1)])),
+        plain(Vector::new(q[(1, 0)], q[(1, 1)])),
+    ]
 }
 
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
@@ -264,6 +312,12 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
                 undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
                 undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
                 passing_side: passage.map(|p| p.passing_side.to_string()),
+                max_risk: run.risks.get(index).map(|peak| peak.risk),
+                max_risk_t_s: run
+                    .risks
+                    .get(index)
+                    .filter(|peak| peak.risk > 0.0)
+                    .map(|peak| peak.time),
             }
         })
         .collect()

@@ -1,0 +1,174 @@
+//! An ellipsoid as the checker sees it: its support function alone.
+
+use super::least::{Least, Probe};
+use crate::frame::{Vector, direction};
+use crate::geometry::Ellipse;
+use crate::trajectory::Segment;
+
+/// Directions among which the best one is looked for first.
+const DIRECTIONS: usize = 64;
+
+/// Sections of its neighbourhood by the golden ratio: a direction to 1e-11, so a distance to its last digits.
+const GOLDEN_STEPS: usize = 44;
+
+/// Every position in the ellipse of least trace around `O_0 + t V`, formulas section 3, by its support function
+///
+/// ```text
+/// h(n, t) = n . p_t + sqrt((r_o + r_v t) (n' Q_o n / r_o + t n' Q_v n / r_v)),    r = sqrt(trace Q)
+/// ```
+///
+/// which is concave in time: the root of a product of two lines that are not negative.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MovingEllipse {
+    initial: Ellipse,
+    velocity: Ellipse,
+    /// Metres, and m/s.
+    roots: [f64; 2],
+}
+
+/// Where the supporting line of a direction is, and how fast it moves outward.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    support: f64,
+    rate: f64,
+}
+
+impl MovingEllipse {
+    pub fn new(initial: &Ellipse, velocity: &Ellipse) -> Self {
+        let root = |e: &Ellipse| {
+            let [a, b] = e.semi_axes();
+            a.norm().hypot(b.norm())
+        };
+        Self {
+            initial: *initial,
+            velocity: *velocity,
+            roots: [root(initial), root(velocity)],
+        }
+    }
+
+    /// False when every section is a point or a segment.
+    pub fn has_interior(&self) -> bool {
+        let spans = |a: Vector, b: Vector| crate::frame::cross(a, b) != 0.0;
+        let [a, b] = self.initial.semi_axes();
+        let [c, d] = self.velocity.semi_axes();
+        [(a, b), (c, d), (a, c), (a, d), (b, c), (b, d)]
+            .into_iter()
+            .any(|(p, q)| spans(p, q))
+    }
+
+    fn line(&self, normal: Vector, time: f64) -> Line {
+        let square = |e: &Ellipse| {
+            let [a, b] = e.semi_axes();
+            normal.dot(&a).powi(2) + normal.dot(&b).powi(2)
+        };
+        let [still, growing] = self.roots;
+        let share = |square: f64, root: f64| if root > 0.0 { square / root } else { 0.0 };
+        let (a, b) = (
+            share(square(&self.initial), still),
+            share(square(&self.velocity), growing),
+        );
+        let (reach, mean) = (still + growing * time, a + b * time);
+        let radius = (reach * mean).sqrt();
+        let rate = if still == 0.0 {
+            (growing * b).sqrt()
+        } else if growing == 0.0 {
+            0.0
+        } else {
+            // infinite where a segment starts to open
+            let opening = if b > 0.0 {
+                b * (reach / mean).sqrt()
+            } else {
+                0.0
+            };
+            0.5 * (growing * (mean / reach).sqrt() + opening)
+        };
+        Line {
+            support: normal.dot(&self.initial.center())
+                + time * normal.dot(&self.velocity.center())
+                + radius,
+            rate: normal.dot(&self.velocity.center()) + rate,
+        }
+    }
+
+    /// The least signed distance along a chain of segments. Every direction's line separates the set from what is
+    /// beyond it, so the value is the largest that was found over directions: never above the true distance, and below
+    /// it by rounding at most where the search ended beside the best direction: it errs toward rejecting. Between two
+    /// probes a line stays below its tangent in time, being concave. About a hundred directions a probe.
+    pub fn least_distance(&self, segments: &[Segment]) -> Least {
+        let mut least = Least::new();
+        for s in segments {
+            for time in [s.start_time, s.end_time()] {
+                least.see(self.probe(s, time, 0.0).value, time);
+            }
+        }
+        for s in segments {
+            least.search(s.start_time, s.end_time(), |time, half| {
+                self.probe(s, time, half)
+            });
+        }
+        least
+    }
+
+    fn probe(&self, segment: &Segment, time: f64, half: f64) -> Probe {
+        let position = segment.pose_at(time).position;
+        // a comparison below loses a NaN, so it is caught here
+        if !(position.x.is_finite() && position.y.is_finite() && time.is_finite()) {
+            return Probe {
+                value: f64::NAN,
+                lower: f64::NAN,
+            };
+        }
+        let beyond = |angle: f64| {
+            let normal = direction(angle);
+            normal.dot(&position) - self.line(normal, time).support
+        };
+        let step = std::f64::consts::TAU / DIRECTIONS as f64;
+        let mut sampled = [0.0; DIRECTIONS];
+        for (k, value) in sampled.iter_mut().enumerate() {
+            *value = beyond(step * k as f64);
+        }
+        // inside there may be several local maxima
+        let (mut angle, mut best) = (0.0, f64::NEG_INFINITY);
+        for (k, here) in sampled.iter().enumerate() {
+            let before = sampled[(k + DIRECTIONS - 1) % DIRECTIONS];
+            let after = sampled[(k + 1) % DIRECTIONS];
+            if *here >= before && *here >= after {
+                let (other, found) = golden_maximum(step * k as f64, step, beyond);
+                if found > best {
+                    (angle, best) = (other, found);
+                }
+            }
+        }
+        let normal = direction(angle);
+        let rate = normal.dot(&segment.velocity_at(time)) - self.line(normal, time).rate;
+        let bend = 0.5 * half * half * segment.turn_rate.abs() * segment.speed;
+        Probe {
+            value: best,
+            lower: best - rate.abs() * half - bend,
+        }
+    }
+}
+
+/// The largest value of a function, and where, within a distance of a place: by golden section.
+fn golden_maximum(place: f64, reach: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut low, mut high) = (place - reach, place + reach);
+    let (mut left, mut right) = (high - golden * 2.0 * reach, low + golden * 2.0 * reach);
+    let (mut at_left, mut at_right) = (value(left), value(right));
+    for _ in 0..GOLDEN_STEPS {
+        if at_left > at_right {
+            high = right;
+            (right, at_right) = (left, at_left);
+            left = high - golden * (high - low);
+            at_left = value(left);
+        } else {
+            low = left;
+            (left, at_left) = (right, at_right);
+            right = low + golden * (high - low);
+            at_right = value(right);
+        }
+    }
+    [(left, at_left), (right, at_right)]
+        .into_iter()
+        .fold((place, value(place)), |a, b| if b.1 > a.1 { b } else { a })
+}

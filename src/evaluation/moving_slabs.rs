@@ -1,0 +1,70 @@
+//! Velocity sets one after another as the checker sees them: a moving set per slab of time.
+
+use super::clearance::{Body, least_distance};
+use super::least::Least;
+use super::space_time_set::MovingSet;
+use crate::geometry::ConvexPolygon;
+use crate::target::VelocitySpell;
+use crate::trajectory::Segment;
+
+/// One slab. The time of its set counts from its start.
+#[derive(Debug, Clone)]
+struct Slab {
+    start: f64,
+    end: f64,
+    set: MovingSet,
+}
+
+/// The slabs of a set, in order of time; each begins with the section that the one before ends with.
+#[derive(Debug, Clone)]
+pub(super) struct MovingSlabs {
+    slabs: Vec<Slab>,
+}
+
+impl MovingSlabs {
+    /// From the set at t = 0 and the velocity sets in order; the last one holds for ever. O(slabs (n + m)²).
+    pub fn new(initial: &ConvexPolygon, spells: &[VelocitySpell]) -> Self {
+        let mut slabs = Vec::with_capacity(spells.len());
+        let (mut start, mut section) = (0.0, initial.clone());
+        for (index, spell) in spells.iter().enumerate() {
+            let last = index + 1 == spells.len();
+            let end = if last { f64::INFINITY } else { spell.until };
+            let set = MovingSet::new(&section, &spell.velocities);
+            slabs.push(Slab { start, end, set });
+            if !last {
+                section = section.minkowski_sum(&spell.velocities.scaled(end - start));
+                start = end;
+            }
+        }
+        Self { slabs }
+    }
+
+    /// False when some section is a point or a segment for a while.
+    pub fn has_interior(&self) -> bool {
+        self.slabs.iter().all(|s| s.set.has_interior())
+    }
+
+    /// [`least_distance`] over the slabs, each within its time.
+    pub fn least_distance(&self, segments: &[Segment], own: Body) -> Least {
+        let mut least = Least::new();
+        for slab in &self.slabs {
+            let parts: Vec<Segment> = segments
+                .iter()
+                // negated on purpose: a NaN is looked at
+                .filter(|s| !(s.end_time() < slab.start || s.start_time > slab.end))
+                .map(|s| {
+                    let part = s.between(slab.start, slab.end);
+                    Segment {
+                        start_time: part.start_time - slab.start,
+                        ..part
+                    }
+                })
+                .collect();
+            let here = least_distance(&parts, own, &slab.set);
+            least.see(here.value, here.time + slab.start);
+            least.certified &= here.certified;
+            least.probes += here.probes;
+        }
+        least
+    }
+}

@@ -1,0 +1,121 @@
+//! An obstacle in any of the representations.
+
+use super::cpa::ClosestApproach;
+use super::risk::PeakRisk;
+use super::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle, Support};
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::trajectory::Segment;
+
+/// Sides of the polygon that stands for a section that is an ellipse.
+const SECTION_SIDES: usize = 64;
+
+/// One of the representations. An enum and not a trait object: the set is closed, a planner takes each apart in
+/// its own way, a document writes each with its own keys, and a level set is of its obstacle's own kind.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Obstacle {
+    /// Paper eqs. (2)-(9).
+    Polytope(PolytopeObstacle),
+    /// Paper eqs. (12)-(19), from outside. Boxed: it is several times as large as the others.
+    Ellipsoid(Box<EllipsoidObstacle>),
+    /// Velocity sets one after another.
+    Slabs(SlabObstacle),
+}
+
+impl Obstacle {
+    fn object(&self) -> &dyn SpaceTimeObstacle {
+        match self {
+            Self::Polytope(o) => o,
+            Self::Ellipsoid(o) => o.as_ref(),
+            Self::Slabs(o) => o,
+        }
+    }
+
+    /// The polytope, where it is one.
+    pub fn as_polytope(&self) -> Option<&PolytopeObstacle> {
+        match self {
+            Self::Polytope(o) => Some(o),
+            Self::Ellipsoid(_) | Self::Slabs(_) => None,
+        }
+    }
+
+    /// The section `O_t`, `time >= 0`, as a polygon, metres: exact for polytopes and slabs, the circumscribed
+    /// 64-gon for an ellipse.
+    pub fn outer_section(&self, time: f64) -> ConvexPolygon {
+        match self {
+            Self::Polytope(o) => o.section(time),
+            Self::Ellipsoid(o) => o.outer_section(time).outer_polygon(SECTION_SIDES),
+            Self::Slabs(o) => o.section(time),
+        }
+    }
+}
+
+impl From<PolytopeObstacle> for Obstacle {
+    fn from(obstacle: PolytopeObstacle) -> Self {
+        Self::Polytope(obstacle)
+    }
+}
+
+impl From<EllipsoidObstacle> for Obstacle {
+    fn from(obstacle: EllipsoidObstacle) -> Self {
+        Self::Ellipsoid(Box::new(obstacle))
+    }
+}
+
+impl From<SlabObstacle> for Obstacle {
+    fn from(obstacle: SlabObstacle) -> Self {
+        Self::Slabs(obstacle)
+    }
+}
+
+impl SpaceTimeObstacle for Obstacle {
+    fn name(&self) -> &str {
+        self.object().name()
+    }
+
+    fn support(&self, normal: Vector, time: f64) -> Support {
+        self.object().support(normal, time)
+    }
+
+    fn signed_distance(&self, position: Vector, time: f64) -> SignedDistance {
+        self.object().signed_distance(position, time)
+    }
+
+    fn contains(&self, position: Vector, time: f64) -> bool {
+        self.object().contains(position, time)
+    }
+
+    fn first_contact(&self, segment: &Segment, depth: f64) -> Option<f64> {
+        self.object().first_contact(segment, depth)
+    }
+
+    fn alpha(&self, position: Vector, time: f64) -> f64 {
+        self.object().alpha(position, time)
+    }
+
+    fn peak_risk(&self, segment: &Segment) -> PeakRisk {
+        self.object().peak_risk(segment)
+    }
+
+    fn at_risk(&self, risk: f64) -> Self {
+        match self {
+            Self::Polytope(o) => o.at_risk(risk).into(),
+            Self::Ellipsoid(o) => o.at_risk(risk).into(),
+            Self::Slabs(o) => o.at_risk(risk).into(),
+        }
+    }
+
+    fn closest_approach(
+        &self,
+        position: Vector,
+        velocity: Vector,
+        horizon: f64,
+    ) -> ClosestApproach {
+        self.object().closest_approach(position, velocity, horizon)
+    }
+
+    fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool {
+        self.object()
+            .in_velocity_obstacle(position, velocity, horizon)
+    }
+}
