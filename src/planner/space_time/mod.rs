@@ -111,7 +111,9 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
             });
         }
     }
-    if (problem.desired.end() - own.pose.position).norm() <= tolerance::LENGTH_M {
+    // a round trip ends where it begins, and is to be sailed
+    let at = |place: Vector| (place - own.pose.position).norm() <= tolerance::LENGTH_M;
+    if at(problem.desired.end()) && !at(problem.desired.legs()[0].start) {
         return already_there(problem);
     }
     let Some(route) = Route::new(problem) else {

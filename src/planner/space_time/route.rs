@@ -23,6 +23,9 @@ const SHORTEST_M: f64 = 1e-3;
 /// Metres between two returns to schedule where the desired speed is not one of own ship's.
 const ALTERNATION_M: f64 = 400.0;
 
+/// Metres of the faster part at least: a speed that is nearly own ship's would be mixed from thousands of parts.
+const LEAST_ALTERNATION_M: f64 = 50.0;
+
 /// A line or an arc of the route.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
@@ -421,7 +424,7 @@ impl Route {
             Some(&fast) => {
                 let slow = self.speeds.iter().rev().find(|u| **u < speed && **u > 0.0);
                 let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
-                (fast, (cycle * share).max(left * 1e-3))
+                (fast, (cycle * share).max(LEAST_ALTERNATION_M))
             }
             None => (fastest, left),
         }
