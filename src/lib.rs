@@ -60,12 +60,13 @@
 //! | [`target`] | a tracked ship and what is not known of her |
 //! | [`colregs`] | roles by the rules of the road; the shapes that answer them |
 //! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
+//! | [`assessment`] | risk, closest approach and the least alteration of own ship among the obstacles, without a plan |
 //! | [`planner`] | problem, plan, outcome; the space-time planner |
 //! | [`evaluation`] | judges any trajectory, sharing no collision code with the planner |
 //! | [`scenario`] | scenario files: every fault of a file at once |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
 //! | [`simulation`] | random encounters, and targets that do anything their sets allow |
-//! | [`report`] | tables and JSON documents |
+//! | [`report`] | tables, JSON documents and figures |
 //! | `recording` | Rerun recordings (feature `recording`, on by default) |
 //!
 //! # Example
@@ -117,6 +118,7 @@
 
 #![warn(missing_docs)]
 
+pub mod assessment;
 pub mod colregs;
 pub mod evaluation;
 pub mod frame;

@@ -15,6 +15,13 @@ pub const JOINT_M: f64 = 1e-6;
 /// Radians. Headings at the joint of two segments may differ by this much.
 pub const JOINT_RAD: f64 = 1e-9;
 
+/// Radians. A recommended turn ends this far beyond the boundary of a velocity obstacle: a millimetre at a
+/// thousand kilometres, and far more than rounding puts back.
+pub const ALTERATION_RAD: f64 = 1e-9;
+
+/// m/s. A recommended change of speed ends this far beyond the boundary of a velocity obstacle.
+pub const ALTERATION_MPS: f64 = 1e-9;
+
 /// Relative. Points of a set closer than this fraction of its extent are one point.
 pub const DUPLICATE: f64 = 1e-11;
 

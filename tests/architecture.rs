@@ -42,6 +42,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "assessment",
+        &["obstacle", "trajectory", "geometry", "frame", "tolerance"],
+    ),
+    (
         "planner",
         &[
             "obstacle",
@@ -132,6 +136,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "target",
             "colregs",
             "obstacle",
+            "assessment",
             "planner",
             "evaluation",
             "scenario",
@@ -172,6 +177,7 @@ const NEVER: &[(&str, &str)] = &[
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
     ("parry2d_f64", &["geometry/", "map.rs", "obstacle/index.rs"]),
+    ("kuva", &["report/figure/"]),
     ("clap", &["cli/", "main.rs"]),
     ("to_degrees", &["frame.rs"]),
     ("to_radians", &["frame.rs"]),
@@ -400,6 +406,7 @@ fn every_border_can_be_broken() {
         ("report/table.rs", "use crate::recording::Recording;"),
         ("colregs/domain.rs", "use crate::cli::output;"),
         ("target.rs", "use rerun::RecordingStream;"),
+        ("report/table.rs", "use kuva::plot::LinePlot;"),
         ("trajectory/mod.rs", "use parry2d_f64::math::Point;"),
         ("report/table.rs", "#[derive(clap::ValueEnum)] enum A { B }"),
         (

@@ -1,6 +1,6 @@
 //! What the documents show is what the program does.
 //!
-//! The table in the README is written anew by
+//! The tables in the README are written anew by
 //!
 //! ```text
 //! SEAROOM_UPDATE_README=1 cargo test --release --no-default-features --test readme
@@ -14,6 +14,17 @@ use searoom::scenario::Scenario;
 const BEGIN: &str = "all but the time -->\n```text\n";
 const END: &str = "```\n<!-- suite end -->";
 
+const ASSESS: &[&str] = &[
+    "assess",
+    "scenarios/colregs/give-way.toml",
+    "--at",
+    "750,0,150",
+    "--velocity",
+    "4.8,-1.4",
+];
+const ASSESS_BEGIN: &str = "<!-- assess: checked by tests/readme.rs -->\n```text\n";
+const ASSESS_END: &str = "```\n<!-- assess end -->";
+
 fn file(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
 }
@@ -22,10 +33,11 @@ fn read(name: &str) -> String {
     std::fs::read_to_string(file(name)).expect("a document of the project")
 }
 
-fn suite() -> String {
+/// What the program prints.
+fn searoom(args: &[&str]) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_searoom"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(["suite", "scenarios/colregs"])
+        .args(args)
         .output()
         .expect("started");
     assert!(output.status.success(), "{output:?}");
@@ -65,9 +77,15 @@ fn the_readme_shows_the_table_of_the_suite() {
     let readme = read("README.md");
     let (before, rest) = readme.split_once(BEGIN).expect("the table's begin");
     let (shown, after) = rest.split_once(END).expect("the table's end");
-    let table = suite();
+    let table = searoom(&["suite", "scenarios/colregs"]);
     if std::env::var_os("SEAROOM_UPDATE_README").is_some() {
         let text = format!("{before}{BEGIN}{table}{END}{after}");
+        let (before, rest) = text
+            .split_once(ASSESS_BEGIN)
+            .expect("the assessment's begin");
+        let (_, after) = rest.split_once(ASSESS_END).expect("the assessment's end");
+        let assessment = searoom(ASSESS);
+        let text = format!("{before}{ASSESS_BEGIN}{assessment}{ASSESS_END}{after}");
         std::fs::write(file("README.md"), text).expect("written");
         return;
     }
@@ -76,6 +94,19 @@ fn the_readme_shows_the_table_of_the_suite() {
         untimed(&table),
         "the README is out of date: SEAROOM_UPDATE_README=1 cargo test --release --no-default-features --test readme"
     );
+}
+
+#[test]
+fn the_readme_shows_an_assessment() {
+    let readme = read("README.md");
+    let (_, rest) = readme
+        .split_once(ASSESS_BEGIN)
+        .expect("the assessment's begin");
+    let (shown, _) = rest.split_once(ASSESS_END).expect("the assessment's end");
+    assert!(readme.contains(&format!("searoom {}\n", ASSESS.join(" "))));
+    if std::env::var_os("SEAROOM_UPDATE_README").is_none() {
+        assert_eq!(shown, searoom(ASSESS));
+    }
 }
 
 #[test]
@@ -116,6 +147,7 @@ fn every_file_that_the_documents_link_to_is_there() {
         "README.md",
         "docs/scenario.md",
         "docs/sets.md",
+        "docs/assess.md",
         "docs/space-time-planner.md",
         "docs/development.md",
     ] {

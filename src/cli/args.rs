@@ -6,6 +6,8 @@ use clap::{Args, Parser, Subcommand};
 use searoom::planner::SearchKind;
 use searoom::scenario::{Compliance, Scenario};
 
+use super::rows;
+
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///
 /// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan, 2 bad input
@@ -21,6 +23,8 @@ pub struct Arguments {
 pub enum Command {
     /// Reads and checks scenario files, plans nothing; reports every fault at once
     Check(CheckArgs),
+    /// Risk, closest approach, velocity obstacle and least alteration, without planning
+    Assess(AssessArgs),
     /// Plans one scenario, prints the verdict and the costs
     Plan(PlanArgs),
     /// Runs every scenario below the paths: one row each, a summary, one exit status
@@ -32,6 +36,37 @@ pub struct CheckArgs {
     /// Scenario files, or folders of them
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct AssessArgs {
+    /// A scenario file
+    #[arg(value_name = "SCENARIO")]
+    pub scenario: PathBuf,
+    /// A point at a time: metres, metres, seconds; repeatable
+    #[arg(long, value_name = "EAST,NORTH,T", value_parser = point, allow_hyphen_values = true)]
+    pub at: Vec<[f64; 3]>,
+    /// Points from a CSV file with the header east_m,north_m,t_s
+    #[arg(long, value_name = "FILE.csv")]
+    pub points: Option<PathBuf>,
+    /// A velocity of own ship from t = 0 on, m/s; repeatable
+    #[arg(long, value_name = "EAST,NORTH", value_parser = velocity, allow_hyphen_values = true)]
+    pub velocity: Vec<[f64; 2]>,
+    /// Velocities from a CSV file with the header east_mps,north_mps
+    #[arg(long, value_name = "FILE.csv")]
+    pub velocities: Option<PathBuf>,
+    /// A time, seconds, at which the sets are given; repeatable
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    pub section: Vec<f64>,
+    /// The sets with the domains around them instead of the hard ones
+    #[arg(long)]
+    pub shaped: bool,
+    /// Draw sections, risk at the times of the sections, and dCPA: a file ending in .svg or .png
+    #[arg(long, value_name = "PATH")]
+    pub figure: Option<PathBuf>,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -95,6 +130,18 @@ impl Shared {
             scenario.max_risk = max_risk;
         }
     }
+}
+
+fn point(text: &str) -> Result<[f64; 3], String> {
+    rows::option(text, &rows::POINT)
+}
+
+fn velocity(text: &str) -> Result<[f64; 2], String> {
+    rows::option(text, &rows::VELOCITY)
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    rows::option(text, &rows::TIME).map(|[time]| time)
 }
 
 /// Which planner.

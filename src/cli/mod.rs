@@ -1,11 +1,14 @@
 //! The command line: one file per command; `output` is the only place that prints.
 
 mod args;
+mod assess;
 mod check;
+mod figure;
 mod files;
 mod output;
 mod plan;
 mod products;
+mod rows;
 mod runner;
 mod status;
 mod suite;
@@ -28,6 +31,7 @@ pub fn main() -> ExitCode {
     let output = Output::new();
     let run = || match &arguments.command {
         Command::Check(args) => check::check(args, &output),
+        Command::Assess(args) => assess::assess(args, &output),
         Command::Plan(args) => plan::plan(args, &output),
         Command::Suite(args) => suite::suite(args, &output),
     };

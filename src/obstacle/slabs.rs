@@ -170,6 +170,11 @@ impl SlabObstacle {
         Self::from_spells(name, initial, vec![spell])
     }
 
+    /// The same velocity sets with another set at t = 0, metres.
+    pub fn with_initial(&self, initial: ConvexPolygon) -> Self {
+        Self::from_spells(self.name.clone(), initial, self.spells.clone())
+    }
+
     /// `O_0`, metres.
     pub fn initial(&self) -> &ConvexPolygon {
         &self.initial

@@ -1,6 +1,6 @@
 //! The velocity obstacle of a polytope as a region of velocities: paper eq. (26), formulas section 5.3.
 
-use super::{HalfSpace, PolytopeObstacle};
+use super::{HalfSpace, PolytopeObstacle, SlabObstacle};
 use crate::frame::{Vector, cross, to_port, to_starboard};
 use crate::geometry::ConvexPolygon;
 
@@ -76,6 +76,21 @@ impl VelocityObstacle {
         Self { half_planes }
     }
 
+    /// The hull of some velocities; every velocity when one is not a number.
+    fn around(velocities: &[Vector]) -> Self {
+        let half_planes = ConvexPolygon::hull(velocities).map_or_else(
+            |_| Vec::new(),
+            |hull| {
+                let half_plane = |normal| HalfPlane {
+                    normal,
+                    offset: hull.support(normal),
+                };
+                hull.normals().into_iter().map(half_plane).collect()
+            },
+        );
+        Self { half_planes }
+    }
+
     /// The half-planes; none means every velocity.
     pub fn half_planes(&self) -> &[HalfPlane] {
         &self.half_planes
@@ -114,5 +129,40 @@ impl VelocityObstacle {
             polygon = kept;
         }
         ConvexPolygon::hull(&polygon).ok()
+    }
+}
+
+impl SlabObstacle {
+    /// The velocity obstacle within `horizon` seconds as a union of convex regions, one per slab. The vertices of the
+    /// velocities `(O_t - x) / t` move in straight lines with `1 / t`, so the region of a slab that starts after t = 0
+    /// is the hull of those of its two ends. Exact for a finite horizon, the closure for an infinite one. From a
+    /// position in `O_0`, or one that is not a number, every velocity. O(n log n) in the faces of each slab.
+    pub fn velocity_obstacles(&self, position: Vector, horizon: f64) -> Vec<VelocityObstacle> {
+        let horizon = if horizon.is_nan() {
+            f64::INFINITY
+        } else {
+            horizon.max(0.0)
+        };
+        let within = self.slabs().iter().filter(|slab| slab.start() <= horizon);
+        within
+            .map(|slab| {
+                let (start, end) = (slab.start(), slab.end().min(horizon));
+                let obstacle = slab.obstacle();
+                if start == 0.0 {
+                    return obstacle.velocity_obstacle(position, end);
+                }
+                let reaching = |section: &ConvexPolygon, time: f64| -> Vec<Vector> {
+                    let vertices = section.vertices().iter();
+                    vertices.map(|p| (p - position) / time).collect()
+                };
+                let mut velocities = reaching(obstacle.initial(), start);
+                if end.is_finite() {
+                    velocities.extend(reaching(&obstacle.section(end - start), end));
+                } else {
+                    velocities.extend(obstacle.velocity().vertices());
+                }
+                VelocityObstacle::around(&velocities)
+            })
+            .collect()
     }
 }

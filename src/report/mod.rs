@@ -1,12 +1,15 @@
 //! What people and other programs read of a [`Run`](crate::pipeline::Run): tables, verdicts, JSON
 //! documents. Nautical at this border: degrees clockwise, starboard positive, every unit in its name.
 
+mod assessment;
 pub mod document;
+pub mod figure;
 mod summary;
 mod table;
 mod words;
 mod write;
 
+pub use assessment::assessment_text;
 pub use summary::{Meeting, Summary, Turn, Verdict};
 pub use table::{Row, plan_text, suite_table};
 pub use write::{WriteError, write_atomically};

@@ -1,0 +1,65 @@
+//! The two obstacles of the paper's figures 1 and 2, and where a figure goes.
+#![allow(dead_code, reason = "every figure uses a part")]
+
+use std::path::PathBuf;
+
+use nalgebra::Matrix2;
+use searoom::assessment::{Section, TargetObstacle};
+use searoom::frame::Vector;
+use searoom::geometry::{ConvexPolygon, Ellipse};
+use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle};
+use searoom::report::figure::{Figure, FigureError};
+
+fn polygon(vertices: [(f64, f64); 4]) -> ConvexPolygon {
+    let vertices = vertices.map(|(east, north)| Vector::new(east, north));
+    ConvexPolygon::from_vertices(&vertices).expect("convex")
+}
+
+fn ellipse(center: Vector, half_axes: [f64; 2]) -> Ellipse {
+    let [a, b] = half_axes.map(|a| a * a);
+    Ellipse::new(center, Matrix2::new(a, 0.0, 0.0, b)).expect("positive definite")
+}
+
+fn polytope() -> PolytopeObstacle {
+    PolytopeObstacle::new(
+        "figure 1",
+        polygon([(-10.0, -5.0), (-10.0, 5.0), (10.0, 5.0), (10.0, -5.0)]),
+        polygon([(0.8, 0.0), (1.0, -0.25), (1.2, 0.0), (1.0, 0.25)]),
+    )
+}
+
+fn ellipsoid() -> EllipsoidObstacle {
+    EllipsoidObstacle::new(
+        "figure 2",
+        ellipse(Vector::zeros(), [10.0, 5.0]),
+        ellipse(Vector::new(1.0, 0.0), [0.2, 0.25]),
+    )
+}
+
+/// Paper eqs. (10) and (11).
+pub fn figure_1() -> TargetObstacle {
+    polytope().into()
+}
+
+/// The velocities of eq. (11), m/s.
+pub fn figure_1_velocities() -> Section {
+    Section::Polygon(polytope().velocity().clone())
+}
+
+/// Paper eqs. (20) and (21).
+pub fn figure_2() -> TargetObstacle {
+    ellipsoid().into()
+}
+
+/// The velocities of eq. (21), m/s.
+pub fn figure_2_velocities() -> Section {
+    Section::Ellipse(*ellipsoid().velocity())
+}
+
+/// Writes to the file named by the first argument, or to `name` in the current folder.
+pub fn write(figure: Figure, name: &str) -> Result<(), FigureError> {
+    let file = std::env::args_os()
+        .nth(1)
+        .map_or_else(|| name.into(), PathBuf::from);
+    figure.write(&file)
+}

@@ -1,0 +1,129 @@
+//! `searoom assess`: risk, closest approach and velocity obstacle, no planning.
+
+use searoom::assessment::{Query, Situation, SpaceTimePoint, TargetObstacle, assess as answer};
+use searoom::frame::Vector;
+use searoom::pipeline;
+use searoom::report::assessment_text;
+use searoom::report::document::AssessmentDocument;
+use searoom::report::figure::assessment_figure;
+use searoom::scenario::{Scenario, ScenarioError};
+
+use super::args::AssessArgs;
+use super::figure;
+use super::output::Output;
+use super::rows;
+use super::runner::guarded;
+use super::status::Status;
+
+/// Assesses one file.
+pub fn assess(args: &AssessArgs, output: &Output) -> Status {
+    let file = &args.scenario;
+    if file.is_dir() {
+        output.error(&format_args!(
+            "{}: a folder; `assess` takes one scenario",
+            file.display()
+        ));
+        return Status::BadInput;
+    }
+    // before anything is computed
+    if let Some(path) = &args.figure
+        && let Err(error) = figure::prepare(path)
+    {
+        output.error(&format_args!("{error:#}"));
+        return Status::BadInput;
+    }
+    match guarded(|| read(args)) {
+        Ok(Ok((scenario, query))) => {
+            let shown = guarded(|| show(args, &scenario, &query, output));
+            shown.unwrap_or_else(|fault| {
+                output.error(&format_args!("{}: {fault}", file.display()));
+                Status::InternalFault
+            })
+        }
+        Ok(Err(errors)) => {
+            for error in errors {
+                output.error(&error);
+            }
+            Status::BadInput
+        }
+        Err(fault) => {
+            output.error(&format_args!("{}: {fault}", file.display()));
+            Status::InternalFault
+        }
+    }
+}
+
+/// Every file that is asked for; what is wrong with any of them.
+fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<ScenarioError>> {
+    let mut errors = Vec::new();
+    let scenario = Scenario::read(&args.scenario).map_err(|e| errors.push(e));
+    let mut points = args.at.clone();
+    if let Some(file) = &args.points {
+        match rows::read(file, &rows::POINT) {
+            Ok(rows) => points.extend(rows),
+            Err(error) => errors.push(error),
+        }
+    }
+    let mut velocities = args.velocity.clone();
+    if let Some(file) = &args.velocities {
+        match rows::read(file, &rows::VELOCITY) {
+            Ok(rows) => velocities.extend(rows),
+            Err(error) => errors.push(error),
+        }
+    }
+    let query = Query {
+        sections: args.section.clone(),
+        points: points
+            .into_iter()
+            .map(|[east, north, time]| SpaceTimePoint {
+                position: Vector::new(east, north),
+                time,
+            })
+            .collect(),
+        velocities: velocities
+            .into_iter()
+            .map(|[east, north]| Vector::new(east, north))
+            .collect(),
+    };
+    match scenario {
+        Ok(scenario) if errors.is_empty() => Ok((scenario, query)),
+        _ => Err(errors),
+    }
+}
+
+fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) -> Status {
+    let obstacles: Vec<TargetObstacle> = pipeline::sets(scenario)
+        .into_iter()
+        .map(|sets| if args.shaped { sets.shaped } else { sets.hard }.into())
+        .collect();
+    let own = &scenario.own_ship;
+    let situation = Situation {
+        pose: own.pose,
+        speed: own.speed,
+        max_speed: own.max_speed(),
+        horizon: scenario.horizon,
+        obstacles: &obstacles,
+    };
+    let assessment = answer(&situation, query);
+    let drawn = match &args.figure {
+        Some(path) => match assessment_figure(&situation, &query.sections).write(path) {
+            Ok(()) => Status::Good,
+            Err(error) => {
+                output.error(&error);
+                Status::BadInput
+            }
+        },
+        None => Status::Good,
+    };
+    drawn.max(if args.json {
+        output.document(&AssessmentDocument::of(
+            &scenario.title,
+            scenario.horizon,
+            args.shaped,
+            &assessment,
+        ))
+    } else {
+        let text = assessment_text(&scenario.title, args.shaped, &situation, &assessment);
+        output.result(&text)
+    })
+}

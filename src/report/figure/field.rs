@@ -1,0 +1,163 @@
+//! Fields: risk over the sea at a time, dCPA over the velocities. In bands, each of which is a set that is known
+//! outright: where the risk is at least a value is a section, the velocities that come within a distance are the
+//! velocity obstacle of a wider set.
+
+use kuva::plot::{ColorMap, ContourPlot};
+use kuva::render::plots::Plot;
+
+use super::outline::{
+    Approaching, Stroke, area, curve, mark, sampled_boundary, sampled_velocities_within, square,
+};
+use super::sections::PLAN;
+use super::{Panel, Window};
+use crate::assessment::TargetObstacle;
+use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
+
+/// Bands of a field of risk.
+const RISK_BANDS: usize = 20;
+
+/// Bands of a field of distances, at most.
+const DISTANCE_BANDS: f64 = 20.0;
+
+/// The boundary of a set over a field.
+const BOUNDARY: Stroke = Stroke {
+    colour: "#ffffff",
+    width: 1.6,
+    dashed: false,
+};
+
+/// The boundary of a velocity obstacle, which is white.
+const VELOCITY_OBSTACLE: Stroke = Stroke {
+    colour: "#000000",
+    width: 1.6,
+    dashed: false,
+};
+
+/// Own ship, on dark and on light.
+pub(super) const OWN: &str = "#d55e00";
+
+/// The velocities that a panel shows, and own ship's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VelocityWindow {
+    /// m/s.
+    pub window: Window,
+    /// Own velocity, m/s, where it is to be marked.
+    pub own: Option<Vector>,
+}
+
+/// The largest risk of any target at `time`, seconds, in twentieths, with the boundaries of the sections. The colours go
+/// from risk 0 to risk 1 in every panel.
+pub fn risk_panel(title: &str, targets: &[TargetObstacle], time: f64, window: Window) -> Panel {
+    let mut panel = Panel::plan(title.to_owned(), PLAN, window);
+    panel.plots.push(scale(panel.window(), 1.0, "risk"));
+    let bands = RISK_BANDS as f64;
+    for level in 0..=RISK_BANDS {
+        let risk = level as f64 / bands;
+        let shown = if level < RISK_BANDS {
+            risk + 0.5 / bands
+        } else {
+            1.0
+        };
+        for target in targets {
+            let boundary = sampled_boundary(&target.at_risk(risk).section(time));
+            let set = ConvexPolygon::hull(&boundary).ok();
+            let colour = ColorMap::Viridis.map(shown);
+            panel
+                .plots
+                .extend(set.and_then(|set| area(&set, &colour, 1.0)));
+        }
+    }
+    for target in targets {
+        let boundary = sampled_boundary(&target.section(time));
+        panel.plots.push(curve(&boundary, true, BOUNDARY));
+    }
+    panel
+}
+
+/// The least dCPA to any target for every velocity kept from `position` over `[0, horizon]` seconds, with the
+/// velocity obstacles in white.
+pub fn dcpa_panel(
+    title: &str,
+    targets: &[TargetObstacle],
+    position: Vector,
+    horizon: f64,
+    shown: &VelocityWindow,
+) -> Panel {
+    let axes = ["East velocity [m/s]", "North velocity [m/s]"];
+    let mut panel = Panel::plan(title.to_owned(), axes, shown.window);
+    if !targets.is_empty() {
+        let approach = Approaching { position, horizon };
+        bands(&mut panel, targets, &approach);
+        panel.line_key("velocity obstacle, white", VELOCITY_OBSTACLE);
+    }
+    if let Some(own) = shown.own {
+        panel.plots.push(mark(own, OWN));
+        panel.point_key("own velocity", OWN);
+    }
+    panel
+}
+
+fn bands(panel: &mut Panel, targets: &[TargetObstacle], approach: &Approaching) {
+    let window = panel.window();
+    let limit = 2.0 * window.low.amax().max(window.high.amax());
+    // nowhere farther than at the start
+    let most = targets
+        .iter()
+        .map(|t| {
+            t.as_obstacle()
+                .signed_distance(approach.position, 0.0)
+                .distance
+        })
+        .fold(f64::INFINITY, f64::min);
+    let step = round_step(most / DISTANCE_BANDS);
+    let count = (most / step).ceil().max(1.0) as usize;
+    let top = step * count as f64;
+    panel.plots.push(scale(window, top, "dCPA [m]"));
+    let far = ColorMap::Viridis.map(1.0 - 0.5 / count as f64);
+    panel.plots.extend(area(&square(limit), &far, 1.0));
+    for level in (0..count).rev() {
+        for target in targets {
+            let distance = step * level as f64;
+            for set in sampled_velocities_within(target, approach, distance, limit) {
+                if level > 0 {
+                    let colour = ColorMap::Viridis.map((level as f64 - 0.5) / count as f64);
+                    panel.plots.extend(area(&set, &colour, 1.0));
+                } else {
+                    panel.plots.extend(area(&set, BOUNDARY.colour, 1.0));
+                    panel
+                        .plots
+                        .push(curve(set.vertices(), true, VELOCITY_OBSTACLE));
+                }
+            }
+        }
+    }
+}
+
+/// The colours from 0 to `top` as a bar, and the window in the first of them.
+fn scale(window: Window, top: f64, name: &str) -> Plot {
+    let Window { low, high } = window;
+    let corners = ContourPlot::new()
+        .with_grid(
+            vec![vec![0.0, 0.0], vec![0.0, top]],
+            vec![low.x, high.x],
+            vec![low.y, high.y],
+        )
+        // above every corner, so that nothing but the ground is drawn
+        .with_levels(&[2.0 * top])
+        .with_filled()
+        .with_colormap(ColorMap::Viridis)
+        .with_legend(name);
+    Plot::Contour(corners)
+}
+
+/// The next of 1, 2, 5, 10, 20, … from `least` on.
+fn round_step(least: f64) -> f64 {
+    if !(least > 0.0 && least.is_finite()) {
+        return 1.0;
+    }
+    let power = 10.0_f64.powf(least.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * power);
+    let fits = |s: &&f64| **s >= least * (1.0 - 1e-9);
+    steps.iter().find(fits).copied().unwrap_or(10.0 * power)
+}

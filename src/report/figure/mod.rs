@@ -1,0 +1,19 @@
+//! Figures: panels in a grid, drawn as SVG or PNG. The same panels give the same bytes.
+//!
+//! Plans of the sea have equal axes; every axis has its unit. Fields are coloured by viridis, whose lightness rises
+//! with the value, so it survives print in grey.
+
+mod assessment;
+mod field;
+mod outline;
+mod panel;
+mod render;
+mod sections;
+mod window;
+
+pub use assessment::assessment_figure;
+pub use field::{VelocityWindow, dcpa_panel, risk_panel};
+pub use panel::Panel;
+pub use render::{Figure, FigureError, FigureFormat};
+pub use sections::{extent_panel, sections_panel, set_panel};
+pub use window::Window;

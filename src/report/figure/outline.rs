@@ -1,0 +1,248 @@
+//! Sets as curves and areas that can be drawn.
+
+use kuva::plot::{BandPlot, LinePlot, ScatterPlot};
+use kuva::render::plots::Plot;
+
+use crate::assessment::{Section, TargetObstacle};
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle};
+
+/// Points of an ellipse's boundary.
+const ELLIPSE_POINTS: usize = 96;
+
+/// Sections of a velocity obstacle of ellipses, as far as it is drawn.
+const SWEEP: usize = 400;
+
+/// How a curve is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke {
+    /// `#rrggbb`.
+    pub colour: &'static str,
+    /// Pixels.
+    pub width: f64,
+    /// Dashes.
+    pub dashed: bool,
+}
+
+/// The boundary of a section, counter-clockwise; of an ellipse some points of it.
+pub fn sampled_boundary(section: &Section) -> Vec<Vector> {
+    match section {
+        Section::Polygon(polygon) => polygon.vertices().to_vec(),
+        Section::Ellipse(ellipse) => ellipse.sampled_boundary(ELLIPSE_POINTS),
+    }
+}
+
+/// A curve, closed where asked.
+pub fn curve(points: &[Vector], closed: bool, stroke: Stroke) -> Plot {
+    let first = points.first().filter(|_| closed);
+    let all = points.iter().chain(first).map(|p| (p.x, p.y));
+    let line = LinePlot::new()
+        .with_data(all)
+        .with_color(stroke.colour)
+        .with_stroke_width(stroke.width);
+    Plot::Line(if stroke.dashed {
+        line.with_dashed()
+    } else {
+        line
+    })
+}
+
+/// A point.
+pub fn mark(at: Vector, colour: &str) -> Plot {
+    let point = ScatterPlot::new().with_data([(at.x, at.y)]);
+    Plot::Scatter(point.with_color(colour).with_size(4.5))
+}
+
+/// A filled convex polygon: the band between its lower and its upper chain. `None` where it has no area.
+pub fn area(polygon: &ConvexPolygon, colour: &str, opacity: f64) -> Option<Plot> {
+    let vertices = polygon.vertices();
+    let mut xs: Vec<f64> = vertices.iter().map(|v| v.x).collect();
+    xs.sort_by(f64::total_cmp);
+    xs.dedup();
+    if vertices.len() < 3 || xs.len() < 2 {
+        return None;
+    }
+    let chain = |upper: bool| -> Vec<f64> {
+        xs.iter()
+            .map(|x| {
+                let mut best: Option<f64> = None;
+                for (a, b) in polygon.edges() {
+                    if (x < &a.x.min(b.x)) || (x > &a.x.max(b.x)) {
+                        continue;
+                    }
+                    let (low, high) = if a.x == b.x {
+                        (a.y.min(b.y), a.y.max(b.y))
+                    } else {
+                        let y = a.y + (b.y - a.y) * ((x - a.x) / (b.x - a.x));
+                        (y, y)
+                    };
+                    best = Some(match best {
+                        None if upper => high,
+                        None => low,
+                        Some(y) if upper => y.max(high),
+                        Some(y) => y.min(low),
+                    });
+                }
+                best.unwrap_or(f64::NAN)
+            })
+            .collect()
+    };
+    let (lower, upper) = (chain(false), chain(true));
+    let band = BandPlot::new(xs, lower, upper)
+        .with_color(colour)
+        .with_opacity(opacity);
+    Some(Plot::Band(band))
+}
+
+/// The velocities that come within `distance` metres of a target, as convex polygons, drawn as far as `limit` m/s east
+/// and north; at distance 0 the velocity obstacle. Exact for polygons at distance 0, otherwise a disc of 64 sides wide,
+/// 0.1 % more; of ellipses the hull of some of the velocities `(O_t - x) / t`, an inner set to the width of a line.
+pub fn sampled_velocities_within(
+    target: &TargetObstacle,
+    approach: &Approaching,
+    distance: f64,
+    limit: f64,
+) -> Vec<ConvexPolygon> {
+    let Approaching { position, horizon } = *approach;
+    let wider = |set: &ConvexPolygon| {
+        if distance > 0.0 {
+            set.minkowski_sum(&disc(distance))
+        } else {
+            set.clone()
+        }
+    };
+    let regions = match target {
+        TargetObstacle::Polytope(obstacle) => {
+            let (initial, velocity) = (wider(obstacle.initial()), obstacle.velocity().clone());
+            let wide = PolytopeObstacle::new("", initial, velocity);
+            vec![wide.velocity_obstacle(position, horizon)]
+        }
+        TargetObstacle::Slabs(obstacle) => {
+            let wide = obstacle.with_initial(wider(obstacle.initial()));
+            wide.velocity_obstacles(position, horizon)
+        }
+        TargetObstacle::Ellipsoid(obstacle) => {
+            return around_ellipses(obstacle, approach, distance, limit);
+        }
+    };
+    regions.iter().filter_map(|r| r.clipped(limit)).collect()
+}
+
+/// Own ship's position at t = 0 and how long she keeps her velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Approaching {
+    /// Metres.
+    pub position: Vector,
+    /// Seconds.
+    pub horizon: f64,
+}
+
+fn around_ellipses(
+    obstacle: &EllipsoidObstacle,
+    approach: &Approaching,
+    distance: f64,
+    limit: f64,
+) -> Vec<ConvexPolygon> {
+    let Approaching { position, horizon } = *approach;
+    let away = obstacle.initial().signed_distance(position).distance - distance;
+    // negated on purpose: from inside, or from nowhere, every velocity meets it
+    if !(away > 0.0) {
+        return vec![square(limit)];
+    }
+    // with u = 1/t: far beyond the limit all of them lie on two rays
+    let (least, most) = (1.0 / horizon, 8.0 * limit / away);
+    let mut velocities = Vec::new();
+    if least == 0.0 {
+        velocities.extend(obstacle.velocity().sampled_boundary(ELLIPSE_POINTS));
+    }
+    for i in 0..=SWEEP {
+        let share = (i as f64 / SWEEP as f64).powi(2);
+        let u = least + (most - least).max(0.0) * share;
+        if u > 0.0 {
+            let section = obstacle.outer_section(1.0 / u);
+            let boundary = section.sampled_boundary(ELLIPSE_POINTS);
+            velocities.extend(boundary.iter().map(|p| {
+                let outward = section.signed_distance(*p).normal;
+                (p + outward * distance - position) * u
+            }));
+        }
+    }
+    ConvexPolygon::hull(&velocities).into_iter().collect()
+}
+
+fn disc(radius: f64) -> ConvexPolygon {
+    let axes = [Vector::new(radius, 0.0), Vector::new(0.0, radius)];
+    Ellipse::from_axes(Vector::zeros(), axes).outer_polygon(64)
+}
+
+/// Every velocity within `limit` east and north.
+pub fn square(limit: f64) -> ConvexPolygon {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    ConvexPolygon::from_ccw(corners.map(|(x, y)| Vector::new(x, y) * limit).to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::obstacle::SlabObstacle;
+    use crate::target::VelocitySpell;
+
+    fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
+        let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+        let corners = corners.map(|(x, y)| center + Vector::new(x * length, y * beam));
+        ConvexPolygon::from_ccw(corners.to_vec())
+    }
+
+    /// What is drawn against the closest approach itself.
+    #[test]
+    fn the_velocities_drawn_are_those_that_come_so_near() {
+        let (place, way) = (Vector::new(300.0, 80.0), Vector::new(-2.0, -0.5));
+        let spells = [(70.0, 0.2), (f64::INFINITY, 0.9)].map(|(until, wide)| VelocitySpell {
+            until,
+            velocities: rectangle(way, wide, wide),
+        });
+        let ellipse = |center: Vector, a: f64, b: f64| {
+            Ellipse::from_axes(center, [Vector::new(a, 0.0), Vector::new(0.0, b)])
+        };
+        let targets: [TargetObstacle; 3] = [
+            PolytopeObstacle::new("", rectangle(place, 30.0, 10.0), rectangle(way, 0.4, 0.2))
+                .into(),
+            EllipsoidObstacle::new("", ellipse(place, 30.0, 10.0), ellipse(way, 0.4, 0.2)).into(),
+            SlabObstacle::new("", rectangle(place, 30.0, 10.0), spells.to_vec())
+                .expect("increasing")
+                .into(),
+        ];
+        let (position, limit) = (Vector::new(-10.0, 5.0), 12.0);
+        for horizon in [200.0, f64::INFINITY] {
+            let approach = Approaching { position, horizon };
+            for (target, distance) in targets
+                .iter()
+                .flat_map(|t| [0.0, 25.0, 120.0].map(|d| (t, d)))
+            {
+                let drawn = sampled_velocities_within(target, &approach, distance, limit);
+                for i in 0..61 * 61 {
+                    let v = Vector::new(f64::from(i % 61) - 30.0, f64::from(i / 61) - 30.0) * 0.2;
+                    let nearest = target.as_obstacle().closest_approach(position, v, horizon);
+                    let beyond = drawn.iter().map(|d| d.signed_distance(v));
+                    let beyond = beyond.fold(f64::INFINITY, f64::min);
+                    let near = nearest.distance <= distance * 1.002 + 1e-6;
+                    assert!(beyond > -0.01 || near, "{distance} {v:?} {nearest:?}");
+                    let far = nearest.distance >= distance - 1e-6;
+                    assert!(beyond < 0.01 || far, "{distance} {v:?} {nearest:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_area_is_the_polygon_that_it_fills() {
+        let Some(Plot::Band(band)) = area(&rectangle(Vector::zeros(), 2.0, 1.0), "#000000", 1.0)
+        else {
+            panic!("a band");
+        };
+        assert_eq!(band.x, [-2.0, 2.0]);
+        assert_eq!((band.y_lower, band.y_upper), (vec![-1.0; 2], vec![1.0; 2]));
+        assert!(area(&ConvexPolygon::point(Vector::zeros()), "#000000", 1.0).is_none());
+    }
+}

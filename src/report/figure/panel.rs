@@ -1,0 +1,141 @@
+//! One pair of axes.
+
+use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
+use kuva::render::annotations::TextAnnotation;
+use kuva::render::layout::Layout;
+use kuva::render::plots::Plot;
+
+use super::Window;
+use super::outline::Stroke;
+use crate::frame::Vector;
+
+/// Pixels of the area between the axes.
+pub(super) const AREA: [f64; 2] = [400.0, 330.0];
+
+/// Pixels around it: left, right, top; below come the legend's lines.
+pub(super) const MARGIN: [f64; 3] = [74.0, 106.0, 44.0];
+
+/// Pixels for the numbers and the name of the lower axis.
+const AXIS: f64 = 64.0;
+
+/// Pixels that the name of the lower axis is brought nearer to it.
+const LIFT: f64 = 16.0;
+
+/// Pixels of a line of the legend, and around them.
+const LEGEND_LINE: f64 = 20.0;
+const LEGEND_FRAME: f64 = 26.0;
+
+/// One pair of axes with what is drawn between them.
+pub struct Panel {
+    title: String,
+    axes: [String; 2],
+    window: Window,
+    equal: bool,
+    pub(super) plots: Vec<Plot>,
+    legend: Vec<LegendEntry>,
+    notes: Vec<TextAnnotation>,
+}
+
+impl Panel {
+    /// A plan with equal axes: the window is widened until it fills the panel. `axes` carry their units.
+    pub(super) fn plan(title: String, axes: [&str; 2], window: Window) -> Self {
+        Self {
+            window: window.with_ratio(AREA[0] / AREA[1]),
+            equal: true,
+            ..Self::free(title, axes, window)
+        }
+    }
+
+    /// Axes of different units.
+    pub(super) fn free(title: String, axes: [&str; 2], window: Window) -> Self {
+        Self {
+            title,
+            axes: axes.map(str::to_owned),
+            window,
+            equal: false,
+            plots: Vec::new(),
+            legend: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// What it shows.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    pub(super) fn line_key(&mut self, label: &str, stroke: Stroke) {
+        self.legend.push(LegendEntry {
+            label: label.to_owned(),
+            color: stroke.colour.to_owned(),
+            shape: LegendShape::Line,
+            dasharray: stroke.dashed.then(|| "8 4".to_owned()),
+        });
+    }
+
+    pub(super) fn point_key(&mut self, label: &str, colour: &str) {
+        self.legend.push(LegendEntry {
+            label: label.to_owned(),
+            color: colour.to_owned(),
+            shape: LegendShape::Circle,
+            dasharray: None,
+        });
+    }
+
+    /// A word at a place.
+    pub(super) fn note(&mut self, text: &str, at: Vector) {
+        let note = TextAnnotation::new(text, at.x, at.y).with_font_size(11);
+        self.notes.push(note);
+    }
+
+    /// Pixels below the area for a legend of so many lines.
+    pub(super) fn below(lines: usize) -> f64 {
+        AXIS + if lines == 0 {
+            0.0
+        } else {
+            LEGEND_FRAME + LEGEND_LINE * lines as f64
+        }
+    }
+
+    pub(super) fn lines(&self) -> usize {
+        self.legend.len()
+    }
+
+    /// The layout in a cell with so many pixels below the area.
+    pub(super) fn layout(&self, below: f64) -> Layout {
+        let Window { low, high } = self.window;
+        let [left, right, top] = MARGIN;
+        let mut layout = Layout::new((low.x, high.x), (low.y, high.y))
+            .with_title(self.title.as_str())
+            .with_x_label(self.axes[0].as_str())
+            .with_y_label(self.axes[1].as_str())
+            .with_x_axis_min(low.x)
+            .with_x_axis_max(high.x)
+            .with_y_axis_min(low.y)
+            .with_y_axis_max(high.y)
+            .with_ticks(6)
+            .with_box_axes()
+            .with_show_grid(false)
+            .with_title_size(15)
+            .with_label_size(13)
+            .with_tick_size(11)
+            .with_body_size(11)
+            .with_force_margins(left, right)
+            .with_force_margins_y(top, below);
+        layout.show_colorbar = self.plots.iter().any(|p| p.colorbar_info(false).is_some());
+        // the name of the axis belongs to it, above the legend
+        layout = layout.with_x_label_offset(0.0, AXIS - below - LIFT);
+        if self.equal {
+            layout = layout.with_equal_aspect();
+        }
+        if !self.legend.is_empty() {
+            layout = layout
+                .with_legend_entries(self.legend.clone())
+                .with_legend_position(LegendPosition::Custom(left, top + AREA[1] + AXIS));
+        }
+        for note in &self.notes {
+            layout = layout.with_annotation(note.clone());
+        }
+        layout
+    }
+}

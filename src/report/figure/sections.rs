@@ -1,0 +1,160 @@
+//! Where targets may be: their two sets, and sections over time.
+
+use super::outline::{Stroke, area, curve, sampled_boundary};
+use super::{Panel, Window};
+use crate::assessment::{Section, TargetObstacle};
+use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
+
+/// The names of a plan's axes.
+pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
+
+/// The first section.
+const INITIAL: Stroke = Stroke {
+    colour: "#0072b2",
+    width: 2.4,
+    dashed: false,
+};
+
+/// Every later one.
+const LATER: Stroke = Stroke {
+    colour: "#009e73",
+    width: 1.4,
+    dashed: false,
+};
+
+/// Everything that the sections cover.
+const COVERED: Stroke = Stroke {
+    colour: "#d55e00",
+    width: 1.6,
+    dashed: true,
+};
+
+/// Sections that the covered part of ellipses is drawn from; between them its sides are all but straight.
+const SWEEP: usize = 12;
+
+/// Pieces of a side of the space-time body; dashes need some length.
+const SIDE: usize = 25;
+
+/// Of the window's greater side, around what is shown.
+const MARGIN: f64 = 0.06;
+
+/// One set alone: `O_0` or `V`, with its unit in `axes`.
+pub fn set_panel(title: &str, axes: [&str; 2], set: &Section) -> Panel {
+    let boundary = sampled_boundary(set);
+    let window = Window::around(boundary.iter().copied(), 0.25);
+    let mut panel = Panel::plan(title.to_owned(), axes, window);
+    panel.plots.extend(
+        ConvexPolygon::hull(&boundary)
+            .ok()
+            .and_then(|p| area(&p, INITIAL.colour, 0.25)),
+    );
+    panel.plots.push(curve(&boundary, true, INITIAL));
+    panel
+}
+
+/// Sections of all targets at `times`, seconds, the first of them apart from the others, with all that they cover
+/// until the last, dashed. What slabs cover is drawn slab by slab as their hulls.
+pub fn sections_panel(title: &str, targets: &[TargetObstacle], times: &[f64]) -> Panel {
+    sections_beside(title, targets, times, &[])
+}
+
+/// The same, in a window that holds `others`, too.
+pub(super) fn sections_beside(
+    title: &str,
+    targets: &[TargetObstacle],
+    times: &[f64],
+    others: &[Vector],
+) -> Panel {
+    let last = times.iter().copied().fold(0.0, f64::max);
+    let covered: Vec<Vec<Vector>> = targets.iter().flat_map(|t| covered(t, last)).collect();
+    let shown = covered.iter().flatten().chain(others).copied();
+    let mut panel = Panel::plan(title.to_owned(), PLAN, Window::around(shown, MARGIN));
+    for boundary in &covered {
+        panel.plots.push(curve(boundary, true, COVERED));
+    }
+    for target in targets {
+        for (i, time) in times.iter().enumerate().rev() {
+            let stroke = if i == 0 { INITIAL } else { LATER };
+            let boundary = sampled_boundary(&target.section(*time));
+            panel.plots.push(curve(&boundary, true, stroke));
+        }
+    }
+    if let Some((first, later)) = times.split_first()
+        && !targets.is_empty()
+    {
+        panel.line_key(&format!("section at {} s", seconds(*first)), INITIAL);
+        if !later.is_empty() {
+            let list: Vec<String> = later.iter().map(|t| seconds(*t)).collect();
+            panel.line_key(&format!("sections at {} s", list.join(", ")), LATER);
+        }
+        panel.line_key(&format!("covered from 0 to {} s", seconds(last)), COVERED);
+    }
+    panel
+}
+
+/// How far the sections reach east over time, until `end` seconds: the space-time body from the side.
+pub fn extent_panel(title: &str, target: &TargetObstacle, times: &[f64], end: f64) -> Panel {
+    let reach = |time: f64| {
+        let section = target.section(time);
+        let side = |x: f64| x * section.support(Vector::new(x, 0.0));
+        [side(-1.0), side(1.0)]
+    };
+    let sides: Vec<(f64, [f64; 2])> = (0..=SIDE)
+        .map(|i| end * i as f64 / SIDE as f64)
+        .map(|time| (time, reach(time)))
+        .collect();
+    let side = |i: usize| -> Vec<Vector> {
+        sides
+            .iter()
+            .map(|(t, reach)| Vector::new(reach[i], *t))
+            .collect()
+    };
+    let [west, east] = [side(0), side(1)];
+    let shown = Window::around(west.iter().chain(&east).copied(), 0.0);
+    let margin = Vector::new(MARGIN * shown.size().x, 0.0);
+    let window = Window {
+        low: shown.low - margin,
+        high: shown.high + margin + Vector::new(0.0, 0.04 * end),
+    };
+    let axes = ["East [m]", "Time [s]"];
+    let mut panel = Panel::free(title.to_owned(), axes, window);
+    for boundary in [&west, &east] {
+        panel.plots.push(curve(boundary, false, COVERED));
+    }
+    for (i, time) in times.iter().enumerate().rev() {
+        let stroke = if i == 0 { INITIAL } else { LATER };
+        let ends = reach(*time).map(|x| Vector::new(x, *time));
+        panel.plots.push(curve(&ends, false, stroke));
+    }
+    panel
+}
+
+/// What a target covers from 0 to `end` seconds, as boundaries of convex sets: bodies that are convex in space-time
+/// cover a convex set.
+fn covered(target: &TargetObstacle, end: f64) -> Vec<Vec<Vector>> {
+    let hull = |from: f64, to: f64, steps: usize| {
+        let points: Vec<Vector> = (0..=steps)
+            .map(|i| from + (to - from) * i as f64 / steps as f64)
+            .flat_map(|time| sampled_boundary(&target.section(time)))
+            .collect();
+        let hull = ConvexPolygon::hull(&points).ok();
+        hull.map(|hull| hull.vertices().to_vec())
+    };
+    match target {
+        // straight between the ends
+        TargetObstacle::Polytope(_) => hull(0.0, end, 1).into_iter().collect(),
+        TargetObstacle::Ellipsoid(_) => hull(0.0, end, SWEEP).into_iter().collect(),
+        TargetObstacle::Slabs(obstacle) => obstacle
+            .slabs()
+            .iter()
+            .filter(|slab| slab.start() < end)
+            .filter_map(|slab| hull(slab.start(), slab.end().min(end), 1))
+            .collect(),
+    }
+}
+
+/// Seconds as they are said, to a tenth.
+pub(super) fn seconds(time: f64) -> String {
+    ((time * 10.0).round() / 10.0).to_string()
+}

@@ -1,0 +1,51 @@
+//! The part of a plane that a panel shows.
+
+use crate::frame::Vector;
+
+/// A rectangle of the plane, in the units of the panel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// The corner with the least coordinates.
+    pub low: Vector,
+    /// The corner with the greatest coordinates.
+    pub high: Vector,
+}
+
+impl Window {
+    /// Around points, with a margin of `share` of the greater side; a window of 1 around the origin without any
+    /// point that is a number.
+    pub fn around(points: impl IntoIterator<Item = Vector>, share: f64) -> Self {
+        let (mut low, mut high) = (
+            Vector::repeat(f64::INFINITY),
+            Vector::repeat(f64::NEG_INFINITY),
+        );
+        for p in points {
+            low = low.inf(&p);
+            high = high.sup(&p);
+        }
+        if !((high - low).norm().is_finite()) {
+            (low, high) = (Vector::repeat(-0.5), Vector::repeat(0.5));
+        }
+        let side = (high - low).max();
+        let margin = Vector::repeat(if side > 0.0 { share * side } else { 0.5 });
+        Self {
+            low: low - margin,
+            high: high + margin,
+        }
+    }
+
+    /// `high - low`.
+    pub fn size(&self) -> Vector {
+        self.high - self.low
+    }
+
+    /// Widened about its middle until width over height is `ratio`.
+    pub fn with_ratio(&self, ratio: f64) -> Self {
+        let (middle, size) = ((self.low + self.high) * 0.5, self.size());
+        let half = Vector::new(size.x.max(size.y * ratio), size.y.max(size.x / ratio)) * 0.5;
+        Self {
+            low: middle - half,
+            high: middle + half,
+        }
+    }
+}

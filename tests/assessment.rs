@@ -1,0 +1,289 @@
+//! The least alteration against a dense search, and the relations that it has to keep.
+
+mod set_generators;
+
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use searoom::assessment::{Alteration, Query, Situation, TargetObstacle, assess, least_alteration};
+use searoom::frame::{Pose, Vector, direction};
+use searoom::geometry::{ConvexPolygon, Ellipse};
+use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle};
+use searoom::target::VelocitySpell;
+use set_generators::{seeded, vector};
+use std::f64::consts::PI;
+
+/// Headings of half a turn, and speeds, of the dense search.
+const STEPS: usize = 4000;
+
+fn polygon(rng: &mut ChaCha8Rng, center: Vector, reach: f64) -> ConvexPolygon {
+    let n = rng.random_range(1..7);
+    let points: Vec<Vector> = (0..n).map(|_| center + vector(rng, reach)).collect();
+    ConvexPolygon::hull(&points).expect("finite")
+}
+
+fn ellipse(rng: &mut ChaCha8Rng, center: Vector, reach: f64) -> Ellipse {
+    let f = nalgebra::Matrix2::from_columns(&[vector(rng, reach), vector(rng, reach)]);
+    Ellipse::new(center, f * f.transpose()).expect("a shape")
+}
+
+/// Some that meet own ship, of every kind.
+fn obstacle(rng: &mut ChaCha8Rng) -> TargetObstacle {
+    let place = direction(rng.random_range(-PI..PI)) * rng.random_range(100.0..1500.0);
+    let way = -place / rng.random_range(50.0..400.0) + vector(rng, 4.0);
+    match rng.random_range(0..3) {
+        0 => PolytopeObstacle::new("p", polygon(rng, place, 80.0), polygon(rng, way, 1.0)).into(),
+        1 => EllipsoidObstacle::new("e", ellipse(rng, place, 60.0), ellipse(rng, way, 0.7)).into(),
+        _ => {
+            let ends = [60.0, 130.0, f64::INFINITY];
+            let spells = ends.map(|until| VelocitySpell {
+                until,
+                velocities: polygon(rng, way, 1.5),
+            });
+            SlabObstacle::new("s", polygon(rng, place, 60.0), spells.to_vec())
+                .expect("increasing")
+                .into()
+        }
+    }
+}
+
+fn situation<'a>(rng: &mut ChaCha8Rng, obstacles: &'a [TargetObstacle]) -> Situation<'a> {
+    Situation {
+        pose: Pose::new(Vector::zeros(), rng.random_range(-PI..PI)),
+        speed: rng.random_range(1.0..8.0),
+        max_speed: 9.0,
+        horizon: if rng.random_bool(0.8) {
+            300.0
+        } else {
+            f64::INFINITY
+        },
+        obstacles,
+    }
+}
+
+fn is_free(s: &Situation, heading: f64, speed: f64) -> bool {
+    let velocity = direction(heading) * speed;
+    s.obstacles.iter().all(|o| {
+        !o.as_obstacle()
+            .in_velocity_obstacle(s.pose.position, velocity, s.horizon)
+    })
+}
+
+/// The first of the samples that is free.
+fn sampled(step: f64, last: f64, free: impl Fn(f64) -> bool) -> Option<f64> {
+    let count = (last / step).floor() as usize;
+    (0..=count).map(|i| i as f64 * step).find(|x| free(*x))
+}
+
+/// The closed form is never later than the samples, free itself, and what lies before it is not.
+fn holds(
+    exact: Option<f64>,
+    sampled: Option<f64>,
+    step: f64,
+    free: impl Fn(f64) -> bool,
+    what: &str,
+) {
+    match (exact, sampled) {
+        (Some(exact), sampled) => {
+            assert!(free(exact), "{what}: {exact} is not free");
+            assert!(exact >= 0.0);
+            if let Some(sampled) = sampled {
+                assert!(
+                    exact <= sampled + 1e-8,
+                    "{what}: {exact}, sampled {sampled}"
+                );
+            }
+            for i in 0..((exact - 1e-8) / step).max(0.0) as usize {
+                assert!(!free(i as f64 * step), "{what}: {i} before {exact}");
+            }
+            // and up to the boundary itself
+            let before = exact - 1e-6;
+            assert!(
+                before <= 0.0 || !free(before),
+                "{what}: {exact} is not the first"
+            );
+        }
+        (None, Some(sampled)) => panic!("{what}: none, sampled {sampled}"),
+        (None, None) => {}
+    }
+}
+
+#[test]
+fn the_least_alteration_is_that_of_a_dense_search() {
+    let mut rng = seeded(1);
+    let (mut turned, mut none, mut changed) = (0, 0, 0);
+    for case in 0..400 {
+        let count = rng.random_range(1..5);
+        let obstacles: Vec<_> = (0..count).map(|_| obstacle(&mut rng)).collect();
+        let s = situation(&mut rng, &obstacles);
+        let found = least_alteration(&s);
+        let step = PI / STEPS as f64;
+        for (side, sign, exact) in [
+            ("starboard", -1.0, found.starboard),
+            ("port", 1.0, found.port),
+        ] {
+            let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
+            let what = format!("{case} {side} {s:?}");
+            holds(exact, sampled(step, PI, free), step, free, &what);
+            turned += usize::from(exact.is_some_and(|t| t > 0.0));
+            none += usize::from(exact.is_none());
+        }
+        let step = s.max_speed / STEPS as f64;
+        let free = |change: f64| is_free(&s, s.pose.heading, s.speed + change);
+        let slower = |change: f64| free(-change);
+        let (down, up) = (
+            sampled(step, s.speed, slower),
+            sampled(step, s.max_speed - s.speed, free),
+        );
+        let what = format!("{case} speed {s:?}");
+        match found.speed {
+            Some(change) if change < 0.0 => {
+                holds(Some(-change), down, step, slower, &what);
+                assert!(up.is_none_or(|up| up >= -change - 1e-8), "{what}");
+            }
+            Some(change) => {
+                holds(Some(change), up, step, free, &what);
+                assert!(down.is_none_or(|down| down >= change - 1e-8), "{what}");
+            }
+            None => assert!(down.is_none() && up.is_none(), "{what}"),
+        }
+        changed += usize::from(found.speed.is_some_and(|c| c != 0.0));
+    }
+    assert!(
+        turned > 100 && none > 5 && changed > 50,
+        "{turned} {none} {changed}"
+    );
+}
+
+fn mirrored(obstacle: &TargetObstacle) -> TargetObstacle {
+    let flip = |p: &Vector| Vector::new(p.x, -p.y);
+    let polygon = |set: &ConvexPolygon| {
+        let points: Vec<Vector> = set.vertices().iter().map(flip).collect();
+        ConvexPolygon::hull(&points).expect("finite")
+    };
+    let ellipse = |set: &Ellipse| {
+        let q = set.shape();
+        let shape = nalgebra::Matrix2::new(q[(0, 0)], -q[(0, 1)], -q[(1, 0)], q[(1, 1)]);
+        Ellipse::new(flip(&set.center()), shape).expect("a shape")
+    };
+    match obstacle {
+        TargetObstacle::Polytope(o) => {
+            PolytopeObstacle::new("p", polygon(o.initial()), polygon(o.velocity())).into()
+        }
+        TargetObstacle::Ellipsoid(o) => {
+            EllipsoidObstacle::new("e", ellipse(o.initial()), ellipse(o.velocity())).into()
+        }
+        TargetObstacle::Slabs(o) => {
+            let spells = o.slabs().iter().map(|slab| VelocitySpell {
+                until: slab.end(),
+                velocities: polygon(slab.obstacle().velocity()),
+            });
+            SlabObstacle::new("s", polygon(o.initial()), spells.collect())
+                .expect("increasing")
+                .into()
+        }
+    }
+}
+
+fn near(a: Option<f64>, b: Option<f64>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() < 1e-6,
+        (None, None) => true,
+        _ => false,
+    }
+}
+
+#[test]
+fn a_mirrored_scene_has_the_mirrored_answer() {
+    let mut rng = seeded(2);
+    for _ in 0..300 {
+        let count = rng.random_range(1..4);
+        let obstacles: Vec<_> = (0..count).map(|_| obstacle(&mut rng)).collect();
+        let other: Vec<_> = obstacles.iter().map(mirrored).collect();
+        let s = situation(&mut rng, &obstacles);
+        let m = Situation {
+            pose: Pose::new(Vector::zeros(), -s.pose.heading),
+            obstacles: &other,
+            ..s
+        };
+        let (here, there) = (least_alteration(&s), least_alteration(&m));
+        assert!(near(here.starboard, there.port), "{here:?} {there:?} {s:?}");
+        assert!(near(here.port, there.starboard), "{here:?} {there:?} {s:?}");
+        assert!(near(here.speed, there.speed), "{here:?} {there:?} {s:?}");
+    }
+}
+
+#[test]
+fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
+    let around = |center: Vector| {
+        let sides = [(10.0, -5.0), (10.0, 5.0), (-10.0, 5.0), (-10.0, -5.0)];
+        let corners: Vec<Vector> = sides
+            .iter()
+            .map(|&(x, y)| center + Vector::new(x, y))
+            .collect();
+        ConvexPolygon::hull(&corners).expect("finite")
+    };
+    let at = |center: Vector, velocity: Vector| -> TargetObstacle {
+        PolytopeObstacle::new("p", around(center), ConvexPolygon::point(velocity)).into()
+    };
+    let still = |obstacles: &[TargetObstacle], speed: f64| {
+        least_alteration(&Situation {
+            pose: Pose::new(Vector::zeros(), 0.0),
+            speed,
+            max_speed: 6.0,
+            horizon: 400.0,
+            obstacles,
+        })
+    };
+    let nothing = Alteration {
+        starboard: None,
+        port: None,
+        speed: None,
+    };
+    let held = Alteration {
+        starboard: Some(0.0),
+        port: Some(0.0),
+        speed: Some(0.0),
+    };
+    assert_eq!(still(&[at(Vector::zeros(), Vector::zeros())], 5.0), nothing);
+    assert_eq!(
+        still(&[at(Vector::new(0.0, 900.0), Vector::zeros())], 5.0),
+        held
+    );
+    assert_eq!(still(&[], 5.0), held);
+    // stopped, with a target on its way to her: turning does not help, way on does
+    let stopped = still(&[at(Vector::new(0.0, 400.0), Vector::new(0.0, -2.0))], 0.0);
+    assert_eq!((stopped.starboard, stopped.port), (None, None));
+    assert!((stopped.speed.expect("ahead of her") - 10.0 / 197.5).abs() < 1e-6);
+    // tangents to a box at rest, dead ahead: its near corners
+    let ahead = still(&[at(Vector::new(410.0, 0.0), Vector::zeros())], 5.0);
+    let tangent = (5.0_f64).atan2(400.0);
+    assert!((ahead.starboard.expect("a turn") - tangent).abs() < 1e-8);
+    assert!((ahead.port.expect("a turn") - tangent).abs() < 1e-8);
+    // 400 m away, reached only after the horizon of 400 s at 1 m/s and less
+    assert!((ahead.speed.expect("slower") + 4.0).abs() < 1e-8);
+}
+
+#[test]
+fn the_answers_are_those_of_the_obstacles() {
+    let mut rng = seeded(3);
+    for _ in 0..100 {
+        let obstacles = [obstacle(&mut rng), obstacle(&mut rng)];
+        let s = Situation {
+            horizon: 300.0,
+            ..situation(&mut rng, &obstacles)
+        };
+        let query = Query {
+            velocities: vec![s.velocity(), vector(&mut rng, 8.0)],
+            ..Query::default()
+        };
+        let answer = assess(&s, &query);
+        for (held, same) in answer.hold_course.iter().zip(&answer.velocities[0].targets) {
+            assert_eq!(held.approach, *same);
+            assert!((0.0..=1.0).contains(&held.max_risk));
+            if held.approach.dcpa > 1e-9 {
+                assert!(!held.approach.in_velocity_obstacle);
+                assert!(held.max_risk <= 1e-11, "{}", held.max_risk);
+            }
+        }
+    }
+}

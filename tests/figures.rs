@@ -1,0 +1,122 @@
+//! The figures: the same bytes every time, units on the axes, nothing that cannot be drawn.
+
+use searoom::assessment::{Situation, TargetObstacle};
+use searoom::frame::{Pose, Vector};
+use searoom::geometry::{ConvexPolygon, Ellipse};
+use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle};
+use searoom::report::figure::{Figure, assessment_figure};
+use searoom::target::VelocitySpell;
+
+fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
+    let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)];
+    let corners = corners.map(|(x, y)| center + Vector::new(x * length, y * beam));
+    ConvexPolygon::from_vertices(&corners).expect("convex")
+}
+
+/// One of each kind.
+fn targets() -> Vec<TargetObstacle> {
+    let place = Vector::new(400.0, 100.0);
+    let velocities = rectangle(Vector::new(-2.0, 0.0), 0.3, 0.2);
+    let shape = nalgebra::Matrix2::new(900.0, 0.0, 0.0, 400.0);
+    let spread = nalgebra::Matrix2::new(0.04, 0.01, 0.01, 0.09);
+    let spells = [(60.0, 0.2), (f64::INFINITY, 0.6)].map(|(until, wide)| VelocitySpell {
+        until,
+        velocities: rectangle(Vector::new(0.0, -1.5), wide, wide),
+    });
+    vec![
+        PolytopeObstacle::new("polygons", rectangle(place, 30.0, 12.0), velocities).into(),
+        EllipsoidObstacle::new(
+            "ellipses",
+            Ellipse::new(-place, shape).expect("a shape"),
+            Ellipse::new(Vector::new(1.0, 0.5), spread).expect("a shape"),
+        )
+        .into(),
+        SlabObstacle::new(
+            "slabs",
+            rectangle(Vector::new(200.0, 500.0), 20.0, 20.0),
+            spells.to_vec(),
+        )
+        .expect("increasing")
+        .into(),
+    ]
+}
+
+fn figure(obstacles: &[TargetObstacle], speed: f64, times: &[f64]) -> Figure {
+    let situation = Situation {
+        pose: Pose::new(Vector::zeros(), 0.3),
+        speed,
+        max_speed: 6.0,
+        horizon: 300.0,
+        obstacles,
+    };
+    assessment_figure(&situation, times)
+}
+
+#[test]
+fn the_same_figure_is_the_same_bytes() {
+    let all = targets();
+    let drawn = || figure(&all, 5.0, &[0.0, 80.0]);
+    let svg = drawn().svg();
+    assert_eq!(svg, drawn().svg());
+    assert_eq!(drawn().png().expect("drawn"), drawn().png().expect("drawn"));
+    for text in [
+        "East [m]",
+        "North [m]",
+        "East velocity [m/s]",
+        "North velocity [m/s]",
+        "dCPA [m]",
+        "risk",
+        "Risk at 80 s",
+        "velocity obstacle",
+        "own velocity",
+        "section at 0 s",
+        "polygons",
+        "ellipses",
+        "slabs",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    assert!(
+        !svg.contains("NaN") && !svg.contains("inf"),
+        "a number that is none"
+    );
+}
+
+/// From one to many panels, and situations at the edge of what there is.
+#[test]
+fn every_situation_can_be_drawn() {
+    let all = targets();
+    let point = ConvexPolygon::point;
+    let still: TargetObstacle =
+        PolytopeObstacle::new("buoy", point(Vector::new(9.0, 9.0)), point(Vector::zeros())).into();
+    let over: TargetObstacle = PolytopeObstacle::new(
+        "over",
+        rectangle(Vector::zeros(), 9.0, 9.0),
+        point(Vector::zeros()),
+    )
+    .into();
+    let needle: TargetObstacle = EllipsoidObstacle::new(
+        "needle",
+        Ellipse::point(Vector::new(50.0, 0.0)),
+        Ellipse::point(Vector::new(-1.0, 0.0)),
+    )
+    .into();
+    for obstacles in [&[][..], &all[..1], &all[1..], &[still], &[over], &[needle]] {
+        for times in [
+            &[][..],
+            &[0.0],
+            &[5.0, 5.0, 2.0],
+            &[1e6],
+            &[0.0, 1.0, 2.0, 3.0, 4.0],
+        ] {
+            for speed in [0.0, 5.0, 100.0] {
+                let svg = figure(obstacles, speed, times).svg();
+                assert!(
+                    svg.starts_with("<svg") && !svg.contains("NaN"),
+                    "{obstacles:?} {times:?}"
+                );
+            }
+        }
+    }
+    assert!(Figure::new(2, Vec::new()).svg().starts_with("<svg"));
+}
