@@ -554,6 +554,39 @@ fn a_pipe_is_not_waited_for() {
 }
 
 #[test]
+fn a_plan_at_an_accepted_risk_is_relaxed_and_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "risk.toml", HEAD_ON);
+    let said = searoom(&["plan", &file, "--max-risk", "0.3"]).code(1);
+    said.stdout(contains("relaxed").and(contains("(0.3 accepted)")));
+    let said = searoom(&["plan", &file, "--max-risk", "0.3", "--json"]).code(1);
+    let plan: Value = serde_json::from_slice(&said.get_output().stdout).expect("JSON");
+    let risk = plan["cost"]["max_risk"].as_f64().expect("a number");
+    assert!(risk > 0.2 && risk <= 0.3 + 1e-6, "{risk}");
+    assert_eq!(plan["relaxation"]["kind"], "risk");
+    assert_eq!(plan["relaxation"]["amount"], risk);
+    assert_eq!(plan["encounters"][0]["max_risk"], risk);
+    assert_eq!(plan["verified"], true);
+    searoom(&["plan", &file, "--max-risk", "1"])
+        .code(2)
+        .stderr(contains("0 to 0.999999"));
+    // of the other kinds
+    for (change, key, entries) in [
+        ("representation = \"ellipsoid\"", "shape_m2", 1),
+        ("turn_rate_deg_per_s = 0.05", "vertices_m", 4),
+    ] {
+        let text = HEAD_ON.replacen("beam_m = 12.0", &format!("beam_m = 12.0\n{change}"), 1);
+        let file = write(folder.path(), "kind.toml", text);
+        let said = searoom(&["plan", &file, "--json"]).success();
+        let plan: Value = serde_json::from_slice(&said.get_output().stdout).expect("JSON");
+        let obstacles = plan["obstacles"].as_array().expect("a list");
+        assert_eq!(obstacles.len(), entries, "{change}");
+        assert!(obstacles.iter().all(|o| o["initial_set"][key].is_array()));
+        assert_eq!(plan["cost"]["max_risk"], 0.0);
+    }
+}
+
+#[test]
 fn an_assessment_document_has_what_the_contract_names() {
     let folder = tempfile::tempdir().expect("a folder");
     let points = write(folder.path(), "points.csv", "t_s,east_m,north_m\n300,0,0\n");

@@ -103,6 +103,16 @@ impl TargetObstacle {
     }
 }
 
+impl From<Obstacle> for TargetObstacle {
+    fn from(obstacle: Obstacle) -> Self {
+        match obstacle {
+            Obstacle::Polytope(polytope) => Self::Polytope(polytope),
+            Obstacle::Ellipsoid(ellipsoid) => Self::Ellipsoid(*ellipsoid),
+            Obstacle::Slabs(slabs) => Self::Slabs(slabs),
+        }
+    }
+}
+
 impl From<PolytopeObstacle> for TargetObstacle {
     fn from(obstacle: PolytopeObstacle) -> Self {
         Self::Polytope(obstacle)
@@ -118,15 +128,5 @@ impl From<EllipsoidObstacle> for TargetObstacle {
 impl From<SlabObstacle> for TargetObstacle {
     fn from(obstacle: SlabObstacle) -> Self {
         Self::Slabs(obstacle)
-    }
-}
-
-impl From<Obstacle> for TargetObstacle {
-    fn from(obstacle: Obstacle) -> Self {
-        match obstacle {
-            Obstacle::Polytope(polytope) => polytope.into(),
-            Obstacle::Ellipsoid(ellipsoid) => (*ellipsoid).into(),
-            Obstacle::Slabs(slabs) => slabs.into(),
-        }
     }
 }

@@ -16,10 +16,12 @@ use rerun::external::re_sdk_types::blueprint::components::{
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
 use super::chart::legend_height;
-use super::curves::{CLEARANCE, COURSE, MARGIN, SPEED, clearances, courses, margins};
+use super::curves::{CLEARANCE, COURSE, MARGIN, RISK, SPEED, clearances, courses, margins};
 use super::explored::BLOCKED;
 use super::scene::Scene;
-use super::{APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VOLUME, style};
+use super::{
+    APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, style, velocities,
+};
 use crate::frame::{Vector, knots_from_mps, to_starboard};
 
 /// Seconds in which the whole run is played.
@@ -34,9 +36,10 @@ pub fn send_blueprint(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     let chart = chart_view(scene, &mut properties);
     let volume = volume_view(scene, &mut properties);
     let summary = TextDocumentView::new("Verdict").with_origin(SUMMARY).into();
-    let curves = curve_views(scene, &mut properties);
+    let mut small = Vec::from(curve_views(scene, &mut properties));
+    small.push(velocity_view(scene, &mut properties));
     let left = Vertical::new([chart, summary]).with_row_shares(vec![0.66, 0.34]);
-    let right = Vertical::new([volume, Grid::new(curves).with_grid_columns(2).into()])
+    let right = Vertical::new([volume, Grid::new(small).with_grid_columns(2).into()])
         .with_row_shares(vec![0.5, 0.5]);
     let root = Horizontal::new([left.into(), right.into()]).with_column_shares(vec![0.54, 0.46]);
     let blueprint = Blueprint::new(root)
@@ -157,7 +160,7 @@ fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
     )
 }
 
-fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4] {
+fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 5] {
     let margin = scene.run.scenario.own_ship.safety_margin;
     let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
     let targets = &scene.run.scenario.targets;
@@ -175,6 +178,7 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4]
             MARGIN,
             near_zero(least(margins(scene, &sets)), margin),
         ),
+        ("Risk", RISK, [-0.05, 1.2]),
         (
             "Speed (kn)",
             SPEED,
@@ -200,6 +204,22 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 4]
             ],
         )
     })
+}
+
+fn velocity_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
+    let limit = 1.05 * velocities::limit(scene);
+    let shown = rerun::datatypes::Range2D {
+        x_range: [-limit, limit].into(),
+        y_range: [-limit, limit].into(),
+    };
+    with(
+        Spatial2DView::new("Velocity obstacles (m/s, north up)").with_origin(VELOCITIES),
+        properties,
+        vec![
+            ("VisualBounds2D", Box::new(VisualBounds2D::new(shown))),
+            ("Background", plain_background()),
+        ],
+    )
 }
 
 /// The interesting part of a distance that falls to `least`, where `margin` is asked for; metres.

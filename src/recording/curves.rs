@@ -14,6 +14,8 @@ use crate::tolerance;
 pub const CLEARANCE: &str = "curves/clearance_m";
 /// Distances of own ship's centre to the nearest set.
 pub const MARGIN: &str = "curves/margin_m";
+/// Risks, per target.
+pub const RISK: &str = "curves/risk";
 /// Speed through the water.
 pub const SPEED: &str = "curves/speed_kn";
 /// Course, continuous: it may leave 0..360 rather than jump.
@@ -23,6 +25,7 @@ pub const COURSE: &str = "curves/course_deg";
 pub fn log_curves(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     log_clearances(rec, scene)?;
     log_margins(rec, scene)?;
+    log_risks(rec, scene)?;
     log_speed(rec, scene)?;
     log_course(rec, scene)
 }
@@ -151,6 +154,41 @@ pub fn margins(scene: &Scene, sets: &[&Obstacle]) -> Vec<f64> {
         let margins = sets.iter().map(|s| s.signed_distance(own, time).distance);
         let least = margins.fold(f64::INFINITY, f64::min);
         scene.motion.until_arrival(time, least)
+    };
+    scene.samples.iter().map(at).collect()
+}
+
+fn log_risks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let targets = scene.run.scenario.targets.iter().zip(&scene.run.sets);
+    let mut series: Vec<Series> = targets
+        .enumerate()
+        .map(|(index, (target, sets))| Series {
+            name: &target.name,
+            color: style::target(index),
+            width: 2.0,
+            values: risks(scene, &sets.hard),
+        })
+        .collect();
+    series.push(Series {
+        name: "accepted",
+        color: style::alarm(),
+        width: 1.0,
+        values: vec![scene.run.scenario.max_risk; scene.samples.len()],
+    });
+    log_plot(
+        rec,
+        RISK,
+        &scene.samples,
+        InterpolationMode::Linear,
+        &series,
+    )
+}
+
+/// The risk of a set at own ship's centre at every sample; no number after arrival.
+pub fn risks(scene: &Scene, set: &Obstacle) -> Vec<f64> {
+    let at = |&time: &f64| {
+        let risk = set.risk(scene.motion.pose_at(time).position, time);
+        scene.motion.until_arrival(time, risk)
     };
     scene.samples.iter().map(at).collect()
 }

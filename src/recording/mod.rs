@@ -28,6 +28,10 @@
 //! | `space_time/explored/free`, `blocked` | edges that the search tested; the blocked ones hidden until asked for |
 //! | `curves/clearance_m` | per target: metres between own hull and the expected hull; the safety margin |
 //! | `curves/margin_m` | metres from own ship's centre to the nearest hard and shaped set, negative inside; zero |
+//! | `curves/risk` | per target: risk against the whole hard set at own ship's centre; the accepted risk |
+//! | `velocities/plane` | turns north up; everything below is east, north, m/s |
+//! | `velocities/plane/axes`, `own_ship` | the plane of velocities, m/s; own ship's velocity at the cursor |
+//! | `velocities/plane/obstacles/<target>` | velocities that, kept from the cursor on, meet the hard set within 300 s or by the end: outline, clipped to the view |
 //! | `curves/speed_kn` | desired and own speed, knots; a row where one changes, no number where one has ended |
 //! | `curves/course_deg` | desired and own course, degrees clockwise from true north, continuous |
 //!
@@ -46,6 +50,7 @@ mod scene;
 mod space_time;
 mod style;
 mod summary;
+mod velocities;
 
 use std::path::{Path, PathBuf};
 
@@ -63,6 +68,8 @@ const MAP: &str = "chart/map";
 const TRAILS: &str = "chart/map/trails";
 const EXPLORED: &str = "chart/map/explored";
 const VOLUME: &str = "space_time";
+const VELOCITIES: &str = "velocities";
+const PLANE: &str = "velocities/plane";
 
 /// Why there is no recording.
 #[derive(Debug, thiserror::Error)]
@@ -125,6 +132,7 @@ fn log_run(rec: &rerun::RecordingStream, scene: &Scene) -> RecordingStreamResult
     space_time::log_volume(rec, scene)?;
     let drawn = explored::log_explored(rec, scene)?;
     curves::log_curves(rec, scene)?;
+    velocities::log_velocities(rec, scene)?;
     summary::log_summary(rec, scene, drawn)
 }
 

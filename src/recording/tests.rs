@@ -29,6 +29,18 @@ speed_spread_mps = 0.5
 course_spread_deg = 5.0
 "#;
 
+/// Sets of the other kinds.
+const OTHER_SETS: &str = r#"
+[[targets]]
+name = "round"
+initial_set = { center_m = [900.0, 500.0], shape_m2 = [[900.0, 0.0], [0.0, 400.0]] }
+velocity_set = { center_mps = [0.0, 0.1], shape_m2_per_s2 = [[0.04, 0.0], [0.0, 0.0]] }
+[[targets]]
+name = "slabs"
+initial_set = { vertices_m = [[900.0, -500.0], [960.0, -500.0], [960.0, -540.0]] }
+velocity_sets = [{ until_s = 60.0, vertices_mps = [[0.0, 0.0]] }, { vertices_mps = [[0.1, 0.0], [0.0, -0.4]] }]
+"#;
+
 fn scenario() -> Scenario {
     Scenario::parse(HEAD_ON).expect("a valid scenario")
 }
@@ -57,7 +69,7 @@ name = "drifting"
 initial_set = { vertices_m = [[700.0, 300.0], [700.0, 340.0], [760.0, 340.0], [760.0, 300.0]] }
 velocity_set = { vertices_mps = [[0.0, 0.1], [0.2, -0.1], [-0.2, -0.1]] }
 "#;
-    let text = format!("{HEAD_ON}{sets}");
+    let text = format!("{HEAD_ON}{sets}{OTHER_SETS}");
     pipeline::run(Scenario::parse(&text).expect("a valid scenario"))
 }
 
@@ -103,6 +115,9 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
         "/space_time/explored/free".to_owned(),
         "/curves/clearance_m".to_owned(),
         "/curves/margin_m".to_owned(),
+        "/curves/risk".to_owned(),
+        "/velocities/plane/own_ship".to_owned(),
+        format!("/velocities/plane/obstacles/{name}"),
         "/curves/speed_kn".to_owned(),
         "/curves/course_deg".to_owned(),
     ] {
@@ -164,7 +179,11 @@ fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
     }
     write(&run, &path).expect("writes");
     let entities = read(&path);
-    assert!(entities.contains_key("/chart/map/hard_sets/drifting"));
+    for name in ["drifting", "round", "slabs"] {
+        assert!(entities.contains_key(&format!("/chart/map/hard_sets/{name}")));
+        assert!(entities.contains_key(&format!("/space_time/hard_sets/{name}")));
+        assert!(entities.contains_key(&format!("/velocities/plane/obstacles/{name}")));
+    }
     assert!(!entities.contains_key("/chart/map/shaped_sets/drifting"));
     assert!(entities.contains_key("/chart/map/violations"));
 }

@@ -35,6 +35,7 @@ mod template;
 use std::time::Instant;
 
 use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
+use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::search::{Search, Stop};
 use crate::tolerance;
