@@ -287,3 +287,82 @@ fn the_answers_are_those_of_the_obstacles() {
         }
     }
 }
+
+/// Points, segments, needles and repeated vertices, from near and far: the answer is free, and nothing sampled before
+/// it is.
+#[test]
+fn degenerate_sets_are_left_too() {
+    let mut rng = seeded(4);
+    let mut turned = 0;
+    for case in 0..600 {
+        let count = rng.random_range(1..4);
+        let obstacles: Vec<TargetObstacle> = (0..count)
+            .map(|_| match rng.random_range(0..3) {
+                0 => set_generators::polytope(&mut rng).into(),
+                1 => set_generators::ellipsoid(&mut rng).into(),
+                _ => set_generators::slabs(&mut rng).into(),
+            })
+            .collect();
+        let far = [1.0, 100.0, 1e4][rng.random_range(0..3)];
+        let mut s = situation(&mut rng, &obstacles);
+        s.pose.position = vector(&mut rng, 150.0 * far);
+        s.horizon *= far;
+        // straight at one of them, as a rule
+        if let searoom::assessment::Section::Polygon(section) = obstacles[0].section(100.0 * far) {
+            let relative = section.vertices()[0] - s.pose.position;
+            s.pose.heading = relative.y.atan2(relative.x);
+            s.speed = (relative.norm() / (100.0 * far)).clamp(0.1, 9.0);
+        }
+        let found = least_alteration(&s);
+        let step = PI / 500.0;
+        for (sign, exact) in [(-1.0, found.starboard), (1.0, found.port)] {
+            let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
+            let what = format!("{case} {sign} {s:?}");
+            holds(exact, sampled(step, PI, free), step, free, &what);
+            turned += usize::from(exact.is_some_and(|t| t > 0.0));
+        }
+        if let Some(change) = found.speed {
+            assert!(
+                is_free(&s, s.pose.heading, s.speed + change),
+                "{case} {change} {s:?}"
+            );
+        }
+    }
+    assert!(turned > 100, "{turned}");
+}
+
+#[test]
+fn the_regions_of_slabs_are_their_velocity_obstacle() {
+    let mut rng = seeded(5);
+    let (mut inside, mut outside) = (0, 0);
+    for _ in 0..300 {
+        let slabs = set_generators::slabs(&mut rng);
+        let position = vector(&mut rng, 200.0);
+        let horizon = [20.0, 90.0, f64::INFINITY][rng.random_range(0..3)];
+        let regions = slabs.velocity_obstacles(position, horizon);
+        for _ in 0..200 {
+            let v = vector(&mut rng, 6.0);
+            let beyond = regions
+                .iter()
+                .map(|r| {
+                    let planes = r.half_planes().iter();
+                    let most = planes.map(|h| h.normal.dot(&v) - h.offset);
+                    most.fold(f64::NEG_INFINITY, f64::max)
+                })
+                .fold(f64::INFINITY, f64::min);
+            let meets = TargetObstacle::from(slabs.clone())
+                .as_obstacle()
+                .in_velocity_obstacle(position, v, horizon);
+            if beyond.abs() > 1e-9 {
+                assert_eq!(
+                    meets,
+                    beyond < 0.0,
+                    "{slabs:?} {position:?} {v:?} {horizon}"
+                );
+            }
+            inside += usize::from(meets);
+            outside += usize::from(!meets);
+        }
+    }
+    assert!(inside > 1000 && outside > 1000, "{inside} {outside}");
+}
