@@ -71,7 +71,8 @@ const OWN_ON_FIELD: Stroke = Stroke {
 
 /// The targets' names beside where they begin, on the side that they leave.
 fn name(panel: &mut Panel, situation: &Situation) {
-    let lift = 0.035 * panel.window().size().y;
+    // a word stands on its line
+    let [above, below] = [0.02, 0.045].map(|share| share * panel.window().size().y);
     let [east, north] = [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
     for target in situation.obstacles {
         let section = target.section(0.0);
@@ -79,9 +80,9 @@ fn name(panel: &mut Panel, situation: &Situation) {
         let rate = |n: Vector| target.as_obstacle().support(n, 0.0).rate;
         let northward = rate(north) > rate(-north);
         let height = if northward {
-            -section.support(-north) - lift
+            -section.support(-north) - below
         } else {
-            section.support(north) + lift
+            section.support(north) + above
         };
         panel.note(target.name(), Vector::new(middle(east), height));
     }

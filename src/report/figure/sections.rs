@@ -36,8 +36,8 @@ const SWEEP: usize = 12;
 /// Pieces of a side of the space-time body; dashes need some length.
 const SIDE: usize = 25;
 
-/// Of the window's greater side, around what is shown.
-const MARGIN: f64 = 0.06;
+/// Of the greater side, around what is shown: room for a name.
+const MARGIN: f64 = 0.1;
 
 /// One set alone: `O_0` or `V`, with its unit in `axes`.
 pub fn set_panel(title: &str, axes: [&str; 2], set: &Section) -> Panel {
