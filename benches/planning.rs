@@ -1,26 +1,13 @@
 //! One plan, from sets to verdict. Every bench asserts the answer, then times it.
 
 use std::hint::black_box;
-use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use searoom::obstacle::Obstacle;
-use searoom::pipeline;
+use searoom::pipeline::{self, problem};
 use searoom::planner::{Outcome, Problem, SearchKind, space_time};
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
-
-fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
-    Problem {
-        own: &scenario.own_ship,
-        desired: &scenario.desired,
-        obstacles,
-        horizon: scenario.horizon,
-        time_weight: scenario.time_weight,
-        search: scenario.search,
-        deadline: Duration::from_secs_f64(scenario.deadline),
-    }
-}
 
 fn shaped(scenario: &Scenario) -> Vec<Obstacle> {
     pipeline::sets(scenario)

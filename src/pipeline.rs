@@ -169,23 +169,31 @@ fn one_after_another(
     }
 }
 
+/// What a scenario asks of a planner, against the given obstacles.
+pub fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
+    Problem {
+        own: &scenario.own_ship,
+        desired: &scenario.desired,
+        obstacles,
+        horizon: scenario.horizon,
+        time_weight: scenario.time_weight,
+        search: scenario.search,
+        deadline: Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX),
+    }
+}
+
 /// Plans a scenario and judges the plan. Where no plan keeps clear of the shapes, one that keeps clear of the
 /// hard sets alone is looked for, and what was given up is said. The clock is read around planning alone
 /// and enters no result but `plan_time`, unless the deadline ends the search.
 pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let shaped = scenario.compliance == Compliance::Shape;
-    let deadline = Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX);
     let begun = Instant::now();
     let plan = |obstacles: &[Obstacle]| {
+        let asked = problem(&scenario, obstacles);
         space_time::plan(&Problem {
-            own: &scenario.own_ship,
-            desired: &scenario.desired,
-            obstacles,
-            horizon: scenario.horizon,
-            time_weight: scenario.time_weight,
-            search: scenario.search,
-            deadline: deadline.saturating_sub(begun.elapsed()),
+            deadline: asked.deadline.saturating_sub(begun.elapsed()),
+            ..asked
         })
     };
     let at_risk = |set: &Obstacle| {

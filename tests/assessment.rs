@@ -4,10 +4,12 @@ mod set_generators;
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use searoom::assessment::{Alteration, Query, Situation, TargetObstacle, assess, least_alteration};
+use searoom::assessment::{Alteration, Query, Situation, assess, least_alteration};
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, Ellipse};
-use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle};
+use searoom::obstacle::{
+    EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+};
 use searoom::target::VelocitySpell;
 use set_generators::{seeded, vector};
 use std::f64::consts::PI;
@@ -27,7 +29,7 @@ fn ellipse(rng: &mut ChaCha8Rng, center: Vector, reach: f64) -> Ellipse {
 }
 
 /// Some that meet own ship, of every kind.
-fn obstacle(rng: &mut ChaCha8Rng) -> TargetObstacle {
+fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
     let place = direction(rng.random_range(-PI..PI)) * rng.random_range(100.0..1500.0);
     let way = -place / rng.random_range(50.0..400.0) + vector(rng, 4.0);
     match rng.random_range(0..3) {
@@ -46,7 +48,7 @@ fn obstacle(rng: &mut ChaCha8Rng) -> TargetObstacle {
     }
 }
 
-fn situation<'a>(rng: &mut ChaCha8Rng, obstacles: &'a [TargetObstacle]) -> Situation<'a> {
+fn situation<'a>(rng: &mut ChaCha8Rng, obstacles: &'a [Obstacle]) -> Situation<'a> {
     Situation {
         pose: Pose::new(Vector::zeros(), rng.random_range(-PI..PI)),
         speed: rng.random_range(1.0..8.0),
@@ -62,10 +64,9 @@ fn situation<'a>(rng: &mut ChaCha8Rng, obstacles: &'a [TargetObstacle]) -> Situa
 
 fn is_free(s: &Situation, heading: f64, speed: f64) -> bool {
     let velocity = direction(heading) * speed;
-    s.obstacles.iter().all(|o| {
-        !o.as_obstacle()
-            .in_velocity_obstacle(s.pose.position, velocity, s.horizon)
-    })
+    s.obstacles
+        .iter()
+        .all(|o| !o.in_velocity_obstacle(s.pose.position, velocity, s.horizon))
 }
 
 /// The first of the samples that is free.
@@ -154,7 +155,7 @@ fn the_least_alteration_is_that_of_a_dense_search() {
     );
 }
 
-fn mirrored(obstacle: &TargetObstacle) -> TargetObstacle {
+fn mirrored(obstacle: &Obstacle) -> Obstacle {
     let flip = |p: &Vector| Vector::new(p.x, -p.y);
     let polygon = |set: &ConvexPolygon| {
         let points: Vec<Vector> = set.vertices().iter().map(flip).collect();
@@ -166,13 +167,13 @@ fn mirrored(obstacle: &TargetObstacle) -> TargetObstacle {
         Ellipse::new(flip(&set.center()), shape).expect("a shape")
     };
     match obstacle {
-        TargetObstacle::Polytope(o) => {
+        Obstacle::Polytope(o) => {
             PolytopeObstacle::new("p", polygon(o.initial()), polygon(o.velocity())).into()
         }
-        TargetObstacle::Ellipsoid(o) => {
+        Obstacle::Ellipsoid(o) => {
             EllipsoidObstacle::new("e", ellipse(o.initial()), ellipse(o.velocity())).into()
         }
-        TargetObstacle::Slabs(o) => {
+        Obstacle::Slabs(o) => {
             let spells = o.slabs().iter().map(|slab| VelocitySpell {
                 until: slab.end(),
                 velocities: polygon(slab.obstacle().velocity()),
@@ -222,10 +223,10 @@ fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
             .collect();
         ConvexPolygon::hull(&corners).expect("finite")
     };
-    let at = |center: Vector, velocity: Vector| -> TargetObstacle {
+    let at = |center: Vector, velocity: Vector| -> Obstacle {
         PolytopeObstacle::new("p", around(center), ConvexPolygon::point(velocity)).into()
     };
-    let still = |obstacles: &[TargetObstacle], speed: f64| {
+    let still = |obstacles: &[Obstacle], speed: f64| {
         least_alteration(&Situation {
             pose: Pose::new(Vector::zeros(), 0.0),
             speed,
@@ -296,7 +297,7 @@ fn degenerate_sets_are_left_too() {
     let mut turned = 0;
     for case in 0..600 {
         let count = rng.random_range(1..4);
-        let obstacles: Vec<TargetObstacle> = (0..count)
+        let obstacles: Vec<Obstacle> = (0..count)
             .map(|_| match rng.random_range(0..3) {
                 0 => set_generators::polytope(&mut rng).into(),
                 1 => set_generators::ellipsoid(&mut rng).into(),
@@ -308,7 +309,7 @@ fn degenerate_sets_are_left_too() {
         s.pose.position = vector(&mut rng, 150.0 * far);
         s.horizon *= far;
         // straight at one of them, as a rule
-        if let searoom::assessment::Section::Polygon(section) = obstacles[0].section(100.0 * far) {
+        if let searoom::obstacle::Section::Polygon(section) = obstacles[0].section(100.0 * far) {
             let relative = section.vertices()[0] - s.pose.position;
             s.pose.heading = relative.y.atan2(relative.x);
             s.speed = (relative.norm() / (100.0 * far)).clamp(0.1, 9.0);
@@ -350,9 +351,7 @@ fn the_regions_of_slabs_are_their_velocity_obstacle() {
                     most.fold(f64::NEG_INFINITY, f64::max)
                 })
                 .fold(f64::INFINITY, f64::min);
-            let meets = TargetObstacle::from(slabs.clone())
-                .as_obstacle()
-                .in_velocity_obstacle(position, v, horizon);
+            let meets = Obstacle::from(slabs.clone()).in_velocity_obstacle(position, v, horizon);
             if beyond.abs() > 1e-9 {
                 assert_eq!(
                     meets,

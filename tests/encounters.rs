@@ -15,8 +15,6 @@
 mod dense_search;
 mod statistics;
 
-use std::time::Duration;
-
 use dense_search::{Answer, DenseSearch, recheck};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -25,7 +23,7 @@ use searoom::colregs::Role;
 use searoom::frame::{Side, Vector, direction};
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::Obstacle;
-use searoom::pipeline;
+use searoom::pipeline::{self, problem};
 use searoom::planner::{Outcome, Problem, SearchKind};
 use searoom::scenario::Scenario;
 use searoom::simulation::{
@@ -403,18 +401,6 @@ fn every_plan_among_many_is_clear_of_all() {
         );
     }
     assert!(broken.is_empty(), "{broken:#?}");
-}
-
-fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
-    Problem {
-        own: &scenario.own_ship,
-        desired: &scenario.desired,
-        obstacles,
-        horizon: scenario.horizon,
-        time_weight: scenario.time_weight,
-        search: scenario.search,
-        deadline: Duration::from_secs_f64(scenario.deadline),
-    }
 }
 
 /// The coarse search; then, below what it found, the fine one, which takes ten times as long.

@@ -1,9 +1,9 @@
 //! The figures: the same bytes every time, units on the axes, nothing that cannot be drawn.
 
-use searoom::assessment::{Situation, TargetObstacle};
+use searoom::assessment::Situation;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::{ConvexPolygon, Ellipse};
-use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle};
 use searoom::report::figure::{Figure, assessment_figure};
 use searoom::target::VelocitySpell;
 
@@ -14,7 +14,7 @@ fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
 }
 
 /// One of each kind.
-fn targets() -> Vec<TargetObstacle> {
+fn targets() -> Vec<Obstacle> {
     let place = Vector::new(400.0, 100.0);
     let velocities = rectangle(Vector::new(-2.0, 0.0), 0.3, 0.2);
     let shape = nalgebra::Matrix2::new(900.0, 0.0, 0.0, 400.0);
@@ -41,7 +41,7 @@ fn targets() -> Vec<TargetObstacle> {
     ]
 }
 
-fn figure(obstacles: &[TargetObstacle], speed: f64, times: &[f64]) -> Figure {
+fn figure(obstacles: &[Obstacle], speed: f64, times: &[f64]) -> Figure {
     let situation = Situation {
         pose: Pose::new(Vector::zeros(), 0.3),
         speed,
@@ -87,15 +87,15 @@ fn the_same_figure_is_the_same_bytes() {
 fn every_situation_can_be_drawn() {
     let all = targets();
     let point = ConvexPolygon::point;
-    let still: TargetObstacle =
+    let still: Obstacle =
         PolytopeObstacle::new("buoy", point(Vector::new(9.0, 9.0)), point(Vector::zeros())).into();
-    let over: TargetObstacle = PolytopeObstacle::new(
+    let over: Obstacle = PolytopeObstacle::new(
         "over",
         rectangle(Vector::zeros(), 9.0, 9.0),
         point(Vector::zeros()),
     )
     .into();
-    let needle: TargetObstacle = EllipsoidObstacle::new(
+    let needle: Obstacle = EllipsoidObstacle::new(
         "needle",
         Ellipse::point(Vector::new(50.0, 0.0)),
         Ellipse::point(Vector::new(-1.0, 0.0)),

@@ -210,15 +210,7 @@ fn cutting_time_changes_nothing_but_digits() {
             })
             .collect();
         let cost = |obstacles: &[Obstacle]| {
-            let planned = space_time::plan(&Problem {
-                own: &scenario.own_ship,
-                desired: &scenario.desired,
-                obstacles,
-                horizon: scenario.horizon,
-                time_weight: scenario.time_weight,
-                search: scenario.search,
-                deadline: Duration::from_secs(60),
-            });
+            let planned = space_time::plan(&pipeline::problem(&scenario, obstacles));
             planned.outcome.plan().map(|p| p.cost)
         };
         if let (Some(a), Some(b)) = (cost(&whole), cost(&cut)) {

@@ -4,10 +4,9 @@
 use std::path::PathBuf;
 
 use nalgebra::Matrix2;
-use searoom::assessment::{Section, TargetObstacle};
 use searoom::frame::Vector;
 use searoom::geometry::{ConvexPolygon, Ellipse};
-use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, Section};
 use searoom::report::figure::{Figure, FigureError};
 
 fn polygon(vertices: [(f64, f64); 4]) -> ConvexPolygon {
@@ -37,7 +36,7 @@ fn ellipsoid() -> EllipsoidObstacle {
 }
 
 /// Paper eqs. (10) and (11).
-pub fn figure_1() -> TargetObstacle {
+pub fn figure_1() -> Obstacle {
     polytope().into()
 }
 
@@ -47,7 +46,7 @@ pub fn figure_1_velocities() -> Section {
 }
 
 /// Paper eqs. (20) and (21).
-pub fn figure_2() -> TargetObstacle {
+pub fn figure_2() -> Obstacle {
     ellipsoid().into()
 }
 

@@ -6,9 +6,9 @@
 
 use std::f64::consts::{FRAC_PI_8, PI};
 
-use super::{Situation, TargetObstacle};
+use super::Situation;
 use crate::frame::{Side, Vector, heading_of, wrap, wrap_positive};
-use crate::obstacle::VelocityObstacle;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle, VelocityObstacle};
 use crate::tolerance;
 
 /// Most ends of arcs that are followed; each obstacle has a few.
@@ -56,7 +56,7 @@ pub fn least_alteration(situation: &Situation) -> Alteration {
 
 /// The velocities that one target forbids.
 struct Cover<'a> {
-    target: &'a TargetObstacle,
+    target: &'a Obstacle,
     /// `None`: one convex region, known by membership.
     regions: Option<Vec<VelocityObstacle>>,
 }
@@ -71,7 +71,6 @@ impl Search<'_> {
         let Situation { pose, horizon, .. } = self.situation;
         cover
             .target
-            .as_obstacle()
             .in_velocity_obstacle(pose.position, velocity, *horizon)
     }
 

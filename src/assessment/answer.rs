@@ -1,7 +1,8 @@
 //! Everything that is asked of a situation, and the answers.
 
-use super::{Alteration, Section, Situation, TargetObstacle, least_alteration};
+use super::{Alteration, Situation, least_alteration};
 use crate::frame::Vector;
+use crate::obstacle::{Obstacle, Section, SpaceTimeObstacle};
 
 /// A position at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,7 +136,7 @@ pub fn assess(situation: &Situation, query: &Query) -> Assessment {
             .zip(approaches(situation.velocity()))
             .map(|(target, approach)| HoldCourse {
                 approach,
-                max_risk: target.as_obstacle().peak_risk(&held).risk,
+                max_risk: target.peak_risk(&held).risk,
             })
             .collect(),
         alteration: least_alteration(situation),
@@ -150,8 +151,8 @@ pub fn assess(situation: &Situation, query: &Query) -> Assessment {
     }
 }
 
-fn risk_at(target: &TargetObstacle, point: &SpaceTimePoint) -> PointRisk {
-    let obstacle = target.as_obstacle();
+fn risk_at(target: &Obstacle, point: &SpaceTimePoint) -> PointRisk {
+    let obstacle = target;
     PointRisk {
         inside: obstacle.contains(point.position, point.time),
         alpha: obstacle.alpha(point.position, point.time),
@@ -159,9 +160,9 @@ fn risk_at(target: &TargetObstacle, point: &SpaceTimePoint) -> PointRisk {
     }
 }
 
-fn approach(situation: &Situation, target: &TargetObstacle, velocity: Vector) -> Approach {
+fn approach(situation: &Situation, target: &Obstacle, velocity: Vector) -> Approach {
     let (from, horizon) = (situation.pose.position, situation.horizon);
-    let obstacle = target.as_obstacle();
+    let obstacle = target;
     let nearest = obstacle.closest_approach(from, velocity, horizon);
     Approach {
         dcpa: nearest.distance,

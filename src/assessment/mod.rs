@@ -8,7 +8,6 @@
 mod alteration;
 mod answer;
 mod situation;
-mod target_obstacle;
 
 pub use alteration::{Alteration, least_alteration};
 pub use answer::{
@@ -16,4 +15,3 @@ pub use answer::{
     TargetSections, VelocityAssessment, assess,
 };
 pub use situation::Situation;
-pub use target_obstacle::{Section, TargetObstacle};

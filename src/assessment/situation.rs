@@ -1,7 +1,7 @@
 //! Own ship among the obstacles at t = 0.
 
-use super::TargetObstacle;
 use crate::frame::{Pose, Vector, direction};
+use crate::obstacle::Obstacle;
 use crate::trajectory::Segment;
 
 /// Own ship at t = 0 and the obstacles that she meets.
@@ -16,7 +16,7 @@ pub struct Situation<'a> {
     /// Everything is asked over `[0, horizon]`, seconds; may be infinite but for the risk of holding course.
     pub horizon: f64,
     /// Own ship's footprint folded in.
-    pub obstacles: &'a [TargetObstacle],
+    pub obstacles: &'a [Obstacle],
 }
 
 impl Situation<'_> {

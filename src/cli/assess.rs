@@ -1,7 +1,8 @@
 //! `searoom assess`: risk, closest approach and velocity obstacle, no planning.
 
-use searoom::assessment::{Query, Situation, SpaceTimePoint, TargetObstacle, assess as answer};
+use searoom::assessment::{Query, Situation, SpaceTimePoint, assess as answer};
 use searoom::frame::Vector;
+use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::report::assessment_text;
 use searoom::report::document::AssessmentDocument;
@@ -92,9 +93,9 @@ fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<ScenarioError>> {
 }
 
 fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) -> Status {
-    let obstacles: Vec<TargetObstacle> = pipeline::sets(scenario)
+    let obstacles: Vec<Obstacle> = pipeline::sets(scenario)
         .into_iter()
-        .map(|sets| if args.shaped { sets.shaped } else { sets.hard }.into())
+        .map(|sets| if args.shaped { sets.shaped } else { sets.hard })
         .collect();
     let own = &scenario.own_ship;
     let situation = Situation {

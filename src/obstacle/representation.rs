@@ -2,7 +2,10 @@
 
 use super::cpa::ClosestApproach;
 use super::risk::PeakRisk;
-use super::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle, Support};
+use super::{
+    EllipsoidObstacle, PolytopeObstacle, Section, SlabObstacle, SpaceTimeObstacle, Support,
+    VelocityObstacle,
+};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, SignedDistance};
 use crate::trajectory::Segment;
@@ -39,13 +42,47 @@ impl Obstacle {
         }
     }
 
-    /// The section `O_t`, `time >= 0`, as a polygon, metres: exact for polytopes and slabs, the circumscribed
-    /// 64-gon for an ellipse.
-    pub fn outer_section(&self, time: f64) -> ConvexPolygon {
+    /// `"polytope"` or `"ellipsoid"`: what the sections are made of.
+    pub fn representation(&self) -> &'static str {
         match self {
-            Self::Polytope(o) => o.section(time),
-            Self::Ellipsoid(o) => o.outer_section(time).outer_polygon(SECTION_SIDES),
-            Self::Slabs(o) => o.section(time),
+            Self::Polytope(_) | Self::Slabs(_) => "polytope",
+            Self::Ellipsoid(_) => "ellipsoid",
+        }
+    }
+
+    /// The section `O_t`, `time >= 0`.
+    pub fn section(&self, time: f64) -> Section {
+        match self {
+            Self::Polytope(o) => Section::Polygon(o.section(time)),
+            Self::Ellipsoid(o) => Section::Ellipse(o.outer_section(time)),
+            Self::Slabs(o) => Section::Polygon(o.section(time)),
+        }
+    }
+
+    /// The section as a polygon, metres: exact for polytopes and slabs, the circumscribed 64-gon for an
+    /// ellipse.
+    pub fn outer_section(&self, time: f64) -> ConvexPolygon {
+        match self.section(time) {
+            Section::Polygon(polygon) => polygon,
+            Section::Ellipse(ellipse) => ellipse.outer_polygon(SECTION_SIDES),
+        }
+    }
+
+    /// The velocity obstacle as convex regions of half-planes, of which it is the union; `None` for ellipses,
+    /// whose velocity obstacle is one convex region without corners.
+    pub fn velocity_obstacles(
+        &self,
+        position: Vector,
+        horizon: f64,
+    ) -> Option<Vec<VelocityObstacle>> {
+        match self {
+            Self::Polytope(o) => Some(vec![o.velocity_obstacle(position, horizon)]),
+            Self::Slabs(o) => Some(o.velocity_obstacles(position, horizon)),
+            // parallel segments and points: the sixteen sides of an outer polygon fall together
+            Self::Ellipsoid(o) if o.is_flat() => Some(vec![
+                o.sum_outer_polytope().velocity_obstacle(position, horizon),
+            ]),
+            Self::Ellipsoid(_) => None,
         }
     }
 }

@@ -261,8 +261,8 @@ impl Refinement {
         if let Some(model) = scene.model(&self.template, &self.lengths) {
             self.model = model;
             (self.finished, self.stalled) = (false, 0);
+            self.keep(scene);
         }
-        self.keep(scene);
     }
 
     /// One step.
@@ -319,9 +319,7 @@ impl Refinement {
             return false;
         };
         self.price = solution.multipliers.iter().sum::<f64>();
-        self.penalty = self
-            .penalty
-            .max(1.5 * solution.multipliers.iter().sum::<f64>());
+        self.penalty = self.penalty.max(1.5 * self.price);
         let step = solution.x;
         let largest = step[..n].iter().fold(0.0_f64, |m, s| m.max(s.abs()));
         let linear: f64 = (0..n).map(|i| step[i] * self.model.gradient[i]).sum();

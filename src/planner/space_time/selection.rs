@@ -10,6 +10,15 @@ use crate::frame::{Side, cross};
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
 
+/// Ahead of schedule first, then around the set: of use in every conflict.
+const RUSH: Canonical = Canonical {
+    turn: 0.5,
+    lead: 0.3,
+    reach: 0.9,
+    slow: false,
+    rush: 0.5,
+};
+
 /// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin. Chosen from
 /// 152 of all angles, leads and offsets, for 400 encounters: the set that together comes nearest to the best.
 const COMPACT: [Canonical; 4] = [
@@ -34,13 +43,7 @@ const COMPACT: [Canonical; 4] = [
         slow: false,
         rush: 0.0,
     },
-    Canonical {
-        turn: 0.5,
-        lead: 0.3,
-        reach: 0.9,
-        slow: false,
-        rush: 0.5,
-    },
+    RUSH,
 ];
 
 /// The same where the way through the set is long beside the way around it, as when overtaking.
@@ -73,13 +76,7 @@ const SLENDER: [Canonical; 5] = [
         slow: false,
         rush: 0.0,
     },
-    Canonical {
-        turn: 0.5,
-        lead: 0.3,
-        reach: 0.9,
-        slow: false,
-        rush: 0.5,
-    },
+    RUSH,
 ];
 
 /// Way through over way around from which a conflict is slender.

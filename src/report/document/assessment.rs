@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::assessment::{Approach, Assessment, Section};
+use crate::assessment::{Approach, Assessment};
 use crate::frame::{Vector, deg_from_radians};
+use crate::obstacle::Section;
 
 /// What `assess` answers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,6 +6,7 @@ use super::sections::{seconds, sections_beside};
 use super::{Figure, Panel, Window};
 use crate::assessment::Situation;
 use crate::frame::Vector;
+use crate::obstacle::SpaceTimeObstacle;
 
 /// Velocities shown, of the greatest speed.
 const FASTEST: f64 = 1.3;
@@ -77,7 +78,7 @@ fn name(panel: &mut Panel, situation: &Situation) {
     for target in situation.obstacles {
         let section = target.section(0.0);
         let middle = |n: Vector| 0.5 * (section.support(n) - section.support(-n));
-        let rate = |n: Vector| target.as_obstacle().support(n, 0.0).rate;
+        let rate = |n: Vector| target.support(n, 0.0).rate;
         let northward = rate(north) > rate(-north);
         let height = if northward {
             -section.support(-north) - below

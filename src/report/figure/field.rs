@@ -10,9 +10,9 @@ use super::outline::{
 };
 use super::sections::PLAN;
 use super::{Panel, Window};
-use crate::assessment::TargetObstacle;
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
 /// Bands of a field of risk.
 const RISK_BANDS: usize = 20;
@@ -48,7 +48,7 @@ pub struct VelocityWindow {
 
 /// The largest risk of any target at `time`, seconds, in twentieths, with the boundaries of the sections. The colours go
 /// from risk 0 to risk 1 in every panel.
-pub fn risk_panel(title: &str, targets: &[TargetObstacle], time: f64, window: Window) -> Panel {
+pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: Window) -> Panel {
     let mut panel = Panel::plan(title.to_owned(), PLAN, window);
     panel.plots.push(scale(panel.window(), 1.0, "risk"));
     let bands = RISK_BANDS as f64;
@@ -79,7 +79,7 @@ pub fn risk_panel(title: &str, targets: &[TargetObstacle], time: f64, window: Wi
 /// velocity obstacles in white.
 pub fn dcpa_panel(
     title: &str,
-    targets: &[TargetObstacle],
+    targets: &[Obstacle],
     position: Vector,
     horizon: f64,
     shown: &VelocityWindow,
@@ -98,17 +98,13 @@ pub fn dcpa_panel(
     panel
 }
 
-fn bands(panel: &mut Panel, targets: &[TargetObstacle], approach: &Approaching) {
+fn bands(panel: &mut Panel, targets: &[Obstacle], approach: &Approaching) {
     let window = panel.window();
     let limit = 2.0 * window.low.amax().max(window.high.amax());
     // nowhere farther than at the start
     let most = targets
         .iter()
-        .map(|t| {
-            t.as_obstacle()
-                .signed_distance(approach.position, 0.0)
-                .distance
-        })
+        .map(|t| t.signed_distance(approach.position, 0.0).distance)
         .fold(f64::INFINITY, f64::min);
     let step = round_step(most / DISTANCE_BANDS);
     let count = (most / step).ceil().max(1.0) as usize;

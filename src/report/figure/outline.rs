@@ -3,10 +3,9 @@
 use kuva::plot::{BandPlot, LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
 
-use crate::assessment::{Section, TargetObstacle};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle};
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, Section};
 
 /// Points of an ellipse's boundary.
 const ELLIPSE_POINTS: usize = 96;
@@ -99,7 +98,7 @@ pub fn area(polygon: &ConvexPolygon, colour: &str, opacity: f64) -> Option<Plot>
 /// and north; at distance 0 the velocity obstacle. Exact for polygons at distance 0, otherwise a disc of 64 sides wide,
 /// 0.1 % more; of ellipses the hull of some of the velocities `(O_t - x) / t`, an inner set to the width of a line.
 pub fn sampled_velocities_within(
-    target: &TargetObstacle,
+    target: &Obstacle,
     approach: &Approaching,
     distance: f64,
     limit: f64,
@@ -113,16 +112,16 @@ pub fn sampled_velocities_within(
         }
     };
     let regions = match target {
-        TargetObstacle::Polytope(obstacle) => {
+        Obstacle::Polytope(obstacle) => {
             let (initial, velocity) = (wider(obstacle.initial()), obstacle.velocity().clone());
             let wide = PolytopeObstacle::new("", initial, velocity);
             vec![wide.velocity_obstacle(position, horizon)]
         }
-        TargetObstacle::Slabs(obstacle) => {
+        Obstacle::Slabs(obstacle) => {
             let wide = obstacle.with_initial(wider(obstacle.initial()));
             wide.velocity_obstacles(position, horizon)
         }
-        TargetObstacle::Ellipsoid(obstacle) => {
+        Obstacle::Ellipsoid(obstacle) => {
             return around_ellipses(obstacle, approach, distance, limit);
         }
     };
@@ -186,6 +185,7 @@ pub fn square(limit: f64) -> ConvexPolygon {
 mod tests {
     use super::*;
     use crate::obstacle::SlabObstacle;
+    use crate::obstacle::SpaceTimeObstacle;
     use crate::target::VelocitySpell;
 
     fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
@@ -205,7 +205,7 @@ mod tests {
         let ellipse = |center: Vector, a: f64, b: f64| {
             Ellipse::from_axes(center, [Vector::new(a, 0.0), Vector::new(0.0, b)])
         };
-        let targets: [TargetObstacle; 3] = [
+        let targets: [Obstacle; 3] = [
             PolytopeObstacle::new("", rectangle(place, 30.0, 10.0), rectangle(way, 0.4, 0.2))
                 .into(),
             EllipsoidObstacle::new("", ellipse(place, 30.0, 10.0), ellipse(way, 0.4, 0.2)).into(),
@@ -223,7 +223,7 @@ mod tests {
                 let drawn = sampled_velocities_within(target, &approach, distance, limit);
                 for i in 0..61 * 61 {
                     let v = Vector::new(f64::from(i % 61) - 30.0, f64::from(i / 61) - 30.0) * 0.2;
-                    let nearest = target.as_obstacle().closest_approach(position, v, horizon);
+                    let nearest = target.closest_approach(position, v, horizon);
                     let beyond = drawn.iter().map(|d| d.signed_distance(v));
                     let beyond = beyond.fold(f64::INFINITY, f64::min);
                     let near = nearest.distance <= distance * 1.002 + 1e-6;

@@ -2,9 +2,9 @@
 
 use super::outline::{Stroke, area, curve, sampled_boundary};
 use super::{Panel, Window};
-use crate::assessment::{Section, TargetObstacle};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
+use crate::obstacle::{Obstacle, Section};
 
 /// The names of a plan's axes.
 pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
@@ -55,14 +55,14 @@ pub fn set_panel(title: &str, axes: [&str; 2], set: &Section) -> Panel {
 
 /// Sections of all targets at `times`, seconds, the first of them apart from the others, with all that they cover
 /// until the last, dashed. What slabs cover is drawn slab by slab as their hulls.
-pub fn sections_panel(title: &str, targets: &[TargetObstacle], times: &[f64]) -> Panel {
+pub fn sections_panel(title: &str, targets: &[Obstacle], times: &[f64]) -> Panel {
     sections_beside(title, targets, times, &[])
 }
 
 /// The same, in a window that holds `others`, too.
 pub(super) fn sections_beside(
     title: &str,
-    targets: &[TargetObstacle],
+    targets: &[Obstacle],
     times: &[f64],
     others: &[Vector],
 ) -> Panel {
@@ -94,7 +94,7 @@ pub(super) fn sections_beside(
 }
 
 /// How far the sections reach east over time, until `end` seconds: the space-time body from the side.
-pub fn extent_panel(title: &str, target: &TargetObstacle, times: &[f64], end: f64) -> Panel {
+pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> Panel {
     let reach = |time: f64| {
         let section = target.section(time);
         let side = |x: f64| x * section.support(Vector::new(x, 0.0));
@@ -132,7 +132,7 @@ pub fn extent_panel(title: &str, target: &TargetObstacle, times: &[f64], end: f6
 
 /// What a target covers from 0 to `end` seconds, as boundaries of convex sets: bodies that are convex in space-time
 /// cover a convex set.
-fn covered(target: &TargetObstacle, end: f64) -> Vec<Vec<Vector>> {
+fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
     let hull = |from: f64, to: f64, steps: usize| {
         let points: Vec<Vector> = (0..=steps)
             .map(|i| from + (to - from) * i as f64 / steps as f64)
@@ -143,9 +143,9 @@ fn covered(target: &TargetObstacle, end: f64) -> Vec<Vec<Vector>> {
     };
     match target {
         // straight between the ends
-        TargetObstacle::Polytope(_) => hull(0.0, end, 1).into_iter().collect(),
-        TargetObstacle::Ellipsoid(_) => hull(0.0, end, SWEEP).into_iter().collect(),
-        TargetObstacle::Slabs(obstacle) => obstacle
+        Obstacle::Polytope(_) => hull(0.0, end, 1).into_iter().collect(),
+        Obstacle::Ellipsoid(_) => hull(0.0, end, SWEEP).into_iter().collect(),
+        Obstacle::Slabs(obstacle) => obstacle
             .slabs()
             .iter()
             .filter(|slab| slab.start() < end)
