@@ -2,8 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use crate::colregs::{self, Encounter};
+use crate::colregs::{self, Encounter, Role};
 use crate::evaluation::{Evaluation, Request, SetShape, SpaceTimeSet, evaluate};
+use crate::frame::Side;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
     EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
@@ -179,7 +180,14 @@ pub fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem
         time_weight: scenario.time_weight,
         search: scenario.search,
         deadline: Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX),
+        first_turn: None,
     }
+}
+
+/// Rules 14 and 15 in open water: to starboard where own ship meets head-on or gives way.
+fn first_turn(sets: &[TargetSets]) -> Option<Side> {
+    let alters = |s: &TargetSets| matches!(s.encounter.role, Role::HeadOn | Role::GiveWay);
+    sets.iter().any(alters).then_some(Side::Starboard)
 }
 
 /// Plans a scenario and judges the plan. Where no plan keeps clear of the shapes, one that keeps clear of the
@@ -193,6 +201,7 @@ pub fn run(scenario: Scenario) -> Run {
         let asked = problem(&scenario, obstacles);
         space_time::plan(&Problem {
             deadline: asked.deadline.saturating_sub(begun.elapsed()),
+            first_turn: shaped.then(|| first_turn(&sets)).flatten(),
             ..asked
         })
     };

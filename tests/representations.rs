@@ -161,6 +161,7 @@ fn a_star_finds_the_cost_of_dijkstra() {
                         time_weight: changed.time_weight,
                         search,
                         deadline: Duration::from_secs(120),
+                        first_turn: None,
                     });
                     planned.outcome.plan().and_then(|p| p.graph_cost)
                 };

@@ -8,6 +8,7 @@ pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeK
 
 use std::time::Duration;
 
+use crate::frame::Side;
 use crate::obstacle::Obstacle;
 use crate::trajectory::{DesiredTrajectory, Trajectory};
 use crate::vessel::OwnShip;
@@ -38,7 +39,14 @@ pub struct Problem<'a> {
     pub search: SearchKind,
     /// Wall-clock budget of one plan.
     pub deadline: Duration,
+    /// Side to which own ship should turn first: a plan that first turns to the other has to be cheaper by
+    /// [`AGAINST_THE_RULES`].
+    pub first_turn: Option<Side>,
 }
+
+/// Share of the cost by which a plan has to be cheaper whose first turn is to the side that the collision
+/// regulations discourage.
+pub const AGAINST_THE_RULES: f64 = 0.05;
 
 /// What the search did to find the cheapest plan on the graph.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -38,6 +38,7 @@ fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a>
         time_weight: scenario.time_weight,
         search: SearchKind::AStar,
         deadline: Duration::from_secs(60),
+        first_turn: None,
     }
 }
 

@@ -343,6 +343,7 @@ mod tests {
                     time_weight: scenario.time_weight,
                     search: SearchKind::AStar,
                     deadline: Duration::from_secs(60),
+                    first_turn: None,
                 }));
             }
         }

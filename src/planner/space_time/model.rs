@@ -333,6 +333,7 @@ pub(crate) mod tests {
             time_weight: 25.0,
             search: SearchKind::AStar,
             deadline: std::time::Duration::from_secs(5),
+            first_turn: None,
         };
         let route = Route::new(&problem).expect("a route");
         let parts = parts(&obstacles, problem.horizon);
