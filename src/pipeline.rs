@@ -174,6 +174,8 @@ pub fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,
+        alternatives: &[],
+        objective: crate::planner::Objective::SpaceTimeError,
         obstacles,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,

@@ -2,14 +2,16 @@
 
 pub mod cost;
 mod explored;
+pub mod path_time;
 pub mod space_time;
 
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 
 use std::time::Duration;
 
+use crate::frame::Vector;
 use crate::obstacle::Obstacle;
-use crate::trajectory::{DesiredTrajectory, Trajectory};
+use crate::trajectory::{DesiredTrajectory, NetworkError, Trajectory};
 use crate::vessel::OwnShip;
 
 /// Which search runs over the graph.
@@ -21,6 +23,17 @@ pub enum SearchKind {
     Dijkstra,
 }
 
+/// What a planner minimises.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Objective {
+    /// The space-time error, formulas section 7, m².
+    SpaceTimeError,
+    /// The time of arrival, s.
+    Time,
+    /// The length of the way, m; of ways of one length the time.
+    Length,
+}
+
 /// What a planner is asked: keep `own` clear of every obstacle, close to `desired`, until she arrives.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
@@ -28,6 +41,10 @@ pub struct Problem<'a> {
     pub own: &'a OwnShip,
     /// Where she is meant to be, and when.
     pub desired: &'a DesiredTrajectory,
+    /// Other paths that she may sail, metres: the path-time planner's.
+    pub alternatives: &'a [Vec<Vector>],
+    /// What is minimised; the space-time planner knows the space-time error alone.
+    pub objective: Objective,
     /// The sets to stay out of, own ship's footprint folded in.
     pub obstacles: &'a [Obstacle],
     /// Seconds: arrival must not be later; the obstacles are known until then.
@@ -58,7 +75,7 @@ pub struct SearchStats {
 pub struct Plan {
     /// From own ship's pose at t = 0 to the last waypoint.
     pub trajectory: Trajectory,
-    /// The space-time error of the trajectory, m²; what was minimised.
+    /// What was minimised, in the objective's unit.
     pub cost: f64,
     /// The cheapest plan on the graph before refinement, m²; `None` where the graph had none.
     pub graph_cost: Option<f64>,
@@ -88,6 +105,61 @@ pub enum NoPlan {
     /// The waypoints and own ship's pose cannot be joined by a path.
     #[error("no path joins own ship and the waypoints: a coordinate is out of range")]
     NoRoute,
+    /// A planner that keeps to a path begins on it.
+    #[error("own ship is {away:.3} m from the first waypoint; the path-time planner begins there")]
+    OffPath {
+        /// Metres.
+        away: f64,
+    },
+    /// The alternatives and the main path are no network.
+    #[error("the paths cannot be sailed: {0}")]
+    NoNetwork(NetworkError),
+    /// The end of the path cannot be reached before the horizon even without obstacles.
+    #[error(
+        "the last waypoint is reached after {earliest:.1} s at best, on the shortest of the paths at the greatest speed, without targets, but the horizon is {horizon:.1} s"
+    )]
+    PathTooLong {
+        /// Seconds.
+        earliest: f64,
+        /// Seconds.
+        horizon: f64,
+    },
+    /// The start of the path is in a set at t = 0.
+    #[error(
+        "own ship starts inside the set of '{target}', {depth:.1} m deep, which stays over the start {}",
+        until_text(*until)
+    )]
+    StartCovered {
+        /// Name of the obstacle.
+        target: String,
+        /// Metres.
+        depth: f64,
+        /// Seconds; `None` up to the horizon.
+        until: Option<f64>,
+    },
+    /// No motion along the paths is clear of every set; what bars the way where own ship came nearest to the end.
+    #[error(
+        "no motion along the path is clear of every set: {to_go:.0} m before its end own ship, at the earliest, meets the set of '{target}' after {time:.1} s, which stays there {}",
+        until_text(*until)
+    )]
+    Barred {
+        /// Name of the obstacle.
+        target: String,
+        /// Metres to the end of the path.
+        to_go: f64,
+        /// Seconds.
+        time: f64,
+        /// Seconds; `None` up to the horizon.
+        until: Option<f64>,
+    },
+    /// The sets leave a way, but not within the horizon.
+    #[error(
+        "no motion along the path is clear of every set and at the end before the horizon of {horizon:.1} s"
+    )]
+    OutOfTime {
+        /// Seconds.
+        horizon: f64,
+    },
     /// No candidate is clear of every set.
     #[error(
         "no trajectory of the graph or its refinement is clear of every set until arrival; held on the desired \
@@ -99,6 +171,13 @@ pub enum NoPlan {
         /// Seconds.
         time: f64,
     },
+}
+
+fn until_text(until: Option<f64>) -> String {
+    match until {
+        Some(time) => format!("until {time:.1} s"),
+        None => "up to the horizon".to_owned(),
+    }
 }
 
 /// What a planner answers. None of these is an error.
@@ -132,4 +211,6 @@ pub struct Planned {
     pub stats: SearchStats,
     /// Every node and edge that the search made.
     pub explored: ExploredGraph,
+    /// The diagram that the path-time planner planned in; boxed, as most plans have none.
+    pub path_time: Option<Box<path_time::PathTimeDiagram>>,
 }

@@ -381,6 +381,8 @@ mod tests {
         let problem = Problem {
             own: &own,
             desired: &desired,
+            alternatives: &[],
+            objective: crate::planner::Objective::SpaceTimeError,
             obstacles: &obstacles,
             horizon: 900.0,
             time_weight: 25.0,
