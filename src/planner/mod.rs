@@ -23,6 +23,25 @@ pub enum SearchKind {
     Dijkstra,
 }
 
+/// Which planner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlannerKind {
+    /// Chooses her way and her speed: [`space_time`].
+    SpaceTime,
+    /// Keeps to given paths and chooses her speed: [`path_time`].
+    PathTime,
+}
+
+impl PlannerKind {
+    /// The word for it in files and on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::SpaceTime => "space-time",
+            Self::PathTime => "path-time",
+        }
+    }
+}
+
 /// What a planner minimises.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
@@ -32,6 +51,23 @@ pub enum Objective {
     Time,
     /// The length of the way, m; of ways of one length the time.
     Length,
+    /// The length of the way and its largest risk, m: what `weight` metres are to certainty.
+    LengthRisk {
+        /// Metres, not negative.
+        weight: f64,
+    },
+}
+
+impl Objective {
+    /// The word for it in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::SpaceTimeError => "space-time-error",
+            Self::Time => "time",
+            Self::Length => "length",
+            Self::LengthRisk { .. } => "length-risk",
+        }
+    }
 }
 
 /// What a planner is asked: keep `own` clear of every obstacle, close to `desired`, until she arrives.
@@ -173,6 +209,22 @@ pub enum NoPlan {
     },
 }
 
+impl NoPlan {
+    /// True when smaller sets might leave a way.
+    pub fn is_for_the_sets(&self) -> bool {
+        match self {
+            Self::NoCandidate { .. } | Self::Barred { .. } | Self::OutOfTime { .. } => true,
+            Self::StartInside { .. }
+            | Self::StartCovered { .. }
+            | Self::HorizonTooShort { .. }
+            | Self::PathTooLong { .. }
+            | Self::OffPath { .. }
+            | Self::NoNetwork(_)
+            | Self::NoRoute => false,
+        }
+    }
+}
+
 fn until_text(until: Option<f64>) -> String {
     match until {
         Some(time) => format!("until {time:.1} s"),
@@ -197,6 +249,16 @@ impl Outcome {
         match self {
             Self::Solved(plan) => Some(plan),
             Self::Deadline(plan) => plan.as_ref(),
+            Self::Infeasible(_) => None,
+        }
+    }
+}
+
+impl Outcome {
+    fn plan_mut(&mut self) -> Option<&mut Plan> {
+        match self {
+            Self::Solved(plan) => Some(plan),
+            Self::Deadline(plan) => plan.as_mut(),
             Self::Infeasible(_) => None,
         }
     }

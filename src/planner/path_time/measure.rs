@@ -27,7 +27,7 @@ impl<'a> Measure<'a> {
         let (way, time) = (to.distance - from.distance, to.time - from.time);
         match self.problem.objective {
             Objective::Time => time,
-            Objective::Length => way + METRES_PER_SECOND * time,
+            Objective::Length | Objective::LengthRisk { .. } => way + METRES_PER_SECOND * time,
             Objective::SpaceTimeError => {
                 let (start, heading) = match place {
                     Place::On { leg, .. } => {
@@ -53,7 +53,7 @@ impl<'a> Measure<'a> {
         let time = to_go / scene.max_speed;
         match self.problem.objective {
             Objective::Time => time,
-            Objective::Length => to_go + METRES_PER_SECOND * time,
+            Objective::Length | Objective::LengthRisk { .. } => to_go + METRES_PER_SECOND * time,
             Objective::SpaceTimeError => 0.0,
         }
     }
@@ -61,7 +61,7 @@ impl<'a> Measure<'a> {
     /// True when to arrive at a place before another way does, and wait, is never worse.
     pub(crate) fn waits_are_free(&self) -> bool {
         match self.problem.objective {
-            Objective::Time | Objective::Length => true,
+            Objective::Time | Objective::Length | Objective::LengthRisk { .. } => true,
             Objective::SpaceTimeError => false,
         }
     }

@@ -13,8 +13,10 @@ mod measure;
 mod nodes;
 mod profile;
 mod scene;
+mod weighing;
 
 pub use diagram::{DiagramCorner, DiagramLeg, DiagramObstacle, PathTimeDiagram};
+pub use weighing::plan_weighing_risk;
 
 use std::time::Instant;
 
