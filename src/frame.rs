@@ -162,6 +162,11 @@ pub fn course_deg_from_heading(heading: f64) -> f64 {
     if course >= 360.0 { 0.0 } else { course }
 }
 
+/// A turn at the border, degrees clockwise, from radians counter-clockwise. Zero keeps its positive sign.
+pub fn clockwise_deg(turn: f64) -> f64 {
+    clockwise_deg_per_s(turn)
+}
+
 /// A turn rate at the border, degrees per second clockwise, from radians per second
 /// counter-clockwise. Zero keeps its positive sign.
 pub fn clockwise_deg_per_s(turn_rate: f64) -> f64 {

@@ -1,5 +1,6 @@
 //! Judges any trajectory, sharing no collision code with the planners.
 
+mod along;
 mod clearance;
 mod cost;
 mod least;
@@ -17,7 +18,7 @@ use moving_ellipse::MovingEllipse;
 use moving_slabs::MovingSlabs;
 use space_time_set::MovingSet;
 
-use crate::frame::{Side, relative_bearing};
+use crate::frame::{Side, Vector, relative_bearing};
 use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
@@ -84,6 +85,16 @@ impl Evaluation {
     }
 }
 
+/// How own ship may move.
+#[derive(Debug, Clone, Copy)]
+pub enum Freedom<'a> {
+    /// Anywhere, on lines and arcs of at least her turning radius, at the speeds of her finite set.
+    Limits,
+    /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest, turning on the spot where she
+    /// moves off along another leg.
+    Paths(&'a [Vec<Vector>]),
+}
+
 /// What is to be judged, and by what.
 #[derive(Debug, Clone)]
 pub struct Request<'a> {
@@ -91,6 +102,8 @@ pub struct Request<'a> {
     pub segments: &'a [Segment],
     /// Own ship and her limits; of no size where the sets already contain her.
     pub own: &'a OwnShip,
+    /// How she may move.
+    pub freedom: Freedom<'a>,
     /// Where she was meant to be, and when.
     pub desired: &'a DesiredTrajectory,
     /// The others.
@@ -106,14 +119,14 @@ pub struct Request<'a> {
     pub max_risk: f64,
 }
 
-/// Judges a trajectory: start, joints, turning radius, speeds and arrival; every set in continuous time,
+/// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in continuous time,
 /// to [`tolerance::DEPTH_M`]; every hull that a target may have, whatever the sets say; and the figures.
 ///
 /// Distances are certified least values ([`tolerance::MARGIN_M`]); the costs are integrated by quadrature
 /// of their own. A segment that is not a number is a violation, and the figures are then NaN.
 pub fn evaluate(request: &Request) -> Evaluation {
     let segments = request.segments;
-    let mut violations = motion::check(segments, request.own, request.desired, request.horizon);
+    let mut violations = motion::check(request);
     let judged = !segments.is_empty() && segments.iter().all(Segment::is_valid);
     let segments = if judged { segments } else { &[] };
     let margins: Vec<Least> = request

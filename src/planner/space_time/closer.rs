@@ -336,14 +336,9 @@ mod tests {
                     .map(|s| s.shaped)
                     .collect();
                 greatest = greatest.max(nearest(&Problem {
-                    own: &scenario.own_ship,
-                    desired: &scenario.desired,
-                    obstacles: &obstacles,
-                    horizon: scenario.horizon,
-                    time_weight: scenario.time_weight,
                     search: SearchKind::AStar,
                     deadline: Duration::from_secs(60),
-                    first_turn: None,
+                    ..pipeline::problem(&scenario, &obstacles)
                 }));
             }
         }

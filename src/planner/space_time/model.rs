@@ -328,6 +328,8 @@ pub(crate) mod tests {
         let problem = Problem {
             own: &own,
             desired: &desired,
+            alternatives: &[],
+            objective: crate::planner::Objective::SpaceTimeError,
             obstacles: &obstacles,
             horizon: 900.0,
             time_weight: 25.0,
