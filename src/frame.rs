@@ -202,6 +202,13 @@ pub struct Geographic {
     pub lon_deg: f64,
 }
 
+impl Geographic {
+    /// True when the latitude is within 90° and the longitude within 180°.
+    pub fn is_on_earth(&self) -> bool {
+        self.lat_deg.abs() <= 90.0 && self.lon_deg.abs() <= 180.0
+    }
+}
+
 impl std::fmt::Display for Geographic {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "lat {:.6}°, lon {:.6}°", self.lat_deg, self.lon_deg)
@@ -215,6 +222,10 @@ const WGS84_FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Scale on the central meridian. A little below 1, as every secant projection has it: distances from the
 /// origin are then within 0.1 m at 30 km to all sides, not only north and south.
 const CENTRAL_SCALE: f64 = 1.0 - 1e-6;
+
+/// Metres from the origin of a georeference within which places are taken: lengths at its rim are 0.012 % too
+/// long. Farther out is another part of the world, or a latitude and a longitude that were exchanged.
+pub const GEOREFERENCE_REACH_M: f64 = 100_000.0;
 
 /// Degrees. No origin is nearer to a pole than 1°: courses make no sense there.
 pub const LARGEST_ORIGIN_LAT_DEG: f64 = 89.0;
@@ -247,7 +258,7 @@ pub struct Georeference {
 impl Georeference {
     /// About an origin; `None` when it is not on the earth or beyond [`LARGEST_ORIGIN_LAT_DEG`].
     pub fn new(origin: Geographic) -> Option<Self> {
-        let sound = origin.lat_deg.abs() <= LARGEST_ORIGIN_LAT_DEG && origin.lon_deg.abs() <= 180.0;
+        let sound = origin.lat_deg.abs() <= LARGEST_ORIGIN_LAT_DEG && origin.is_on_earth();
         sound.then(|| {
             let mut georeference = Self {
                 origin,
@@ -280,6 +291,12 @@ impl Georeference {
             y += alpha * (order * xi).sin() * (order * eta).cosh();
         }
         Vector::new(series.radius * x, series.radius * y - self.northing)
+    }
+
+    /// The same for a place on the earth within [`GEOREFERENCE_REACH_M`] of the origin, `None` for any other.
+    pub fn to_near_plane(&self, place: Geographic) -> Option<Vector> {
+        let point = self.to_plane(place);
+        (place.is_on_earth() && point.norm() <= GEOREFERENCE_REACH_M).then_some(point)
     }
 
     /// The inverse of [`Georeference::to_plane`].

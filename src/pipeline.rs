@@ -1,12 +1,16 @@
 //! The arrows in one place: Scenario → obstacles → Plan → Evaluation = Run.
 
+mod shore;
+
+pub use shore::{coast, land_within_reach};
+
 use std::time::{Duration, Instant};
 
 use crate::colregs::{self, Encounter};
 use crate::evaluation::{Evaluation, Request, SetShape, SpaceTimeSet, evaluate};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
-    EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    Coast, EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use crate::planner::{NoPlan, Outcome, Planned, Problem, space_time};
 use crate::scenario::{Compliance, Scenario};
@@ -58,6 +62,8 @@ pub struct Run {
     /// The obstacles that the plan was made against, in the same order: the level sets `O_alpha`,
     /// `alpha = 1 - max_risk`.
     pub obstacles: Vec<Obstacle>,
+    /// The convex pieces of land that the plan was made against: all that own ship could reach.
+    pub land: Vec<ConvexPolygon>,
     /// The planner's answer.
     pub planned: Planned,
     /// What had to be given up, most important first; empty when nothing.
@@ -169,12 +175,17 @@ fn one_after_another(
     }
 }
 
-/// What a scenario asks of a planner, against the given obstacles.
-pub fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
+/// What a scenario asks of a planner, against the given obstacles and the land.
+pub fn problem<'a>(
+    scenario: &'a Scenario,
+    obstacles: &'a [Obstacle],
+    coast: &'a Coast,
+) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,
         obstacles,
+        coast,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: scenario.search,
@@ -189,8 +200,10 @@ pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let shaped = scenario.compliance == Compliance::Shape;
     let begun = Instant::now();
+    let land = land_within_reach(&scenario);
+    let coast = coast(&scenario, &land);
     let plan = |obstacles: &[Obstacle]| {
-        let asked = problem(&scenario, obstacles);
+        let asked = problem(&scenario, obstacles, &coast);
         space_time::plan(&Problem {
             deadline: asked.deadline.saturating_sub(begun.elapsed()),
             ..asked
@@ -244,6 +257,7 @@ pub fn run(scenario: Scenario) -> Run {
         scenario,
         sets,
         obstacles,
+        land,
         planned,
         relaxations,
         risks,
@@ -315,6 +329,8 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
         desired: &scenario.desired,
         targets: &scenario.targets,
         sets: &sets,
+        land: scenario.land.as_ref().map_or(&[], |l| l.map.polygons()),
+        land_margin: scenario.land.as_ref().map_or(0.0, |l| l.margin),
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         max_risk: scenario.max_risk,
@@ -376,6 +392,8 @@ mod tests {
             time_weight: 25.0,
             max_risk: 0.0,
             deadline: 5.0,
+            earth: None,
+            land: None,
         }
     }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 use rayon::prelude::*;
 use searoom::frame::{Vector, radians_from_deg};
 use searoom::geometry::Ellipse;
-use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
+use searoom::obstacle::{Coast, Obstacle, SpaceTimeObstacle};
 use searoom::pipeline::{self, Relaxation, Run};
 use searoom::planner::{Problem, SearchKind, space_time};
 use searoom::scenario::{Compliance, Scenario};
@@ -157,6 +157,7 @@ fn a_star_finds_the_cost_of_dijkstra() {
                         own: &changed.own_ship,
                         desired: &changed.desired,
                         obstacles: &obstacles,
+                        coast: Coast::none(),
                         horizon: changed.horizon,
                         time_weight: changed.time_weight,
                         search,
@@ -210,7 +211,7 @@ fn cutting_time_changes_nothing_but_digits() {
             })
             .collect();
         let cost = |obstacles: &[Obstacle]| {
-            let planned = space_time::plan(&pipeline::problem(&scenario, obstacles));
+            let planned = space_time::plan(&pipeline::problem(&scenario, obstacles, Coast::none()));
             planned.outcome.plan().map(|p| p.cost)
         };
         if let (Some(a), Some(b)) = (cost(&whole), cost(&cut)) {

@@ -1,5 +1,6 @@
 //! Convex sets, polygons and predicates in the plane. Knows no ship and no time.
 
+mod boxes;
 mod convex;
 mod crossing;
 mod decomposition;
@@ -10,6 +11,7 @@ mod nearness;
 mod polygon;
 mod simplify;
 
+pub use boxes::{BoxIndex, Window};
 pub use convex::{ConvexPolygon, GeometryError};
 pub use crossing::{Crossing, EdgeIndex};
 pub use decomposition::{DecompositionError, convex_pieces};

@@ -11,58 +11,32 @@ mod reading;
 pub use fault::{MapError, MapFault};
 pub use path::LandCrossing;
 
-use rstar::primitives::{GeomWithData, Line, Rectangle};
-use rstar::{AABB, RTree};
+use rstar::RTree;
+use rstar::primitives::Line;
 
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, DecompositionError, Polygon, convex_pieces};
-
-/// An upright box.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
-    /// South-western corner, metres.
-    pub low: Vector,
-    /// North-eastern corner, metres.
-    pub high: Vector,
-}
-
-impl Window {
-    /// The least one around some points; `None` without points.
-    pub fn around<'a>(points: impl IntoIterator<Item = &'a Vector>) -> Option<Self> {
-        let mut points = points.into_iter();
-        let first = points.next()?;
-        let alone = Self {
-            low: *first,
-            high: *first,
-        };
-        Some(points.fold(alone, |w, p| Self {
-            low: w.low.inf(p),
-            high: w.high.sup(p),
-        }))
-    }
-
-    /// The box with `margin` metres more on every side.
-    pub fn grown(&self, margin: f64) -> Self {
-        Self {
-            low: self.low.add_scalar(-margin),
-            high: self.high.add_scalar(margin),
-        }
-    }
-
-    fn envelope(&self) -> AABB<[f64; 2]> {
-        AABB::from_corners(self.low.into(), self.high.into())
-    }
-}
+use crate::geometry::{
+    BoxIndex, ConvexPolygon, DecompositionError, Polygon, Window, convex_pieces,
+};
 
 /// The land of a scenario. Two maps are equal when their polygons are.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Map {
     polygons: Vec<Polygon>,
     pieces: Vec<ConvexPolygon>,
     /// The pieces by their boxes.
-    boxes: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
+    boxes: BoxIndex,
     /// The edges of the polygons.
     edges: RTree<Line<[f64; 2]>>,
+}
+
+impl std::fmt::Debug for Map {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Map")
+            .field("polygons", &self.polygons.len())
+            .field("pieces", &self.pieces.len())
+            .finish_non_exhaustive()
+    }
 }
 
 impl PartialEq for Map {
@@ -78,15 +52,8 @@ impl Map {
         for polygon in &polygons {
             pieces.extend(convex_pieces(polygon)?);
         }
-        let boxes = pieces
-            .iter()
-            .enumerate()
-            .filter_map(|(index, piece)| {
-                let Window { low, high } = Window::around(piece.vertices())?;
-                let corners = Rectangle::from_corners(low.into(), high.into());
-                Some(GeomWithData::new(corners, index))
-            })
-            .collect();
+        let boxes = pieces.iter().filter_map(|c| Window::around(c.vertices()));
+        let boxes = BoxIndex::new(boxes);
         let edges = polygons
             .iter()
             .flat_map(Polygon::edges)
@@ -95,7 +62,7 @@ impl Map {
         Ok(Self {
             polygons,
             pieces,
-            boxes: RTree::bulk_load(boxes),
+            boxes,
             edges: RTree::bulk_load(edges),
         })
     }
@@ -112,12 +79,7 @@ impl Map {
 
     /// The pieces whose boxes meet a window, in their order. O(log n + found).
     pub fn pieces_within(&self, window: &Window) -> Vec<&ConvexPolygon> {
-        let envelope = window.envelope();
-        let mut found: Vec<usize> = self
-            .boxes
-            .locate_in_envelope_intersecting(envelope)
-            .map(|b| b.data)
-            .collect();
+        let mut found: Vec<usize> = self.boxes.meeting(window).collect();
         found.sort_unstable();
         found.into_iter().map(|index| &self.pieces[index]).collect()
     }
@@ -127,7 +89,7 @@ impl Map {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return true;
         }
-        let here = Window { low: p, high: p };
+        let here = Window::at(p);
         self.pieces_within(&here).iter().any(|c| c.contains(p))
     }
 

@@ -1,8 +1,8 @@
 //! A path against the land: where it comes too near, and by how much.
 
-use super::{Map, Window};
+use super::Map;
 use crate::frame::Vector;
-use crate::geometry::stretch_near;
+use crate::geometry::{ConvexPolygon, Window, stretch_near};
 use crate::tolerance;
 
 /// Metres. The place at which most is missing is found to this: along a quay every place is nearly the worst.
@@ -71,6 +71,17 @@ impl Map {
             }
         }
         found
+    }
+
+    /// Metres between a convex set and the land, negative in overlap: then minus the shortest way out of the
+    /// piece that it is deepest in. Only land within `reach` metres is looked at; infinite without any.
+    pub fn separation(&self, set: &ConvexPolygon, reach: f64) -> f64 {
+        Window::around(set.vertices()).map_or(f64::INFINITY, |window| {
+            self.pieces_within(&window.grown(reach))
+                .into_iter()
+                .map(|piece| piece.separation(set))
+                .fold(f64::INFINITY, f64::min)
+        })
     }
 
     /// The place on the line from `a` to `b` with the least signed distance from land, to [`SETTLED_M`]: by

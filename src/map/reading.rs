@@ -6,15 +6,11 @@ use std::path::Path;
 use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue, Position};
 
 use super::{Map, MapError, MapFault};
-use crate::frame::{Geographic, Georeference, Vector};
+use crate::frame::{GEOREFERENCE_REACH_M, Geographic, Georeference, Vector};
 use crate::geometry::{Polygon, PolygonError};
 
 /// Bytes of a map.
 const FILE_BYTES: u64 = 64 * 1024 * 1024;
-
-/// Metres from the origin within which every vertex has to be. At its rim lengths on the plane are 0.012 %
-/// too long; farther out is another part of the world, or coordinates in the wrong order.
-const REACH_M: f64 = 100_000.0;
 
 /// What a feature has to be.
 const POLYGON: &str = "a Polygon or a MultiPolygon";
@@ -201,29 +197,27 @@ impl Reading<'_> {
 
     fn point(&self, position: &Position) -> Result<Vector, (String, String)> {
         let (lon_deg, lat_deg) = (position[0], position[1]);
-        let on_earth = |lat: f64, lon: f64| lat.abs() <= 90.0 && lon.abs() <= 180.0;
-        let distance = |lat_deg, lon_deg| {
-            let place = Geographic { lat_deg, lon_deg };
-            self.earth.to_plane(place).norm()
-        };
-        let written = format!("[{lon_deg}, {lat_deg}]");
-        if on_earth(lat_deg, lon_deg) && distance(lat_deg, lon_deg) <= REACH_M {
-            let place = Geographic { lat_deg, lon_deg };
-            return Ok(self.earth.to_plane(place));
+        let place = Geographic { lat_deg, lon_deg };
+        if let Some(point) = self.earth.to_near_plane(place) {
+            return Ok(point);
         }
-        // the other way round it would be a place, and near
-        if on_earth(lon_deg, lat_deg) && distance(lon_deg, lat_deg) <= REACH_M {
+        let written = format!("[{lon_deg}, {lat_deg}]");
+        let exchanged = Geographic {
+            lat_deg: lon_deg,
+            lon_deg: lat_deg,
+        };
+        if self.earth.to_near_plane(exchanged).is_some() {
             let found = format!("{written}, which looks like [latitude, longitude],");
             return Err((found, POSITION.to_owned()));
         }
-        if !on_earth(lat_deg, lon_deg) {
+        if !place.is_on_earth() {
             return Err((written, POSITION.to_owned()));
         }
-        let far = distance(lat_deg, lon_deg) / 1000.0;
-        let origin = self.earth.origin();
+        let far = self.earth.to_plane(place).norm() / 1000.0;
+        let (reach, origin) = (GEOREFERENCE_REACH_M / 1000.0, self.earth.origin());
         Err((
             format!("{written}, {far:.0} km from the origin,"),
-            format!("within {:.0} km of the origin ({origin})", REACH_M / 1000.0),
+            format!("land within {reach:.0} km of the origin ({origin})"),
         ))
     }
 

@@ -8,7 +8,7 @@ pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeK
 
 use std::time::Duration;
 
-use crate::obstacle::Obstacle;
+use crate::obstacle::{Coast, Obstacle};
 use crate::trajectory::{DesiredTrajectory, Trajectory};
 use crate::vessel::OwnShip;
 
@@ -30,6 +30,8 @@ pub struct Problem<'a> {
     pub desired: &'a DesiredTrajectory,
     /// The sets to stay out of, own ship's footprint folded in.
     pub obstacles: &'a [Obstacle],
+    /// Land to stay off, own ship's footprint folded in.
+    pub coast: &'a Coast,
     /// Seconds: arrival must not be later; the obstacles are known until then.
     pub horizon: f64,
     /// `q` of eq. (30), m²/s².
@@ -72,6 +74,14 @@ pub enum NoPlan {
     StartInside {
         /// Name of the obstacle.
         target: String,
+        /// Metres.
+        depth: f64,
+    },
+    /// Own ship starts nearer to land than she may be on some heading.
+    #[error(
+        "own ship starts {depth:.1} m nearer to land than her half-diagonal and the land margin allow"
+    )]
+    StartAshore {
         /// Metres.
         depth: f64,
     },

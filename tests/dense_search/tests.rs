@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::*;
 use searoom::geometry::outer_disc;
-use searoom::obstacle::Obstacle;
+use searoom::obstacle::{Coast, Obstacle};
 use searoom::planner::SearchKind;
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
@@ -34,6 +34,7 @@ fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a>
         own: &scenario.own_ship,
         desired: &scenario.desired,
         obstacles,
+        coast: Coast::none(),
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: SearchKind::AStar,

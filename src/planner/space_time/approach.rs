@@ -8,7 +8,7 @@ use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::tolerance;
 
 /// Metres. Approaches closer than this become rows.
-const NEAR_M: f64 = 60.0;
+pub(crate) const NEAR_M: f64 = 60.0;
 
 /// Radians. Longest arc that one chord stands for when a minimum is sought, to begin with and at the end.
 pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;

@@ -233,6 +233,7 @@ impl<'a> Closer<'a> {
 mod tests {
     use std::time::Duration;
 
+    use crate::obstacle::Coast;
     use crate::pipeline;
     use crate::planner::cost::space_time_error;
     use crate::planner::space_time::graph::Graph;
@@ -339,6 +340,7 @@ mod tests {
                     own: &scenario.own_ship,
                     desired: &scenario.desired,
                     obstacles: &obstacles,
+                    coast: Coast::none(),
                     horizon: scenario.horizon,
                     time_weight: scenario.time_weight,
                     search: SearchKind::AStar,

@@ -1,7 +1,8 @@
 //! The refinement's view of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the
 //! contact rows, all in the free lengths.
 
-use super::approach::{Approach, approaches};
+use super::approach::{Approach, NEAR_M, approaches};
+use super::ashore;
 use super::hazard::Hazard;
 use super::moments::{Moments, Residuals, reduce, reduce_matrix};
 use super::quadratic::{Constraint, MAX_VARIABLES, Matrix, Row};
@@ -31,6 +32,8 @@ pub(crate) struct Scene<'a> {
     pub problem: &'a Problem<'a>,
     pub route: &'a Route,
     pub hazards: &'a [Hazard<'a>],
+    /// The land, block by block.
+    pub blocks: &'a [Hazard<'a>],
     /// Radians, see [`approaches`].
     pub chord: f64,
 }
@@ -74,7 +77,10 @@ impl Scene<'_> {
         let solved = &sailed.solved_rates[..all - free];
         let mut rows = Vec::with_capacity(8);
         let (mut violation, mut least_slack) = (0.0_f64, f64::INFINITY);
-        for hazard in self.hazards {
+        let sails = sailed.legs.iter().map(|l| &l.segment);
+        let blocks = ashore::near(self.problem.coast, sails, NEAR_M);
+        let land = blocks.into_iter().map(|b| &self.blocks[b]);
+        for hazard in self.hazards.iter().chain(land) {
             for approach in approaches(hazard, &sailed, self.chord) {
                 let missing = MARGIN_M - approach.slack;
                 violation = missing.max(violation);
@@ -344,7 +350,7 @@ mod tests {
     use super::*;
     use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
-    use crate::obstacle::PolytopeObstacle;
+    use crate::obstacle::{Coast, PolytopeObstacle};
     use crate::planner::SearchKind;
     use crate::planner::space_time::part::parts;
     use crate::planner::space_time::seeds::{Canonical, Conflict};
@@ -382,6 +388,7 @@ mod tests {
             own: &own,
             desired: &desired,
             obstacles: &obstacles,
+            coast: Coast::none(),
             horizon: 900.0,
             time_weight: 25.0,
             search: SearchKind::AStar,
@@ -394,6 +401,7 @@ mod tests {
             problem: &problem,
             route: &route,
             hazards: &hazards,
+            blocks: &[],
             chord: FINE_CHORD_RAD,
         };
         let canonical = Canonical {
