@@ -68,54 +68,50 @@ pub(crate) fn beyond_land(coast: &Coast, conflict: Conflict, undisturbed: &[Segm
     conflict
 }
 
-/// The stretches of the undisturbed motion that are ashore, each with what it takes to pass beside the land.
+/// The stretches of the undisturbed motion that are ashore, seen every [`STEP_S`] from the first contact on, each with
+/// what it takes to pass beside the land. Land does not pass: there is no waiting for it and no passing ahead.
 pub(crate) fn conflicts(coast: &Coast, undisturbed: &[Segment]) -> Vec<Conflict> {
     let mut found: Vec<Conflict> = Vec::new();
-    let Some(mut from) = first_contact(coast, undisturbed) else {
+    let Some(first) = first_contact(coast, undisturbed) else {
         return found;
     };
-    let end = undisturbed.last().map_or(from, Segment::end_time);
-    let mut open: Option<Conflict> = None;
-    let mut time = from;
-    while time <= end {
-        let ashore = pose_at(undisturbed, time).filter(|pose| {
-            let depth = coast.depth(pose.position);
-            depth.is_some_and(|d| d > TOUCH_M) || time == from
-        });
-        match ashore {
-            Some(pose) => {
-                let conflict = open.get_or_insert(Conflict {
-                    from: time,
-                    to: time,
-                    through: 0.0,
-                    offsets: [0.0; 2],
-                    astern: (0.0, time),
-                });
-                conflict.to = time;
-                for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
-                    let beam = to_port(pose.ahead()) * side.turn_sign();
-                    *offset = offset.max(coast.way_out(pose.position, beam));
-                }
-                let behind = coast.way_out(pose.position, -pose.ahead());
-                if behind > conflict.astern.0 {
-                    conflict.astern = (behind, time);
-                }
-            }
-            None => {
-                found.extend(open.take());
-                from = f64::NAN;
+    let end = undisturbed.last().map_or(first, Segment::end_time);
+    let mut on_water = true;
+    for step in 0..=((end - first) / STEP_S) as usize {
+        let time = first + STEP_S * step as f64;
+        let Some(pose) = pose_at(undisturbed, time) else {
+            break;
+        };
+        let ashore = coast.depth(pose.position).is_some_and(|d| d > TOUCH_M);
+        // the first contact itself is at the edge
+        if !ashore && step > 0 {
+            on_water = true;
+            continue;
+        }
+        if on_water {
+            found.push(Conflict {
+                from: time,
+                to: time,
+                through: 0.0,
+                offsets: [0.0; 2],
+                astern: (f64::INFINITY, time),
+                ahead: (f64::INFINITY, time),
+            });
+        }
+        on_water = false;
+        if let Some(conflict) = found.last_mut() {
+            conflict.to = time;
+            for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
+                let beam = to_port(pose.ahead()) * side.turn_sign();
+                *offset = offset.max(coast.way_out(pose.position, beam));
             }
         }
-        time += STEP_S;
     }
-    found.extend(open);
     for conflict in &mut found {
-        conflict.through = undisturbed
+        let sailed = undisturbed
             .iter()
-            .map(|s| s.between(conflict.from, conflict.to).length())
-            .sum();
-        // land does not pass: to wait for it is of no use
-        conflict.astern.0 = f64::INFINITY;
+            .map(|s| s.between(conflict.from, conflict.to).length());
+        conflict.through = sailed.sum();
     }
     found
 }

@@ -9,6 +9,7 @@
 //! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
 //! plan is one of the candidates.
 
+mod addition;
 mod aims;
 mod approach;
 mod ashore;
@@ -29,8 +30,10 @@ mod quadratic;
 mod refinement;
 mod returning;
 mod route;
+mod sailed;
 mod seeds;
 mod selection;
+mod tail;
 mod template;
 
 use std::time::Instant;
