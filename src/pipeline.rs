@@ -1,5 +1,9 @@
 //! The arrows in one place: Scenario → obstacles → Plan → Evaluation = Run.
 
+mod shore;
+
+pub use shore::{coast, land_within_reach};
+
 use std::time::{Duration, Instant};
 
 use crate::colregs::{self, Encounter, Role};
@@ -7,7 +11,7 @@ use crate::evaluation::{Evaluation, Freedom, Request, SetShape, SpaceTimeSet, ev
 use crate::frame::Side;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
-    EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    Coast, EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use crate::planner::{Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time};
 use crate::scenario::{Compliance, Scenario};
@@ -59,6 +63,8 @@ pub struct Run {
     /// The obstacles that the plan was made against, in the same order: the level sets `O_alpha`,
     /// `alpha = 1 - max_risk`.
     pub obstacles: Vec<Obstacle>,
+    /// The convex pieces of land that the plan was made against: all that own ship could reach.
+    pub land: Vec<ConvexPolygon>,
     /// The planner's answer.
     pub planned: Planned,
     /// What had to be given up, most important first; empty when nothing.
@@ -170,14 +176,19 @@ fn one_after_another(
     }
 }
 
-/// What a scenario asks of a planner, against the given obstacles.
-pub fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
+/// What a scenario asks of a planner, against the given obstacles and the land.
+pub fn problem<'a>(
+    scenario: &'a Scenario,
+    obstacles: &'a [Obstacle],
+    coast: &'a Coast,
+) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,
         alternatives: &scenario.alternatives,
         objective: scenario.objective,
         obstacles,
+        coast,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: scenario.search,
@@ -203,6 +214,8 @@ pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let shaped = scenario.compliance == Compliance::Shape;
     let begun = Instant::now();
+    let land = land_within_reach(&scenario);
+    let coast = coast(&scenario, &land);
     let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
     let plan = |used: fn(&TargetSets) -> &Obstacle| -> (Vec<Obstacle>, Planned) {
         let whole: Vec<Obstacle> = sets.iter().map(|s| used(s).clone()).collect();
@@ -215,7 +228,7 @@ pub fn run(scenario: Scenario) -> Run {
         let asked = Problem {
             deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
             first_turn: shaped.then(|| first_turn(&sets)).flatten(),
-            ..problem(&scenario, &level_sets)
+            ..problem(&scenario, &level_sets, &coast)
         };
         let planned = match (scenario.planner, scenario.objective) {
             (PlannerKind::SpaceTime, _) => space_time::plan(&asked),
@@ -265,6 +278,7 @@ pub fn run(scenario: Scenario) -> Run {
         scenario,
         sets,
         obstacles,
+        land,
         planned,
         relaxations,
         risks,
@@ -342,6 +356,8 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
         desired: &scenario.desired,
         targets: &scenario.targets,
         sets: &sets,
+        land: scenario.land.as_ref().map_or(&[], |l| l.map.polygons()),
+        land_margin: scenario.land.as_ref().map_or(0.0, |l| l.margin),
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         max_risk: scenario.max_risk,

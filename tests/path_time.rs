@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::{
-    EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use searoom::planner::{Objective, Outcome, Planned, Problem, SearchKind, path_time};
 use searoom::target::VelocitySpell;
@@ -142,6 +142,7 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         search,
         deadline: Duration::from_secs(60),
         first_turn: None,
+        coast: Coast::none(),
     })
 }
 

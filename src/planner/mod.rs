@@ -10,7 +10,7 @@ pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeK
 use std::time::Duration;
 
 use crate::frame::{Side, Vector};
-use crate::obstacle::Obstacle;
+use crate::obstacle::{Coast, Obstacle};
 use crate::trajectory::{DesiredTrajectory, NetworkError, Trajectory};
 use crate::vessel::OwnShip;
 
@@ -83,6 +83,8 @@ pub struct Problem<'a> {
     pub objective: Objective,
     /// The sets to stay out of, own ship's footprint folded in.
     pub obstacles: &'a [Obstacle],
+    /// Land to stay off, own ship's footprint folded in.
+    pub coast: &'a Coast,
     /// Seconds: arrival must not be later; the obstacles are known until then.
     pub horizon: f64,
     /// `q` of eq. (30), m²/s².
@@ -132,6 +134,14 @@ pub enum NoPlan {
     StartInside {
         /// Name of the obstacle.
         target: String,
+        /// Metres.
+        depth: f64,
+    },
+    /// Own ship starts nearer to land than she may be on some heading.
+    #[error(
+        "own ship starts {depth:.1} m nearer to land than her half-diagonal and the land margin allow"
+    )]
+    StartAshore {
         /// Metres.
         depth: f64,
     },
@@ -222,6 +232,7 @@ impl NoPlan {
         match self {
             Self::NoCandidate { .. } | Self::Barred { .. } | Self::OutOfTime { .. } => true,
             Self::StartInside { .. }
+            | Self::StartAshore { .. }
             | Self::StartCovered { .. }
             | Self::HorizonTooShort { .. }
             | Self::PathTooLong { .. }

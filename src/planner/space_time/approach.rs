@@ -8,7 +8,7 @@ use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::tolerance;
 
 /// Metres. Approaches closer than this become rows.
-const NEAR_M: f64 = 60.0;
+pub(crate) const NEAR_M: f64 = 60.0;
 
 /// Metres. Where legs meet closer than this the joint is a row too: a leg that slides along a face touches it at both
 /// ends, and of two ends only one is a minimum.

@@ -1,7 +1,8 @@
 //! The refinement's view of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the
 //! contact rows, all in the free lengths.
 
-use super::approach::{Approach, approaches};
+use super::approach::{Approach, NEAR_M, approaches};
+use super::ashore;
 use super::hazard::Hazard;
 use super::moments::{Moments, Residuals, reduce, reduce_matrix};
 use super::quadratic::{Constraint, MAX_VARIABLES, Matrix, Row};
@@ -32,6 +33,8 @@ pub(crate) struct Scene<'a> {
     pub problem: &'a Problem<'a>,
     pub route: &'a Route,
     pub hazards: &'a [Hazard<'a>],
+    /// The land, block by block.
+    pub blocks: &'a [Hazard<'a>],
     /// Radians, see [`approaches`].
     pub chord: f64,
 }
@@ -144,9 +147,12 @@ impl Scene<'_> {
         let joining = sailed.joining_rates();
         let tail = (!matches!(template.ending, Ending::Goal { .. }))
             .then(|| self.add_tail(&sailed, &joining, template.all(), &mut sums));
+        let sails = sailed.legs.iter().map(|l| &l.segment);
+        let land = ashore::near(self.problem.coast, sails, NEAR_M);
         let approaches = self
             .hazards
             .iter()
+            .chain(land.into_iter().map(|b| &self.blocks[b]))
             .flat_map(|hazard| approaches(hazard, &sailed, self.chord))
             .collect();
         Some(Full {
@@ -291,7 +297,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
-    use crate::obstacle::PolytopeObstacle;
+    use crate::obstacle::{Coast, PolytopeObstacle};
     use crate::planner::SearchKind;
     use crate::planner::space_time::part::parts;
     use crate::planner::space_time::refinement::Seed;
@@ -331,6 +337,7 @@ pub(crate) mod tests {
             alternatives: &[],
             objective: crate::planner::Objective::SpaceTimeError,
             obstacles: &obstacles,
+            coast: Coast::none(),
             horizon: 900.0,
             time_weight: 25.0,
             search: SearchKind::AStar,
@@ -344,6 +351,7 @@ pub(crate) mod tests {
             problem: &problem,
             route: &route,
             hazards: &hazards,
+            blocks: &[],
             chord: FINE_CHORD_RAD,
         };
         let canonical = Canonical {

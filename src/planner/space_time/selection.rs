@@ -2,6 +2,7 @@
 
 use super::addition::{enriched, tidied};
 use super::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
+use super::ashore;
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::model::Scene;
 use super::node::State;
@@ -306,7 +307,10 @@ impl<'a> Selection<'a> {
         let in_time = motion
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);
-        let clear = in_time && cost.is_finite() && first_met(self.scene.hazards, &motion).is_none();
+        let clear = in_time
+            && cost.is_finite()
+            && first_met(self.scene.hazards, &motion).is_none()
+            && !ashore::meets(problem.coast, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }
