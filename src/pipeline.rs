@@ -6,13 +6,14 @@ pub use shore::{coast, land_within_reach};
 
 use std::time::{Duration, Instant};
 
-use crate::colregs::{self, Encounter};
-use crate::evaluation::{Evaluation, Request, SetShape, SpaceTimeSet, evaluate};
+use crate::colregs::{self, Encounter, Role};
+use crate::evaluation::{Evaluation, Freedom, Request, SetShape, SpaceTimeSet, evaluate};
+use crate::frame::Side;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
     Coast, EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
-use crate::planner::{NoPlan, Outcome, Planned, Problem, space_time};
+use crate::planner::{Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
@@ -184,13 +185,26 @@ pub fn problem<'a>(
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,
+        alternatives: &scenario.alternatives,
+        objective: scenario.objective,
         obstacles,
         coast,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: scenario.search,
-        deadline: Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX),
+        deadline: deadline(scenario),
+        first_turn: None,
     }
+}
+
+fn deadline(scenario: &Scenario) -> Duration {
+    Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX)
+}
+
+/// Rules 14 and 15 in open water: to starboard where own ship meets head-on or gives way.
+fn first_turn(sets: &[TargetSets]) -> Option<Side> {
+    let alters = |s: &TargetSets| matches!(s.encounter.role, Role::HeadOn | Role::GiveWay);
+    sets.iter().any(alters).then_some(Side::Starboard)
 }
 
 /// Plans a scenario and judges the plan. Where no plan keeps clear of the shapes, one that keeps clear of the
@@ -202,38 +216,45 @@ pub fn run(scenario: Scenario) -> Run {
     let begun = Instant::now();
     let land = land_within_reach(&scenario);
     let coast = coast(&scenario, &land);
-    let plan = |obstacles: &[Obstacle]| {
-        let asked = problem(&scenario, obstacles, &coast);
-        space_time::plan(&Problem {
-            deadline: asked.deadline.saturating_sub(begun.elapsed()),
-            ..asked
-        })
-    };
-    let at_risk = |set: &Obstacle| {
-        if scenario.max_risk > 0.0 {
-            set.at_risk(scenario.max_risk)
-        } else {
-            set.clone()
-        }
-    };
     let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
-    let level_sets = |used: fn(&TargetSets) -> &Obstacle| -> Vec<Obstacle> {
-        sets.iter().map(|s| at_risk(used(s))).collect()
+    let plan = |used: fn(&TargetSets) -> &Obstacle| -> (Vec<Obstacle>, Planned) {
+        let whole: Vec<Obstacle> = sets.iter().map(|s| used(s).clone()).collect();
+        let risk = scenario.max_risk;
+        let level_sets: Vec<Obstacle> = if risk > 0.0 {
+            whole.iter().map(|set| set.at_risk(risk)).collect()
+        } else {
+            whole.clone()
+        };
+        let asked = Problem {
+            deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
+            first_turn: shaped.then(|| first_turn(&sets)).flatten(),
+            ..problem(&scenario, &level_sets, &coast)
+        };
+        let planned = match (scenario.planner, scenario.objective) {
+            (PlannerKind::SpaceTime, _) => space_time::plan(&asked),
+            (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
+                let asked = Problem {
+                    obstacles: &whole,
+                    ..asked
+                };
+                path_time::plan_weighing_risk(&asked, weight, risk)
+            }
+            (PlannerKind::PathTime, _) => path_time::plan(&asked),
+        };
+        (level_sets, planned)
     };
-    let mut obstacles = level_sets(used);
     let mut relaxations = if shaped {
         relaxations(&sets, |s| s.shape_reduced)
     } else {
         Vec::new()
     };
-    let mut planned = plan(&obstacles);
-    let stuck = matches!(
-        planned.outcome,
-        Outcome::Infeasible(NoPlan::NoCandidate { .. })
-    );
+    let (mut obstacles, mut planned) = plan(used);
+    let stuck = match &planned.outcome {
+        Outcome::Infeasible(reason) => reason.is_for_the_sets(),
+        Outcome::Solved(_) | Outcome::Deadline(_) => false,
+    };
     if shaped && stuck && sets.iter().any(|s| s.shape_reach > 0.0) {
-        let obstacles_left = level_sets(|s| &s.hard);
-        let again = plan(&obstacles_left);
+        let (obstacles_left, again) = plan(|s| &s.hard);
         if again.outcome.plan().is_some() {
             (obstacles, planned) = (obstacles_left, again);
             relaxations = self::relaxations(&sets, |s| s.shape_reach);
@@ -323,7 +344,13 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
             shape: shape(o),
         })
         .collect();
+    let mut paths = vec![scenario.desired.waypoints()];
+    paths.extend_from_slice(&scenario.alternatives);
     evaluate(&Request {
+        freedom: match scenario.planner {
+            PlannerKind::SpaceTime => Freedom::Limits,
+            PlannerKind::PathTime => Freedom::Paths(&paths),
+        },
         segments: trajectory.segments(),
         own: &scenario.own_ship,
         desired: &scenario.desired,
@@ -351,141 +378,4 @@ fn relaxations(sets: &[TargetSets], cut: impl Fn(&TargetSets) -> f64) -> Vec<Rel
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::colregs::Role;
-    use crate::frame::{Pose, Vector};
-    use crate::planner::SearchKind;
-    use crate::target::{DomainKind, ShipTrack};
-    use crate::trajectory::{DesiredTrajectory, Segment};
-    use crate::vessel::{Hull, OwnShip};
-    use std::f64::consts::{FRAC_PI_2, PI};
-
-    fn polytope(o: &Obstacle) -> &PolytopeObstacle {
-        o.as_polytope().expect("a polytope")
-    }
-
-    fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
-        let points = [Vector::zeros(), Vector::new(1500.0, 0.0)];
-        Scenario {
-            title: "one target".to_owned(),
-            horizon: 400.0,
-            own_ship: OwnShip {
-                pose: Pose::new(Vector::zeros(), 0.0),
-                speed: 5.0,
-                hull: Hull {
-                    length: 30.0,
-                    beam: 8.0,
-                },
-                turning_radius: 100.0,
-                speeds: vec![2.5, 5.0, 6.0],
-                safety_margin: 20.0,
-            },
-            desired: DesiredTrajectory::new(&points, &[5.0]).expect("valid"),
-            targets: vec![Target {
-                name: "other".to_owned(),
-                motion: Motion::Ship(target),
-                representation: Representation::Polytope,
-            }],
-            search: SearchKind::AStar,
-            compliance,
-            time_weight: 25.0,
-            max_risk: 0.0,
-            deadline: 5.0,
-            earth: None,
-            land: None,
-        }
-    }
-
-    fn track(x: f64, y: f64, heading: f64, speed: f64) -> ShipTrack {
-        ShipTrack {
-            pose: Pose::new(Vector::new(x, y), heading),
-            speed,
-            hull: Hull {
-                length: 60.0,
-                beam: 12.0,
-            },
-            position_std: 0.0,
-            speed_spread: 0.5,
-            course_spread: 0.08,
-            turn_rate: 0.0,
-            domain: DomainKind::Colregs,
-        }
-    }
-
-    #[test]
-    fn compliance_chooses_the_sets() {
-        let target = track(1500.0, 0.0, PI, 5.0);
-        let shaped = run(scenario(target.clone(), Compliance::Shape));
-        let hard = run(scenario(target, Compliance::None));
-        assert_eq!(shaped.sets[0].encounter.role, Role::HeadOn);
-        assert_eq!(shaped.obstacles[0], shaped.sets[0].shaped);
-        assert_eq!(hard.obstacles[0], hard.sets[0].hard);
-        assert!(shaped.relaxations.is_empty() && hard.relaxations.is_empty());
-        let areas = |run: &Run| polytope(&run.obstacles[0]).initial().area();
-        assert!(areas(&shaped) > 2.0 * areas(&hard));
-    }
-
-    #[test]
-    fn a_shape_over_the_start_is_drawn_back_and_said_so() {
-        let target = track(100.0, -50.0, FRAC_PI_2, 5.0);
-        let relaxed = run(scenario(target.clone(), Compliance::Shape));
-        assert!(matches!(
-            relaxed.relaxations.as_slice(),
-            [Relaxation::Domain { target, amount }] if target == "other" && *amount > 1.0
-        ));
-        let start = relaxed.scenario.own_ship.pose.position;
-        assert!(polytope(&relaxed.obstacles[0]).slack(start, 0.0).value > 0.0);
-        // the hard sets were never shaped
-        assert!(
-            run(scenario(target, Compliance::None))
-                .relaxations
-                .is_empty()
-        );
-    }
-
-    #[test]
-    fn the_judge_sees_the_undisturbed_trajectory_hit_the_set() {
-        let scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
-        let sets = sets(&scenario);
-        let straight = Trajectory::new(vec![Segment {
-            start: scenario.own_ship.pose,
-            start_time: 0.0,
-            duration: 300.0,
-            speed: 5.0,
-            turn_rate: 0.0,
-        }])
-        .expect("valid");
-        let judged = judge(&scenario, &[sets[0].shaped.clone()], &straight);
-        assert!(!judged.verified());
-        assert!(
-            judged
-                .violations
-                .iter()
-                .any(|v| v.what.starts_with("set of 'other'"))
-        );
-        assert!(
-            judged
-                .violations
-                .iter()
-                .any(|v| v.what.starts_with("hull of 'other'"))
-        );
-        assert!(judged.space_time_error.abs() < 1e-9 && judged.delay.abs() < 1e-9);
-    }
-
-    /// Own ship starts at the edge of a shape that then grows over her: no plan is clear of it, one is clear of
-    /// the hard set, and the run says what was given up.
-    #[test]
-    fn where_no_plan_clears_the_shapes_one_that_clears_the_hard_sets_is_relaxed() {
-        use crate::simulation::{EncounterKind, Placement, random_encounter};
-        let drawn = random_encounter(EncounterKind::GiveWay, 104, Placement::Origin);
-        let run = run(drawn.expect("drawn").scenario);
-        assert!(run.sets[0].shape_reduced > 0.0 && run.planned.outcome.plan().is_some());
-        assert_eq!(run.obstacles[0], run.sets[0].hard);
-        let [Relaxation::Domain { amount, .. }] = &run.relaxations[..] else {
-            panic!("{:?}", run.relaxations);
-        };
-        assert!(*amount > run.sets[0].shape_reduced);
-        assert!(run.evaluation.is_some_and(|e| e.verified()));
-    }
-}
+mod tests;

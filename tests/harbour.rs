@@ -13,7 +13,7 @@ use searoom::frame::{Geographic, Georeference, Pose, Vector, direction};
 use searoom::map::Map;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
-use searoom::planner::{Outcome, Problem, SearchKind, space_time};
+use searoom::planner::{Objective, Outcome, PlannerKind, Problem, SearchKind, space_time};
 use searoom::scenario::{Compliance, Land, Scenario};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
@@ -39,7 +39,6 @@ fn harbour() -> Arc<Map> {
 }
 
 /// Where scenes lie, and the ship in them.
-
 struct Waters {
     name: &'static str,
     /// Metres from land that some waypoint, or some place of the path, is within.
@@ -152,7 +151,10 @@ fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
             safety_margin: waters.safety_margin,
         },
         desired,
+        alternatives: Vec::new(),
         targets,
+        planner: PlannerKind::SpaceTime,
+        objective: Objective::SpaceTimeError,
         search: SearchKind::AStar,
         compliance: Compliance::Shape,
         time_weight: speed * speed,

@@ -154,14 +154,9 @@ fn a_star_finds_the_cost_of_dijkstra() {
                     .collect();
                 let graph_cost = |search| {
                     let planned = space_time::plan(&Problem {
-                        own: &changed.own_ship,
-                        desired: &changed.desired,
-                        obstacles: &obstacles,
-                        coast: Coast::none(),
-                        horizon: changed.horizon,
-                        time_weight: changed.time_weight,
                         search,
                         deadline: Duration::from_secs(120),
+                        ..pipeline::problem(&changed, &obstacles, Coast::none())
                     });
                     planned.outcome.plan().and_then(|p| p.graph_cost)
                 };

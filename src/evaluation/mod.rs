@@ -1,5 +1,6 @@
 //! Judges any trajectory, sharing no collision code with the planners.
 
+mod along;
 mod clearance;
 mod cost;
 mod least;
@@ -19,7 +20,7 @@ use moving_slabs::MovingSlabs;
 use shore::least_land_distance;
 use space_time_set::MovingSet;
 
-use crate::frame::{Side, relative_bearing};
+use crate::frame::{Side, Vector, relative_bearing};
 use crate::geometry::{ConvexPolygon, Polygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
@@ -90,6 +91,16 @@ impl Evaluation {
     }
 }
 
+/// How own ship may move.
+#[derive(Debug, Clone, Copy)]
+pub enum Freedom<'a> {
+    /// Anywhere, on lines and arcs of at least her turning radius, at the speeds of her finite set.
+    Limits,
+    /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest, turning on the spot where she
+    /// moves off along another leg.
+    Paths(&'a [Vec<Vector>]),
+}
+
 /// What is to be judged, and by what.
 #[derive(Debug, Clone)]
 pub struct Request<'a> {
@@ -97,6 +108,8 @@ pub struct Request<'a> {
     pub segments: &'a [Segment],
     /// Own ship and her limits; of no size where the sets already contain her.
     pub own: &'a OwnShip,
+    /// How she may move.
+    pub freedom: Freedom<'a>,
     /// Where she was meant to be, and when.
     pub desired: &'a DesiredTrajectory,
     /// The others.
@@ -116,7 +129,7 @@ pub struct Request<'a> {
     pub max_risk: f64,
 }
 
-/// Judges a trajectory: start, joints, turning radius, speeds and arrival; every set in continuous time,
+/// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in continuous time,
 /// to [`tolerance::DEPTH_M`]; every hull that a target may have, whatever the sets say; own hull against
 /// the edges of the land; and the figures.
 ///
@@ -124,7 +137,7 @@ pub struct Request<'a> {
 /// of their own. A segment that is not a number is a violation, and the figures are then NaN.
 pub fn evaluate(request: &Request) -> Evaluation {
     let segments = request.segments;
-    let mut violations = motion::check(segments, request.own, request.desired, request.horizon);
+    let mut violations = motion::check(request);
     let judged = !segments.is_empty() && segments.iter().all(Segment::is_valid);
     let segments = if judged { segments } else { &[] };
     let margins: Vec<Least> = request

@@ -101,6 +101,7 @@ fn ship(y: f64, speed: f64) -> Target {
 
 fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Evaluation {
     evaluate(&Request {
+        freedom: Freedom::Limits,
         segments,
         own: &own(),
         desired: &desired(),
@@ -302,6 +303,7 @@ fn what_is_not_a_number_is_never_verified() {
     limits.turning_radius = f64::NAN;
     limits.pose.heading = f64::NAN;
     let found = evaluate(&Request {
+        freedom: Freedom::Limits,
         segments: &plan(),
         own: &limits,
         desired: &desired(),

@@ -26,7 +26,9 @@ pub use coast::{Coast, LAND};
 pub use cpa::ClosestApproach;
 pub use ellipsoid::EllipsoidObstacle;
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
-pub use projection::{PathTime, along_path};
+pub use projection::{
+    OUTER_EXCESS_M, PathTime, PathTimeFace, PathTimeObstacle, Track, along_path, outer_faces_along,
+};
 pub use representation::Obstacle;
 pub use risk::PeakRisk;
 pub use section::Section;

@@ -1,16 +1,27 @@
 //! The words of the contract for what the program computes.
 
 use crate::planner::SearchKind;
-
-/// The only kind of planner that exists.
-pub(super) const PLANNER: &str = "space-time";
-
-/// What it minimises.
-pub(super) const OBJECTIVE: &str = "space-time-error";
+use crate::planner::path_time::PathTimeDiagram;
 
 pub(super) fn search(kind: SearchKind) -> &'static str {
     match kind {
         SearchKind::AStar => "a-star",
         SearchKind::Dijkstra => "dijkstra",
     }
+}
+
+/// What a path is called: 0 is the main one.
+pub(super) fn path(index: usize) -> String {
+    match index {
+        0 => "main".to_owned(),
+        index => format!("alternative {index}"),
+    }
+}
+
+/// The paths that are sailed, in their order.
+pub(super) fn paths(diagram: &PathTimeDiagram) -> String {
+    let mut sailed: Vec<usize> = diagram.legs.iter().map(|leg| leg.path).collect();
+    sailed.dedup();
+    let names: Vec<String> = sailed.into_iter().map(path).collect();
+    names.join(", ")
 }

@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
+use toml::de::DeTable;
+
 use super::file::{Entry, Source, TEXT, Word};
 use super::plane::{POSITION, Plane};
 use super::section::Section;
 use super::targets::targets;
 use super::{Compliance, Land, Scenario, land, limits};
 use crate::frame::{Pose, Vector, heading_from_course_deg};
-use crate::planner::SearchKind;
+use crate::planner::{Objective, PlannerKind, SearchKind};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
 
@@ -32,7 +34,7 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
     let speed = own_ship.as_ref().and_then(|own| own.speed);
     let margin = own_ship.as_ref().and_then(|own| own.land_margin);
     let own_ship = own_ship.and_then(|own| own.ship);
-    let desired = root
+    let mission = root
         .require("mission", "a table")
         .and_then(|entry| entry.section("a table"))
         .and_then(|section| mission(section, speed, &plane));
@@ -44,11 +46,20 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
     let targets = targets(&mut root, &plane);
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
     if let Some(land) = &land {
-        land::check(&mut root, land, &plane, own_ship.as_ref(), desired.as_ref());
+        let paths = mission
+            .as_ref()
+            .map(|m| (&m.desired, m.alternatives.as_slice()));
+        land::check(&mut root, land, &plane, own_ship.as_ref(), paths);
     }
     plane.finish(&mut root);
     root.finish();
-    let (desired, own_ship) = (desired?, own_ship?);
+    let (
+        Mission {
+            desired,
+            alternatives,
+        },
+        own_ship,
+    ) = (mission?, own_ship?);
     let mean_speed = desired.length() / desired.duration();
     Some(Scenario {
         title: title?,
@@ -56,7 +67,10 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
         time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
         own_ship,
         desired,
+        alternatives,
         targets: targets?,
+        planner: planner.kind.unwrap_or(PlannerKind::SpaceTime),
+        objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
         search: planner.search.unwrap_or(SearchKind::AStar),
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
         max_risk: planner.max_risk.unwrap_or(0.0),
@@ -159,29 +173,55 @@ fn own_speeds(section: &mut Section, speed: Option<f64>) -> Option<Vec<f64>> {
     Some(speeds)
 }
 
-fn mission(
-    mut section: Section,
-    own_speed: Option<f64>,
-    plane: &Plane,
-) -> Option<DesiredTrajectory> {
-    section.not_built("alternatives");
+/// The desired trajectory and the other paths.
+struct Mission {
+    desired: DesiredTrajectory,
+    alternatives: Vec<Vec<Vector>>,
+}
+
+fn mission(mut section: Section, own_speed: Option<f64>, plane: &Plane) -> Option<Mission> {
+    let alternatives = match section.take("alternatives") {
+        Some(entry) => alternatives(&entry, plane),
+        None => Some(Vec::new()),
+    };
     let entries = section
         .require("waypoints", "a list of at least 2 positions")
-        .and_then(|entry| {
-            let entries = entry.list(2, "positions")?;
-            if entries.len() > limits::WAYPOINTS {
-                let found = format_args!("{} positions", entries.len());
-                entry.fault(found, format_args!("at most {}", limits::WAYPOINTS));
-                return None;
-            }
-            Some(entries)
-        });
+        .and_then(|entry| positions(&entry));
     let legs = entries.as_ref().map(|entries| entries.len() - 1);
     let waypoints = entries.and_then(|entries| waypoints(&entries, plane));
     let speeds = leg_speeds(&mut section, legs, own_speed);
     section.finish();
     // every leg is long and fast enough by now
-    DesiredTrajectory::new(&waypoints?, &speeds?).ok()
+    let desired = DesiredTrajectory::new(&waypoints?, &speeds?).ok()?;
+    Some(Mission {
+        desired,
+        alternatives: alternatives?,
+    })
+}
+
+/// A list of as many positions as a path may have.
+fn positions<'a, 'i>(entry: &Entry<'a, 'i>) -> Option<Vec<Entry<'a, 'i>>> {
+    let entries = entry.list(2, "positions")?;
+    if entries.len() > limits::WAYPOINTS {
+        let found = format_args!("{} positions", entries.len());
+        entry.fault(found, format_args!("at most {}", limits::WAYPOINTS));
+        return None;
+    }
+    Some(entries)
+}
+
+fn alternatives(entry: &Entry, plane: &Plane) -> Option<Vec<Vec<Vector>>> {
+    let paths = entry.list(1, "paths, each a list of positions")?;
+    if paths.len() > limits::ALTERNATIVES {
+        let found = format_args!("{} paths", paths.len());
+        entry.fault(found, format_args!("at most {}", limits::ALTERNATIVES));
+        return None;
+    }
+    let read: Vec<_> = paths
+        .iter()
+        .map(|path| positions(path).and_then(|entries| waypoints(&entries, plane)))
+        .collect();
+    read.into_iter().collect()
 }
 
 fn waypoints(entries: &[Entry], plane: &Plane) -> Option<Vec<Vector>> {
@@ -245,6 +285,8 @@ fn leg_speeds(
 /// What a file says of planning.
 #[derive(Debug, Default)]
 struct PlannerFields {
+    kind: Option<PlannerKind>,
+    objective: Option<Objective>,
     search: Option<SearchKind>,
     compliance: Option<Compliance>,
     time_weight: Option<f64>,
@@ -253,26 +295,17 @@ struct PlannerFields {
 }
 
 fn planner(mut section: Section) -> PlannerFields {
-    section.choice(
-        "kind",
-        &[
-            ("space-time", Word::Means(())),
-            ("path-time", Word::NotBuilt),
-            ("optimal-control", Word::NotBuilt),
-        ],
-    );
-    section.choice(
-        "objective",
-        &[
-            ("space-time-error", Word::Means(())),
-            ("time", Word::NotBuilt),
-            ("length", Word::NotBuilt),
-            ("length-risk", Word::NotBuilt),
-        ],
-    );
-    section.not_built("risk_weight_m");
     section.not_built("optimal_control");
     let fields = PlannerFields {
+        kind: section.choice(
+            "kind",
+            &[
+                ("space-time", Word::Means(PlannerKind::SpaceTime)),
+                ("path-time", Word::Means(PlannerKind::PathTime)),
+                ("optimal-control", Word::NotBuilt),
+            ],
+        ),
+        objective: objective(&mut section),
         search: section.choice(
             "search",
             &[
@@ -296,12 +329,44 @@ fn planner(mut section: Section) -> PlannerFields {
     fields
 }
 
+/// The objective; the one that weighs risk needs its weight, the others have none.
+fn objective(section: &mut Section) -> Option<Objective> {
+    let weighed = Objective::LengthRisk { weight: 0.0 };
+    let objective = section.choice(
+        "objective",
+        &[
+            ("space-time-error", Word::Means(Objective::SpaceTimeError)),
+            ("time", Word::Means(Objective::Time)),
+            ("length", Word::Means(Objective::Length)),
+            ("length-risk", Word::Means(weighed)),
+        ],
+    );
+    if objective == Some(weighed) {
+        let weight = section.required_number("risk_weight_m", limits::DISTANCE)?;
+        return Some(Objective::LengthRisk { weight });
+    }
+    section.forbid(
+        "risk_weight_m",
+        "nothing: only the objective \"length-risk\" weighs risk",
+    );
+    objective
+}
+
 /// Reads a whole text, of a file in `folder`; the faults say what is wrong with it.
 pub(super) fn text(source: &Source, text: &str, folder: &Path) -> Option<Scenario> {
-    let (document, errors) = toml::de::DeTable::parse_recoverable(text);
+    let (document, errors) = DeTable::parse_recoverable(text);
     if errors.is_empty() {
-        let root = Section::new(source, String::new(), None, document.get_ref());
-        return scenario(root, folder);
+        let root = document.get_ref();
+        let scenario = scenario(Section::new(source, String::new(), None, root), folder)?;
+        for fault in scenario.unfit() {
+            source.fault(
+                &fault.path,
+                offset_of(root, &fault.path),
+                fault.found,
+                fault.allowed,
+            );
+        }
+        return Some(scenario);
     }
     // what could be recovered may be in the wrong table: only the grammar is judged
     for error in errors {
@@ -309,4 +374,27 @@ pub(super) fn text(source: &Source, text: &str, folder: &Path) -> Option<Scenari
         source.fault("", offset, error.message(), "TOML 1.0 without errors");
     }
     None
+}
+
+/// Where the value at a path like `a.b[2]` begins.
+fn offset_of(root: &DeTable, path: &str) -> Option<usize> {
+    let mut table = root;
+    let mut found = None;
+    for part in path.split('.') {
+        let (key, index) = match part.split_once('[') {
+            Some((key, rest)) => (key, rest.trim_end_matches(']').parse::<usize>().ok()),
+            None => (part, None),
+        };
+        let value = table.get(key)?;
+        let value = match index {
+            Some(index) => value.get_ref().as_array()?.get(index)?,
+            None => value,
+        };
+        found = Some(value.span().start);
+        match value.get_ref().as_table() {
+            Some(inner) => table = inner,
+            None => break,
+        }
+    }
+    found
 }

@@ -10,6 +10,8 @@ pub(super) const FILE_BYTES: u64 = 16 * 1024 * 1024;
 
 /// Waypoints of a mission: the cost of a plan grows with their square.
 pub(super) const WAYPOINTS: usize = 100;
+/// Alternatives of a mission: the points that paths share are found pair by pair.
+pub(super) const ALTERNATIVES: usize = 20;
 /// Speeds of the finite set: the graph grows with the square of their number.
 pub(super) const SPEEDS: usize = 20;
 

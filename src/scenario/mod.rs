@@ -4,6 +4,7 @@ mod check;
 mod explicit_sets;
 mod fault;
 mod file;
+mod fitness;
 mod land;
 mod limits;
 mod plane;
@@ -16,8 +17,8 @@ pub use land::Land;
 use std::io::Read;
 use std::path::Path;
 
-use crate::frame::Georeference;
-use crate::planner::SearchKind;
+use crate::frame::{Georeference, Vector};
+use crate::planner::{Objective, PlannerKind, SearchKind};
 use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
@@ -42,8 +43,14 @@ pub struct Scenario {
     pub own_ship: OwnShip,
     /// Where she is meant to be, and when.
     pub desired: DesiredTrajectory,
+    /// Other paths that she may sail, metres; for the path-time planner.
+    pub alternatives: Vec<Vec<Vector>>,
     /// The others.
     pub targets: Vec<Target>,
+    /// Which planner.
+    pub planner: PlannerKind,
+    /// What it minimises.
+    pub objective: Objective,
     /// Which search.
     pub search: SearchKind,
     /// Which sets.
@@ -103,6 +110,11 @@ impl Scenario {
             file: file.to_owned(),
             faults,
         })
+    }
+
+    /// What keeps the planner that the scenario asks for from planning it; every fault, without lines.
+    pub fn unfit(&self) -> Vec<Fault> {
+        fitness::unfit(self)
     }
 
     /// True for what `max_risk` may be.

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
 use crate::geometry::outer_disc;
-use crate::planner::SearchKind;
+use crate::planner::{Objective, PlannerKind, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::trajectory::{DesiredTrajectory, TrajectoryError};
@@ -253,7 +253,10 @@ fn scene(
                 safety_margin: SAFETY_MARGIN,
             },
             desired: DesiredTrajectory::new(&waypoints, &[OWN_SPEED])?,
+            alternatives: Vec::new(),
             targets: targets.collect(),
+            planner: PlannerKind::SpaceTime,
+            objective: Objective::SpaceTimeError,
             search: SearchKind::AStar,
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,

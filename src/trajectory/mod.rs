@@ -1,10 +1,12 @@
 //! What every planner returns: exact constant-speed lines and arcs in time; and what it is compared
-//! with: the desired trajectory.
+//! with: the desired trajectory, and the paths that may be sailed.
 
 mod desired;
+mod network;
 mod segment;
 
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
+pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub use segment::{Mover, Segment};
 
 use crate::frame::{Pose, wrap};
@@ -41,15 +43,24 @@ pub enum TrajectoryError {
     },
 }
 
-/// A continuous chain of [`Segment`]s: position and heading continuous, time increasing.
+/// A continuous chain of [`Segment`]s: position continuous, time increasing, and heading continuous but at corners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     segments: Vec<Segment>,
 }
 
 impl Trajectory {
-    /// A trajectory from segments that meet within [`tolerance::JOINT_M`].
+    /// A trajectory from segments that meet within [`tolerance::JOINT_M`], headings included.
     pub fn new(segments: Vec<Segment>) -> Result<Self, TrajectoryError> {
+        Self::chained(segments, |turn| turn)
+    }
+
+    /// A trajectory along a path with corners: at the joint of two segments own ship may turn on the spot.
+    pub fn with_corners(segments: Vec<Segment>) -> Result<Self, TrajectoryError> {
+        Self::chained(segments, |_| 0.0)
+    }
+
+    fn chained(segments: Vec<Segment>, counted: fn(f64) -> f64) -> Result<Self, TrajectoryError> {
         if segments.is_empty() {
             return Err(TrajectoryError::Empty);
         }
@@ -60,10 +71,11 @@ impl Trajectory {
             if index > 0 {
                 let before = &segments[index - 1];
                 let end = before.end();
+                let turn = wrap(end.heading - s.start.heading).abs();
                 let gap = (end.position - s.start.position)
                     .norm()
                     .max((before.end_time() - s.start_time).abs())
-                    .max(wrap(end.heading - s.start.heading).abs());
+                    .max(counted(turn));
                 // negated on purpose: a NaN is a gap
                 if !(gap <= tolerance::JOINT_M) {
                     return Err(TrajectoryError::Gap { index, gap });

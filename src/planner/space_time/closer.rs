@@ -337,14 +337,9 @@ mod tests {
                     .map(|s| s.shaped)
                     .collect();
                 greatest = greatest.max(nearest(&Problem {
-                    own: &scenario.own_ship,
-                    desired: &scenario.desired,
-                    obstacles: &obstacles,
-                    coast: Coast::none(),
-                    horizon: scenario.horizon,
-                    time_weight: scenario.time_weight,
                     search: SearchKind::AStar,
                     deadline: Duration::from_secs(60),
+                    ..pipeline::problem(&scenario, &obstacles, Coast::none())
                 }));
             }
         }

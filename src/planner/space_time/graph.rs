@@ -418,7 +418,8 @@ impl Space for Graph<'_> {
                 self.returns(state, out);
                 self.onward(state, out);
             }
-            NodeKind::End => {}
+            // the last two are of graphs on paths
+            NodeKind::End | NodeKind::Corner { .. } | NodeKind::Waypoint => {}
         }
     }
 

@@ -25,7 +25,7 @@ mod model;
 mod moments;
 mod node;
 mod outside;
-mod part;
+pub(super) mod part;
 mod quadratic;
 mod refinement;
 mod returning;
@@ -93,6 +93,7 @@ fn already_there(problem: &Problem) -> Planned {
         outcome: plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved),
         stats: SearchStats::default(),
         explored: ExploredGraph::new(),
+        path_time: None,
     }
 }
 
@@ -103,6 +104,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
         outcome: Outcome::Infeasible(reason),
         stats: SearchStats::default(),
         explored: ExploredGraph::new(),
+        path_time: None,
     };
     let own = problem.own;
     for hazard in hazards {
@@ -212,6 +214,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
         outcome,
         stats,
         explored: node::explored(search),
+        path_time: None,
     }
 }
 

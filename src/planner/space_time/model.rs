@@ -334,12 +334,15 @@ pub(crate) mod tests {
         let problem = Problem {
             own: &own,
             desired: &desired,
+            alternatives: &[],
+            objective: crate::planner::Objective::SpaceTimeError,
             obstacles: &obstacles,
             coast: Coast::none(),
             horizon: 900.0,
             time_weight: 25.0,
             search: SearchKind::AStar,
             deadline: std::time::Duration::from_secs(5),
+            first_turn: None,
         };
         let route = Route::new(&problem).expect("a route");
         let parts = parts(&obstacles, problem.horizon);

@@ -4,6 +4,8 @@ use super::approach::FINE_CHORD_RAD;
 use super::model::{Model, Scene};
 use super::quadratic::{MAX_VARIABLES, Matrix, Programme, Row};
 use super::template::{Ending, Slot, Template};
+use crate::frame::Side;
+use crate::planner::AGAINST_THE_RULES;
 use crate::trajectory::Segment;
 
 /// Metres by which one step may change a length, at first, at most, at least.
@@ -54,6 +56,15 @@ pub(crate) struct Seed {
     pub lengths: Row,
 }
 
+/// Side of the first turn of some length.
+fn first_turn(seed: &Seed) -> Option<Side> {
+    let mut slots = seed.template.slots.iter().zip(&seed.lengths);
+    slots.find_map(|(slot, length)| match slot {
+        Slot::Arc { side, .. } if *length > 0.0 => Some(*side),
+        _ => None,
+    })
+}
+
 /// A manoeuvre clear of every set, with the margin, as far as its contact rows tell.
 #[derive(Debug, Clone, Copy)]
 struct Refined {
@@ -68,6 +79,8 @@ pub(crate) struct Refinement {
     template: Template,
     lengths: Row,
     model: Model,
+    /// What its costs are multiplied by where it is ranked among others.
+    handicap: f64,
     best: Option<Refined>,
     penalty: f64,
     /// Sum of the multipliers of the last step, m²/m.
@@ -121,7 +134,15 @@ impl Refinement {
     fn new(scene: &Scene, seed: Seed) -> Option<Self> {
         let model = scene.model(&seed.template, &seed.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
+        let first = first_turn(&seed);
+        let wanted = scene.problem.first_turn;
+        let against = wanted.is_some_and(|side| first.is_some_and(|first| first != side));
         let mut refinement = Self {
+            handicap: if against {
+                1.0 + AGAINST_THE_RULES
+            } else {
+                1.0
+            },
             template: seed.template,
             lengths: seed.lengths,
             model,
@@ -179,7 +200,12 @@ impl Refinement {
     /// What the manoeuvre at hand will cost once it is clear, to first order, m²: the missing metres at the
     /// multipliers of its last step, or at `least` where those are smaller.
     pub(crate) fn expected_cost(&self, least: f64) -> f64 {
-        self.model.cost + self.price.max(least) * self.model.violation
+        self.handicap * (self.model.cost + self.price.max(least) * self.model.violation)
+    }
+
+    /// What it is ranked by among others that are clear, m².
+    pub(crate) fn rank(&self) -> f64 {
+        self.handicap * self.best_cost()
     }
 
     /// Gives up: another one is ahead.

@@ -129,12 +129,12 @@ impl Conflict {
 const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 
 /// Radians.
-const WAITING_TURN: f64 = 0.4;
+const WAITING_TURN: f64 = 0.6;
 
 /// Metres by which own ship goes on beyond the route behind a target that she let pass, and radians at which she
 /// comes back.
-const OVERSHOOT_M: f64 = 50.0;
-const OVERSHOOT_RETURN: f64 = 0.15;
+const OVERSHOOT_M: f64 = 20.0;
+const OVERSHOOT_RETURN: f64 = 0.08;
 
 /// A manoeuvre that passes ahead: seconds of rushing over those there are, at most; its turn out, radians; the way back
 /// in, radians; its lines, metres.

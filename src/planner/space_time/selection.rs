@@ -98,13 +98,16 @@ const MAX_CONFLICTS: usize = 2;
 
 /// How many refinements go on after so many steps: those of the least expected
 /// cost. A winner is seen early.
-const PLACES: [(usize, usize); 5] = [(0, 12), (1, 8), (2, 6), (4, 4), (7, 3)];
+const PLACES: [(usize, usize); 4] = [(0, 12), (1, 6), (2, 4), (4, 3)];
 
 /// Steps of the race: what the winner still lacks are slots, not steps.
 const ROUNDS: usize = 10;
 
 /// Metres of line above which the best manoeuvre is cut for additions, one entry per time it is enriched.
 const UNCUT_M: [f64; 2] = [200.0, 80.0];
+
+/// Share of the cost that an enrichment has to gain for another to be tried.
+const WORTH_ANOTHER: f64 = 0.01;
 
 /// Share of the cost that a manoeuvre without scraps of turns and lines may cost more.
 const TIDINESS: f64 = 2e-3;
@@ -259,13 +262,18 @@ impl<'a> Selection<'a> {
             let Some(again) = seed.and_then(|s| self.refined(s)) else {
                 break;
             };
+            let gained = 1.0 - again.rank() / best_of(running)?.rank();
             best = again.best().or(best);
             running.push(again);
+            // negated on purpose: a NaN has gained nothing
+            if !(gained > WORTH_ANOTHER) {
+                break;
+            }
         }
-        let least = best_of(running)?.best_cost();
+        let least = best_of(running)?.rank();
         let seed = best.and_then(|s| tidied(&self.scene, &s));
         let tidy = seed.and_then(|s| self.refined(s))?;
-        (tidy.best_cost() <= (1.0 + TIDINESS) * least).then_some(tidy)
+        (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
     }
 
     /// A refinement from beginning to end.
@@ -316,14 +324,14 @@ impl<'a> Selection<'a> {
 }
 
 fn best_of(running: &[Refinement]) -> Option<&Refinement> {
-    let costs = |a: &&Refinement, b: &&Refinement| a.best_cost().total_cmp(&b.best_cost());
+    let costs = |a: &&Refinement, b: &&Refinement| a.rank().total_cmp(&b.rank());
     running.iter().min_by(costs)
 }
 
 /// Cheapest first.
 fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
     let mut found: Vec<_> = running.iter().collect();
-    found.sort_by(|a, b| a.best_cost().total_cmp(&b.best_cost()));
+    found.sort_by(|a, b| a.rank().total_cmp(&b.rank()));
     found.into_iter()
 }
 

@@ -4,11 +4,13 @@
 
 mod assessment;
 mod parts;
+mod path_time;
 mod plan;
 mod suite;
 
 pub use assessment::*;
 pub use parts::*;
+pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
 pub use plan::{PLAN_FORMAT, PlanDocument};
 pub use suite::{
     INTERNAL_FAULT, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument, UNREADABLE,

@@ -41,6 +41,9 @@ pub struct MissionDocument {
     /// Desired end.
     pub duration_s: f64,
     pub length_m: f64,
+    /// Other paths that may be sailed; absent where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alternatives: Vec<Vec<PositionDocument>>,
 }
 
 /// Something that was given up.

@@ -8,11 +8,12 @@ use super::parts::{
     SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument, VelocitySetDocument,
     ViolationDocument,
 };
+use super::path_time::{PathTimeDocument, path_time_document};
 use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run};
-use crate::planner::{Outcome, Plan};
+use crate::planner::{Objective, Outcome, Plan};
 use crate::report::summary::Verdict;
 use crate::report::words;
 use crate::trajectory::Trajectory;
@@ -36,6 +37,9 @@ pub struct PlanDocument {
     pub search: String,
     pub compliance: String,
     pub objective: String,
+    /// Of the objective that weighs risk; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub risk_weight_m: Option<f64>,
     pub time_weight_m2_per_s2: f64,
     /// The risk that the plan may accept: `obstacles` are the level sets of it.
     pub max_risk: f64,
@@ -58,6 +62,9 @@ pub struct PlanDocument {
     pub trajectory: Option<TrajectoryDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
+    /// Of a path-time plan; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path_time: Option<PathTimeDocument>,
 }
 
 impl PlanDocument {
@@ -69,10 +76,14 @@ impl PlanDocument {
         Self {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
-            planner: words::PLANNER.to_owned(),
+            planner: scenario.planner.word().to_owned(),
             search: words::search(scenario.search).to_owned(),
             compliance: scenario.compliance.word().to_owned(),
-            objective: words::OBJECTIVE.to_owned(),
+            objective: scenario.objective.word().to_owned(),
+            risk_weight_m: match scenario.objective {
+                Objective::LengthRisk { weight } => Some(weight),
+                _ => None,
+            },
             time_weight_m2_per_s2: scenario.time_weight,
             max_risk: scenario.max_risk,
             horizon_s: scenario.horizon,
@@ -116,6 +127,8 @@ impl PlanDocument {
                 .flat_map(|set| obstacles(set, scenario.horizon))
                 .collect(),
             encounters: encounters(run),
+            path_time: (run.planned.path_time.as_deref())
+                .map(|diagram| path_time_document(run, diagram)),
         }
     }
 }
@@ -189,6 +202,9 @@ fn mission(run: &Run) -> MissionDocument {
         leg_speeds_mps: desired.legs().iter().map(|leg| leg.speed).collect(),
         duration_s: desired.duration(),
         length_m: desired.length(),
+        alternatives: (run.scenario.alternatives.iter())
+            .map(|path| path.iter().copied().map(position).collect())
+            .collect(),
     }
 }
 
