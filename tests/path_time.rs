@@ -13,7 +13,7 @@ use searoom::frame::{Pose, Vector};
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::Coast;
 use searoom::obstacle::{
-    EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use searoom::planner::{Objective, Outcome, Planned, Problem, SearchKind, path_time};
 use searoom::target::VelocitySpell;
@@ -144,6 +144,7 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         search,
         deadline: Duration::from_secs(60),
         first_turn: None,
+        coast: Coast::none(),
     })
 }
 
