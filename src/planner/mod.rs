@@ -2,6 +2,7 @@
 
 pub mod cost;
 mod explored;
+pub mod optimal_control;
 pub mod space_time;
 
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};

@@ -3,9 +3,11 @@
 
 mod desired;
 mod segment;
+mod steered;
 
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
 pub use segment::{Mover, Segment};
+pub use steered::{Bounds, Cubic, Node, Steered, hermite};
 
 use crate::frame::{Pose, wrap};
 use crate::tolerance;
