@@ -3,12 +3,15 @@
 use std::time::{Duration, Instant};
 
 use crate::colregs::{self, Encounter};
-use crate::evaluation::{Evaluation, Request, SetShape, SpaceTimeSet, evaluate};
+use crate::evaluation::{
+    Evaluation, Request, SetShape, SpaceTimeSet, Steering, evaluate, evaluate_steered,
+};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
     EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
-use crate::planner::{NoPlan, Outcome, Planned, Problem, space_time};
+use crate::planner::optimal_control::{self, ControlReport, Controlled};
+use crate::planner::{NoPlan, Outcome, Planned, PlannerKind, Problem, space_time};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
@@ -60,6 +63,10 @@ pub struct Run {
     pub obstacles: Vec<Obstacle>,
     /// The planner's answer.
     pub planned: Planned,
+    /// How the optimal-control planner found it; `None` for another planner.
+    pub control: Option<ControlReport>,
+    /// Targets whose obstacles are ellipsoids around sets of another kind.
+    pub enclosed: Vec<String>,
     /// What had to be given up, most important first; empty when nothing.
     pub relaxations: Vec<Relaxation>,
     /// The largest risk along the plan, per target in the same order, against the sets of which `obstacles` are the
@@ -191,11 +198,19 @@ pub fn run(scenario: Scenario) -> Run {
     let begun = Instant::now();
     let plan = |obstacles: &[Obstacle]| {
         let asked = problem(&scenario, obstacles);
-        space_time::plan(&Problem {
+        let asked = Problem {
             deadline: asked.deadline.saturating_sub(begun.elapsed()),
             ..asked
-        })
+        };
+        match &scenario.kind {
+            PlannerKind::SpaceTime => (space_time::plan(&asked), None),
+            PlannerKind::OptimalControl(settings) => {
+                let Controlled { planned, report } = optimal_control::plan(&asked, settings);
+                (planned, Some(report))
+            }
+        }
     };
+    let forces = matches!(scenario.kind, PlannerKind::OptimalControl(_));
     let at_risk = |set: &Obstacle| {
         if scenario.max_risk > 0.0 {
             set.at_risk(scenario.max_risk)
@@ -205,7 +220,12 @@ pub fn run(scenario: Scenario) -> Run {
     };
     let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
     let level_sets = |used: fn(&TargetSets) -> &Obstacle| -> Vec<Obstacle> {
-        sets.iter().map(|s| at_risk(used(s))).collect()
+        let sets: Vec<Obstacle> = sets.iter().map(|s| at_risk(used(s))).collect();
+        if forces {
+            optimal_control::outer_sets(&sets)
+        } else {
+            sets
+        }
     };
     let mut obstacles = level_sets(used);
     let mut relaxations = if shaped {
@@ -213,16 +233,18 @@ pub fn run(scenario: Scenario) -> Run {
     } else {
         Vec::new()
     };
-    let mut planned = plan(&obstacles);
-    let stuck = matches!(
-        planned.outcome,
-        Outcome::Infeasible(NoPlan::NoCandidate { .. })
-    );
+    let (mut planned, mut control) = plan(&obstacles);
+    let stuck = match &planned.outcome {
+        Outcome::Infeasible(NoPlan::NoCandidate { .. } | NoPlan::Locked { .. }) => true,
+        // the ellipsoid around a shape may hold own ship where the shape does not
+        Outcome::Infeasible(NoPlan::StartInside { .. }) => forces,
+        _ => false,
+    };
     if shaped && stuck && sets.iter().any(|s| s.shape_reach > 0.0) {
         let obstacles_left = level_sets(|s| &s.hard);
-        let again = plan(&obstacles_left);
+        let (again, report) = plan(&obstacles_left);
         if again.outcome.plan().is_some() {
-            (obstacles, planned) = (obstacles_left, again);
+            (obstacles, planned, control) = (obstacles_left, again, report);
             relaxations = self::relaxations(&sets, |s| s.shape_reach);
             used = |s| &s.hard;
         }
@@ -236,6 +258,9 @@ pub fn run(scenario: Scenario) -> Run {
     if scenario.max_risk > 0.0 {
         relaxations.extend(risks_taken(&sets, &risks));
     }
+    let is_ellipsoid = |s: &&TargetSets| matches!(used(s), Obstacle::Ellipsoid(_));
+    let enclosed = sets.iter().filter(|s| forces && !is_ellipsoid(s));
+    let enclosed = enclosed.map(|s| s.hard.name().to_owned()).collect();
     let evaluation = planned
         .outcome
         .plan()
@@ -245,6 +270,8 @@ pub fn run(scenario: Scenario) -> Run {
         sets,
         obstacles,
         planned,
+        control,
+        enclosed,
         relaxations,
         risks,
         evaluation,
@@ -256,7 +283,8 @@ pub fn run(scenario: Scenario) -> Run {
 /// touch it, is at none: a set without spread is at risk 1 on its very boundary.
 fn peak_risk(set: &Obstacle, trajectory: &Trajectory) -> PeakRisk {
     let enters = |s| set.first_contact(s, tolerance::DEPTH_M).is_some();
-    if trajectory.segments().iter().any(enters) {
+    // a motion under forces is looked at instant by instant, there the depth is asked for
+    if trajectory.steered().is_some() || trajectory.segments().iter().any(enters) {
         set.peak_risk_along(trajectory)
     } else {
         PeakRisk {
@@ -309,7 +337,7 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
             shape: shape(o),
         })
         .collect();
-    evaluate(&Request {
+    let request = Request {
         segments: trajectory.segments(),
         own: &scenario.own_ship,
         desired: &scenario.desired,
@@ -318,7 +346,19 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         max_risk: scenario.max_risk,
-    })
+    };
+    match (trajectory.steered(), &scenario.kind) {
+        (Some(motion), PlannerKind::OptimalControl(settings)) => {
+            let vessel = settings.vessel.exact();
+            let steering = Steering {
+                motion,
+                vessel: vessel.as_ref(),
+                force_limits: settings.force_limits,
+            };
+            evaluate_steered(&request, &steering)
+        }
+        _ => evaluate(&request),
+    }
 }
 
 /// The shapes that were drawn back, the largest cut first.
@@ -371,6 +411,7 @@ mod tests {
                 motion: Motion::Ship(target),
                 representation: Representation::Polytope,
             }],
+            kind: PlannerKind::SpaceTime,
             search: SearchKind::AStar,
             compliance,
             time_weight: 25.0,

@@ -217,7 +217,7 @@ fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> 
         values: times.iter().map(wanted).collect(),
     }];
     if let Motion::Planned(trajectory) = scene.motion {
-        let planned = |&t: &f64| until(trajectory.end_time(), t, trajectory.segment_at(t).speed);
+        let planned = |&t: &f64| until(trajectory.end_time(), t, trajectory.speed_at(t));
         series.push(Series {
             name: "own ship",
             color: style::own_ship(),

@@ -1,11 +1,12 @@
 //! File → [`Scenario`], noting every fault.
 
+use super::control::control_settings;
 use super::file::{Entry, Source, TEXT, Word};
 use super::section::Section;
 use super::targets::targets;
 use super::{Compliance, Scenario, limits};
 use crate::frame::{Pose, Vector, heading_from_course_deg};
-use crate::planner::SearchKind;
+use crate::planner::{PlannerKind, SearchKind};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
 
@@ -48,6 +49,7 @@ pub(super) fn scenario(mut root: Section) -> Option<Scenario> {
         own_ship,
         desired,
         targets: targets?,
+        kind: planner.kind.unwrap_or(PlannerKind::SpaceTime),
         search: planner.search.unwrap_or(SearchKind::AStar),
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
         max_risk: planner.max_risk.unwrap_or(0.0),
@@ -239,6 +241,7 @@ fn leg_speeds(
 /// What a file says of planning.
 #[derive(Debug, Default)]
 struct PlannerFields {
+    kind: Option<PlannerKind>,
     search: Option<SearchKind>,
     compliance: Option<Compliance>,
     time_weight: Option<f64>,
@@ -247,14 +250,23 @@ struct PlannerFields {
 }
 
 fn planner(mut section: Section) -> PlannerFields {
-    section.choice(
+    let forces = section.choice(
         "kind",
         &[
-            ("space-time", Word::Means(())),
+            ("space-time", Word::Means(false)),
             ("path-time", Word::NotBuilt),
-            ("optimal-control", Word::NotBuilt),
+            ("optimal-control", Word::Means(true)),
         ],
     );
+    let kind = if forces == Some(true) {
+        control_settings(&mut section).map(PlannerKind::OptimalControl)
+    } else {
+        section.forbid(
+            "optimal_control",
+            "nothing: it is for kind = \"optimal-control\"",
+        );
+        forces.map(|_| PlannerKind::SpaceTime)
+    };
     section.choice(
         "objective",
         &[
@@ -265,8 +277,8 @@ fn planner(mut section: Section) -> PlannerFields {
         ],
     );
     section.not_built("risk_weight_m");
-    section.not_built("optimal_control");
     let fields = PlannerFields {
+        kind,
         search: section.choice(
             "search",
             &[

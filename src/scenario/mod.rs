@@ -1,6 +1,7 @@
 //! A scenario: read from a file, checked in full, then without invalid state.
 
 mod check;
+mod control;
 mod explicit_sets;
 mod fault;
 mod file;
@@ -13,7 +14,7 @@ pub use fault::{Fault, ScenarioError};
 use std::io::Read;
 use std::path::Path;
 
-use crate::planner::SearchKind;
+use crate::planner::{PlannerKind, SearchKind};
 use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
@@ -40,6 +41,8 @@ pub struct Scenario {
     pub desired: DesiredTrajectory,
     /// The others.
     pub targets: Vec<Target>,
+    /// Which planner.
+    pub kind: PlannerKind,
     /// Which search.
     pub search: SearchKind,
     /// Which sets.

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
 use crate::geometry::outer_disc;
-use crate::planner::SearchKind;
+use crate::planner::{PlannerKind, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::trajectory::{DesiredTrajectory, TrajectoryError};
@@ -254,6 +254,7 @@ fn scene(
             },
             desired: DesiredTrajectory::new(&waypoints, &[OWN_SPEED])?,
             targets: targets.collect(),
+            kind: PlannerKind::SpaceTime,
             search: SearchKind::AStar,
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,

@@ -76,14 +76,14 @@ impl Steered {
     pub fn pieces(&self) -> impl Iterator<Item = Cubic> + '_ {
         self.nodes
             .windows(2)
-            .map(|pair| Cubic::between(&pair[0], &pair[1]))
+            .map(|pair| Cubic::from_nodes(&pair[0], &pair[1]))
     }
 
     /// The piece in force at `time`; before the start the first, after the end the last.
     pub fn piece_at(&self, time: f64) -> Cubic {
         let after = self.nodes.partition_point(|node| node.time <= time);
         let index = after.clamp(1, self.nodes.len() - 1);
-        Cubic::between(&self.nodes[index - 1], &self.nodes[index])
+        Cubic::from_nodes(&self.nodes[index - 1], &self.nodes[index])
     }
 
     /// The node in force at `time`, clamped as the pieces are.
@@ -145,7 +145,7 @@ pub struct Bounds {
 
 impl Cubic {
     /// From a node to the next one.
-    pub fn between(from: &Node, to: &Node) -> Self {
+    pub fn from_nodes(from: &Node, to: &Node) -> Self {
         Self {
             start_time: from.time,
             duration: to.time - from.time,
@@ -153,6 +153,20 @@ impl Cubic {
             velocities: [from.ground_velocity(), to.ground_velocity()],
             headings: [from.pose.heading, to.pose.heading],
             yaw_rates: [from.yaw_rate, to.yaw_rate],
+        }
+    }
+
+    /// The same cubics between two times within it, the second one later.
+    pub fn between(&self, from: f64, to: f64) -> Self {
+        let [a, b] = [from, to].map(|time| self.part(time));
+        Self {
+            start_time: from,
+            // an instant is a piece, too: parts of it are 0
+            duration: (to - from).max(f64::MIN_POSITIVE),
+            positions: [self.position(a), self.position(b)],
+            velocities: [self.velocity(a), self.velocity(b)],
+            headings: [self.pose_at(from).heading, self.pose_at(to).heading],
+            yaw_rates: [self.yaw_rate_at(from), self.yaw_rate_at(to)],
         }
     }
 
@@ -297,6 +311,12 @@ mod tests {
             assert!((piece.velocity(0.0) - pair[0].ground_velocity()).norm() < 1e-12);
             assert!((piece.body_velocity_at(pair[1].time) - pair[1].velocity).norm() < 1e-12);
             assert!((piece.yaw_rate_at(pair[0].time) - pair[0].yaw_rate).abs() < 1e-12);
+            let (from, to) = (piece.start_time + 0.3, piece.start_time + 1.1);
+            let cut = piece.between(from, to);
+            for time in [from, from + 0.5, to] {
+                assert!((cut.pose_at(time).position - piece.pose_at(time).position).norm() < 1e-12);
+                assert!((cut.yaw_rate_at(time) - piece.yaw_rate_at(time)).abs() < 1e-12);
+            }
             let bounds = piece.bounds();
             for k in 0..200 {
                 let t = piece.start_time + piece.duration * f64::from(k) / 200.0;

@@ -3,10 +3,12 @@
 mod cybership2;
 pub mod dubins;
 mod froude;
+mod kind;
 mod manoeuvring;
 
 pub use cybership2::CyberShip2;
 pub use froude::FroudeScaled;
+pub use kind::{FULL_SCALE, VesselKind};
 pub use manoeuvring::{ForceVector, Manoeuvring, Scales, StateVector};
 
 use crate::frame::{Pose, Vector};

@@ -175,7 +175,7 @@ fn deepest<V: Manoeuvring>(
     let mut before = node(0);
     for interval in 0..task.intervals {
         let after = node(interval + 1);
-        let piece = Cubic::between(&before, &after);
+        let piece = Cubic::from_nodes(&before, &after);
         for (obstacle, keep) in task.keep_outs.iter().enumerate() {
             for point in low_points(&piece, keep, 1.0) {
                 added.push(Added {

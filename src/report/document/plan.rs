@@ -2,20 +2,22 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::control::{ControlDocument, control};
 use super::parts::{
-    CostDocument, EncounterDocument, InitialSetDocument, MissionDocument, ObstacleDocument,
-    OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument,
-    SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument, VelocitySetDocument,
-    ViolationDocument,
+    CostDocument, EncounterDocument, InitialSetDocument, MissionDocument, NodeDocument,
+    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
+    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
+    VelocitySetDocument, ViolationDocument,
 };
-use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading};
+use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::{Outcome, Plan};
 use crate::report::summary::Verdict;
 use crate::report::words;
-use crate::trajectory::Trajectory;
+use crate::tolerance;
+use crate::trajectory::{Steered, Trajectory};
 
 /// The name of the plan document's format.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
@@ -58,6 +60,9 @@ pub struct PlanDocument {
     pub trajectory: Option<TrajectoryDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
+    /// Of a plan of forces alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimal_control: Option<ControlDocument>,
 }
 
 impl PlanDocument {
@@ -69,10 +74,10 @@ impl PlanDocument {
         Self {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
-            planner: words::PLANNER.to_owned(),
+            planner: scenario.kind.word().to_owned(),
             search: words::search(scenario.search).to_owned(),
             compliance: scenario.compliance.word().to_owned(),
-            objective: words::OBJECTIVE.to_owned(),
+            objective: words::objective(&scenario.kind).to_owned(),
             time_weight_m2_per_s2: scenario.time_weight,
             max_risk: scenario.max_risk,
             horizon_s: scenario.horizon,
@@ -116,6 +121,7 @@ impl PlanDocument {
                 .flat_map(|set| obstacles(set, scenario.horizon))
                 .collect(),
             encounters: encounters(run),
+            optimal_control: control(run),
         }
     }
 }
@@ -197,10 +203,10 @@ pub(super) fn cost(run: &Run) -> Option<CostDocument> {
         objective: plan.cost,
         space_time_error_m2: evaluation.space_time_error,
         space_time_error_arc_length_m2: evaluation.arc_length_error,
-        arrived: true,
+        arrived: run.control.is_none(),
         duration_s: evaluation.duration,
         length_m: evaluation.length,
-        delay_s: evaluation.delay,
+        delay_s: finite(evaluation.delay),
         max_risk: run.risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
     })
@@ -213,31 +219,58 @@ fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
         north_m: pose.position.y + 0.0,
         course_deg: course_deg_from_heading(pose.heading),
     };
+    let segments = trajectory.segments().iter().map(|segment| SegmentDocument {
+        start: start(segment.start, segment.start_time),
+        duration_s: segment.duration,
+        speed_mps: segment.speed,
+        turn_rate_deg_per_s: clockwise_deg_per_s(segment.turn_rate),
+    });
     TrajectoryDocument {
-        segments: trajectory
-            .segments()
-            .iter()
-            .map(|segment| SegmentDocument {
-                start: start(segment.start, segment.start_time),
-                duration_s: segment.duration,
-                speed_mps: segment.speed,
-                turn_rate_deg_per_s: clockwise_deg_per_s(segment.turn_rate),
-            })
-            .collect(),
+        segments: trajectory.steered().is_none().then(|| segments.collect()),
         samples: trajectory
             .sample_times(SAMPLE_STEP)
             .into_iter()
             .map(|time| {
-                let at = start(trajectory.pose_at(time), time);
+                let mut pose = trajectory.pose_at(time);
+                if let Some(motion) = trajectory.steered() {
+                    pose.heading = course(motion, time);
+                }
+                let at = start(pose, time);
                 SampleDocument {
                     t_s: at.t_s,
                     east_m: at.east_m,
                     north_m: at.north_m,
                     course_deg: at.course_deg,
-                    speed_mps: trajectory.segment_at(time).speed,
+                    speed_mps: trajectory.speed_at(time),
+                    node: trajectory.steered().and_then(|motion| node(motion, time)),
                 }
             })
             .collect(),
+    }
+}
+
+/// The node at exactly this time.
+fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
+    let node = motion.node_at(time);
+    (node.time == time).then(|| NodeDocument {
+        heading_deg: course_deg_from_heading(node.pose.heading),
+        surge_mps: node.velocity.x + 0.0,
+        sway_mps: 0.0 - node.velocity.y,
+        yaw_rate_deg_per_s: clockwise_deg_per_s(node.yaw_rate),
+        surge_n: node.force.x + 0.0,
+        sway_n: 0.0 - node.force.y,
+        yaw_nm: 0.0 - node.moment,
+    })
+}
+
+/// The direction of the way made good, radians; the heading where no way is made.
+fn course(motion: &Steered, time: f64) -> f64 {
+    let piece = motion.piece_at(time);
+    let velocity = piece.velocity(piece.part(time));
+    if velocity.norm() > tolerance::LENGTH_M {
+        heading_of(velocity)
+    } else {
+        piece.pose_at(time).heading
     }
 }
 

@@ -6,7 +6,6 @@ use super::parts::{CostDocument, EncounterDocument, TimingDocument};
 use super::plan::{cost, encounters, timing, verified};
 use crate::pipeline::Run;
 use crate::report::summary::Verdict;
-use crate::report::words;
 
 /// The outcome of a file that is no scenario.
 pub const UNREADABLE: &str = "unreadable";
@@ -113,7 +112,7 @@ impl SuiteRunDocument {
         Self {
             file,
             scenario: Some(run.scenario.title.clone()),
-            planner: Some(words::PLANNER.to_owned()),
+            planner: Some(run.scenario.kind.word().to_owned()),
             outcome: Verdict::of(run).word().to_owned(),
             error: None,
             verified: verified(run),

@@ -70,6 +70,23 @@ pub enum Status {
     BadProblem,
 }
 
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Solved => "solved",
+            Self::Iterations => "the steps of the solver were spent",
+            Self::Stalled => "the solver found no acceptable step",
+            Self::Unbounded => "the objective or the state runs away",
+            Self::NotANumber => "a value is not a number",
+            Self::Singular => "the equations of an interval do not determine its end",
+            Self::OutOfTime => "the time ran out",
+            Self::BadProblem => {
+                "the problem has no interval, no force to choose, or a start that is no number"
+            }
+        })
+    }
+}
+
 /// What a solve came to; the point itself is in the iterate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
