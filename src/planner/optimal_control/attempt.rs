@@ -98,10 +98,11 @@ pub(super) fn go_on<V: Manoeuvring>(
     keep_going: &dyn Fn() -> bool,
 ) -> Attempt {
     let tight = settings.tolerance;
-    let mut settings = Settings {
-        tolerance: tight.max(LOOSE),
-        ..*settings
-    };
+    let mut settings = *settings;
+    // multipliers come with rows that were found already
+    if iterate.multipliers.is_empty() {
+        settings.tolerance = tight.max(LOOSE);
+    }
     let mut report = solve(&problem, &mut iterate, &mut work, &settings, keep_going);
     let (mut iterations, mut rounds, mut raised) = (report.iterations, 0, false);
     let inside = loop {

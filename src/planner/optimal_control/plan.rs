@@ -22,8 +22,8 @@ use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory, hermite};
 use crate::vessel::{CyberShip2, FULL_SCALE, FroudeScaled, Manoeuvring, StateVector, VesselKind};
 
-/// Times that the intervals are halved where they are too coarse, at most.
-const HALVINGS: usize = 4;
+/// Where the intervals are too coarse there are half as many again, so often at most.
+const REFINEMENTS: usize = 6;
 
 /// The barrier to begin with on a finer grid.
 const REFINED_BARRIER: f64 = 1e-2;
@@ -271,7 +271,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     fn refined(&self, best: &Attempt, report: &mut ControlReport) -> Outcome {
         let mut task = self.task(self.intervals);
         let mut found = best.clone();
-        let mut halvings = 0;
+        let mut refinements = 0;
         loop {
             report.intervals = task.intervals;
             report.defect = largest_defect(&self.exact, &found.profile, task.step());
@@ -279,16 +279,17 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             if !(report.defect > tolerance::DEFECT) {
                 break;
             }
-            if halvings == HALVINGS || !self.in_time() {
+            if refinements == REFINEMENTS || !self.in_time() {
                 return Outcome::Infeasible(NoPlan::Coarse {
                     intervals: task.intervals,
                     off: report.defect,
                     allowed: tolerance::DEFECT,
                 });
             }
-            halvings += 1;
-            let guess = halved(&task, &self.smooth, &found.profile);
-            task = self.task(2 * task.intervals);
+            refinements += 1;
+            let finer = self.task(task.intervals + task.intervals.div_ceil(2));
+            let guess = resampled(&task, &found.profile, &finer);
+            task = finer;
             let settings = Settings {
                 barrier: REFINED_BARRIER,
                 ..Settings::default()
@@ -371,16 +372,25 @@ fn classes(starts: &[StartReport]) -> Vec<HomotopyClass> {
     classes
 }
 
-/// The same motion on twice the intervals: states on the cubics, forces kept.
-fn halved<V: Manoeuvring>(task: &Task<V>, vessel: &V, profile: &Profile) -> Profile {
-    let (h, [a, b, c, d]) = (task.step(), hermite(0.5));
-    let mut states = vec![profile.states[0]];
-    let mut forces = Vec::with_capacity(2 * profile.forces.len());
-    for (pair, force) in profile.states.windows(2).zip(&profile.forces) {
-        let rates = [&pair[0], &pair[1]].map(|x| vessel.rates(x, force));
-        states.push(a * pair[0] + h * b * rates[0] + c * pair[1] + h * d * rates[1]);
-        states.push(pair[1]);
-        forces.extend([*force; 2]);
+/// The same motion on another grid: states on the cubics, forces as they are at the middle of each interval.
+fn resampled<V: Manoeuvring>(task: &Task<V>, profile: &Profile, to: &Task<V>) -> Profile {
+    let h = task.step();
+    let at = |time: f64| {
+        let place = (time - task.start_time) / h;
+        let interval = (place.floor().max(0.0) as usize).min(task.intervals - 1);
+        (interval, place - interval as f64)
+    };
+    let state = |k: usize| {
+        let (interval, part) = at(to.time(k));
+        let [x, y] = [interval, interval + 1].map(|i| profile.states[i]);
+        let force = &profile.forces[interval];
+        let [a, b, c, d] = hermite(part);
+        let rates = [&x, &y].map(|x| task.vessel.rates(x, force));
+        a * x + h * b * rates[0] + c * y + h * d * rates[1]
+    };
+    let force = |k: usize| profile.forces[at(to.time(k) + 0.5 * to.step()).0];
+    Profile {
+        states: (0..=to.intervals).map(state).collect(),
+        forces: (0..to.intervals).map(force).collect(),
     }
-    Profile { states, forces }
 }

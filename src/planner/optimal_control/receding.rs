@@ -7,7 +7,7 @@ use super::task::{Profile, Task};
 use crate::vessel::{Manoeuvring, StateVector};
 
 /// The barrier to begin with after one interval.
-const BARRIER: f64 = 1e-3;
+const BARRIER: f64 = 1e-4;
 
 /// A plan that moves on with the ship: each step drops the first interval, adds one at the end and solves again from the
 /// states, forces and multipliers at hand.

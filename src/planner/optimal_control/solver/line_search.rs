@@ -189,20 +189,23 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
     /// Of the iterate.
     fn merit(&self) -> Merit {
         let [low, high] = self.limits;
-        let mut barrier = 0.0;
+        let mut rooms = Logarithms::new();
         for control in &self.at.controls {
             for i in 0..M {
-                barrier -= logarithm(control[i] - low[i]) + logarithm(high[i] - control[i]);
+                rooms.add(control[i] - low[i]);
+                rooms.add(high[i] - control[i]);
             }
         }
         let mut penalty = 0.0;
         for row in &self.at.rows {
-            barrier -= row.slack.ln() + row.elastic.ln();
+            rooms.add(row.slack);
+            rooms.add(row.elastic);
             penalty += row.elastic;
         }
         Merit {
             infeasibility: self.infeasibility(),
-            objective: self.objective() + self.settings.penalty * penalty + self.barrier * barrier,
+            objective: self.objective() + self.settings.penalty * penalty
+                - self.barrier * rooms.sum(),
         }
     }
 
@@ -229,14 +232,15 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         let [low, high] = self.limits;
         let n = self.problem.stages();
         let trial = &mut self.work.trial;
-        let mut barrier = 0.0;
+        let mut rooms = Logarithms::new();
         trial.states[0] = self.at.states[0];
         for k in 0..n {
             trial.states[k + 1] = self.at.states[k + 1] + self.work.steps[k].y * step;
             trial.controls[k] = self.at.controls[k] + self.work.steps[k].u * step;
             for i in 0..M {
                 let u = trial.controls[k][i];
-                barrier -= logarithm(u - low[i]) + logarithm(high[i] - u);
+                rooms.add(u - low[i]);
+                rooms.add(high[i] - u);
             }
         }
         let (mut cost, mut infeasibility) = (0.0, 0.0);
@@ -258,13 +262,14 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
             let elastic = p.elastic + step * ds.elastic;
             trial.slacks[r] = slack;
             trial.elastics[r] = elastic;
-            barrier -= slack.ln() + elastic.ln();
+            rooms.add(slack);
+            rooms.add(elastic);
             penalty += elastic;
             infeasibility += (trial.rows[r] + elastic - slack).abs();
         }
         Merit {
             infeasibility,
-            objective: cost + self.settings.penalty * penalty + self.barrier * barrier,
+            objective: cost + self.settings.penalty * penalty - self.barrier * rooms.sum(),
         }
     }
 
@@ -292,11 +297,40 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
     }
 }
 
-/// Of a distance to a limit; 0 where there is none.
-fn logarithm(room: f64) -> f64 {
-    if room == f64::INFINITY {
-        0.0
-    } else {
-        room.ln()
+/// A sum of logarithms, some of them together as that of a product: numbers between 1e-30 and 1e30 overflow in none.
+#[derive(Debug, Clone, Copy)]
+struct Logarithms {
+    sum: f64,
+    product: f64,
+    factors: u32,
+}
+
+/// Factors of one product.
+const FACTORS: u32 = 8;
+
+impl Logarithms {
+    fn new() -> Self {
+        Self {
+            sum: 0.0,
+            product: 1.0,
+            factors: 0,
+        }
+    }
+
+    /// Adds the logarithm of a distance; none of an infinite one, and NaN of one that is not positive.
+    fn add(&mut self, room: f64) {
+        if room == f64::INFINITY {
+            return;
+        }
+        self.product *= if room > 0.0 { room } else { f64::NAN };
+        self.factors += 1;
+        if self.factors == FACTORS {
+            self.sum += self.product.ln();
+            (self.product, self.factors) = (1.0, 0);
+        }
+    }
+
+    fn sum(&self) -> f64 {
+        self.sum + self.product.ln()
     }
 }

@@ -73,13 +73,15 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
         self.yy += other.yy;
     }
 
-    /// Adds `weight v v'`.
+    /// Adds `weight v v'`. Rows seldom hold all three.
     pub(super) fn add_square(&mut self, weight: f64, v: &Triple<N, M>) {
-        self.xx.ger(weight, &v.x, &v.x, 1.0);
-        self.yx.ger(weight, &v.y, &v.x, 1.0);
+        let any = |part: &[f64]| part.iter().any(|value| *value != 0.0);
         self.yy.ger(weight, &v.y, &v.y, 1.0);
-        // rows seldom hold the control
-        if v.u.iter().any(|value| *value != 0.0) {
+        if any(v.x.as_slice()) {
+            self.xx.ger(weight, &v.x, &v.x, 1.0);
+            self.yx.ger(weight, &v.y, &v.x, 1.0);
+        }
+        if any(v.u.as_slice()) {
             self.ux.ger(weight, &v.u, &v.x, 1.0);
             self.uu.ger(weight, &v.u, &v.u, 1.0);
             self.yu.ger(weight, &v.y, &v.u, 1.0);

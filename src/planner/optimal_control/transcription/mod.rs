@@ -25,6 +25,9 @@ use crate::vessel::{ForceVector, Manoeuvring, Scales, StateVector};
 /// Of the level of a set, which is 1 on its edge: rows ask for this much more. It covers the tolerance of the solver.
 const MARGIN: f64 = 1e-4;
 
+/// Multipliers of rows below this bend nothing: second derivatives may be as inexact as the tolerance of the solver.
+const NEGLIGIBLE: f64 = 1e-8;
+
 /// A set to keep out of at a fraction of an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
@@ -293,6 +296,16 @@ impl<V: Manoeuvring> StageProblem<6, 3> for Transcription<'_, V> {
         };
         let (vx, vy) = (jx.fixed_rows::<2>(0), jy.fixed_rows::<2>(0));
         for ((to, row), &z) in rows.iter_mut().zip(&self.rows[stage]).zip(multipliers.rows) {
+            let off = self.position(row, &x, &y, &middle) - row.keep.center;
+            let slope: Vector2<f64> = 2.0 * (row.keep.inverse * off);
+            let bend: Matrix2<f64> = -2.0 * z * row.keep.inverse;
+            *to = Triple::zeros();
+            if row.fraction == 1.0 {
+                to.y.fixed_rows_mut::<2>(0).copy_from(&slope);
+                let mut corner = out.curvature.yy.fixed_view_mut::<2, 2>(0, 0);
+                corner += bend;
+                continue;
+            }
             let [a, b, c, d] = row.hermite;
             let (b, d) = (b * h, d * h);
             let place = |weight: f64, by_rate: f64, rate: Matrix2x6<f64>| {
@@ -302,12 +315,12 @@ impl<V: Manoeuvring> StageProblem<6, 3> for Transcription<'_, V> {
                 by
             };
             let (px, py) = (place(a, b, vx.into_owned()), place(c, d, vy.into_owned()));
-            let off = self.position(row, &x, &y, &middle) - row.keep.center;
-            let slope: Vector2<f64> = 2.0 * (row.keep.inverse * off);
             to.x = px.tr_mul(&slope);
-            to.u = ForceVector::zeros();
             to.y = py.tr_mul(&slope);
-            let bend: Matrix2<f64> = -2.0 * z * row.keep.inverse;
+            // of a set far away: nothing
+            if z < NEGLIGIBLE {
+                continue;
+            }
             let (bx, by) = (bend * px, bend * py);
             out.curvature.xx += px.tr_mul(&bx);
             out.curvature.yx += py.tr_mul(&bx);
