@@ -1,17 +1,24 @@
 //! The arrows in one place: Scenario → obstacles → Plan → Evaluation = Run.
 
+mod shore;
+
+pub use shore::{coast, land_within_reach};
+
 use std::time::{Duration, Instant};
 
-use crate::colregs::{self, Encounter};
+use crate::colregs::{self, Encounter, Role};
 use crate::evaluation::{
-    Evaluation, Request, SetShape, SpaceTimeSet, Steering, evaluate, evaluate_steered,
+    Evaluation, Freedom, Request, SetShape, SpaceTimeSet, Steering, evaluate, evaluate_steered,
 };
+use crate::frame::Side;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
-    EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    Coast, EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use crate::planner::optimal_control::{self, ControlReport, Controlled};
-use crate::planner::{NoPlan, Outcome, Planned, PlannerKind, Problem, space_time};
+use crate::planner::{
+    NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time,
+};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
@@ -61,6 +68,8 @@ pub struct Run {
     /// The obstacles that the plan was made against, in the same order: the level sets `O_alpha`,
     /// `alpha = 1 - max_risk`.
     pub obstacles: Vec<Obstacle>,
+    /// The convex pieces of land that the plan was made against: all that own ship could reach.
+    pub land: Vec<ConvexPolygon>,
     /// The planner's answer.
     pub planned: Planned,
     /// How the optimal-control planner found it; `None` for another planner.
@@ -176,17 +185,35 @@ fn one_after_another(
     }
 }
 
-/// What a scenario asks of a planner, against the given obstacles.
-pub fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
+/// What a scenario asks of a planner, against the given obstacles and the land.
+pub fn problem<'a>(
+    scenario: &'a Scenario,
+    obstacles: &'a [Obstacle],
+    coast: &'a Coast,
+) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,
+        alternatives: &scenario.alternatives,
+        objective: scenario.objective,
         obstacles,
+        coast,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: scenario.search,
-        deadline: Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX),
+        deadline: deadline(scenario),
+        first_turn: None,
     }
+}
+
+fn deadline(scenario: &Scenario) -> Duration {
+    Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX)
+}
+
+/// Rules 14 and 15 in open water: to starboard where own ship meets head-on or gives way.
+fn first_turn(sets: &[TargetSets]) -> Option<Side> {
+    let alters = |s: &TargetSets| matches!(s.encounter.role, Role::HeadOn | Role::GiveWay);
+    sets.iter().any(alters).then_some(Side::Starboard)
 }
 
 /// Plans a scenario and judges the plan. Where no plan keeps clear of the shapes, one that keeps clear of the
@@ -196,53 +223,61 @@ pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let shaped = scenario.compliance == Compliance::Shape;
     let begun = Instant::now();
-    let plan = |obstacles: &[Obstacle]| {
-        let asked = problem(&scenario, obstacles);
-        let asked = Problem {
-            deadline: asked.deadline.saturating_sub(begun.elapsed()),
-            ..asked
-        };
-        match &scenario.kind {
-            PlannerKind::SpaceTime => (space_time::plan(&asked), None),
-            PlannerKind::OptimalControl(settings) => {
-                let Controlled { planned, report } = optimal_control::plan(&asked, settings);
-                (planned, Some(report))
-            }
-        }
-    };
-    let forces = matches!(scenario.kind, PlannerKind::OptimalControl(_));
-    let at_risk = |set: &Obstacle| {
-        if scenario.max_risk > 0.0 {
-            set.at_risk(scenario.max_risk)
-        } else {
-            set.clone()
-        }
-    };
+    let forces = scenario.planner == PlannerKind::OptimalControl;
+    let land = land_within_reach(&scenario);
+    let coast = coast(&scenario, &land);
     let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
-    let level_sets = |used: fn(&TargetSets) -> &Obstacle| -> Vec<Obstacle> {
-        let sets: Vec<Obstacle> = sets.iter().map(|s| at_risk(used(s))).collect();
-        if forces {
-            optimal_control::outer_sets(&sets)
-        } else {
-            sets
-        }
-    };
-    let mut obstacles = level_sets(used);
+    let plan =
+        |used: fn(&TargetSets) -> &Obstacle| -> (Vec<Obstacle>, Planned, Option<ControlReport>) {
+            let whole: Vec<Obstacle> = sets.iter().map(|s| used(s).clone()).collect();
+            let risk = scenario.max_risk;
+            let level_sets: Vec<Obstacle> = if risk > 0.0 {
+                whole.iter().map(|set| set.at_risk(risk)).collect()
+            } else {
+                whole.clone()
+            };
+            let level_sets = if forces {
+                optimal_control::outer_sets(&level_sets)
+            } else {
+                level_sets
+            };
+            let asked = Problem {
+                deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
+                first_turn: shaped.then(|| first_turn(&sets)).flatten(),
+                ..problem(&scenario, &level_sets, &coast)
+            };
+            let planned = match (scenario.planner, scenario.objective) {
+                (PlannerKind::SpaceTime, _) => space_time::plan(&asked),
+                (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
+                    let asked = Problem {
+                        obstacles: &whole,
+                        ..asked
+                    };
+                    path_time::plan_weighing_risk(&asked, weight, risk)
+                }
+                (PlannerKind::PathTime, _) => path_time::plan(&asked),
+                (PlannerKind::OptimalControl, _) => {
+                    let Controlled { planned, report } =
+                        optimal_control::plan(&asked, &scenario.control);
+                    return (level_sets, planned, Some(report));
+                }
+            };
+            (level_sets, planned, None)
+        };
     let mut relaxations = if shaped {
         relaxations(&sets, |s| s.shape_reduced)
     } else {
         Vec::new()
     };
-    let (mut planned, mut control) = plan(&obstacles);
+    let (mut obstacles, mut planned, mut control) = plan(used);
     let stuck = match &planned.outcome {
-        Outcome::Infeasible(NoPlan::NoCandidate { .. } | NoPlan::Locked { .. }) => true,
-        // the ellipsoid around a shape may hold own ship where the shape does not
+        // the ellipse around a shape may hold own ship where the shape does not
         Outcome::Infeasible(NoPlan::StartInside { .. }) => forces,
-        _ => false,
+        Outcome::Infeasible(reason) => reason.is_for_the_sets(),
+        Outcome::Solved(_) | Outcome::Deadline(_) => false,
     };
     if shaped && stuck && sets.iter().any(|s| s.shape_reach > 0.0) {
-        let obstacles_left = level_sets(|s| &s.hard);
-        let (again, report) = plan(&obstacles_left);
+        let (obstacles_left, again, report) = plan(|s| &s.hard);
         if again.outcome.plan().is_some() {
             (obstacles, planned, control) = (obstacles_left, again, report);
             relaxations = self::relaxations(&sets, |s| s.shape_reach);
@@ -269,6 +304,7 @@ pub fn run(scenario: Scenario) -> Run {
         scenario,
         sets,
         obstacles,
+        land,
         planned,
         control,
         enclosed,
@@ -337,27 +373,35 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
             shape: shape(o),
         })
         .collect();
+    let mut paths = vec![scenario.desired.waypoints()];
+    paths.extend_from_slice(&scenario.alternatives);
     let request = Request {
+        freedom: match scenario.planner {
+            PlannerKind::SpaceTime | PlannerKind::OptimalControl => Freedom::Limits,
+            PlannerKind::PathTime => Freedom::Paths(&paths),
+        },
         segments: trajectory.segments(),
         own: &scenario.own_ship,
         desired: &scenario.desired,
         targets: &scenario.targets,
         sets: &sets,
+        land: scenario.land.as_ref().map_or(&[], |l| l.map.polygons()),
+        land_margin: scenario.land.as_ref().map_or(0.0, |l| l.margin),
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         max_risk: scenario.max_risk,
     };
-    match (trajectory.steered(), &scenario.kind) {
-        (Some(motion), PlannerKind::OptimalControl(settings)) => {
-            let vessel = settings.vessel.exact();
+    match trajectory.steered() {
+        Some(motion) => {
+            let vessel = scenario.control.vessel.exact();
             let steering = Steering {
                 motion,
                 vessel: vessel.as_ref(),
-                force_limits: settings.force_limits,
+                force_limits: scenario.control.force_limits,
             };
             evaluate_steered(&request, &steering)
         }
-        _ => evaluate(&request),
+        None => evaluate(&request),
     }
 }
 

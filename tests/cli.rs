@@ -101,59 +101,11 @@ fn every_fault_of_a_file_is_reported_at_once() {
 #[test]
 fn what_is_not_built_is_refused_by_name() {
     let folder = tempfile::tempdir().expect("a folder");
-    let cases = [
-        (
-            "title",
-            "origin = { lat_deg = 63.4, lon_deg = 10.4 }\ntitle",
-            "origin",
-        ),
-        ("title", "map = \"land.geojson\"\ntitle", "map"),
-        (
-            "position = { east_m = 0.0, north_m = 0.0 }",
-            "position = { lat_deg = 63.4, lon_deg = 10.4 }",
-            "own_ship.position.lat_deg",
-        ),
-        (
-            "beam_m = 8.0",
-            "beam_m = 8.0\nland_margin_m = 5.0",
-            "own_ship.land_margin_m",
-        ),
-        (
-            "[mission]",
-            "[mission]\nalternatives = []",
-            "mission.alternatives",
-        ),
-        (
-            "[mission]",
-            "[planner]\nkind = \"path-time\"\n[mission]",
-            "planner.kind",
-        ),
-        (
-            "[mission]",
-            "[planner]\nkind = \"optimal-control\"\n[mission]",
-            "planner.kind",
-        ),
-        (
-            "[mission]",
-            "[planner]\nobjective = \"time\"\n[mission]",
-            "planner.objective",
-        ),
-        (
-            "[mission]",
-            "[planner]\nrisk_weight_m = 1.0\n[mission]",
-            "planner.risk_weight_m",
-        ),
-        (
-            "[mission]",
-            "[planner]\ncompliance = \"rules\"\n[mission]",
-            "planner.compliance",
-        ),
-        (
-            "[mission]",
-            "[planner.optimal_control]\nintervals = 50\n[mission]",
-            "planner.optimal_control",
-        ),
-    ];
+    let cases = [(
+        "[mission]",
+        "[planner]\ncompliance = \"rules\"\n[mission]",
+        "planner.compliance",
+    )];
     for (from, to, path) in cases {
         assert!(HEAD_ON.contains(from));
         let file = write(folder.path(), "unbuilt.toml", HEAD_ON.replacen(from, to, 1));
@@ -162,16 +114,92 @@ fn what_is_not_built_is_refused_by_name() {
             .stdout(is_empty())
             .stderr(contains(path).and(contains("not built yet")));
     }
-    for (option, value) in [
-        ("--planner", "path-time"),
-        ("--planner", "optimal-control"),
-        ("--compliance", "rules"),
+    searoom(&["suite", "--compliance", "rules"])
+        .code(2)
+        .stdout(is_empty())
+        .stderr(contains("rules").and(contains("not built yet")));
+}
+
+/// What the path-time planner cannot plan, and what other planners cannot, by field and line.
+#[test]
+fn what_does_not_fit_the_planner_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path_time = "[planner]\nkind = \"path-time\"\n";
+    for (from, to, said) in [
+        (
+            "[mission]",
+            format!("{path_time}objective = \"length-risk\"\n[mission]"),
+            "planner.risk_weight_m: found nothing",
+        ),
+        (
+            "[mission]",
+            format!("{path_time}risk_weight_m = 5\n[mission]"),
+            "only the objective \"length-risk\"",
+        ),
+        (
+            "[mission]",
+            "[planner]\nobjective = \"time\"\n[mission]".to_owned(),
+            "planner.objective: found \"time\" for the space-time planner",
+        ),
+        (
+            "[mission]",
+            "[mission]\nalternatives = [[{ east_m = 0, north_m = 0 }, { east_m = 9, north_m = 9 }]]".to_owned(),
+            "mission.alternatives: found other paths for the space-time planner",
+        ),
+        (
+            "[mission]",
+            format!("{path_time}[mission]\nalternatives = [[{{ east_m = 0, north_m = 900 }}, {{ east_m = 9, north_m = 900 }}]]"),
+            "mission.alternatives[0]: found a path that shares no point",
+        ),
+        (
+            "[mission]",
+            format!("{path_time}[mission]\nalternatives = [[{{ east_m = 0, north_m = 0 }}, {{ east_m = 9, north_m = 900 }}]]"),
+            "mission.alternatives[0]: found a path on no way",
+        ),
+        (
+            "[mission]",
+            format!("{path_time}[mission]\nalternatives = [[{{ east_m = 0, north_m = 0 }}, {{ east_m = 0, north_m = 0 }}]]"),
+            "mission.alternatives[0][1]: found the waypoint before it again",
+        ),
+        (
+            "position = { east_m = 0.0, north_m = 0.0 }",
+            "position = { east_m = 0.0, north_m = 3.0 }".to_owned(),
+            "",
+        ),
     ] {
-        searoom(&["suite", option, value])
-            .code(2)
-            .stdout(is_empty())
-            .stderr(contains(value).and(contains("not built yet")));
+        assert!(HEAD_ON.contains(from), "{from}");
+        let mut content = HEAD_ON.replacen(from, &to, 1);
+        let expected = if said.is_empty() {
+            content = content.replacen("[mission]", &format!("{path_time}[mission]"), 1);
+            "own_ship.position: found a start 3 m from the first waypoint"
+        } else {
+            said
+        };
+        let file = write(folder.path(), "unfit.toml", content);
+        for command in ["check", "plan", "suite"] {
+            searoom(&[command, &file])
+                .code(2)
+                .stderr(contains(expected).and(contains("line ")));
+        }
     }
+    // the command line asks for what the file is not for
+    let file = write(
+        folder.path(),
+        "unfit.toml",
+        HEAD_ON.replacen(
+            "[mission]",
+            &format!("{path_time}objective = \"time\"\n[mission]"),
+            1,
+        ),
+    );
+    // head-on on one path there is no way past each other
+    searoom(&["plan", &file])
+        .code(1)
+        .stdout(contains("meets the set of 'target'"));
+    searoom(&["plan", &file, "--planner", "space-time"])
+        .code(2)
+        .stdout(is_empty())
+        .stderr(contains("unfit.toml: 1 fault").and(contains("planner.objective")));
 }
 
 #[test]

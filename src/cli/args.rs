@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use searoom::planner::SearchKind;
-use searoom::scenario::{Compliance, Scenario};
+use searoom::planner::{PlannerKind, SearchKind};
+use searoom::scenario::{Compliance, Fault, Scenario};
 
 use super::rows;
 
@@ -93,7 +93,7 @@ pub struct SuiteArgs {
 /// What every planning command takes.
 #[derive(Debug, Args)]
 pub struct Shared {
-    /// Planner instead of the scenario's: space-time
+    /// Planner instead of the scenario's: space-time, path-time, optimal-control
     #[arg(long, value_name = "KIND", value_parser = planner)]
     pub planner: Option<PlannerKind>,
     /// Search instead of the scenario's: a-star, dijkstra
@@ -114,11 +114,10 @@ pub struct Shared {
 }
 
 impl Shared {
-    /// Puts what the command line says in the place of what the scenario says.
-    pub fn apply(&self, scenario: &mut Scenario) {
-        match self.planner {
-            // every scenario asks for it already
-            Some(PlannerKind::SpaceTime) | None => {}
+    /// Puts what the command line says in the place of what the scenario says; what the planner cannot do then.
+    pub fn apply(&self, scenario: &mut Scenario) -> Result<(), Vec<Fault>> {
+        if let Some(planner) = self.planner {
+            scenario.planner = planner;
         }
         if let Some(search) = self.search {
             scenario.search = search;
@@ -128,6 +127,12 @@ impl Shared {
         }
         if let Some(max_risk) = self.max_risk {
             scenario.max_risk = max_risk;
+        }
+        let faults = scenario.unfit();
+        if faults.is_empty() {
+            Ok(())
+        } else {
+            Err(faults)
         }
     }
 }
@@ -144,17 +149,12 @@ fn time(text: &str) -> Result<f64, String> {
     rows::option(text, &rows::TIME).map(|[time]| time)
 }
 
-/// Which planner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PlannerKind {
-    SpaceTime,
-}
-
 fn planner(word: &str) -> Result<PlannerKind, String> {
     match word {
         "space-time" => Ok(PlannerKind::SpaceTime),
-        "path-time" | "optimal-control" => Err(unbuilt(word, "space-time")),
-        _ => Err("allowed: space-time".to_owned()),
+        "path-time" => Ok(PlannerKind::PathTime),
+        "optimal-control" => Ok(PlannerKind::OptimalControl),
+        _ => Err("allowed: space-time, path-time, optimal-control".to_owned()),
     }
 }
 

@@ -58,10 +58,13 @@ fn message(payload: &(dyn Any + Send)) -> &str {
 /// Reads, plans and judges one file.
 pub fn attempt(file: &Path, shared: &Shared) -> Attempt {
     let work = || match Scenario::read(file) {
-        Ok(mut scenario) => {
-            shared.apply(&mut scenario);
-            Attempt::Run(pipeline::run(scenario))
-        }
+        Ok(mut scenario) => match shared.apply(&mut scenario) {
+            Ok(()) => Attempt::Run(pipeline::run(scenario)),
+            Err(faults) => Attempt::Unreadable(ScenarioError::Faults {
+                file: file.to_owned(),
+                faults,
+            }),
+        },
         Err(error) => Attempt::Unreadable(error),
     };
     match guarded(work) {

@@ -1,5 +1,6 @@
 //! Judges any trajectory, sharing no collision code with the planners.
 
+mod along;
 mod clearance;
 mod cost;
 mod least;
@@ -8,6 +9,7 @@ mod moving_ellipse;
 mod moving_slabs;
 mod piece;
 mod quadrature;
+mod shore;
 mod space_time_set;
 mod steered;
 
@@ -19,10 +21,11 @@ use least::Least;
 use moving_ellipse::MovingEllipse;
 use moving_slabs::MovingSlabs;
 use piece::Piece;
+use shore::least_land_distance;
 use space_time_set::MovingSet;
 
-use crate::frame::{Side, relative_bearing};
-use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
+use crate::frame::{Side, Vector, relative_bearing};
+use crate::geometry::{ConvexPolygon, Polygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment};
@@ -77,6 +80,10 @@ pub struct Evaluation {
     pub delay: f64,
     /// Least of the targets' clearances, metres; infinite without targets.
     pub min_clearance: f64,
+    /// Least distance between own hull and land, metres; infinite without land, negative on it.
+    pub min_land_distance: f64,
+    /// And when, seconds.
+    pub min_land_distance_time: f64,
     /// Per target, in the scenario's order.
     pub passages: Vec<Passage>,
 }
@@ -88,6 +95,16 @@ impl Evaluation {
     }
 }
 
+/// How own ship may move.
+#[derive(Debug, Clone, Copy)]
+pub enum Freedom<'a> {
+    /// Anywhere, on lines and arcs of at least her turning radius, at the speeds of her finite set.
+    Limits,
+    /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest, turning on the spot where she
+    /// moves off along another leg.
+    Paths(&'a [Vec<Vector>]),
+}
+
 /// What is to be judged, and by what.
 #[derive(Debug, Clone)]
 pub struct Request<'a> {
@@ -95,12 +112,18 @@ pub struct Request<'a> {
     pub segments: &'a [Segment],
     /// Own ship and her limits; of no size where the sets already contain her.
     pub own: &'a OwnShip,
+    /// How she may move.
+    pub freedom: Freedom<'a>,
     /// Where she was meant to be, and when.
     pub desired: &'a DesiredTrajectory,
     /// The others.
     pub targets: &'a [Target],
     /// The sets that the plan was made against; several may bear one target's name.
     pub sets: &'a [SpaceTimeSet],
+    /// Land, which may overlap itself.
+    pub land: &'a [Polygon],
+    /// Kept between own hull and land, metres.
+    pub land_margin: f64,
     /// Seconds: arrival must not be later.
     pub horizon: f64,
     /// `q` of eq. (30), m²/s².
@@ -110,17 +133,19 @@ pub struct Request<'a> {
     pub max_risk: f64,
 }
 
-/// Judges a trajectory: start, joints, turning radius, speeds and arrival; every set in continuous time,
-/// to [`tolerance::DEPTH_M`]; every hull that a target may have, whatever the sets say; and the figures.
+/// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in continuous time,
+/// to [`tolerance::DEPTH_M`]; every hull that a target may have, whatever the sets say; own hull against
+/// the edges of the land; and the figures.
 ///
 /// Distances are certified least values ([`tolerance::MARGIN_M`]); the costs are integrated by quadrature
 /// of their own. A segment that is not a number is a violation, and the figures are then NaN.
 pub fn evaluate(request: &Request) -> Evaluation {
     let segments = request.segments;
-    let mut violations = motion::check(segments, request.own, request.desired, request.horizon);
+    let mut violations = motion::check(request);
     let judged = !segments.is_empty() && segments.iter().all(Segment::is_valid);
     let segments = if judged { segments } else { &[] };
     let passages = meetings(request, segments, judged, &mut violations);
+    let shore = shore(request, segments, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
     Evaluation {
@@ -144,6 +169,8 @@ pub fn evaluate(request: &Request) -> Evaluation {
                 .map(|p| p.min_clearance)
                 .fold(f64::INFINITY, f64::min),
         ),
+        min_land_distance: or_nan(shore.value),
+        min_land_distance_time: shore.time,
         passages,
     }
 }
@@ -184,6 +211,41 @@ fn meetings<P: Piece>(
         passages.push(passage);
     }
     passages
+}
+
+/// The land along a chain of pieces; what is violated is noted where they are `judged`.
+fn shore<P: Piece>(
+    request: &Request,
+    pieces: &[P],
+    judged: bool,
+    violations: &mut Vec<Violation>,
+) -> Least {
+    let own = &request.own.hull;
+    let least = least_land_distance(pieces, Body::hull(own), own.half_diagonal(), request.land);
+    if judged {
+        violations.extend(grounding(&least, request.land_margin));
+    }
+    least
+}
+
+/// The violation of the land by a least distance, if there is one.
+fn grounding(least: &Least, margin: f64) -> Option<Violation> {
+    let allowed = margin - tolerance::DEPTH_M;
+    // negated on purpose: a NaN is aground
+    let what = if !(least.value >= allowed) {
+        format!(
+            "land: own hull at {:.6e} m, allowed {allowed:.6e}",
+            least.value
+        )
+    } else if !least.certified {
+        "land: distance not proven within the budget of the check".to_owned()
+    } else {
+        return None;
+    };
+    Some(Violation {
+        what,
+        time: least.time,
+    })
 }
 
 /// The violation of a set by a least distance, if there is one. A set without interior has no depth:

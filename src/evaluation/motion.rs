@@ -1,10 +1,10 @@
 //! Does a chain of segments start, move and arrive as own ship can and must?
 
-use super::Violation;
 use super::quadrature::smooth;
+use super::{Freedom, Request, Violation, along};
 use crate::frame::{Vector, direction, wrap};
 use crate::tolerance;
-use crate::trajectory::{DesiredTrajectory, Segment};
+use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
 
 /// Radians. Arcs are integrated in pieces of this turn.
@@ -12,12 +12,14 @@ const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
 
 /// The requirements on motion alone. The ends of the segments are integrated anew from their speed and
 /// turn rate, not taken from the trajectory's own closed form.
-pub(super) fn check(
-    segments: &[Segment],
-    own: &OwnShip,
-    desired: &DesiredTrajectory,
-    horizon: f64,
-) -> Vec<Violation> {
+pub(super) fn check(request: &Request) -> Vec<Violation> {
+    let Request {
+        segments,
+        own,
+        desired,
+        horizon,
+        ..
+    } = *request;
     let mut found = Report(Vec::new());
     let (Some(first), Some(last)) = (segments.first(), segments.last()) else {
         found.add(0.0, "segments: none; at least one is needed".to_owned());
@@ -79,14 +81,17 @@ pub(super) fn check(
             step,
             tolerance::JOINT_M,
         );
-        let turn = wrap(heading - after.start.heading).abs();
-        found.limit(
-            &place("heading"),
-            "rad",
-            after.start_time,
-            turn,
-            tolerance::JOINT_RAD,
-        );
+        // along paths she turns where the path does
+        if let Freedom::Limits = request.freedom {
+            let turn = wrap(heading - after.start.heading).abs();
+            found.limit(
+                &place("heading"),
+                "rad",
+                after.start_time,
+                turn,
+                tolerance::JOINT_RAD,
+            );
+        }
         let pause = (before.start_time + before.duration - after.start_time).abs();
         found.limit(
             &place("time"),
@@ -96,6 +101,31 @@ pub(super) fn check(
             tolerance::TIME_S,
         );
     }
+    match request.freedom {
+        Freedom::Limits => limits(segments, own, &mut found),
+        Freedom::Paths(paths) => found.0.extend(along::check(segments, own, paths)),
+    }
+    let end_time = last.start_time + last.duration;
+    let short = (end_position(last) - desired.end()).norm();
+    found.limit(
+        "arrival",
+        "m from the last waypoint",
+        end_time,
+        short,
+        tolerance::ARRIVAL_M,
+    );
+    found.limit(
+        "arrival time",
+        "s",
+        end_time,
+        end_time,
+        horizon + tolerance::TIME_S,
+    );
+    found.0
+}
+
+/// Turning radius and speeds.
+fn limits(segments: &[Segment], own: &OwnShip, found: &mut Report) {
     for (index, s) in segments.iter().enumerate() {
         // in this form a turn on the spot is a violation too
         let speed_needed = s.turn_rate.abs() * own.turning_radius;
@@ -120,23 +150,6 @@ pub(super) fn check(
             );
         }
     }
-    let end_time = last.start_time + last.duration;
-    let short = (end_position(last) - desired.end()).norm();
-    found.limit(
-        "arrival",
-        "m from the last waypoint",
-        end_time,
-        short,
-        tolerance::ARRIVAL_M,
-    );
-    found.limit(
-        "arrival time",
-        "s",
-        end_time,
-        end_time,
-        horizon + tolerance::TIME_S,
-    );
-    found.0
 }
 
 struct Report(Vec<Violation>);

@@ -2,7 +2,7 @@
 
 use super::piece::Piece;
 use super::quadrature::smooth;
-use super::{Evaluation, Request, Violation, meetings};
+use super::{Evaluation, Request, Violation, meetings, shore};
 use crate::frame::{Vector, wrap};
 use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, Node, Steered};
@@ -38,6 +38,7 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     check(request, steering, &mut violations);
     let pieces: Vec<Cubic> = steering.motion.pieces().collect();
     let passages = meetings(request, &pieces, true, &mut violations);
+    let shore = shore(request, &pieces, true, &mut violations);
     let length = steering.motion.length();
     let nodes = steering.motion.nodes();
     Evaluation {
@@ -51,6 +52,8 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
             .iter()
             .map(|p| p.min_clearance)
             .fold(f64::INFINITY, f64::min),
+        min_land_distance: shore.value,
+        min_land_distance_time: shore.time,
         passages,
     }
 }

@@ -101,11 +101,14 @@ fn ship(y: f64, speed: f64) -> Target {
 
 fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Evaluation {
     evaluate(&Request {
+        freedom: Freedom::Limits,
         segments,
         own: &own(),
         desired: &desired(),
         targets,
         sets,
+        land: &[],
+        land_margin: 0.0,
         horizon: 400.0,
         time_weight: 25.0,
         max_risk: 0.0,
@@ -300,11 +303,14 @@ fn what_is_not_a_number_is_never_verified() {
     limits.turning_radius = f64::NAN;
     limits.pose.heading = f64::NAN;
     let found = evaluate(&Request {
+        freedom: Freedom::Limits,
         segments: &plan(),
         own: &limits,
         desired: &desired(),
         targets: &[],
         sets: &[],
+        land: &[],
+        land_margin: 0.0,
         horizon: f64::NAN,
         time_weight: 25.0,
         max_risk: 0.0,

@@ -1,12 +1,12 @@
-//! What a run does with shapes, risks and no way out.
+//! Which sets are used, what is given up, what the judge sees.
 
 use super::*;
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector};
-use crate::planner::SearchKind;
+use crate::planner::{ControlSettings, SearchKind};
 use crate::target::{DomainKind, ShipTrack};
 use crate::trajectory::{DesiredTrajectory, Segment};
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::{Hull, OwnShip, VesselKind};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn polytope(o: &Obstacle) -> &PolytopeObstacle {
@@ -30,17 +30,22 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
             safety_margin: 20.0,
         },
         desired: DesiredTrajectory::new(&points, &[5.0]).expect("valid"),
+        alternatives: Vec::new(),
+        planner: PlannerKind::SpaceTime,
+        objective: Objective::SpaceTimeError,
+        control: ControlSettings::of(VesselKind::CyberShip2),
         targets: vec![Target {
             name: "other".to_owned(),
             motion: Motion::Ship(target),
             representation: Representation::Polytope,
         }],
-        kind: PlannerKind::SpaceTime,
         search: SearchKind::AStar,
         compliance,
         time_weight: 25.0,
         max_risk: 0.0,
         deadline: 5.0,
+        earth: None,
+        land: None,
     }
 }
 

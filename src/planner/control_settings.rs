@@ -2,25 +2,6 @@
 
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
-/// Which planner plans a scenario.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PlannerKind {
-    /// Lines and arcs on a graph.
-    SpaceTime,
-    /// Forces by numerical optimisation.
-    OptimalControl(ControlSettings),
-}
-
-impl PlannerKind {
-    /// The word for it in files and documents.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::SpaceTime => "space-time",
-            Self::OptimalControl(_) => "optimal-control",
-        }
-    }
-}
-
 /// Ship, grid and weights of the stage cost `(x - r)' Q (x - r) + tau' R tau`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlSettings {

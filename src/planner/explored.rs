@@ -5,7 +5,7 @@ use petgraph::graph::DiGraph;
 use crate::frame::Pose;
 use crate::trajectory::Segment;
 
-/// What a node of the space-time graph is.
+/// What a node of a graph is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum NodeKind {
     /// Own ship at t = 0.
@@ -21,6 +21,13 @@ pub enum NodeKind {
     },
     /// Straight on from a vertex for a while.
     Held,
+    /// On a path: a corner of an obstacle in distance and time.
+    Corner {
+        /// Index of the obstacle.
+        obstacle: usize,
+    },
+    /// On a path: the end of a leg.
+    Waypoint,
     /// The end of the desired path.
     End,
 }

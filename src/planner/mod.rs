@@ -4,15 +4,17 @@ mod control_settings;
 pub mod cost;
 mod explored;
 pub mod optimal_control;
+pub mod path_time;
 pub mod space_time;
 
-pub use control_settings::{ControlSettings, PlannerKind};
+pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 
 use std::time::Duration;
 
-use crate::obstacle::Obstacle;
-use crate::trajectory::{DesiredTrajectory, Trajectory};
+use crate::frame::{Side, Vector};
+use crate::obstacle::{Coast, Obstacle};
+use crate::trajectory::{DesiredTrajectory, NetworkError, Trajectory};
 use crate::vessel::OwnShip;
 
 /// Which search runs over the graph.
@@ -24,6 +26,56 @@ pub enum SearchKind {
     Dijkstra,
 }
 
+/// Which planner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlannerKind {
+    /// Chooses her way and her speed: [`space_time`].
+    SpaceTime,
+    /// Keeps to given paths and chooses her speed: [`path_time`].
+    PathTime,
+    /// Chooses her forces: [`optimal_control`].
+    OptimalControl,
+}
+
+impl PlannerKind {
+    /// The word for it in files and on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::SpaceTime => "space-time",
+            Self::PathTime => "path-time",
+            Self::OptimalControl => "optimal-control",
+        }
+    }
+}
+
+/// What a planner minimises.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Objective {
+    /// The space-time error, formulas section 7, m².
+    SpaceTimeError,
+    /// The time of arrival, s.
+    Time,
+    /// The length of the way, m; of ways of one length the time.
+    Length,
+    /// The length of the way and its largest risk, m: what `weight` metres are to certainty.
+    LengthRisk {
+        /// Metres, not negative.
+        weight: f64,
+    },
+}
+
+impl Objective {
+    /// The word for it in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::SpaceTimeError => "space-time-error",
+            Self::Time => "time",
+            Self::Length => "length",
+            Self::LengthRisk { .. } => "length-risk",
+        }
+    }
+}
+
 /// What a planner is asked: keep `own` clear of every obstacle, close to `desired`, until she arrives.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
@@ -31,8 +83,14 @@ pub struct Problem<'a> {
     pub own: &'a OwnShip,
     /// Where she is meant to be, and when.
     pub desired: &'a DesiredTrajectory,
+    /// Other paths that she may sail, metres: the path-time planner's.
+    pub alternatives: &'a [Vec<Vector>],
+    /// What is minimised; the space-time planner knows the space-time error alone.
+    pub objective: Objective,
     /// The sets to stay out of, own ship's footprint folded in.
     pub obstacles: &'a [Obstacle],
+    /// Land to stay off, own ship's footprint folded in.
+    pub coast: &'a Coast,
     /// Seconds: arrival must not be later; the obstacles are known until then.
     pub horizon: f64,
     /// `q` of eq. (30), m²/s².
@@ -41,7 +99,14 @@ pub struct Problem<'a> {
     pub search: SearchKind,
     /// Wall-clock budget of one plan.
     pub deadline: Duration,
+    /// Side to which own ship should turn first: a plan that first turns to the other has to be cheaper by
+    /// [`AGAINST_THE_RULES`].
+    pub first_turn: Option<Side>,
 }
+
+/// Share of the cost by which a plan has to be cheaper whose first turn is to the side that the collision
+/// regulations discourage.
+pub const AGAINST_THE_RULES: f64 = 0.05;
 
 /// What the search did to find the cheapest plan on the graph.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -61,7 +126,7 @@ pub struct SearchStats {
 pub struct Plan {
     /// From own ship's pose at t = 0 to the last waypoint.
     pub trajectory: Trajectory,
-    /// The space-time error of the trajectory, m²; what was minimised.
+    /// What was minimised, in the objective's unit.
     pub cost: f64,
     /// The cheapest plan on the graph before refinement, m²; `None` where the graph had none.
     pub graph_cost: Option<f64>,
@@ -78,6 +143,14 @@ pub enum NoPlan {
         /// Metres.
         depth: f64,
     },
+    /// Own ship starts nearer to land than she may be on some heading.
+    #[error(
+        "own ship starts {depth:.1} m nearer to land than her half-diagonal and the land margin allow"
+    )]
+    StartAshore {
+        /// Metres.
+        depth: f64,
+    },
     /// The end cannot be reached before the horizon even without obstacles.
     #[error(
         "the last waypoint is reached after {earliest:.1} s at best, on the path found for the turning radius, without targets, but the horizon is {horizon:.1} s"
@@ -91,6 +164,61 @@ pub enum NoPlan {
     /// The waypoints and own ship's pose cannot be joined by a path.
     #[error("no path joins own ship and the waypoints: a coordinate is out of range")]
     NoRoute,
+    /// A planner that keeps to a path begins on it.
+    #[error("own ship is {away:.3} m from the first waypoint; the path-time planner begins there")]
+    OffPath {
+        /// Metres.
+        away: f64,
+    },
+    /// The alternatives and the main path are no network.
+    #[error("the paths cannot be sailed: {0}")]
+    NoNetwork(NetworkError),
+    /// The end of the path cannot be reached before the horizon even without obstacles.
+    #[error(
+        "the last waypoint is reached after {earliest:.1} s at best, on the shortest of the paths at the greatest speed, without targets, but the horizon is {horizon:.1} s"
+    )]
+    PathTooLong {
+        /// Seconds.
+        earliest: f64,
+        /// Seconds.
+        horizon: f64,
+    },
+    /// The start of the path is in a set at t = 0.
+    #[error(
+        "own ship starts inside the set of '{target}', {depth:.1} m deep, which stays over the start {}",
+        until_text(*until)
+    )]
+    StartCovered {
+        /// Name of the obstacle.
+        target: String,
+        /// Metres.
+        depth: f64,
+        /// Seconds; `None` up to the horizon.
+        until: Option<f64>,
+    },
+    /// No motion along the paths is clear of every set; what bars the way where own ship came nearest to the end.
+    #[error(
+        "no motion along the path is clear of every set: {to_go:.0} m before its end own ship, at the earliest, meets the set of '{target}' after {time:.1} s, which stays there {}",
+        until_text(*until)
+    )]
+    Barred {
+        /// Name of the obstacle.
+        target: String,
+        /// Metres to the end of the path.
+        to_go: f64,
+        /// Seconds.
+        time: f64,
+        /// Seconds; `None` up to the horizon.
+        until: Option<f64>,
+    },
+    /// The sets leave a way, but not within the horizon.
+    #[error(
+        "no motion along the path is clear of every set and at the end before the horizon of {horizon:.1} s"
+    )]
+    OutOfTime {
+        /// Seconds.
+        horizon: f64,
+    },
     /// No candidate is clear of every set.
     #[error(
         "no trajectory of the graph or its refinement is clear of every set until arrival; held on the desired \
@@ -138,6 +266,35 @@ pub enum NoPlan {
     },
 }
 
+impl NoPlan {
+    /// True when smaller sets might leave a way.
+    pub fn is_for_the_sets(&self) -> bool {
+        match self {
+            Self::NoCandidate { .. }
+            | Self::Barred { .. }
+            | Self::OutOfTime { .. }
+            | Self::Locked { .. }
+            | Self::Unsolved { .. } => true,
+            Self::StartInside { .. }
+            | Self::StartAshore { .. }
+            | Self::StartCovered { .. }
+            | Self::HorizonTooShort { .. }
+            | Self::PathTooLong { .. }
+            | Self::OffPath { .. }
+            | Self::NoNetwork(_)
+            | Self::Coarse { .. }
+            | Self::NoRoute => false,
+        }
+    }
+}
+
+fn until_text(until: Option<f64>) -> String {
+    match until {
+        Some(time) => format!("until {time:.1} s"),
+        None => "up to the horizon".to_owned(),
+    }
+}
+
 /// What a planner answers. None of these is an error.
 #[derive(Debug, Clone)]
 pub enum Outcome {
@@ -160,6 +317,16 @@ impl Outcome {
     }
 }
 
+impl Outcome {
+    fn plan_mut(&mut self) -> Option<&mut Plan> {
+        match self {
+            Self::Solved(plan) => Some(plan),
+            Self::Deadline(plan) => plan.as_mut(),
+            Self::Infeasible(_) => None,
+        }
+    }
+}
+
 /// The answer of a planner with what led to it.
 #[derive(Debug, Clone)]
 pub struct Planned {
@@ -169,4 +336,6 @@ pub struct Planned {
     pub stats: SearchStats,
     /// Every node and edge that the search made.
     pub explored: ExploredGraph,
+    /// The diagram that the path-time planner planned in; boxed, as most plans have none.
+    pub path_time: Option<Box<path_time::PathTimeDiagram>>,
 }

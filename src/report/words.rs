@@ -1,13 +1,15 @@
 //! The words of the contract for what the program computes.
 
 use crate::frame::Side;
+use crate::planner::path_time::PathTimeDiagram;
 use crate::planner::{PlannerKind, SearchKind};
+use crate::scenario::Scenario;
 
-/// What a planner minimises.
-pub(super) fn objective(kind: &PlannerKind) -> &'static str {
-    match kind {
-        PlannerKind::SpaceTime => "space-time-error",
-        PlannerKind::OptimalControl(_) => "stage-cost",
+/// What the planner minimises.
+pub(super) fn objective(scenario: &Scenario) -> &'static str {
+    match scenario.planner {
+        PlannerKind::OptimalControl => "stage-cost",
+        PlannerKind::SpaceTime | PlannerKind::PathTime => scenario.objective.word(),
     }
 }
 
@@ -18,6 +20,21 @@ pub(super) fn search(kind: SearchKind) -> &'static str {
     }
 }
 
+/// What a path is called: 0 is the main one.
+pub(super) fn path(index: usize) -> String {
+    match index {
+        0 => "main".to_owned(),
+        index => format!("alternative {index}"),
+    }
+}
+
+/// The paths that are sailed, in their order.
+pub(super) fn paths(diagram: &PathTimeDiagram) -> String {
+    let mut sailed: Vec<usize> = diagram.legs.iter().map(|leg| leg.path).collect();
+    sailed.dedup();
+    let names: Vec<String> = sailed.into_iter().map(path).collect();
+    names.join(", ")
+}
 pub(super) fn side(side: Side) -> &'static str {
     match side {
         Side::Port => "port",

@@ -1,14 +1,19 @@
 //! File → [`Scenario`], noting every fault.
 
+use std::path::Path;
+
+use toml::de::DeTable;
+
 use super::control::control_settings;
 use super::file::{Entry, Source, TEXT, Word};
+use super::plane::{POSITION, Plane};
 use super::section::Section;
 use super::targets::targets;
-use super::{Compliance, Scenario, limits};
+use super::{Compliance, Land, Scenario, land, limits};
 use crate::frame::{Pose, Vector, heading_from_course_deg};
-use crate::planner::{PlannerKind, SearchKind};
+use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
 use crate::trajectory::DesiredTrajectory;
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::{Hull, OwnShip, VesselKind};
 
 /// Own ship's speeds where the file names none, as fractions of her own speed.
 const DEFAULT_SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
@@ -18,29 +23,42 @@ const DEFAULT_DEADLINE: f64 = 5.0;
 
 /// The scenario of a file's outermost table. `None` only when a fault was noted; a scenario that
 /// comes with faults is of no use.
-pub(super) fn scenario(mut root: Section) -> Option<Scenario> {
+pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
     let title = root.require("title", TEXT).and_then(|entry| entry.text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
-    root.not_built("origin");
-    root.not_built("map");
+    let plane = Plane::new(&mut root);
+    let map = land::map(&mut root, &plane, folder);
     let own_ship = root
         .require("own_ship", "a table")
         .and_then(|entry| entry.section("a table"))
-        .map(own_ship);
+        .map(|section| own_ship(section, &plane));
     let speed = own_ship.as_ref().and_then(|own| own.speed);
+    let margin = own_ship.as_ref().and_then(|own| own.land_margin);
     let own_ship = own_ship.and_then(|own| own.ship);
-    let desired = root
+    let mission = root
         .require("mission", "a table")
         .and_then(|entry| entry.section("a table"))
-        .and_then(|section| mission(section, speed));
+        .and_then(|section| mission(section, speed, &plane));
     let planner = root
         .take("planner")
         .and_then(|entry| entry.section("a table"))
         .map(planner)
         .unwrap_or_default();
-    let targets = targets(&mut root);
+    let targets = targets(&mut root, &plane);
+    let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
+    if let Some(land) = &land {
+        let desired = mission.as_ref().map(|m| &m.desired);
+        land::check(&mut root, land, &plane, own_ship.as_ref(), desired);
+    }
+    plane.finish(&mut root);
     root.finish();
-    let (desired, own_ship) = (desired?, own_ship?);
+    let (
+        Mission {
+            desired,
+            alternatives,
+        },
+        own_ship,
+    ) = (mission?, own_ship?);
     let mean_speed = desired.length() / desired.duration();
     Some(Scenario {
         title: title?,
@@ -48,36 +66,27 @@ pub(super) fn scenario(mut root: Section) -> Option<Scenario> {
         time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
         own_ship,
         desired,
+        alternatives,
         targets: targets?,
-        kind: planner.kind.unwrap_or(PlannerKind::SpaceTime),
+        planner: planner.kind.unwrap_or(PlannerKind::SpaceTime),
+        objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
+        control: planner
+            .control
+            .unwrap_or(ControlSettings::of(VesselKind::CyberShip2)),
         search: planner.search.unwrap_or(SearchKind::AStar),
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
         max_risk: planner.max_risk.unwrap_or(0.0),
         deadline: planner.deadline.unwrap_or(DEFAULT_DEADLINE),
+        earth: plane.earth(),
+        land,
     })
 }
 
-/// A point in metres from a table of east and north.
-pub(super) fn position(entry: &Entry) -> Option<Vector> {
-    let mut section = entry.section("a table { east_m, north_m }")?;
-    let geographic = section.not_built("lat_deg") | section.not_built("lon_deg");
-    let mut component = |key: &str| {
-        if geographic {
-            section.number(key, limits::COORDINATE)
-        } else {
-            section.required_number(key, limits::COORDINATE)
-        }
-    };
-    let (east, north) = (component("east_m"), component("north_m"));
-    section.finish();
-    Some(Vector::new(east?, north?))
-}
-
 /// A pose from the keys `position` and `course_deg`.
-pub(super) fn pose(section: &mut Section) -> Option<Pose> {
+pub(super) fn pose(section: &mut Section, plane: &Plane) -> Option<Pose> {
     let position = section
-        .require("position", "a table { east_m, north_m }")
-        .and_then(|entry| position(&entry));
+        .require("position", POSITION)
+        .and_then(|entry| plane.position(&entry));
     let course = section.required_number("course_deg", limits::COURSE);
     Some(Pose::new(position?, heading_from_course_deg(course?)))
 }
@@ -96,16 +105,22 @@ pub(super) fn hull(section: &mut Section) -> Option<Hull> {
 struct OwnShipFields {
     ship: Option<OwnShip>,
     speed: Option<f64>,
+    /// Metres.
+    land_margin: Option<f64>,
 }
 
-fn own_ship(mut section: Section) -> OwnShipFields {
-    let pose = pose(&mut section);
+fn own_ship(mut section: Section, plane: &Plane) -> OwnShipFields {
+    let pose = pose(&mut section, plane);
     let speed = section.required_speed("speed", limits::SPEED);
     let hull = hull(&mut section);
     let turning_radius = section.required_number("turning_radius_m", limits::LENGTH);
     let speeds = own_speeds(&mut section, speed);
     let margin = section.number("safety_margin_m", limits::DISTANCE);
-    section.only_zero("land_margin_m");
+    let land_margin = if section.has("land_margin_m") {
+        section.number("land_margin_m", limits::DISTANCE)
+    } else {
+        Some(0.0)
+    };
     section.finish();
     let ship = || {
         let hull = hull?;
@@ -121,6 +136,7 @@ fn own_ship(mut section: Section) -> OwnShipFields {
     OwnShipFields {
         ship: ship(),
         speed,
+        land_margin,
     }
 }
 
@@ -159,29 +175,59 @@ fn own_speeds(section: &mut Section, speed: Option<f64>) -> Option<Vec<f64>> {
     Some(speeds)
 }
 
-fn mission(mut section: Section, own_speed: Option<f64>) -> Option<DesiredTrajectory> {
-    section.not_built("alternatives");
+/// The desired trajectory and the other paths.
+struct Mission {
+    desired: DesiredTrajectory,
+    alternatives: Vec<Vec<Vector>>,
+}
+
+fn mission(mut section: Section, own_speed: Option<f64>, plane: &Plane) -> Option<Mission> {
+    let alternatives = match section.take("alternatives") {
+        Some(entry) => alternatives(&entry, plane),
+        None => Some(Vec::new()),
+    };
     let entries = section
         .require("waypoints", "a list of at least 2 positions")
-        .and_then(|entry| {
-            let entries = entry.list(2, "positions")?;
-            if entries.len() > limits::WAYPOINTS {
-                let found = format_args!("{} positions", entries.len());
-                entry.fault(found, format_args!("at most {}", limits::WAYPOINTS));
-                return None;
-            }
-            Some(entries)
-        });
+        .and_then(|entry| positions(&entry));
     let legs = entries.as_ref().map(|entries| entries.len() - 1);
-    let waypoints = entries.and_then(|entries| waypoints(&entries));
+    let waypoints = entries.and_then(|entries| waypoints(&entries, plane));
     let speeds = leg_speeds(&mut section, legs, own_speed);
     section.finish();
     // every leg is long and fast enough by now
-    DesiredTrajectory::new(&waypoints?, &speeds?).ok()
+    let desired = DesiredTrajectory::new(&waypoints?, &speeds?).ok()?;
+    Some(Mission {
+        desired,
+        alternatives: alternatives?,
+    })
 }
 
-fn waypoints(entries: &[Entry]) -> Option<Vec<Vector>> {
-    let points: Vec<Option<Vector>> = entries.iter().map(position).collect();
+/// A list of as many positions as a path may have.
+fn positions<'a, 'i>(entry: &Entry<'a, 'i>) -> Option<Vec<Entry<'a, 'i>>> {
+    let entries = entry.list(2, "positions")?;
+    if entries.len() > limits::WAYPOINTS {
+        let found = format_args!("{} positions", entries.len());
+        entry.fault(found, format_args!("at most {}", limits::WAYPOINTS));
+        return None;
+    }
+    Some(entries)
+}
+
+fn alternatives(entry: &Entry, plane: &Plane) -> Option<Vec<Vec<Vector>>> {
+    let paths = entry.list(1, "paths, each a list of positions")?;
+    if paths.len() > limits::ALTERNATIVES {
+        let found = format_args!("{} paths", paths.len());
+        entry.fault(found, format_args!("at most {}", limits::ALTERNATIVES));
+        return None;
+    }
+    let read: Vec<_> = paths
+        .iter()
+        .map(|path| positions(path).and_then(|entries| waypoints(&entries, plane)))
+        .collect();
+    read.into_iter().collect()
+}
+
+fn waypoints(entries: &[Entry], plane: &Plane) -> Option<Vec<Vector>> {
+    let points: Vec<Option<Vector>> = entries.iter().map(|e| plane.position(e)).collect();
     let mut sound = true;
     for (pair, entry) in points.windows(2).zip(&entries[1..]) {
         if let [Some(before), Some(here)] = pair
@@ -242,6 +288,8 @@ fn leg_speeds(
 #[derive(Debug, Default)]
 struct PlannerFields {
     kind: Option<PlannerKind>,
+    objective: Option<Objective>,
+    control: Option<ControlSettings>,
     search: Option<SearchKind>,
     compliance: Option<Compliance>,
     time_weight: Option<f64>,
@@ -250,35 +298,17 @@ struct PlannerFields {
 }
 
 fn planner(mut section: Section) -> PlannerFields {
-    let forces = section.choice(
-        "kind",
-        &[
-            ("space-time", Word::Means(false)),
-            ("path-time", Word::NotBuilt),
-            ("optimal-control", Word::Means(true)),
-        ],
-    );
-    let kind = if forces == Some(true) {
-        control_settings(&mut section).map(PlannerKind::OptimalControl)
-    } else {
-        section.forbid(
-            "optimal_control",
-            "nothing: it is for kind = \"optimal-control\"",
-        );
-        forces.map(|_| PlannerKind::SpaceTime)
-    };
-    section.choice(
-        "objective",
-        &[
-            ("space-time-error", Word::Means(())),
-            ("time", Word::NotBuilt),
-            ("length", Word::NotBuilt),
-            ("length-risk", Word::NotBuilt),
-        ],
-    );
-    section.not_built("risk_weight_m");
     let fields = PlannerFields {
-        kind,
+        control: control_settings(&mut section),
+        kind: section.choice(
+            "kind",
+            &[
+                ("space-time", Word::Means(PlannerKind::SpaceTime)),
+                ("path-time", Word::Means(PlannerKind::PathTime)),
+                ("optimal-control", Word::Means(PlannerKind::OptimalControl)),
+            ],
+        ),
+        objective: objective(&mut section),
         search: section.choice(
             "search",
             &[
@@ -302,16 +332,44 @@ fn planner(mut section: Section) -> PlannerFields {
     fields
 }
 
-/// Reads a whole text; the faults say what is wrong with it.
-pub(super) fn text(source: &Source, text: &str) -> Option<Scenario> {
-    let (document, errors) = toml::de::DeTable::parse_recoverable(text);
+/// The objective; the one that weighs risk needs its weight, the others have none.
+fn objective(section: &mut Section) -> Option<Objective> {
+    let weighed = Objective::LengthRisk { weight: 0.0 };
+    let objective = section.choice(
+        "objective",
+        &[
+            ("space-time-error", Word::Means(Objective::SpaceTimeError)),
+            ("time", Word::Means(Objective::Time)),
+            ("length", Word::Means(Objective::Length)),
+            ("length-risk", Word::Means(weighed)),
+        ],
+    );
+    if objective == Some(weighed) {
+        let weight = section.required_number("risk_weight_m", limits::DISTANCE)?;
+        return Some(Objective::LengthRisk { weight });
+    }
+    section.forbid(
+        "risk_weight_m",
+        "nothing: only the objective \"length-risk\" weighs risk",
+    );
+    objective
+}
+
+/// Reads a whole text, of a file in `folder`; the faults say what is wrong with it.
+pub(super) fn text(source: &Source, text: &str, folder: &Path) -> Option<Scenario> {
+    let (document, errors) = DeTable::parse_recoverable(text);
     if errors.is_empty() {
-        return scenario(Section::new(
-            source,
-            String::new(),
-            None,
-            document.get_ref(),
-        ));
+        let root = document.get_ref();
+        let scenario = scenario(Section::new(source, String::new(), None, root), folder)?;
+        for fault in scenario.unfit() {
+            source.fault(
+                &fault.path,
+                offset_of(root, &fault.path),
+                fault.found,
+                fault.allowed,
+            );
+        }
+        return Some(scenario);
     }
     // what could be recovered may be in the wrong table: only the grammar is judged
     for error in errors {
@@ -319,4 +377,27 @@ pub(super) fn text(source: &Source, text: &str) -> Option<Scenario> {
         source.fault("", offset, error.message(), "TOML 1.0 without errors");
     }
     None
+}
+
+/// Where the value at a path like `a.b[2]` begins.
+fn offset_of(root: &DeTable, path: &str) -> Option<usize> {
+    let mut table = root;
+    let mut found = None;
+    for part in path.split('.') {
+        let (key, index) = match part.split_once('[') {
+            Some((key, rest)) => (key, rest.trim_end_matches(']').parse::<usize>().ok()),
+            None => (part, None),
+        };
+        let value = table.get(key)?;
+        let value = match index {
+            Some(index) => value.get_ref().as_array()?.get(index)?,
+            None => value,
+        };
+        found = Some(value.span().start);
+        match value.get_ref().as_table() {
+            Some(inner) => table = inner,
+            None => break,
+        }
+    }
+    found
 }

@@ -79,9 +79,8 @@ fn weights<const N: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::Scenario;
+    use super::super::{Fault, Scenario};
     use super::*;
-    use crate::planner::PlannerKind;
 
     const LEAST: &str = r#"
 title = "least"
@@ -94,13 +93,8 @@ kind = "optimal-control"
 
     fn settings(table: &str) -> Result<ControlSettings, Vec<String>> {
         let text = format!("{LEAST}[planner.optimal_control]\n{table}");
-        match Scenario::parse(&text) {
-            Ok(scenario) => match scenario.kind {
-                PlannerKind::OptimalControl(settings) => Ok(settings),
-                PlannerKind::SpaceTime => Err(vec!["space-time".to_owned()]),
-            },
-            Err(faults) => Err(faults.into_iter().map(|f| f.path).collect()),
-        }
+        let faults = |faults: Vec<Fault>| faults.into_iter().map(|f| f.path).collect();
+        Scenario::parse(&text).map(|s| s.control).map_err(faults)
     }
 
     #[test]
@@ -151,9 +145,5 @@ kind = "optimal-control"
             let path = format!("planner.optimal_control.{path}");
             assert_eq!(settings(table), Err(vec![path]), "{table}");
         }
-        let other =
-            format!("{LEAST}[planner.optimal_control]").replace("optimal-control", "space-time");
-        let faults = Scenario::parse(&other).expect_err("not for this kind");
-        assert_eq!(faults[0].path, "planner.optimal_control");
     }
 }

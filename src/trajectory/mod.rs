@@ -1,11 +1,13 @@
 //! What every planner returns: exact constant-speed lines and arcs in time; and what it is compared
-//! with: the desired trajectory.
+//! with: the desired trajectory, and the paths that may be sailed.
 
 mod desired;
+mod network;
 mod segment;
 mod steered;
 
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
+pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub use segment::{Mover, Segment};
 pub use steered::{Bounds, Cubic, Node, Steered, hermite};
 
@@ -43,8 +45,8 @@ pub enum TrajectoryError {
     },
 }
 
-/// A continuous chain of [`Segment`]s: position and heading continuous, time increasing. Or a motion under forces, which
-/// has no segments: see [`Trajectory::steered`].
+/// A continuous chain of [`Segment`]s: position continuous, time increasing, and heading continuous but at corners. Or a
+/// motion under forces, which has no segments: see [`Trajectory::steered`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     segments: Vec<Segment>,
@@ -61,8 +63,17 @@ impl From<Steered> for Trajectory {
 }
 
 impl Trajectory {
-    /// A trajectory from segments that meet within [`tolerance::JOINT_M`].
+    /// A trajectory from segments that meet within [`tolerance::JOINT_M`], headings included.
     pub fn new(segments: Vec<Segment>) -> Result<Self, TrajectoryError> {
+        Self::chained(segments, |turn| turn)
+    }
+
+    /// A trajectory along a path with corners: at the joint of two segments own ship may turn on the spot.
+    pub fn with_corners(segments: Vec<Segment>) -> Result<Self, TrajectoryError> {
+        Self::chained(segments, |_| 0.0)
+    }
+
+    fn chained(segments: Vec<Segment>, counted: fn(f64) -> f64) -> Result<Self, TrajectoryError> {
         if segments.is_empty() {
             return Err(TrajectoryError::Empty);
         }
@@ -73,10 +84,11 @@ impl Trajectory {
             if index > 0 {
                 let before = &segments[index - 1];
                 let end = before.end();
+                let turn = wrap(end.heading - s.start.heading).abs();
                 let gap = (end.position - s.start.position)
                     .norm()
                     .max((before.end_time() - s.start_time).abs())
-                    .max(wrap(end.heading - s.start.heading).abs());
+                    .max(counted(turn));
                 // negated on purpose: a NaN is a gap
                 if !(gap <= tolerance::JOINT_M) {
                     return Err(TrajectoryError::Gap { index, gap });

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::*;
 use searoom::geometry::outer_disc;
-use searoom::obstacle::Obstacle;
-use searoom::planner::SearchKind;
+use searoom::obstacle::{Coast, Obstacle};
+use searoom::planner::{Objective, SearchKind};
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
 
@@ -33,11 +33,15 @@ fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a>
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,
+        alternatives: &[],
+        objective: Objective::SpaceTimeError,
         obstacles,
+        coast: Coast::none(),
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: SearchKind::AStar,
         deadline: Duration::from_secs(60),
+        first_turn: None,
     }
 }
 

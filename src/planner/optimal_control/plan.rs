@@ -185,6 +185,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
                 outcome,
                 stats: SearchStats::default(),
                 explored: ExploredGraph::new(),
+                path_time: None,
             },
             report,
         }

@@ -233,6 +233,7 @@ impl<'a> Closer<'a> {
 mod tests {
     use std::time::Duration;
 
+    use crate::obstacle::Coast;
     use crate::pipeline;
     use crate::planner::cost::space_time_error;
     use crate::planner::space_time::graph::Graph;
@@ -336,13 +337,9 @@ mod tests {
                     .map(|s| s.shaped)
                     .collect();
                 greatest = greatest.max(nearest(&Problem {
-                    own: &scenario.own_ship,
-                    desired: &scenario.desired,
-                    obstacles: &obstacles,
-                    horizon: scenario.horizon,
-                    time_weight: scenario.time_weight,
                     search: SearchKind::AStar,
                     deadline: Duration::from_secs(60),
+                    ..pipeline::problem(&scenario, &obstacles, Coast::none())
                 }));
             }
         }

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use crate::pipeline::Run;
-use crate::planner::PlannerKind;
 use crate::report::words;
 
 /// Ship, weights and grid; what every start led to; the homotopy classes.
@@ -60,11 +59,7 @@ pub struct HomotopyClassDocument {
 
 /// `None` for another planner.
 pub(super) fn control(run: &Run) -> Option<ControlDocument> {
-    let (report, PlannerKind::OptimalControl(settings)) =
-        (run.control.as_ref()?, &run.scenario.kind)
-    else {
-        return None;
-    };
+    let (report, settings) = (run.control.as_ref()?, &run.scenario.control);
     let finite = |value: f64| value.is_finite().then_some(value);
     let limits = settings.force_limits;
     Some(ControlDocument {

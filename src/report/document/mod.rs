@@ -5,6 +5,7 @@
 mod assessment;
 mod control;
 mod parts;
+mod path_time;
 mod plan;
 mod suite;
 
@@ -13,6 +14,7 @@ pub use control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };
 pub use parts::*;
+pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
 pub use plan::{PLAN_FORMAT, PlanDocument};
 pub use suite::{
     INTERNAL_FAULT, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument, UNREADABLE,

@@ -9,11 +9,12 @@ use super::parts::{
     SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
     VelocitySetDocument, ViolationDocument,
 };
+use super::path_time::{PathTimeDocument, path_time_document};
 use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run};
-use crate::planner::{Outcome, Plan};
+use crate::planner::{Objective, Outcome, Plan};
 use crate::report::summary::Verdict;
 use crate::report::words;
 use crate::tolerance;
@@ -38,6 +39,9 @@ pub struct PlanDocument {
     pub search: String,
     pub compliance: String,
     pub objective: String,
+    /// Of the objective that weighs risk; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub risk_weight_m: Option<f64>,
     pub time_weight_m2_per_s2: f64,
     /// The risk that the plan may accept: `obstacles` are the level sets of it.
     pub max_risk: f64,
@@ -60,6 +64,9 @@ pub struct PlanDocument {
     pub trajectory: Option<TrajectoryDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
+    /// Of a path-time plan; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path_time: Option<PathTimeDocument>,
     /// Of a plan of forces alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimal_control: Option<ControlDocument>,
@@ -74,16 +81,20 @@ impl PlanDocument {
         Self {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
-            planner: scenario.kind.word().to_owned(),
+            planner: scenario.planner.word().to_owned(),
             search: words::search(scenario.search).to_owned(),
             compliance: scenario.compliance.word().to_owned(),
-            objective: words::objective(&scenario.kind).to_owned(),
+            objective: words::objective(scenario).to_owned(),
+            risk_weight_m: match scenario.objective {
+                Objective::LengthRisk { weight } => Some(weight),
+                _ => None,
+            },
             time_weight_m2_per_s2: scenario.time_weight,
             max_risk: scenario.max_risk,
             horizon_s: scenario.horizon,
             own_ship: own_ship(run),
             mission: mission(run),
-            land: Vec::new(),
+            land: run.land.iter().map(vertices).collect(),
             outcome: verdict.word().to_owned(),
             reason: match &run.planned.outcome {
                 Outcome::Infeasible(reason) => Some(reason.to_string()),
@@ -121,6 +132,8 @@ impl PlanDocument {
                 .flat_map(|set| obstacles(set, scenario.horizon))
                 .collect(),
             encounters: encounters(run),
+            path_time: (run.planned.path_time.as_deref())
+                .map(|diagram| path_time_document(run, diagram)),
             optimal_control: control(run),
         }
     }
@@ -184,6 +197,7 @@ fn own_ship(run: &Run) -> OwnShipDocument {
         turning_radius_m: own.turning_radius,
         speeds_mps: own.speeds.clone(),
         safety_margin_m: own.safety_margin,
+        land_margin_m: run.scenario.land.as_ref().map_or(0.0, |land| land.margin),
     }
 }
 
@@ -194,6 +208,9 @@ fn mission(run: &Run) -> MissionDocument {
         leg_speeds_mps: desired.legs().iter().map(|leg| leg.speed).collect(),
         duration_s: desired.duration(),
         length_m: desired.length(),
+        alternatives: (run.scenario.alternatives.iter())
+            .map(|path| path.iter().copied().map(position).collect())
+            .collect(),
     }
 }
 
@@ -209,6 +226,7 @@ pub(super) fn cost(run: &Run) -> Option<CostDocument> {
         delay_s: finite(evaluation.delay),
         max_risk: run.risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
+        min_land_distance_m: finite(evaluation.min_land_distance),
     })
 }
 

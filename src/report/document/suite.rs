@@ -112,7 +112,7 @@ impl SuiteRunDocument {
         Self {
             file,
             scenario: Some(run.scenario.title.clone()),
-            planner: Some(run.scenario.kind.word().to_owned()),
+            planner: Some(run.scenario.planner.word().to_owned()),
             outcome: Verdict::of(run).word().to_owned(),
             error: None,
             verified: verified(run),

@@ -1,0 +1,213 @@
+//! Does a chain of segments keep to the paths that own ship may sail?
+
+use super::Violation;
+use crate::frame::{Vector, direction, wrap};
+use crate::tolerance;
+use crate::trajectory::Segment;
+use crate::vessel::OwnShip;
+
+/// Being on a path: which, and how far along it.
+#[derive(Debug, Clone, Copy)]
+struct Whereabouts {
+    path: usize,
+    distance: f64,
+}
+
+/// Every segment is a wait, or straight along a leg in the path's direction; none is faster than own ship can; she begins at the start of
+/// the first path, goes on where she was, and changes to another path only where the two share a place; she turns only where
+/// she then moves off along a leg. Found without the planner's network: all places on the paths that fit what was sailed so far are
+/// followed at once.
+pub(super) fn check(segments: &[Segment], own: &OwnShip, paths: &[Vec<Vector>]) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let mut add = |time: f64, what: String| found.push(Violation { what, time });
+    let start = Whereabouts {
+        path: 0,
+        distance: 0.0,
+    };
+    let mut here = vec![start];
+    for (index, s) in segments.iter().enumerate() {
+        let fastest = own.max_speed();
+        // negated on purpose: a NaN is too fast
+        if !(s.speed <= fastest * (1.0 + tolerance::LIMIT)) {
+            let what = format!(
+                "speed in segment {index}: {} m/s, allowed 0 to {fastest}",
+                s.speed
+            );
+            add(s.start_time, what);
+        }
+        if s.turn_rate != 0.0 {
+            let what = format!(
+                "turn rate in segment {index}: {} rad/s, allowed 0",
+                s.turn_rate
+            );
+            add(s.start_time, what);
+        }
+        if !(s.length() > 0.0) {
+            let before = index
+                .checked_sub(1)
+                .map_or(s.start.heading, |i| segments[i].start.heading);
+            let turn = wrap(s.start.heading - before).abs();
+            if !(turn <= tolerance::JOINT_RAD) {
+                let what = format!("heading of the wait in segment {index}: turned by {turn} rad");
+                add(s.start_time, what);
+            }
+            continue;
+        }
+        let mut next: Vec<Whereabouts> = Vec::new();
+        for from in everywhere(&here, s.start.position, paths) {
+            if let Some(distance) = sailed(&paths[from.path], from.distance, s) {
+                next.push(Whereabouts { distance, ..from });
+            }
+        }
+        if next.is_empty() {
+            let what = format!(
+                "path: segment {index} is not along a leg that goes on from where it starts"
+            );
+            add(s.start_time, what);
+            return found;
+        }
+        here = next;
+    }
+    found
+}
+
+/// The same places, and those of other paths at the same position: one path is not changed to itself.
+fn everywhere(here: &[Whereabouts], position: Vector, paths: &[Vec<Vector>]) -> Vec<Whereabouts> {
+    let mut all = here.to_vec();
+    for (path, points) in paths.iter().enumerate() {
+        if here.iter().any(|h| h.path != path) {
+            all.extend(places(points, position).map(|distance| Whereabouts { path, distance }));
+        }
+    }
+    all
+}
+
+/// Distances along a path at which a position lies on it, one per leg at most.
+fn places(points: &[Vector], position: Vector) -> impl Iterator<Item = f64> + '_ {
+    let mut run = 0.0;
+    points.windows(2).filter_map(move |leg| {
+        let step = leg[1] - leg[0];
+        let length = step.norm();
+        let along = (step.dot(&(position - leg[0])) / length).clamp(0.0, length);
+        let on = (leg[0] + step * (along / length) - position).norm() <= tolerance::JOINT_M;
+        let distance = run + along;
+        run += length;
+        on.then_some(distance)
+    })
+}
+
+/// Where a segment ends on a path that it starts on at a distance, if it is along one leg of it.
+fn sailed(points: &[Vector], from: f64, s: &Segment) -> Option<f64> {
+    let mut run = 0.0;
+    for leg in points.windows(2) {
+        let step = leg[1] - leg[0];
+        let length = step.norm();
+        let along = from - run;
+        run += length;
+        if along < -tolerance::JOINT_M || along > length - tolerance::JOINT_M * 0.5 {
+            continue;
+        }
+        let ahead = step / length;
+        let start = leg[0] + ahead * along;
+        let way = s.speed * s.duration;
+        let off = (s.start.position - start)
+            .norm()
+            .max((direction(s.start.heading) - ahead).norm() * way)
+            .max(along + way - length);
+        return (off <= tolerance::JOINT_M).then_some(from + way);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, heading_of};
+    use crate::vessel::Hull;
+
+    fn own() -> OwnShip {
+        OwnShip {
+            pose: Pose::new(Vector::zeros(), 0.0),
+            speed: 5.0,
+            hull: Hull {
+                length: 30.0,
+                beam: 8.0,
+            },
+            turning_radius: 100.0,
+            speeds: vec![2.5, 6.0],
+            safety_margin: 20.0,
+        }
+    }
+
+    fn points(list: &[(f64, f64)]) -> Vec<Vector> {
+        list.iter().map(|&(x, y)| Vector::new(x, y)).collect()
+    }
+
+    /// Straight pieces between places, each at a speed.
+    fn chain(places: &[(f64, f64)], speed: f64) -> Vec<Segment> {
+        let places = points(places);
+        let (mut time, mut heading) = (0.0, 0.0);
+        places
+            .windows(2)
+            .map(|p| {
+                let way = p[1] - p[0];
+                let waits = way.norm() == 0.0;
+                heading = if waits { heading } else { heading_of(way) };
+                let duration = if waits { 10.0 } else { way.norm() / speed };
+                time += duration;
+                Segment {
+                    start: Pose::new(p[0], heading),
+                    start_time: time - duration,
+                    duration,
+                    speed: if waits { 0.0 } else { speed },
+                    turn_rate: 0.0,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn what_keeps_to_the_paths_passes_and_what_does_not_is_found() {
+        let main = points(&[(0.0, 0.0), (100.0, 0.0), (100.0, 80.0), (0.0, 0.0)]);
+        let other = points(&[(40.0, 0.0), (60.0, -20.0), (80.0, 0.0)]);
+        let paths = [main, other];
+        let found =
+            |places: &[(f64, f64)], speed: f64| check(&chain(places, speed), &own(), &paths).len();
+        let round = [
+            (0.0, 0.0),
+            (70.0, 0.0),
+            (70.0, 0.0),
+            (100.0, 0.0),
+            (100.0, 80.0),
+            (0.0, 0.0),
+        ];
+        assert_eq!(found(&round, 3.0), 0);
+        assert_eq!(found(&round, 6.1), 4);
+        let changed = [
+            (0.0, 0.0),
+            (40.0, 0.0),
+            (60.0, -20.0),
+            (80.0, 0.0),
+            (100.0, 0.0),
+        ];
+        assert_eq!(found(&changed, 6.0), 0);
+        for wrong in [
+            // off the path, back along it, over a corner, off an alternative, without having been there
+            &[(0.0, 0.0), (50.0, 1e-5)][..],
+            &[(0.0, 0.0), (70.0, 0.0), (60.0, 0.0)],
+            &[(0.0, 0.0), (100.0, 0.0), (90.0, 72.0)],
+            &[(0.0, 0.0), (40.0, 0.0), (50.0, -10.0), (80.0, 0.0)],
+            &[(100.0, 80.0), (0.0, 0.0)],
+            // the last leg before the others, although it begins where the first ends
+            &[(0.0, 0.0), (100.0, 80.0)],
+        ] {
+            assert_eq!(found(wrong, 5.0), 1, "{wrong:?}");
+        }
+        let mut turned = chain(&round, 3.0);
+        turned[1].start.heading = 0.3;
+        turned[3].turn_rate = 1e-3;
+        assert_eq!(check(&turned, &own(), &paths).len(), 2);
+        turned[0].speed = f64::NAN;
+        assert!(!check(&turned, &own(), &paths).is_empty());
+    }
+}

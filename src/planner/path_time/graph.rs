@@ -1,0 +1,280 @@
+//! The graph of constant-speed lines, given by its successors.
+
+use std::cell::Cell;
+
+use super::measure::Measure;
+use super::nodes::{Known, Node, Place};
+use super::scene::Scene;
+use crate::obstacle::PathTime;
+use crate::planner::SearchKind;
+use crate::search::Space;
+use crate::tolerance;
+
+/// Relative. A line may be this much faster than the greatest speed: rounding of its ends.
+const FASTER: f64 = 1e-11;
+
+/// A node and the line that leads to it.
+#[derive(Debug, Clone)]
+pub(crate) struct State {
+    /// Index into the nodes of the graph.
+    pub node: usize,
+    /// The node that the line comes from; itself at the start.
+    pub from: usize,
+    /// The leg that the line is on; `None` for a wait at a point.
+    pub leg: Option<usize>,
+    /// The obstacle that the line meets, once that is known.
+    pub met: Cell<Option<usize>>,
+    /// True once the line was tested.
+    pub tested: Cell<bool>,
+}
+
+/// See the head of the file. Lines never leave a leg: arrivals at the end of a leg at full speed are nodes, made as the search asks for them.
+#[derive(Debug)]
+pub(crate) struct Graph<'a> {
+    pub scene: &'a Scene<'a>,
+    measure: Measure<'a>,
+    informed: bool,
+    pub nodes: Vec<Node>,
+    settled: Vec<bool>,
+    /// Indices of the known nodes per leg and per point, in order of time.
+    on: Vec<Vec<usize>>,
+    at: Vec<Vec<usize>>,
+    /// Per point when it was reached.
+    reached: Vec<Vec<f64>>,
+}
+
+impl<'a> Graph<'a> {
+    pub(crate) fn new(
+        scene: &'a Scene<'a>,
+        known: Known,
+        measure: Measure<'a>,
+        search: SearchKind,
+    ) -> Self {
+        let start = Node {
+            place: Place::At(scene.network.start()),
+            time: 0.0,
+            corner_of: None,
+        };
+        let mut nodes = vec![start];
+        let mut number = |list: Vec<Node>| -> Vec<usize> {
+            let first = nodes.len();
+            nodes.extend(list);
+            (first..nodes.len()).collect()
+        };
+        let on = known.on.into_iter().map(&mut number).collect();
+        let at = known.at.into_iter().map(&mut number).collect();
+        Self {
+            scene,
+            measure,
+            informed: search == SearchKind::AStar,
+            settled: vec![false; nodes.len()],
+            nodes,
+            on,
+            at,
+            reached: vec![Vec::new(); scene.network.points()],
+        }
+    }
+
+    pub(crate) fn root(&mut self) -> State {
+        self.settled[0] = true;
+        State {
+            node: 0,
+            from: 0,
+            leg: None,
+            met: Cell::new(None),
+            tested: Cell::new(false),
+        }
+    }
+
+    /// The lines of a leg, from a place on it.
+    fn along(&mut self, from: usize, leg: usize, out: &mut Vec<(State, f64)>) {
+        let scene = self.scene;
+        let Some(here) = self.nodes[from].on(scene, leg) else {
+            return;
+        };
+        let end = scene.network.legs()[leg].ends[1];
+        let length = scene.tracks[leg].length;
+        let ahead = |list: &Vec<usize>| {
+            let first = list.partition_point(|n| self.nodes[*n].time <= here.time);
+            list[first..].to_vec()
+        };
+        let mut candidates = ahead(&self.on[leg]);
+        for point in scene.network.same_place(end) {
+            candidates.extend(ahead(&self.at[*point]));
+        }
+        for to in candidates {
+            if self.settled[to] {
+                continue;
+            }
+            let node = self.nodes[to];
+            let distance = match node.place {
+                Place::On { distance, .. } => distance,
+                Place::At(_) => length,
+            };
+            let there = PathTime {
+                distance,
+                time: node.time,
+            };
+            if self.sailable(here, there) {
+                self.offer(from, to, Some(leg), here, there, out);
+            }
+        }
+        let arrival = here.time + (length - here.distance) / scene.max_speed;
+        // negated on purpose: a NaN is too late
+        if !(arrival + scene.network.to_go(end) / scene.max_speed
+            <= scene.horizon + tolerance::TIME_S)
+        {
+            return;
+        }
+        let to = self.nodes.len();
+        self.nodes.push(Node {
+            place: Place::At(end),
+            time: arrival,
+            corner_of: None,
+        });
+        self.settled.push(false);
+        let there = PathTime {
+            distance: length,
+            time: arrival,
+        };
+        self.offer(from, to, Some(leg), here, there, out);
+    }
+
+    fn sailable(&self, from: PathTime, to: PathTime) -> bool {
+        let (way, time) = (to.distance - from.distance, to.time - from.time);
+        way >= 0.0 && time > 0.0 && way <= self.scene.max_speed * time * (1.0 + FASTER)
+    }
+
+    fn offer(
+        &self,
+        from: usize,
+        to: usize,
+        leg: Option<usize>,
+        here: PathTime,
+        there: PathTime,
+        out: &mut Vec<(State, f64)>,
+    ) {
+        let place = leg.map_or(self.nodes[from].place, |leg| Place::On {
+            leg,
+            distance: 0.0,
+        });
+        let step = self.measure.of(self.scene, place, here, there);
+        let state = State {
+            node: to,
+            from,
+            leg,
+            met: Cell::new(None),
+            tested: Cell::new(false),
+        };
+        out.push((state, step));
+    }
+
+    /// True when own ship, having been at the place before, could as well have waited there.
+    fn waited_for(&self, point: usize, time: f64) -> bool {
+        self.scene.network.same_place(point).iter().any(|p| {
+            self.reached[*p].iter().any(|before| {
+                *before <= time && self.scene.barrier_at(point, *before, time).is_none()
+            })
+        })
+    }
+
+    /// What the line into a state meets.
+    fn barrier(&self, state: &State) -> Option<usize> {
+        let (from, to) = (&self.nodes[state.from], &self.nodes[state.node]);
+        match (state.leg, from.place) {
+            (Some(leg), _) => {
+                let length = self.scene.tracks[leg].length;
+                let here = from.on(self.scene, leg)?;
+                let distance = match to.place {
+                    Place::On { distance, .. } => distance,
+                    Place::At(_) => length,
+                };
+                let there = PathTime {
+                    distance,
+                    time: to.time,
+                };
+                self.scene.barrier(leg, here, there)
+            }
+            (None, Place::At(point)) => self.scene.barrier_at(point, from.time, to.time),
+            (None, Place::On { .. }) => None,
+        }
+    }
+}
+
+impl Space for Graph<'_> {
+    type State = State;
+
+    fn successors(&mut self, state: &State, out: &mut Vec<(State, f64)>) {
+        let from = state.node;
+        match self.nodes[from].place {
+            Place::On { leg, .. } => self.along(from, leg, out),
+            Place::At(point) => {
+                let network = self.scene.network;
+                for &leg in network.onward(point) {
+                    self.along(from, leg, out);
+                }
+                let here = PathTime {
+                    distance: 0.0,
+                    time: self.nodes[from].time,
+                };
+                for same in network.same_place(point) {
+                    let first =
+                        self.at[*same].partition_point(|n| self.nodes[*n].time <= here.time);
+                    for &to in &self.at[*same][first..] {
+                        if !self.settled[to] {
+                            let there = PathTime {
+                                distance: 0.0,
+                                time: self.nodes[to].time,
+                            };
+                            self.offer(from, to, None, here, there, out);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn bound(&mut self, state: &State) -> f64 {
+        let node = &self.nodes[state.node];
+        let to_go = node.left(self.scene);
+        let earliest = node.time + to_go / self.scene.max_speed;
+        // negated on purpose: a NaN is too late
+        if !(earliest <= self.scene.horizon + tolerance::TIME_S) {
+            f64::INFINITY
+        } else if self.informed {
+            self.measure.bound(self.scene, to_go)
+        } else {
+            0.0
+        }
+    }
+
+    fn is_goal(&self, state: &State) -> bool {
+        let node = &self.nodes[state.node];
+        // a round trip begins where it ends
+        state.leg.is_some()
+            && matches!(node.place, Place::At(point) if self.scene.network.is_end(point))
+    }
+
+    fn admits(&mut self, state: &State) -> bool {
+        if self.settled[state.node] {
+            return false;
+        }
+        let node = self.nodes[state.node];
+        let made = state.leg.is_some() && node.corner_of.is_none();
+        if let (true, true, Place::At(point)) = (made, self.measure.waits_are_free(), node.place)
+            && self.waited_for(point, node.time)
+        {
+            return false;
+        }
+        state.tested.set(true);
+        state.met.set(self.barrier(state));
+        if state.met.get().is_some() {
+            return false;
+        }
+        self.settled[state.node] = true;
+        if let Place::At(point) = node.place {
+            self.reached[point].push(node.time);
+        }
+        true
+    }
+}

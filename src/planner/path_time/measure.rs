@@ -1,0 +1,68 @@
+//! What is minimised over the graph.
+
+use super::nodes::Place;
+use super::scene::Scene;
+use crate::frame::{Pose, heading_of};
+use crate::obstacle::PathTime;
+use crate::planner::cost::space_time_error;
+use crate::planner::{Objective, Problem};
+use crate::trajectory::Segment;
+
+/// Metres per second. Of ways of one length the earliest is the best: a thousand seconds weigh a millimetre.
+const METRES_PER_SECOND: f64 = 1e-6;
+
+/// See the head of the file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measure<'a> {
+    problem: &'a Problem<'a>,
+}
+
+impl<'a> Measure<'a> {
+    pub(crate) fn new(problem: &'a Problem<'a>) -> Self {
+        Self { problem }
+    }
+
+    /// The cost of a line: seconds, metres or m².
+    pub(crate) fn of(&self, scene: &Scene, place: Place, from: PathTime, to: PathTime) -> f64 {
+        let (way, time) = (to.distance - from.distance, to.time - from.time);
+        match self.problem.objective {
+            Objective::Time => time,
+            Objective::Length | Objective::LengthRisk { .. } => way + METRES_PER_SECOND * time,
+            Objective::SpaceTimeError => {
+                let (start, heading) = match place {
+                    Place::On { leg, .. } => {
+                        let track = &scene.tracks[leg];
+                        (track.at(from.distance), heading_of(track.direction))
+                    }
+                    Place::At(point) => (scene.network.place(point), 0.0),
+                };
+                let segment = Segment {
+                    start: Pose::new(start, heading),
+                    start_time: from.time,
+                    duration: time,
+                    speed: way / time,
+                    turn_rate: 0.0,
+                };
+                space_time_error(self.problem.desired, &segment, self.problem.time_weight)
+            }
+        }
+    }
+
+    /// At most the cost of the way to the end, of which so many metres are left.
+    pub(crate) fn bound(&self, scene: &Scene, to_go: f64) -> f64 {
+        let time = to_go / scene.max_speed;
+        match self.problem.objective {
+            Objective::Time => time,
+            Objective::Length | Objective::LengthRisk { .. } => to_go + METRES_PER_SECOND * time,
+            Objective::SpaceTimeError => 0.0,
+        }
+    }
+
+    /// True when to arrive at a place before another way does, and wait, is never worse.
+    pub(crate) fn waits_are_free(&self) -> bool {
+        match self.problem.objective {
+            Objective::Time | Objective::Length | Objective::LengthRisk { .. } => true,
+            Objective::SpaceTimeError => false,
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! The path-time planner: own ship keeps to given paths and chooses her speed, paper section III.B.
+//!
+//! ```text
+//! network of legs ─► obstacles along each leg ─► graph over their corners (A*) ─► taut profile ─► plan
+//! ```
+//!
+//! A motion is a curve in distance and time, `0 <= speed <= max`; an obstacle is a convex polygon on each leg.
+//! The least time is exact for these polygons; docs/path-time-planner.md has the proof.
+
+mod diagram;
+mod graph;
+mod measure;
+mod nodes;
+mod profile;
+mod scene;
+mod weighing;
+
+pub use diagram::{DiagramCorner, DiagramLeg, DiagramObstacle, PathTimeDiagram};
+pub use weighing::plan_weighing_risk;
+
+use std::time::Instant;
+
+use petgraph::graph::NodeIndex;
+
+use super::{
+    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NoPlan, NodeKind, Outcome, Plan,
+    Planned, Problem, SearchStats,
+};
+use crate::frame::{Pose, heading_of};
+use crate::obstacle::{PathTime, SpaceTimeObstacle};
+use crate::search::{Fate, Search, Stop};
+use crate::tolerance;
+use crate::trajectory::{PathNetwork, Segment};
+use graph::{Graph, State};
+use measure::Measure;
+use nodes::{Known, Place};
+use profile::Profile;
+use scene::Scene;
+
+/// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of what a checker rejects.
+const TOUCH_M: f64 = 1e-7;
+
+/// Expansions between two looks at the clock.
+const SLICE: usize = 50;
+
+/// Plans one problem along its desired path and the alternatives to it.
+///
+/// The plan begins at the first waypoint at t = 0, keeps to the paths, goes forward at no more than the greatest speed or waits, is
+/// clear of every obstacle to rounding (deeper than 1e-7 m nowhere), and ends at the last waypoint before the
+/// horizon. At corners of the path own ship turns on the spot. For the objectives of time and of length it is the best of all such motions
+/// along the paths; the space-time error is the least on the graph. The same problem gives the same plan unless the
+/// deadline strikes.
+pub fn plan(problem: &Problem) -> Planned {
+    let refuse = |reason| Planned {
+        outcome: Outcome::Infeasible(reason),
+        stats: SearchStats::default(),
+        explored: ExploredGraph::new(),
+        path_time: None,
+    };
+    let first = problem.desired.legs()[0].start;
+    let away = (problem.own.pose.position - first).norm();
+    // negated on purpose: a NaN is away
+    if !(away <= tolerance::JOINT_M) {
+        return refuse(NoPlan::OffPath { away });
+    }
+    let network = match PathNetwork::new(&problem.desired.waypoints(), problem.alternatives) {
+        Ok(network) => network,
+        Err(error) => return refuse(NoPlan::NoNetwork(error)),
+    };
+    let scene = Scene::new(problem, &network);
+    let idle = main_path(&scene);
+    let diagram = |profile: &Profile| Some(Box::new(profile.diagram(&scene, problem.own.pose)));
+    let earliest = network.to_go(network.start()) / scene.max_speed;
+    // negated on purpose: a NaN is too late
+    if !(earliest <= problem.horizon + tolerance::TIME_S) {
+        return Planned {
+            path_time: diagram(&idle),
+            ..refuse(NoPlan::PathTooLong {
+                earliest,
+                horizon: problem.horizon,
+            })
+        };
+    }
+    if let Some(reason) = starts_inside(problem, &scene) {
+        return Planned {
+            path_time: diagram(&idle),
+            ..refuse(reason)
+        };
+    }
+    let started = Instant::now();
+    let known = Known::corners(&scene);
+    let mut graph = Graph::new(&scene, known, Measure::new(problem), problem.search);
+    let mut search = Search::new(graph.root());
+    let mut timed_out = false;
+    let goal = loop {
+        match search.next_goal(&mut graph, search.counts().expanded + SLICE) {
+            Stop::Goal(goal) => break Some(goal),
+            Stop::Exhausted => break None,
+            Stop::Budget if started.elapsed() >= problem.deadline => {
+                timed_out = true;
+                break None;
+            }
+            Stop::Budget => {}
+        }
+    };
+    let counts = search.counts();
+    let stats = SearchStats {
+        expanded: counts.expanded,
+        generated: counts.generated,
+        edges_checked: counts.tested,
+        further_expanded: 0,
+    };
+    let found = goal.map(|goal| {
+        let mut profile = Profile::new();
+        for index in &search.way_to(goal)[1..] {
+            let state = &search.nodes()[*index].state;
+            let (from, to) = (&graph.nodes[state.from], &graph.nodes[state.node]);
+            match state.leg {
+                Some(leg) => {
+                    if let (Some(a), Some(b)) = (from.on(&scene, leg), ahead(&scene, to, leg)) {
+                        profile.sail(&scene, leg, a, b);
+                    }
+                }
+                None => profile.wait(to.time),
+            }
+        }
+        if Measure::new(problem).waits_are_free() {
+            profile.pull_taut(&scene);
+        }
+        profile
+    });
+    let plan = found.as_ref().and_then(|profile| {
+        let trajectory = profile.trajectory(&scene, problem.own.pose)?;
+        let cost = goal.map_or(0.0, |goal| search.nodes()[goal].cost);
+        Some(Plan {
+            trajectory,
+            cost,
+            graph_cost: Some(cost),
+        })
+    });
+    let outcome = match plan {
+        Some(plan) => Outcome::Solved(plan),
+        None if timed_out => Outcome::Deadline(None),
+        None => Outcome::Infeasible(farthest(problem, &graph, &search)),
+    };
+    Planned {
+        outcome,
+        stats,
+        explored: explored(&graph, search),
+        path_time: diagram(found.as_ref().unwrap_or(&idle)),
+    }
+}
+
+/// The place of a node at the end of a line on a leg.
+fn ahead(scene: &Scene, node: &nodes::Node, leg: usize) -> Option<PathTime> {
+    match node.place {
+        // of a leg that ends where it begins, the end
+        Place::At(_) => Some(PathTime {
+            distance: scene.tracks[leg].length,
+            time: node.time,
+        }),
+        Place::On { .. } => node.on(scene, leg),
+    }
+}
+
+/// The legs of the main path, not yet sailed.
+fn main_path(scene: &Scene) -> Profile {
+    let mut profile = Profile::new();
+    for (index, leg) in scene.network.legs().iter().enumerate() {
+        if leg.path == 0 {
+            profile.legs.push(index);
+            profile.begins.push(leg.start_distance);
+        }
+    }
+    profile
+}
+
+/// Why there is no plan when own ship is inside a set at t = 0.
+fn starts_inside(problem: &Problem, scene: &Scene) -> Option<NoPlan> {
+    let point = scene.network.start();
+    let obstacle = scene.barrier_at(point, 0.0, tolerance::TIME_S)?;
+    let set = &problem.obstacles[obstacle];
+    let depth = -set.signed_distance(problem.own.pose.position, 0.0).distance;
+    let leg = *scene.network.onward(point).first()?;
+    let at = PathTime {
+        distance: 0.0,
+        time: 0.0,
+    };
+    Some(NoPlan::StartCovered {
+        target: set.name().to_owned(),
+        depth: depth.max(0.0),
+        until: finite(scene.covered_until(leg, obstacle, at)),
+    })
+}
+
+fn finite(time: f64) -> Option<f64> {
+    time.is_finite().then_some(time)
+}
+
+/// What stands in the way where the search came nearest to the end.
+fn farthest(problem: &Problem, graph: &Graph, search: &Search<State>) -> NoPlan {
+    let scene = graph.scene;
+    let nearest = search
+        .nodes()
+        .iter()
+        .filter(|node| node.fate == Fate::Expanded)
+        .map(|node| &graph.nodes[node.state.node])
+        .min_by(|a, b| {
+            a.left(scene)
+                .total_cmp(&b.left(scene))
+                .then(a.time.total_cmp(&b.time))
+        });
+    let barrier = nearest.and_then(|node| {
+        let leg = match node.place {
+            Place::On { leg, .. } => leg,
+            Place::At(point) => *scene.network.onward(point).first()?,
+        };
+        let from = node.on(scene, leg)?;
+        let length = scene.tracks[leg].length;
+        let to = PathTime {
+            distance: length,
+            time: from.time + (length - from.distance) / scene.max_speed,
+        };
+        let (obstacle, share) = scene.first_barrier(leg, from, to)?;
+        let met = PathTime {
+            distance: from.distance + share * (to.distance - from.distance),
+            time: from.time + share * (to.time - from.time),
+        };
+        Some(NoPlan::Barred {
+            target: problem.obstacles[obstacle].name().to_owned(),
+            to_go: node.left(scene) - (met.distance - from.distance),
+            time: met.time,
+            until: finite(scene.covered_until(leg, obstacle, met)),
+        })
+    });
+    barrier.unwrap_or(NoPlan::OutOfTime {
+        horizon: problem.horizon,
+    })
+}
+
+/// The nodes and the lines that were tested.
+fn explored(graph: &Graph, search: Search<State>) -> ExploredGraph {
+    let scene = graph.scene;
+    let nodes = search.into_nodes();
+    let mut made = ExploredGraph::with_capacity(64, 64);
+    let mut index_of: Vec<Option<NodeIndex>> = vec![None; nodes.len()];
+    for (index, node) in nodes.iter().enumerate() {
+        let state = &node.state;
+        if index > 0 && !state.tested.get() {
+            continue;
+        }
+        let here = &graph.nodes[state.node];
+        let (position, heading) = match (here.place, state.leg) {
+            (_, Some(leg)) => {
+                let track = &scene.tracks[leg];
+                let place = ahead(scene, here, leg).map_or(track.start, |p| track.at(p.distance));
+                (place, heading_of(track.direction))
+            }
+            (Place::At(point), None) => (scene.network.place(point), 0.0),
+            (Place::On { leg, distance }, None) => (scene.tracks[leg].at(distance), 0.0),
+        };
+        let kind = match (node.fate, here.corner_of) {
+            (Fate::Goal, _) => NodeKind::End,
+            (_, Some(obstacle)) => NodeKind::Corner { obstacle },
+            (_, None) if index == 0 => NodeKind::Start,
+            (_, None) => NodeKind::Waypoint,
+        };
+        let added = made.add_node(ExploredNode {
+            kind,
+            pose: Pose::new(position, heading),
+            time: here.time,
+            cost: node.cost,
+            expanded: node.fate == Fate::Expanded,
+        });
+        index_of[index] = Some(added);
+        let Some((parent, before)) = node.parent.and_then(|p| Some((p, index_of[p]?))) else {
+            continue;
+        };
+        let start = made[before].pose.position;
+        let duration = here.time - made[before].time;
+        let edge = ExploredEdge {
+            segments: vec![Segment {
+                start: Pose::new(start, heading),
+                start_time: made[before].time,
+                duration,
+                speed: if duration > 0.0 {
+                    (position - start).norm() / duration
+                } else {
+                    0.0
+                },
+                turn_rate: 0.0,
+            }],
+            cost: node.cost - nodes[parent].cost,
+            verdict: match state.met.get() {
+                Some(obstacle) => EdgeVerdict::Blocked { obstacle },
+                None => EdgeVerdict::Free,
+            },
+        };
+        made.add_edge(before, added, edge);
+    }
+    made
+}

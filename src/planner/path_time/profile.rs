@@ -1,0 +1,217 @@
+//! A profile of constant speeds along the legs that are sailed, and the motion that it is.
+
+use super::TOUCH_M;
+use super::diagram::{DiagramCorner, DiagramLeg, DiagramObstacle, PathTimeDiagram};
+use super::scene::Scene;
+use crate::frame::{Pose, heading_of, wrap};
+use crate::obstacle::PathTime;
+use crate::tolerance;
+use crate::trajectory::{Segment, Trajectory};
+
+/// Legs one after another, and where own ship is on them when.
+#[derive(Debug, Clone)]
+pub(crate) struct Profile {
+    /// Indices of the legs.
+    pub legs: Vec<usize>,
+    /// Metres from the start at which each leg begins.
+    pub begins: Vec<f64>,
+    /// From the start to the end; distances from the start.
+    pub knots: Vec<PathTime>,
+}
+
+impl Profile {
+    /// A profile that has not left the start.
+    pub(crate) fn new() -> Self {
+        let start = PathTime {
+            distance: 0.0,
+            time: 0.0,
+        };
+        Self {
+            legs: Vec::new(),
+            begins: Vec::new(),
+            knots: vec![start],
+        }
+    }
+
+    /// Metres of the legs so far.
+    fn length(&self, scene: &Scene) -> f64 {
+        match (self.legs.last(), self.begins.last()) {
+            (Some(leg), Some(begin)) => begin + scene.tracks[*leg].length,
+            _ => 0.0,
+        }
+    }
+
+    /// Goes on along a leg, the same as before or the next, until a place on it.
+    pub(crate) fn sail(&mut self, scene: &Scene, leg: usize, from: PathTime, to: PathTime) {
+        if self.legs.last() != Some(&leg) || from.distance == 0.0 {
+            let begin = self.length(scene);
+            self.legs.push(leg);
+            self.begins.push(begin);
+        }
+        let begin = self.begins[self.begins.len() - 1];
+        self.push(begin + to.distance, to.time);
+    }
+
+    /// Waits where it is.
+    pub(crate) fn wait(&mut self, until: f64) {
+        let last = self.knots[self.knots.len() - 1];
+        self.push(last.distance, until);
+    }
+
+    fn push(&mut self, distance: f64, time: f64) {
+        let last = self.knots[self.knots.len() - 1];
+        if time > last.time {
+            let distance = distance.max(last.distance);
+            self.knots.push(PathTime { distance, time });
+        }
+    }
+
+    /// The pieces of a line, leg by leg; of a wait where legs join, on each of them.
+    fn pieces(
+        &self,
+        scene: &Scene,
+        from: PathTime,
+        to: PathTime,
+    ) -> Vec<(usize, PathTime, PathTime)> {
+        let way = to.distance - from.distance;
+        let time_at = |distance: f64| {
+            let share = ((distance - from.distance) / way).clamp(0.0, 1.0);
+            from.time + (to.time - from.time) * share
+        };
+        let mut pieces = Vec::new();
+        for (leg, begin) in self.legs.iter().zip(&self.begins) {
+            let length = scene.tracks[*leg].length;
+            let (low, high) = (from.distance.max(*begin), to.distance.min(begin + length));
+            if low > high || (way > 0.0 && low == high) {
+                continue;
+            }
+            let at = |distance: f64, time: f64| PathTime {
+                distance: (distance - begin).clamp(0.0, length),
+                time,
+            };
+            let ends = if way > 0.0 {
+                [time_at(low), time_at(high)]
+            } else {
+                [from.time, to.time]
+            };
+            pieces.push((*leg, at(low, ends[0]), at(high, ends[1])));
+        }
+        pieces
+    }
+
+    fn is_free(&self, scene: &Scene, from: PathTime, to: PathTime) -> bool {
+        self.pieces(scene, from, to)
+            .into_iter()
+            .all(|(leg, a, b)| scene.barrier(leg, a, b).is_none())
+    }
+
+    /// Pulls the profile taut: from each knot on straight to the last one that can be reached at one speed. The end, and when it
+    /// is reached, stay what they are.
+    pub(crate) fn pull_taut(&mut self, scene: &Scene) {
+        let mut taut = vec![self.knots[0]];
+        let mut at = 0;
+        while at + 1 < self.knots.len() {
+            let next = (at + 2..self.knots.len())
+                .rev()
+                .find(|k| self.is_free(scene, self.knots[at], self.knots[*k]))
+                .unwrap_or(at + 1);
+            taut.push(self.knots[next]);
+            at = next;
+        }
+        self.knots = taut;
+    }
+
+    /// The motion, from a pose at the start: she turns on the spot where legs join.
+    pub(crate) fn trajectory(&self, scene: &Scene, start: Pose) -> Option<Trajectory> {
+        let mut segments = Vec::new();
+        let heading = |leg: usize| heading_of(scene.tracks[leg].direction);
+        let mut facing = self.legs.first().map_or(start.heading, |leg| heading(*leg));
+        let still = Segment {
+            start,
+            start_time: 0.0,
+            duration: 0.0,
+            speed: 0.0,
+            turn_rate: 0.0,
+        };
+        if self.knots.len() < 2 || wrap(facing - start.heading).abs() > tolerance::JOINT_RAD {
+            segments.push(still);
+        }
+        for pair in self.knots.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let speed = (to.distance - from.distance) / (to.time - from.time);
+            let pieces = self.pieces(scene, from, to);
+            // a wait where legs join is one wait
+            let count = if speed > 0.0 { pieces.len() } else { 1 };
+            for (leg, a, b) in pieces.into_iter().take(count) {
+                if speed > 0.0 {
+                    facing = heading(leg);
+                }
+                segments.push(Segment {
+                    start: Pose::new(scene.tracks[leg].at(a.distance), facing),
+                    start_time: a.time,
+                    duration: b.time - a.time,
+                    speed,
+                    turn_rate: 0.0,
+                });
+            }
+        }
+        Trajectory::with_corners(segments).ok()
+    }
+
+    /// The diagram of the legs that are sailed.
+    pub(crate) fn diagram(&self, scene: &Scene, start: Pose) -> PathTimeDiagram {
+        let mut facing = start.heading;
+        let mut corners = Vec::new();
+        let mut legs = Vec::with_capacity(self.legs.len());
+        let mut obstacles = Vec::new();
+        for (index, (leg, begin)) in self.legs.iter().zip(&self.begins).enumerate() {
+            let track = scene.tracks[*leg];
+            let turn = wrap(heading_of(track.direction) - facing);
+            facing = heading_of(track.direction);
+            if turn.abs() > tolerance::JOINT_RAD {
+                corners.push(DiagramCorner {
+                    distance: *begin,
+                    turn,
+                });
+            }
+            legs.push(DiagramLeg {
+                track,
+                path: scene.network.legs()[*leg].path,
+                begin: *begin,
+            });
+            obstacles.extend(scene.seen[*leg].iter().map(|seen| DiagramObstacle {
+                obstacle: seen.obstacle,
+                leg: index,
+                corners: outline(seen.body.corners(), *begin),
+            }));
+        }
+        PathTimeDiagram {
+            legs,
+            obstacles,
+            corners,
+            profile: self.knots.clone(),
+            horizon: scene.horizon,
+            max_speed: scene.max_speed,
+        }
+    }
+}
+
+/// Corners that fall together left out, distances from the start of the path.
+fn outline(corners: &[PathTime], begin: f64) -> Vec<PathTime> {
+    let apart = |a: &PathTime, b: &PathTime| {
+        (a.distance - b.distance).abs() > TOUCH_M || (a.time - b.time).abs() > tolerance::TIME_S
+    };
+    let mut kept: Vec<PathTime> = Vec::with_capacity(corners.len());
+    for corner in corners {
+        if kept.last().is_none_or(|last| apart(last, corner)) {
+            kept.push(*corner);
+        }
+    }
+    while kept.len() > 1 && !apart(&kept[0], &kept[kept.len() - 1]) {
+        kept.pop();
+    }
+    for corner in &mut kept {
+        corner.distance += begin;
+    }
+    kept
+}

@@ -1,0 +1,85 @@
+//! Length against risk: how much risk is a shorter way worth?
+
+use std::time::Instant;
+
+use super::plan;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::planner::{Objective, Planned, Problem};
+
+/// Dimensionless. The least risk that a way takes is found to this.
+const RISK_STEP: f64 = 1e-4;
+
+/// A level of risk, what was planned at it, and the metres of the way.
+struct Level {
+    risk: f64,
+    planned: Planned,
+    length: Option<f64>,
+}
+
+impl Level {
+    fn cost(&self, weight: f64) -> f64 {
+        self.length
+            .map_or(f64::INFINITY, |length| length + weight * self.risk)
+    }
+}
+
+/// Plans for the least of length plus `weight` metres times the accepted risk, over risks from 0 to `max_risk`: the obstacles of
+/// `problem` are the whole sets. The level sets shrink as the risk grows, so the shortest way is never longer at a greater risk, and
+/// takes few lengths: between two risks of different lengths the step is closed in on by halves, to 1e-4. Where
+/// no way exists at `max_risk`, the answer is that of `max_risk`.
+pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Planned {
+    let started = Instant::now();
+    let at = |risk: f64| {
+        let level_sets: Vec<Obstacle> = if risk > 0.0 {
+            problem.obstacles.iter().map(|o| o.at_risk(risk)).collect()
+        } else {
+            problem.obstacles.to_vec()
+        };
+        let planned = plan(&Problem {
+            objective: Objective::Length,
+            obstacles: &level_sets,
+            deadline: problem.deadline.saturating_sub(started.elapsed()),
+            ..problem.clone()
+        });
+        let length = planned.outcome.plan().map(|plan| plan.trajectory.length());
+        Level {
+            risk,
+            planned,
+            length,
+        }
+    };
+    let mut best = at(0.0);
+    let mut steps: Vec<(f64, Option<f64>, f64, f64)> = Vec::new();
+    if max_risk > 0.0 {
+        let greatest = at(max_risk);
+        if let Some(length) = greatest.length {
+            steps.push((0.0, best.length, max_risk, length));
+        }
+        if best.length.is_none() || greatest.cost(weight) < best.cost(weight) {
+            best = greatest;
+        }
+    }
+    // where the way shortens, between a risk and a greater one
+    while let Some((low, before, high, after)) = steps.pop() {
+        let shortens = before.is_none_or(|before| before > after + 1e-6);
+        if !shortens || high - low <= RISK_STEP || after + weight * low >= best.cost(weight) {
+            continue;
+        }
+        let middle = at(0.5 * (low + high));
+        let risk = middle.risk;
+        if let Some(length) = middle.length {
+            steps.push((low, before, risk, length));
+        }
+        steps.push((risk, middle.length, high, after));
+        if middle.cost(weight) < best.cost(weight) {
+            best = middle;
+        }
+    }
+    let cost = best.cost(weight);
+    let mut planned = best.planned;
+    if let Some(plan) = planned.outcome.plan_mut() {
+        plan.cost = cost;
+        plan.graph_cost = Some(cost);
+    }
+    planned
+}
