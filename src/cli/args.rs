@@ -93,7 +93,7 @@ pub struct SuiteArgs {
 /// What every planning command takes.
 #[derive(Debug, Args)]
 pub struct Shared {
-    /// Planner instead of the scenario's: space-time, path-time
+    /// Planner instead of the scenario's: space-time, path-time, optimal-control
     #[arg(long, value_name = "KIND", value_parser = planner)]
     pub planner: Option<PlannerKind>,
     /// Search instead of the scenario's: a-star, dijkstra
@@ -153,8 +153,8 @@ fn planner(word: &str) -> Result<PlannerKind, String> {
     match word {
         "space-time" => Ok(PlannerKind::SpaceTime),
         "path-time" => Ok(PlannerKind::PathTime),
-        "optimal-control" => Err(unbuilt(word, "space-time, path-time")),
-        _ => Err("allowed: space-time, path-time".to_owned()),
+        "optimal-control" => Ok(PlannerKind::OptimalControl),
+        _ => Err("allowed: space-time, path-time, optimal-control".to_owned()),
     }
 }
 

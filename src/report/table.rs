@@ -3,10 +3,12 @@
 use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets};
 
 use super::summary::{Meeting, Summary, Verdict};
+use super::words;
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::Outcome;
+use crate::planner::optimal_control::ControlReport;
 
 /// Targets of one scenario that a row names; the rest is counted.
 const NAMED: usize = 3;
@@ -180,6 +182,47 @@ fn risk_text(run: &Run, largest: f64) -> String {
     text
 }
 
+/// How a plan of forces was found.
+fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
+    let mut said = Vec::new();
+    if !run.enclosed.is_empty() {
+        let names = run.enclosed.join("', '");
+        said.push((
+            "sets",
+            format!("of '{names}' by the smallest ellipse around each"),
+        ));
+    }
+    if let Some(plan) = run.planned.outcome.plan() {
+        said.push(("stage cost", format!("{:.4}", plan.cost)));
+        said.push((
+            "grid",
+            format!(
+                "{} intervals; at their ends the ship is within {:.1e} of her units",
+                report.intervals, report.defect
+            ),
+        ));
+    }
+    let feasible = report.starts.iter().filter(|start| start.feasible).count();
+    let steps: usize = report.starts.iter().map(|start| start.iterations).sum();
+    said.push((
+        "starts",
+        format!(
+            "{feasible} of {} led to a plan, {} ways to pass the targets, {steps} steps of the solver",
+            report.starts.len(),
+            report.classes.len()
+        ),
+    ));
+    for class in report.classes.iter().take(NAMED) {
+        let sides: Vec<&str> = class
+            .sides
+            .iter()
+            .map(|side| side.map_or("far", words::side))
+            .collect();
+        said.push(("", format!("{:.4}: {}", class.objective, sides.join(", "))));
+    }
+    said
+}
+
 /// The verdict and the costs of one run, aligned.
 pub fn plan_text(run: &Run) -> String {
     let summary = Summary::of(run);
@@ -249,15 +292,17 @@ pub fn plan_text(run: &Run) -> String {
                 square_metres(evaluation.arc_length_error)
             ),
         );
-        say(
-            "delay",
-            format!(
-                "{} s (arrives after {:.1} s and {:.0} m)",
-                signed(evaluation.delay),
-                evaluation.duration,
-                evaluation.length
-            ),
+        let way = format!(
+            "{:.1} s and {:.0} m",
+            evaluation.duration, evaluation.length
         );
+        match summary.delay {
+            Some(delay) => say(
+                "delay",
+                format!("{} s (arrives after {way})", signed(delay)),
+            ),
+            None => say("horizon", format!("{way}; no arrival is asked for")),
+        }
         if let Some(clearance) = summary.clearance {
             say("clearance", format!("{clearance:.1} m"));
         }
@@ -277,6 +322,13 @@ pub fn plan_text(run: &Run) -> String {
                 format!("{} (at {:.1} s)", violation.what, violation.time),
             );
         }
+    }
+    if let Some(report) = &run.control {
+        forces(run, report)
+            .into_iter()
+            .for_each(|(name, value)| say(name, value));
+        say("time", format!("{:.2} ms", summary.milliseconds));
+        return lines.join("\n");
     }
     let stats = &run.planned.stats;
     say(
