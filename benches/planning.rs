@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use searoom::obstacle::Obstacle;
+use searoom::obstacle::{Coast, Obstacle};
 use searoom::pipeline::{self, problem};
 use searoom::planner::{Outcome, Problem, SearchKind, space_time};
 use searoom::scenario::Scenario;
@@ -34,7 +34,7 @@ fn assert_planned(scenario: &Scenario) {
 fn time_plan(criterion: &mut Criterion, id: &str, scenario: &Scenario) {
     assert_planned(scenario);
     let obstacles = shaped(scenario);
-    let problem = problem(scenario, &obstacles);
+    let problem = problem(scenario, &obstacles, Coast::none());
     criterion.bench_function(id, |b| b.iter(|| space_time::plan(black_box(&problem))));
 }
 
@@ -51,7 +51,7 @@ fn one_target(criterion: &mut Criterion) {
 fn dijkstra(criterion: &mut Criterion) {
     let drawn = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin).expect("drawn");
     let obstacles = shaped(&drawn.scenario);
-    let a_star = problem(&drawn.scenario, &obstacles);
+    let a_star = problem(&drawn.scenario, &obstacles, Coast::none());
     let dijkstra = Problem {
         search: SearchKind::Dijkstra,
         ..a_star.clone()

@@ -51,9 +51,10 @@
 //!
 //! | module | what it holds |
 //! | --- | --- |
-//! | [`frame`] | the plane, poses, headings; the border to degrees and knots |
+//! | [`frame`] | the plane, poses, headings; the border to degrees, knots, latitudes and longitudes |
 //! | [`tolerance`] | every tolerance with its unit and its reason |
-//! | [`geometry`] | convex polygons and ellipses, points and segments included |
+//! | [`geometry`] | convex polygons and ellipses, points and segments included; any polygon, cut into convex pieces |
+//! | [`map`] | land from GeoJSON, cut into convex pieces, indexed |
 //! | [`search`] | A* and Dijkstra over a graph given by its successors |
 //! | [`trajectory`] | lines and arcs in time; the desired trajectory |
 //! | [`vessel`] | own ship and her limits; Dubins paths |
@@ -123,6 +124,7 @@ pub mod colregs;
 pub mod evaluation;
 pub mod frame;
 pub mod geometry;
+pub mod map;
 pub mod obstacle;
 pub mod pipeline;
 pub mod planner;

@@ -1,12 +1,17 @@
 //! The arrows in one place: Scenario → obstacles → Plan → Evaluation = Run.
 
+mod shore;
+
+pub use shore::{coast, land_within_reach};
+
 use std::time::{Duration, Instant};
 
-use crate::colregs::{self, Encounter};
+use crate::colregs::{self, Encounter, Role};
 use crate::evaluation::{Evaluation, Freedom, Request, SetShape, SpaceTimeSet, evaluate};
+use crate::frame::Side;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
-    EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    Coast, EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use crate::planner::{Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time};
 use crate::scenario::{Compliance, Scenario};
@@ -58,6 +63,8 @@ pub struct Run {
     /// The obstacles that the plan was made against, in the same order: the level sets `O_alpha`,
     /// `alpha = 1 - max_risk`.
     pub obstacles: Vec<Obstacle>,
+    /// The convex pieces of land that the plan was made against: all that own ship could reach.
+    pub land: Vec<ConvexPolygon>,
     /// The planner's answer.
     pub planned: Planned,
     /// What had to be given up, most important first; empty when nothing.
@@ -169,23 +176,35 @@ fn one_after_another(
     }
 }
 
-/// What a scenario asks of a planner, against the given obstacles.
-pub fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a> {
+/// What a scenario asks of a planner, against the given obstacles and the land.
+pub fn problem<'a>(
+    scenario: &'a Scenario,
+    obstacles: &'a [Obstacle],
+    coast: &'a Coast,
+) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
         desired: &scenario.desired,
         alternatives: &scenario.alternatives,
         objective: scenario.objective,
         obstacles,
+        coast,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: scenario.search,
         deadline: deadline(scenario),
+        first_turn: None,
     }
 }
 
 fn deadline(scenario: &Scenario) -> Duration {
     Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX)
+}
+
+/// Rules 14 and 15 in open water: to starboard where own ship meets head-on or gives way.
+fn first_turn(sets: &[TargetSets]) -> Option<Side> {
+    let alters = |s: &TargetSets| matches!(s.encounter.role, Role::HeadOn | Role::GiveWay);
+    sets.iter().any(alters).then_some(Side::Starboard)
 }
 
 /// Plans a scenario and judges the plan. Where no plan keeps clear of the shapes, one that keeps clear of the
@@ -195,6 +214,8 @@ pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let shaped = scenario.compliance == Compliance::Shape;
     let begun = Instant::now();
+    let land = land_within_reach(&scenario);
+    let coast = coast(&scenario, &land);
     let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
     let plan = |used: fn(&TargetSets) -> &Obstacle| -> (Vec<Obstacle>, Planned) {
         let whole: Vec<Obstacle> = sets.iter().map(|s| used(s).clone()).collect();
@@ -206,7 +227,8 @@ pub fn run(scenario: Scenario) -> Run {
         };
         let asked = Problem {
             deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
-            ..problem(&scenario, &level_sets)
+            first_turn: shaped.then(|| first_turn(&sets)).flatten(),
+            ..problem(&scenario, &level_sets, &coast)
         };
         let planned = match (scenario.planner, scenario.objective) {
             (PlannerKind::SpaceTime, _) => space_time::plan(&asked),
@@ -256,6 +278,7 @@ pub fn run(scenario: Scenario) -> Run {
         scenario,
         sets,
         obstacles,
+        land,
         planned,
         relaxations,
         risks,
@@ -333,6 +356,8 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
         desired: &scenario.desired,
         targets: &scenario.targets,
         sets: &sets,
+        land: scenario.land.as_ref().map_or(&[], |l| l.map.polygons()),
+        land_margin: scenario.land.as_ref().map_or(0.0, |l| l.margin),
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         max_risk: scenario.max_risk,

@@ -177,6 +177,10 @@ const NEVER: &[(&str, &str)] = &[
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
     ("parry2d_f64", &["geometry/", "map.rs", "obstacle/index.rs"]),
+    ("rstar", &["map/", "geometry/boxes.rs"]),
+    ("geojson", &["map/"]),
+    ("spade", &["geometry/decomposition.rs"]),
+    ("robust", &["geometry/"]),
     ("kuva", &["report/figure/"]),
     ("clap", &["cli/", "main.rs"]),
     ("to_degrees", &["frame.rs"]),

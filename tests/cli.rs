@@ -103,22 +103,6 @@ fn what_is_not_built_is_refused_by_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let cases = [
         (
-            "title",
-            "origin = { lat_deg = 63.4, lon_deg = 10.4 }\ntitle",
-            "origin",
-        ),
-        ("title", "map = \"land.geojson\"\ntitle", "map"),
-        (
-            "position = { east_m = 0.0, north_m = 0.0 }",
-            "position = { lat_deg = 63.4, lon_deg = 10.4 }",
-            "own_ship.position.lat_deg",
-        ),
-        (
-            "beam_m = 8.0",
-            "beam_m = 8.0\nland_margin_m = 5.0",
-            "own_ship.land_margin_m",
-        ),
-        (
             "[mission]",
             "[planner]\nkind = \"optimal-control\"\n[mission]",
             "planner.kind",

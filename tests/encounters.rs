@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use searoom::colregs::Role;
 use searoom::frame::{Side, Vector, direction};
 use searoom::geometry::ConvexPolygon;
-use searoom::obstacle::Obstacle;
+use searoom::obstacle::{Coast, Obstacle};
 use searoom::pipeline::{self, problem};
 use searoom::planner::{Outcome, Problem, SearchKind};
 use searoom::scenario::Scenario;
@@ -432,7 +432,7 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
                 seed,
                 random_encounter(kind, seed, Placement::Origin).expect("drawn"),
             );
-            let problem = problem(&record.drawn.scenario, &record.obstacles);
+            let problem = problem(&record.drawn.scenario, &record.obstacles, Coast::none());
             let cost = record.plan.map_or(f64::INFINITY, |p| p.1);
             let answer = searched(
                 &problem,

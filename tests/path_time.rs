@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::{
-    EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use searoom::planner::{NoPlan, Objective, Outcome, Planned, Problem, SearchKind, path_time};
 use searoom::target::VelocitySpell;
@@ -143,6 +143,8 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         time_weight: 25.0,
         search,
         deadline: Duration::from_secs(60),
+        first_turn: None,
+        coast: Coast::none(),
     })
 }
 

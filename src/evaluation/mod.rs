@@ -8,6 +8,7 @@ mod motion;
 mod moving_ellipse;
 mod moving_slabs;
 mod quadrature;
+mod shore;
 mod space_time_set;
 
 pub use space_time_set::{SetShape, SpaceTimeSet};
@@ -16,10 +17,11 @@ use clearance::{Body, least_distance};
 use least::Least;
 use moving_ellipse::MovingEllipse;
 use moving_slabs::MovingSlabs;
+use shore::least_land_distance;
 use space_time_set::MovingSet;
 
 use crate::frame::{Side, Vector, relative_bearing};
-use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
+use crate::geometry::{ConvexPolygon, Polygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment};
@@ -74,6 +76,10 @@ pub struct Evaluation {
     pub delay: f64,
     /// Least of the targets' clearances, metres; infinite without targets.
     pub min_clearance: f64,
+    /// Least distance between own hull and land, metres; infinite without land, negative on it.
+    pub min_land_distance: f64,
+    /// And when, seconds.
+    pub min_land_distance_time: f64,
     /// Per target, in the scenario's order.
     pub passages: Vec<Passage>,
 }
@@ -110,6 +116,10 @@ pub struct Request<'a> {
     pub targets: &'a [Target],
     /// The sets that the plan was made against; several may bear one target's name.
     pub sets: &'a [SpaceTimeSet],
+    /// Land, which may overlap itself.
+    pub land: &'a [Polygon],
+    /// Kept between own hull and land, metres.
+    pub land_margin: f64,
     /// Seconds: arrival must not be later.
     pub horizon: f64,
     /// `q` of eq. (30), m²/s².
@@ -120,7 +130,8 @@ pub struct Request<'a> {
 }
 
 /// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in continuous time,
-/// to [`tolerance::DEPTH_M`]; every hull that a target may have, whatever the sets say; and the figures.
+/// to [`tolerance::DEPTH_M`]; every hull that a target may have, whatever the sets say; own hull against
+/// the edges of the land; and the figures.
 ///
 /// Distances are certified least values ([`tolerance::MARGIN_M`]); the costs are integrated by quadrature
 /// of their own. A segment that is not a number is a violation, and the figures are then NaN.
@@ -157,6 +168,11 @@ pub fn evaluate(request: &Request) -> Evaluation {
         }
         passages.push(passage);
     }
+    let own = &request.own.hull;
+    let shore = least_land_distance(segments, Body::hull(own), own.half_diagonal(), request.land);
+    if judged {
+        violations.extend(grounding(&shore, request.land_margin));
+    }
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
     Evaluation {
@@ -180,8 +196,30 @@ pub fn evaluate(request: &Request) -> Evaluation {
                 .map(|p| p.min_clearance)
                 .fold(f64::INFINITY, f64::min),
         ),
+        min_land_distance: or_nan(shore.value),
+        min_land_distance_time: shore.time,
         passages,
     }
+}
+
+/// The violation of the land by a least distance, if there is one.
+fn grounding(least: &Least, margin: f64) -> Option<Violation> {
+    let allowed = margin - tolerance::DEPTH_M;
+    // negated on purpose: a NaN is aground
+    let what = if !(least.value >= allowed) {
+        format!(
+            "land: own hull at {:.6e} m, allowed {allowed:.6e}",
+            least.value
+        )
+    } else if !least.certified {
+        "land: distance not proven within the budget of the check".to_owned()
+    } else {
+        return None;
+    };
+    Some(Violation {
+        what,
+        time: least.time,
+    })
 }
 
 /// The violation of a set by a least distance, if there is one. A set without interior has no depth:

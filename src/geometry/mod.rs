@@ -1,14 +1,24 @@
-//! Convex sets and predicates in the plane. Knows no ship and no time.
+//! Convex sets, polygons and predicates in the plane. Knows no ship and no time.
 
+mod boxes;
 mod convex;
+mod crossing;
+mod decomposition;
 mod disc;
 mod ellipse;
 mod enclosing_ellipse;
+mod nearness;
+mod polygon;
 mod simplify;
 
+pub use boxes::{BoxIndex, Window};
 pub use convex::{ConvexPolygon, GeometryError};
+pub use crossing::{Crossing, EdgeIndex};
+pub use decomposition::{DecompositionError, convex_pieces};
 pub use disc::{DISC_SIDES, outer_disc};
 pub(crate) use ellipse::distance_in_frame;
 pub use ellipse::{Ellipse, ShapeError, SignedDistance};
 pub use enclosing_ellipse::outer_enclosing_ellipse;
+pub use nearness::{Stretch, stretch_near};
+pub use polygon::{Polygon, PolygonError};
 pub use simplify::outer_simplified;

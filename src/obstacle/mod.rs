@@ -2,8 +2,9 @@
 //!
 //! [`PolytopeObstacle`] is exact for its sets, [`EllipsoidObstacle`] is an outer set of its own,
 //! [`SlabObstacle`] has velocities that change with time. All three answer [`SpaceTimeObstacle`];
-//! [`Obstacle`] is any of them.
+//! [`Obstacle`] is any of them. [`Coast`] is land: many blocks that do not move.
 
+mod coast;
 mod conservative_advancement;
 pub mod contact;
 mod cpa;
@@ -20,6 +21,8 @@ mod slabs;
 mod space_time_obstacle;
 mod velocity_obstacle;
 
+pub(crate) use coast::window_of;
+pub use coast::{Coast, LAND};
 pub use cpa::ClosestApproach;
 pub use ellipsoid::EllipsoidObstacle;
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};

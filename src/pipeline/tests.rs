@@ -43,6 +43,8 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
         time_weight: 25.0,
         max_risk: 0.0,
         deadline: 5.0,
+        earth: None,
+        land: None,
     }
 }
 

@@ -9,8 +9,8 @@ pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeK
 
 use std::time::Duration;
 
-use crate::frame::Vector;
-use crate::obstacle::Obstacle;
+use crate::frame::{Side, Vector};
+use crate::obstacle::{Coast, Obstacle};
 use crate::trajectory::{DesiredTrajectory, NetworkError, Trajectory};
 use crate::vessel::OwnShip;
 
@@ -83,6 +83,8 @@ pub struct Problem<'a> {
     pub objective: Objective,
     /// The sets to stay out of, own ship's footprint folded in.
     pub obstacles: &'a [Obstacle],
+    /// Land to stay off, own ship's footprint folded in.
+    pub coast: &'a Coast,
     /// Seconds: arrival must not be later; the obstacles are known until then.
     pub horizon: f64,
     /// `q` of eq. (30), m²/s².
@@ -91,7 +93,14 @@ pub struct Problem<'a> {
     pub search: SearchKind,
     /// Wall-clock budget of one plan.
     pub deadline: Duration,
+    /// Side to which own ship should turn first: a plan that first turns to the other has to be cheaper by
+    /// [`AGAINST_THE_RULES`].
+    pub first_turn: Option<Side>,
 }
+
+/// Share of the cost by which a plan has to be cheaper whose first turn is to the side that the collision
+/// regulations discourage.
+pub const AGAINST_THE_RULES: f64 = 0.05;
 
 /// What the search did to find the cheapest plan on the graph.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -125,6 +134,14 @@ pub enum NoPlan {
     StartInside {
         /// Name of the obstacle.
         target: String,
+        /// Metres.
+        depth: f64,
+    },
+    /// Own ship starts nearer to land than she may be on some heading.
+    #[error(
+        "own ship starts {depth:.1} m nearer to land than her half-diagonal and the land margin allow"
+    )]
+    StartAshore {
         /// Metres.
         depth: f64,
     },
@@ -215,6 +232,7 @@ impl NoPlan {
         match self {
             Self::NoCandidate { .. } | Self::Barred { .. } | Self::OutOfTime { .. } => true,
             Self::StartInside { .. }
+            | Self::StartAshore { .. }
             | Self::StartCovered { .. }
             | Self::HorizonTooShort { .. }
             | Self::PathTooLong { .. }

@@ -266,6 +266,13 @@ pub fn plan_text(run: &Run) -> String {
         if let Some(clearance) = summary.clearance {
             say("clearance", format!("{} m", metres(clearance)));
         }
+        if evaluation.min_land_distance.is_finite() {
+            let (distance, time) = (
+                evaluation.min_land_distance,
+                evaluation.min_land_distance_time,
+            );
+            say("land", format!("{distance:.1} m off at {time:.0} s"));
+        }
         if let Some(risk) = summary.max_risk {
             say("risk", risk_text(run, risk));
         }

@@ -1,11 +1,14 @@
 //! File → [`Scenario`], noting every fault.
 
+use std::path::Path;
+
 use toml::de::DeTable;
 
 use super::file::{Entry, Source, TEXT, Word};
+use super::plane::{POSITION, Plane};
 use super::section::Section;
 use super::targets::targets;
-use super::{Compliance, Scenario, limits};
+use super::{Compliance, Land, Scenario, land, limits};
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::planner::{Objective, PlannerKind, SearchKind};
 use crate::trajectory::DesiredTrajectory;
@@ -19,27 +22,34 @@ const DEFAULT_DEADLINE: f64 = 5.0;
 
 /// The scenario of a file's outermost table. `None` only when a fault was noted; a scenario that
 /// comes with faults is of no use.
-pub(super) fn scenario(mut root: Section) -> Option<Scenario> {
+pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
     let title = root.require("title", TEXT).and_then(|entry| entry.text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
-    root.not_built("origin");
-    root.not_built("map");
+    let plane = Plane::new(&mut root);
+    let map = land::map(&mut root, &plane, folder);
     let own_ship = root
         .require("own_ship", "a table")
         .and_then(|entry| entry.section("a table"))
-        .map(own_ship);
+        .map(|section| own_ship(section, &plane));
     let speed = own_ship.as_ref().and_then(|own| own.speed);
+    let margin = own_ship.as_ref().and_then(|own| own.land_margin);
     let own_ship = own_ship.and_then(|own| own.ship);
     let mission = root
         .require("mission", "a table")
         .and_then(|entry| entry.section("a table"))
-        .and_then(|section| mission(section, speed));
+        .and_then(|section| mission(section, speed, &plane));
     let planner = root
         .take("planner")
         .and_then(|entry| entry.section("a table"))
         .map(planner)
         .unwrap_or_default();
-    let targets = targets(&mut root);
+    let targets = targets(&mut root, &plane);
+    let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
+    if let Some(land) = &land {
+        let desired = mission.as_ref().map(|m| &m.desired);
+        land::check(&mut root, land, &plane, own_ship.as_ref(), desired);
+    }
+    plane.finish(&mut root);
     root.finish();
     let (
         Mission {
@@ -63,30 +73,16 @@ pub(super) fn scenario(mut root: Section) -> Option<Scenario> {
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
         max_risk: planner.max_risk.unwrap_or(0.0),
         deadline: planner.deadline.unwrap_or(DEFAULT_DEADLINE),
+        earth: plane.earth(),
+        land,
     })
 }
 
-/// A point in metres from a table of east and north.
-pub(super) fn position(entry: &Entry) -> Option<Vector> {
-    let mut section = entry.section("a table { east_m, north_m }")?;
-    let geographic = section.not_built("lat_deg") | section.not_built("lon_deg");
-    let mut component = |key: &str| {
-        if geographic {
-            section.number(key, limits::COORDINATE)
-        } else {
-            section.required_number(key, limits::COORDINATE)
-        }
-    };
-    let (east, north) = (component("east_m"), component("north_m"));
-    section.finish();
-    Some(Vector::new(east?, north?))
-}
-
 /// A pose from the keys `position` and `course_deg`.
-pub(super) fn pose(section: &mut Section) -> Option<Pose> {
+pub(super) fn pose(section: &mut Section, plane: &Plane) -> Option<Pose> {
     let position = section
-        .require("position", "a table { east_m, north_m }")
-        .and_then(|entry| position(&entry));
+        .require("position", POSITION)
+        .and_then(|entry| plane.position(&entry));
     let course = section.required_number("course_deg", limits::COURSE);
     Some(Pose::new(position?, heading_from_course_deg(course?)))
 }
@@ -105,16 +101,22 @@ pub(super) fn hull(section: &mut Section) -> Option<Hull> {
 struct OwnShipFields {
     ship: Option<OwnShip>,
     speed: Option<f64>,
+    /// Metres.
+    land_margin: Option<f64>,
 }
 
-fn own_ship(mut section: Section) -> OwnShipFields {
-    let pose = pose(&mut section);
+fn own_ship(mut section: Section, plane: &Plane) -> OwnShipFields {
+    let pose = pose(&mut section, plane);
     let speed = section.required_speed("speed", limits::SPEED);
     let hull = hull(&mut section);
     let turning_radius = section.required_number("turning_radius_m", limits::LENGTH);
     let speeds = own_speeds(&mut section, speed);
     let margin = section.number("safety_margin_m", limits::DISTANCE);
-    section.only_zero("land_margin_m");
+    let land_margin = if section.has("land_margin_m") {
+        section.number("land_margin_m", limits::DISTANCE)
+    } else {
+        Some(0.0)
+    };
     section.finish();
     let ship = || {
         let hull = hull?;
@@ -130,6 +132,7 @@ fn own_ship(mut section: Section) -> OwnShipFields {
     OwnShipFields {
         ship: ship(),
         speed,
+        land_margin,
     }
 }
 
@@ -174,16 +177,16 @@ struct Mission {
     alternatives: Vec<Vec<Vector>>,
 }
 
-fn mission(mut section: Section, own_speed: Option<f64>) -> Option<Mission> {
+fn mission(mut section: Section, own_speed: Option<f64>, plane: &Plane) -> Option<Mission> {
     let alternatives = match section.take("alternatives") {
-        Some(entry) => alternatives(&entry),
+        Some(entry) => alternatives(&entry, plane),
         None => Some(Vec::new()),
     };
     let entries = section
         .require("waypoints", "a list of at least 2 positions")
         .and_then(|entry| positions(&entry));
     let legs = entries.as_ref().map(|entries| entries.len() - 1);
-    let waypoints = entries.and_then(|entries| waypoints(&entries));
+    let waypoints = entries.and_then(|entries| waypoints(&entries, plane));
     let speeds = leg_speeds(&mut section, legs, own_speed);
     section.finish();
     // every leg is long and fast enough by now
@@ -205,7 +208,7 @@ fn positions<'a, 'i>(entry: &Entry<'a, 'i>) -> Option<Vec<Entry<'a, 'i>>> {
     Some(entries)
 }
 
-fn alternatives(entry: &Entry) -> Option<Vec<Vec<Vector>>> {
+fn alternatives(entry: &Entry, plane: &Plane) -> Option<Vec<Vec<Vector>>> {
     let paths = entry.list(1, "paths, each a list of positions")?;
     if paths.len() > limits::ALTERNATIVES {
         let found = format_args!("{} paths", paths.len());
@@ -214,13 +217,13 @@ fn alternatives(entry: &Entry) -> Option<Vec<Vec<Vector>>> {
     }
     let read: Vec<_> = paths
         .iter()
-        .map(|path| positions(path).and_then(|entries| waypoints(&entries)))
+        .map(|path| positions(path).and_then(|entries| waypoints(&entries, plane)))
         .collect();
     read.into_iter().collect()
 }
 
-fn waypoints(entries: &[Entry]) -> Option<Vec<Vector>> {
-    let points: Vec<Option<Vector>> = entries.iter().map(position).collect();
+fn waypoints(entries: &[Entry], plane: &Plane) -> Option<Vec<Vector>> {
+    let points: Vec<Option<Vector>> = entries.iter().map(|e| plane.position(e)).collect();
     let mut sound = true;
     for (pair, entry) in points.windows(2).zip(&entries[1..]) {
         if let [Some(before), Some(here)] = pair
@@ -347,12 +350,12 @@ fn objective(section: &mut Section) -> Option<Objective> {
     objective
 }
 
-/// Reads a whole text; the faults say what is wrong with it.
-pub(super) fn text(source: &Source, text: &str) -> Option<Scenario> {
+/// Reads a whole text, of a file in `folder`; the faults say what is wrong with it.
+pub(super) fn text(source: &Source, text: &str, folder: &Path) -> Option<Scenario> {
     let (document, errors) = DeTable::parse_recoverable(text);
     if errors.is_empty() {
         let root = document.get_ref();
-        let scenario = scenario(Section::new(source, String::new(), None, root))?;
+        let scenario = scenario(Section::new(source, String::new(), None, root), folder)?;
         for fault in scenario.unfit() {
             source.fault(
                 &fault.path,

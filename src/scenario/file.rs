@@ -5,6 +5,7 @@
 
 use std::cell::RefCell;
 use std::fmt::Display;
+use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 use toml::de::DeValue;
@@ -148,13 +149,6 @@ impl<'a, 'i> Entry<'a, 'i> {
         }
     }
 
-    /// The number 0.
-    pub(super) fn zero(&self, allowed: &str) {
-        if number(self.value.get_ref()) != Some(0.0) {
-            self.refuse::<()>(allowed);
-        }
-    }
-
     /// Text that is not blank, without control characters, not longer than a line.
     pub(super) fn text(&self) -> Option<String> {
         match self.value.get_ref().as_str() {
@@ -166,6 +160,16 @@ impl<'a, 'i> Entry<'a, 'i> {
                 Some(text.to_owned())
             }
             _ => self.refuse(TEXT),
+        }
+    }
+
+    /// The name of a file, from a folder if it is relative.
+    pub(super) fn file_in(&self, folder: &Path) -> Option<PathBuf> {
+        match self.value.get_ref().as_str() {
+            Some(name) if !name.trim().is_empty() && !name.chars().any(unprintable) => {
+                Some(folder.join(name))
+            }
+            _ => self.refuse("the name of a file, relative to the folder of this one"),
         }
     }
 

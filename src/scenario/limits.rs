@@ -3,7 +3,7 @@
 //! zero keep quotients finite.
 
 use super::file::Range;
-use crate::frame::mps_from_knots;
+use crate::frame::{LARGEST_ORIGIN_LAT_DEG, mps_from_knots};
 
 /// Bytes of a scenario file.
 pub(super) const FILE_BYTES: u64 = 16 * 1024 * 1024;
@@ -17,6 +17,12 @@ pub(super) const SPEEDS: usize = 20;
 
 /// Metres east or north of the origin.
 pub(super) const COORDINATE: Range = Range::within(1e7);
+/// Degrees north of the equator.
+pub(super) const LATITUDE: Range = Range::within(90.0);
+/// The same of the origin: at a pole no direction is north.
+pub(super) const ORIGIN_LATITUDE: Range = Range::within(LARGEST_ORIGIN_LAT_DEG);
+/// Degrees east of Greenwich.
+pub(super) const LONGITUDE: Range = Range::within(180.0);
 /// Metres: lengths, beams, turning radii, legs.
 pub(super) const LENGTH: Range = Range::between(1e-3, 1e6);
 /// Metres: margins, domains, standard deviations.

@@ -5,16 +5,19 @@ mod explicit_sets;
 mod fault;
 mod file;
 mod fitness;
+mod land;
 mod limits;
+mod plane;
 mod section;
 mod targets;
 
 pub use fault::{Fault, ScenarioError};
+pub use land::Land;
 
 use std::io::Read;
 use std::path::Path;
 
-use crate::frame::Vector;
+use crate::frame::{Georeference, Vector};
 use crate::planner::{Objective, PlannerKind, SearchKind};
 use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
@@ -58,6 +61,10 @@ pub struct Scenario {
     pub max_risk: f64,
     /// Wall-clock budget of one plan, seconds.
     pub deadline: f64,
+    /// Where the plane lies on the earth, where that is known.
+    pub earth: Option<Georeference>,
+    /// The land, where there is a map.
+    pub land: Option<Land>,
 }
 
 impl Scenario {
@@ -98,7 +105,8 @@ impl Scenario {
             let at = error.valid_up_to();
             whole(format!("bytes that are no text at byte {at}"), "UTF-8 text")
         })?;
-        Self::parse(text).map_err(|faults| ScenarioError::Faults {
+        let folder = file.parent().unwrap_or(Path::new(""));
+        Self::parse_beside(text, folder).map_err(|faults| ScenarioError::Faults {
             file: file.to_owned(),
             faults,
         })
@@ -123,10 +131,15 @@ impl Scenario {
     ///
     /// Courses may be given from -360° to 360°; coordinates up to 10,000 km, speeds up to 100 m/s and
     /// times up to 1,000,000 s are accepted. A time weight that is left out is the square of the
-    /// mission's mean speed.
+    /// mission's mean speed. A map is looked for from the current folder.
     pub fn parse(text: &str) -> Result<Self, Vec<Fault>> {
+        Self::parse_beside(text, Path::new(""))
+    }
+
+    /// The same for a file in `folder`: from there its map is looked for.
+    pub fn parse_beside(text: &str, folder: &Path) -> Result<Self, Vec<Fault>> {
         let source = file::Source::new(text);
-        let scenario = check::text(&source, text);
+        let scenario = check::text(&source, text, folder);
         let faults = source.into_faults();
         match scenario {
             Some(scenario) if faults.is_empty() => Ok(scenario),

@@ -158,13 +158,6 @@ impl<'a, 'i> Section<'a, 'i> {
         }
     }
 
-    /// Refuses every value but 0 of a key whose feature does not exist.
-    pub(super) fn only_zero(&mut self, key: &str) {
-        if let Some(entry) = self.take(key) {
-            entry.zero("0, which is off: anything else is not built yet");
-        }
-    }
-
     /// Refuses a key that another one rules out.
     pub(super) fn forbid(&mut self, key: &str, because: &str) {
         if let Some(entry) = self.take(key) {

@@ -6,12 +6,13 @@ use super::check::{hull, pose};
 use super::explicit_sets;
 use super::file::{Entry, TEXT, Word};
 use super::limits;
+use super::plane::Plane;
 use super::section::Section;
 use crate::frame::radians_from_deg;
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 
 /// The targets; none is a list of none.
-pub(super) fn targets(root: &mut Section) -> Option<Vec<Target>> {
+pub(super) fn targets(root: &mut Section, plane: &Plane) -> Option<Vec<Target>> {
     let Some(entry) = root.take("targets") else {
         return Some(Vec::new());
     };
@@ -34,7 +35,7 @@ pub(super) fn targets(root: &mut Section) -> Option<Vec<Target>> {
                 "a name that no other target has",
             );
         }
-        let known = known(&mut section);
+        let known = known(&mut section, plane);
         section.finish();
         targets.push(text.zip(known).map(|(name, known)| Target {
             name,
@@ -51,7 +52,7 @@ struct Known {
     representation: Representation,
 }
 
-fn known(section: &mut Section) -> Option<Known> {
+fn known(section: &mut Section, plane: &Plane) -> Option<Known> {
     let asked = section.take("representation");
     let representation = asked.as_ref().map(|entry| {
         entry.choice(&[
@@ -63,7 +64,7 @@ fn known(section: &mut Section) -> Option<Known> {
     let motion = if explicit.contains(&true) {
         explicit_sets::motion(section)
     } else {
-        ship(section).map(Motion::Ship)
+        ship(section, plane).map(Motion::Ship)
     };
     let representation = match representation {
         Some(chosen) => chosen?,
@@ -91,8 +92,8 @@ fn known(section: &mut Section) -> Option<Known> {
     })
 }
 
-fn ship(section: &mut Section) -> Option<ShipTrack> {
-    let pose = pose(section);
+fn ship(section: &mut Section, plane: &Plane) -> Option<ShipTrack> {
+    let pose = pose(section, plane);
     let speed = section.required_speed("speed", limits::SPEED);
     let hull = hull(section);
     let position_std = section.number("position_std_m", limits::DISTANCE);

@@ -262,6 +262,8 @@ fn scene(
             time_weight: TIME_WEIGHT,
             max_risk: 0.0,
             deadline: DEADLINE,
+            earth: None,
+            land: None,
         },
         kinds,
         rejected,

@@ -30,6 +30,8 @@ const TURN_RAD: f64 = 1e-13;
 struct Corner {
     vertex: MovingVertex,
     faces: Vec<HalfSpace>,
+    /// False where no way leads past it.
+    open: bool,
 }
 
 impl Corner {
@@ -91,6 +93,16 @@ impl Aims {
         body: &PolytopeObstacle,
         speeds: impl Iterator<Item = f64>,
     ) -> Self {
+        Self::past(hazard, body, speeds, |_| true)
+    }
+
+    /// The same of those corners alone that are `open` where they are at t = 0.
+    pub(crate) fn past(
+        hazard: &Hazard,
+        body: &PolytopeObstacle,
+        speeds: impl Iterator<Item = f64>,
+        open: impl Fn(Vector) -> bool,
+    ) -> Self {
         let faces = body.faces();
         let corners: Vec<Corner> = body
             .moving_vertices()
@@ -103,7 +115,12 @@ impl Aims {
                         && velocity <= 1e-9 * (1.0 + vertex.velocity.norm())
                 };
                 let faces = faces.iter().filter(meets).copied().collect();
-                Corner { vertex, faces }
+                let open = open(vertex.origin);
+                Corner {
+                    vertex,
+                    faces,
+                    open,
+                }
             })
             .collect();
         let paces = speeds.map(|u| Pace::new(faces, &corners, u)).collect();
@@ -221,7 +238,7 @@ impl Pace {
                 }
             }
         }
-        for (index, corner) in corners.iter().enumerate() {
+        for (index, corner) in corners.iter().enumerate().filter(|(_, c)| c.open) {
             let around: Vec<usize> = (0..faces.len())
                 .filter(|k| corner.faces.contains(&faces[*k]))
                 .collect();

@@ -2,13 +2,20 @@
 
 use super::hazard::Hazard;
 use super::part::Window;
-use super::template::{Leg, Sailed};
+use super::sailed::{Leg, Sailed};
 use crate::frame::{Vector, to_port, to_starboard};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::tolerance;
 
 /// Metres. Approaches closer than this become rows.
-const NEAR_M: f64 = 60.0;
+pub(crate) const NEAR_M: f64 = 60.0;
+
+/// Metres. Where legs meet closer than this the joint is a row too: a leg that slides along a face touches it at both
+/// ends, and of two ends only one is a minimum.
+const SLIDING_M: f64 = 20.0;
+
+/// Seconds within which a joint is the minimum beside it.
+const SAME_S: f64 = 0.2;
 
 /// Radians. Longest arc that one chord stands for when a minimum is sought, to begin with and at the end.
 pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;
@@ -97,7 +104,7 @@ impl Shape for EllipsoidObstacle {
     }
 }
 
-/// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`]; arcs are cut into chords of `chord`
+/// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`], and joints below [`SLIDING_M`]; arcs are cut into chords of `chord`
 /// radians at most.
 pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed, chord: f64) -> Vec<Approach> {
     match hazard.round {
@@ -114,6 +121,7 @@ fn approaches_of<S: Shape>(
 ) -> Vec<Approach> {
     let mut chords: Vec<Chord<S::Face>> = Vec::with_capacity(64);
     let mut found: Vec<Approach> = Vec::new();
+    let mut joints: Vec<Approach> = Vec::new();
     let clock = hazard.start();
     for (leg, l) in sailed.legs.iter().enumerate() {
         let segment = &l.segment;
@@ -151,6 +159,9 @@ fn approaches_of<S: Shape>(
         };
         let mut arm = to_starboard(ahead) * segment.radius();
         let mut from = sample(first, start);
+        if first == 0.0 && from.slack.value < SLIDING_M {
+            joints.push(joint(shape, leg, &from));
+        }
         for k in 1..=count as usize {
             let fraction = first + (last - first) * (k as f64 / count);
             let position = if segment.is_arc() {
@@ -172,7 +183,29 @@ fn approaches_of<S: Shape>(
         }
     }
     local_minima((shape, hazard, sailed), &mut chords, &mut found);
+    let time = |a: &Approach| {
+        let s = &sailed.legs[a.leg].segment;
+        s.start_time + s.duration * a.fraction
+    };
+    let minima = found.len();
+    for joint in joints {
+        let is_apart = |f: &Approach| (time(f) - time(&joint)).abs() > SAME_S;
+        if found[..minima].iter().all(is_apart) {
+            found.push(joint);
+        }
+    }
     found
+}
+
+/// The start of a leg: its place on the leg is fixed, so any face that attains the slack gives its rates.
+fn joint<S: Shape>(shape: &S, leg: usize, at: &Sample<S::Face>) -> Approach {
+    let (normal, speed) = shape.plane(at.slack.face);
+    Approach {
+        leg,
+        fraction: at.fraction,
+        slack: at.slack.value,
+        rates: [normal.x, normal.y, -speed],
+    }
 }
 
 /// What of a leg is sailed while a part is in force, as fractions of it.

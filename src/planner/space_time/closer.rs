@@ -233,6 +233,7 @@ impl<'a> Closer<'a> {
 mod tests {
     use std::time::Duration;
 
+    use crate::obstacle::Coast;
     use crate::pipeline;
     use crate::planner::cost::space_time_error;
     use crate::planner::space_time::graph::Graph;
@@ -338,7 +339,7 @@ mod tests {
                 greatest = greatest.max(nearest(&Problem {
                     search: SearchKind::AStar,
                     deadline: Duration::from_secs(60),
-                    ..pipeline::problem(&scenario, &obstacles)
+                    ..pipeline::problem(&scenario, &obstacles, Coast::none())
                 }));
             }
         }

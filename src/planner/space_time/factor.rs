@@ -4,9 +4,18 @@
 
 use super::quadratic::{MAX_VARIABLES, Matrix, Row};
 
-/// The scalar product of the first `n` numbers.
+/// The scalar product of the first `n` numbers, in four sums that do not wait for each other.
 pub(crate) fn dot(a: &Row, b: &Row, n: usize) -> f64 {
-    a[..n].iter().zip(&b[..n]).map(|(x, y)| x * y).sum()
+    let (a, b) = (a[..n].chunks_exact(4), b[..n].chunks_exact(4));
+    let rest = a.remainder().iter().zip(b.remainder());
+    let rest: f64 = rest.map(|(x, y)| x * y).sum();
+    let mut sums = [0.0; 4];
+    for (x, y) in a.zip(b) {
+        for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+            *sum += x * y;
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// `to += factor * from`, of the first `n` numbers.

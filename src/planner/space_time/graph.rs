@@ -6,6 +6,7 @@
 use std::cell::Cell;
 
 use super::aims::Aims;
+use super::ashore;
 use super::chain::Chain;
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::heuristic::Heuristic;
@@ -72,6 +73,11 @@ impl<'a> Graph<'a> {
         let first = |h: &Hazard| undisturbed.iter().find_map(|s| h.first_contact(s));
         let mut contacts: Vec<f64> = by_obstacle(hazards)
             .filter_map(|parts| parts.iter().filter_map(first).min_by(f64::total_cmp))
+            .chain(
+                ashore::conflicts(problem.coast, undisturbed)
+                    .iter()
+                    .map(|c| c.from),
+            )
             .collect();
         contacts.sort_by(f64::total_cmp);
         contacts.dedup_by(|a, b| *a - *b < LEADS_S[3]);
@@ -98,6 +104,7 @@ impl<'a> Graph<'a> {
                 );
                 Aims::new(h, &body, moving(problem.own))
             })
+            .chain(ashore::aims(problem, undisturbed, RELEVANT_M).filter(|_| !contacts.is_empty()))
             .collect();
         let heuristic = (problem.search == SearchKind::AStar).then(|| {
             let keep_out = KeepOut::new(problem, hazards);
@@ -436,7 +443,10 @@ impl Space for Graph<'_> {
     }
 
     fn admits(&mut self, state: &State) -> bool {
-        let met = first_met(self.hazards, &state.motion);
+        let met = first_met(self.hazards, &state.motion).or_else(|| {
+            let ashore = ashore::meets(self.problem.coast, &state.motion);
+            ashore.then_some(self.problem.obstacles.len())
+        });
         state.met.set(met);
         met.is_none()
     }

@@ -57,6 +57,22 @@ impl<'a> Hazard<'a> {
         }
     }
 
+    /// A polytope that does not move and is in force for ever.
+    pub(crate) fn at_rest(obstacle: usize, body: &'a PolytopeObstacle) -> Self {
+        let centre = body.initial().centroid();
+        Self {
+            obstacle,
+            body,
+            within: body,
+            round: None,
+            window: None,
+            centre,
+            drift: Vector::zeros(),
+            radius: body.initial().translated(-centre).reach(),
+            growth: 0.0,
+        }
+    }
+
     /// Seconds: when the clock of the part starts.
     pub(crate) fn start(&self) -> f64 {
         self.window.map_or(0.0, |w| w.start)

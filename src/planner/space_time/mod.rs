@@ -9,8 +9,10 @@
 //! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
 //! plan is one of the candidates.
 
+mod addition;
 mod aims;
 mod approach;
+mod ashore;
 mod chain;
 mod closer;
 mod factor;
@@ -28,15 +30,17 @@ mod quadratic;
 mod refinement;
 mod returning;
 mod route;
+mod sailed;
 mod seeds;
 mod selection;
+mod tail;
 mod template;
 
 use std::time::Instant;
 
 use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
 use crate::frame::Vector;
-use crate::obstacle::SpaceTimeObstacle;
+use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
@@ -114,6 +118,12 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
             });
         }
     }
+    if let Some(depth) = problem.coast.depth(own.pose.position)
+        // negated on purpose: a NaN is ashore
+        && !(depth <= TOUCH_M)
+    {
+        return refuse(NoPlan::StartAshore { depth });
+    }
     // a round trip ends where it begins, and is to be sailed
     let at = |place: Vector| (place - own.pose.position).norm() <= tolerance::LENGTH_M;
     if at(problem.desired.end()) && !at(problem.desired.legs()[0].start) {
@@ -134,10 +144,12 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
     }
     let mut graph = Graph::new(problem, hazards, &route, &undisturbed);
     let mut search = Search::new(graph.root());
+    let blocks = ashore::hazards(problem);
     let scene = Scene {
         problem,
         route: &route,
         hazards,
+        blocks: &blocks,
         chord: FINE_CHORD_RAD,
     };
     let mut selection = Selection::new(scene);
@@ -167,10 +179,13 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
         }
     }
     let contact = first_contact(hazards, &undisturbed);
-    if contact.is_some() {
+    let grounding = ashore::first_contact(problem.coast, &undisturbed);
+    if contact.is_some() || grounding.is_some() {
         let mut conflicts: Vec<Conflict> = by_obstacle(hazards)
             .filter_map(|h| Conflict::of(h, &undisturbed))
+            .map(|conflict| ashore::beyond_land(problem.coast, conflict, &undisturbed))
             .collect();
+        conflicts.extend(ashore::conflicts(problem.coast, &undisturbed));
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, &out_of_time);
     }
@@ -193,11 +208,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
     let outcome = match (plan, timed_out) {
         (plan, true) => Outcome::Deadline(plan),
         (Some(plan), false) => Outcome::Solved(plan),
-        (None, false) => Outcome::Infeasible(NoPlan::NoCandidate {
-            target: contact
-                .map_or_else(String::new, |(i, _)| problem.obstacles[i].name().to_owned()),
-            time: contact.map_or(0.0, |(_, t)| t),
-        }),
+        (None, false) => Outcome::Infeasible(no_candidate(problem, contact, grounding)),
     };
     Planned {
         outcome,
@@ -205,4 +216,20 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
         explored: node::explored(search),
         path_time: None,
     }
+}
+
+/// What the undisturbed motion meets first, the land or the set of a target.
+fn no_candidate(
+    problem: &Problem,
+    contact: Option<(usize, f64)>,
+    grounding: Option<f64>,
+) -> NoPlan {
+    let target = contact.map(|(i, time)| (problem.obstacles[i].name().to_owned(), time));
+    let land = grounding.map(|time| (LAND.to_owned(), time));
+    let first = target
+        .into_iter()
+        .chain(land)
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    let (target, time) = first.unwrap_or_default();
+    NoPlan::NoCandidate { target, time }
 }

@@ -1,16 +1,18 @@
 //! The refinement's view of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the
 //! contact rows, all in the free lengths.
 
-use super::approach::{Approach, approaches};
+use super::approach::{Approach, NEAR_M, approaches};
+use super::ashore;
 use super::hazard::Hazard;
 use super::moments::{Moments, Residuals, reduce, reduce_matrix};
 use super::quadratic::{Constraint, MAX_VARIABLES, Matrix, Row};
 use super::route::Route;
-use super::template::{Ending, Owner, Place, Sailed, Template};
+use super::sailed::{Owner, Place, Sailed};
+use super::tail::Tail;
+use super::template::{Ending, Template};
 use crate::frame::to_port;
 use crate::planner::Problem;
-use crate::planner::cost::{GAUSS_2, GAUSS_4, space_time_error};
-use crate::trajectory::Segment;
+use crate::planner::cost::{GAUSS_2, GAUSS_4};
 
 /// Metres that solved slots and the leg after the return keep, so that a step does not run out of them.
 const ROOM_M: f64 = 1.0;
@@ -31,6 +33,8 @@ pub(crate) struct Scene<'a> {
     pub problem: &'a Problem<'a>,
     pub route: &'a Route,
     pub hazards: &'a [Hazard<'a>],
+    /// The land, block by block.
+    pub blocks: &'a [Hazard<'a>],
     /// Radians, see [`approaches`].
     pub chord: f64,
 }
@@ -50,41 +54,54 @@ pub(crate) struct Model {
     pub least_slack: f64,
 }
 
+/// Share of the cost per square metre that is added to the Hessian's diagonal: Gauss-Newton leaves directions flat.
+const REGULARISATION: f64 = 1e-5;
+
+impl Model {
+    /// The Hessian of the first `size` variables made positive definite.
+    pub(crate) fn regular_hessian(&self, size: usize) -> Matrix {
+        let mut hessian = self.hessian;
+        let floor = REGULARISATION * self.cost.max(20.0);
+        for (i, row) in hessian.iter_mut().enumerate().take(size) {
+            row[i] += floor;
+        }
+        hessian
+    }
+}
+
+/// One manoeuvre, evaluated in all its slots, the solved ones included.
+#[derive(Debug)]
+pub(crate) struct Full {
+    pub sailed: Sailed,
+    pub cost: f64,
+    pub gradient: Row,
+    /// The lower triangle.
+    hessian: Matrix,
+    pub moments: Moments,
+    pub approaches: Vec<Approach>,
+    /// Where there is one.
+    pub tail: Option<Tail>,
+    joining: (Row, Row),
+}
+
 impl Scene<'_> {
     /// Sails and evaluates; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn model(&self, template: &Template, lengths: &Row) -> Option<Model> {
-        let sailed = template.sail(self.problem, self.route, lengths)?;
+        let full = self.full(template, lengths)?;
         let (all, free) = (template.all(), template.free());
-        let mut full = Full {
-            cost: 0.0,
-            gradient: [0.0; MAX_VARIABLES],
-            hessian: [[0.0; MAX_VARIABLES]; MAX_VARIABLES],
-            moments: Moments::new(),
-        };
-        for leg in 0..sailed.tail {
-            self.add_leg(&sailed, leg, &mut full);
-        }
-        let motors = sailed.motors(self.problem.own.pose.position);
-        full.moments
-            .finish(&motors, &mut full.gradient, &mut full.hessian);
-        let joining = sailed.joining_rates();
-        if !matches!(template.ending, Ending::Goal { .. }) {
-            self.add_tail(&sailed, &joining, all, &mut full);
-        }
+        let sailed = &full.sailed;
         let solved = &sailed.solved_rates[..all - free];
-        let mut rows = Vec::with_capacity(8);
+        let mut rows = Vec::with_capacity(full.approaches.len() + 3);
         let (mut violation, mut least_slack) = (0.0_f64, f64::INFINITY);
-        for hazard in self.hazards {
-            for approach in approaches(hazard, &sailed, self.chord) {
-                let missing = MARGIN_M - approach.slack;
-                violation = missing.max(violation);
-                least_slack = least_slack.min(approach.slack);
-                let coefficients = self.approach_row(&sailed, &approach, &joining);
-                rows.push(Constraint {
-                    coefficients: reduce(&coefficients, solved, free),
-                    bound: missing,
-                });
-            }
+        for approach in &full.approaches {
+            let missing = MARGIN_M - approach.slack;
+            violation = missing.max(violation);
+            least_slack = least_slack.min(approach.slack);
+            let coefficients = self.approach_row(&full, approach);
+            rows.push(Constraint {
+                coefficients: reduce(&coefficients, solved, free),
+                bound: missing,
+            });
         }
         for k in 0..all - free {
             let bound = ROOM_M.min(sailed.solved[k]) - sailed.solved[k];
@@ -94,7 +111,7 @@ impl Scene<'_> {
             });
         }
         if let Some(room) = sailed.room {
-            let coefficients = reduce(&joining.0, solved, free).map(|c| -c);
+            let coefficients = reduce(&full.joining.0, solved, free).map(|c| -c);
             rows.push(Constraint {
                 coefficients,
                 bound: ROOM_M.min(room) - room,
@@ -112,9 +129,47 @@ impl Scene<'_> {
         })
     }
 
+    /// The same before the solved slots are eliminated.
+    pub(crate) fn full(&self, template: &Template, lengths: &Row) -> Option<Full> {
+        let sailed = template.sail(self.problem, self.route, lengths)?;
+        let mut sums = Sums {
+            cost: 0.0,
+            gradient: [0.0; MAX_VARIABLES],
+            hessian: [[0.0; MAX_VARIABLES]; MAX_VARIABLES],
+            moments: Moments::new(),
+        };
+        for leg in 0..sailed.tail {
+            self.add_leg(&sailed, leg, &mut sums);
+        }
+        let motors = sailed.motors(self.problem.own.pose.position);
+        sums.moments
+            .finish(&motors, &mut sums.gradient, &mut sums.hessian);
+        let joining = sailed.joining_rates();
+        let tail = (!matches!(template.ending, Ending::Goal { .. }))
+            .then(|| self.add_tail(&sailed, &joining, template.all(), &mut sums));
+        let sails = sailed.legs.iter().map(|l| &l.segment);
+        let land = ashore::near(self.problem.coast, sails, NEAR_M);
+        let approaches = self
+            .hazards
+            .iter()
+            .chain(land.into_iter().map(|b| &self.blocks[b]))
+            .flat_map(|hazard| approaches(hazard, &sailed, self.chord))
+            .collect();
+        Some(Full {
+            sailed,
+            cost: sums.cost,
+            gradient: sums.gradient,
+            hessian: sums.hessian,
+            moments: sums.moments,
+            approaches,
+            tail,
+            joining,
+        })
+    }
+
     /// Adds a leg's cost: the squared residuals at Gauss points, their rates, and the rate of the
     /// leg's own duration.
-    fn add_leg(&self, sailed: &Sailed, leg: usize, full: &mut Full) {
+    fn add_leg(&self, sailed: &Sailed, leg: usize, full: &mut Sums) {
         let Owner::Slot { index, from, to } = sailed.legs[leg].owner else {
             return;
         };
@@ -187,22 +242,9 @@ impl Scene<'_> {
         residuals
     }
 
-    /// Cost of following the route from a place at a time, m².
-    fn tail_cost(&self, distance: f64, time: f64) -> f64 {
-        let mut segments = Vec::with_capacity(4);
-        self.route.follow(distance, time, &mut segments);
-        segments
-            .iter()
-            .map(|s| space_time_error(self.problem.desired, s, self.problem.time_weight))
-            .sum()
-    }
-
     /// Adds the tail's cost.
-    fn add_tail(&self, sailed: &Sailed, joining: &(Row, Row), all: usize, full: &mut Full) {
-        let (s, t) = sailed.joined;
-        let tail = self
-            .straight_tail(s, t)
-            .unwrap_or_else(|| self.any_tail(s, t));
+    fn add_tail(&self, sailed: &Sailed, joining: &(Row, Row), all: usize, full: &mut Sums) -> Tail {
+        let tail = self.tail(sailed.joined.0, sailed.joined.1);
         full.cost += tail.cost;
         let (distance, clock) = joining;
         let mut lateness = [0.0; MAX_VARIABLES];
@@ -215,146 +257,57 @@ impl Scene<'_> {
                 full.hessian[i][k] += tail.bend * lateness[i] * lateness[k];
             }
         }
-    }
-
-    /// On the last leg, recovering in time at the greatest or the least speed, then on schedule: the lag
-    /// shrinks at a constant rate `r`, so the cost is `kappa lag³ / (3 r T_d)`. `None` in any other case.
-    fn straight_tail(&self, distance: f64, time: f64) -> Option<Tail> {
-        let desired = self.problem.desired;
-        let last = desired.legs().len() - 1;
-        let leg = &desired.legs()[last];
-        let stretch = self
-            .route
-            .stretch(last, desired)
-            .filter(|s| s.distance <= distance)?;
-        let own = self.problem.own;
-        own.speeds
-            .iter()
-            .find(|u| (*u - leg.speed).abs() <= 1e-9 * leg.speed)?;
-        let along = stretch.from + distance - stretch.distance;
-        let lag = leg.speed * (time - leg.start_time) - along;
-        let (pace, rate) = if lag >= 0.0 {
-            (own.max_speed(), own.max_speed() - leg.speed)
-        } else {
-            (own.min_speed(), leg.speed - own.min_speed())
-        };
-        let recovery = lag.abs() / rate;
-        let due = self.route.due_at(distance);
-        let on_timetable = (due - leg.start_time - along / leg.speed).abs() < 1e-6;
-        // negated on purpose: a NaN does not fit
-        if !(rate > 1e-9 && along + recovery * pace <= stretch.to && on_timetable) {
-            return None;
-        }
-        let q = self.problem.time_weight;
-        let kappa = q / (q + leg.speed * leg.speed) / (rate * desired.duration());
-        let by_lag = kappa * lag * lag.abs();
-        Some(Tail {
-            cost: kappa * lag.abs().powi(3) / 3.0,
-            by_time: by_lag * leg.speed,
-            by_distance: -by_lag,
-            bend: 2.0 * kappa * lag.abs() * leg.speed * leg.speed,
-            slowness: 1.0 / leg.speed,
-        })
-    }
-
-    /// Any tail, by differences in the place and time at which it begins.
-    fn any_tail(&self, distance: f64, time: f64) -> Tail {
-        let (ds, dt) = (0.05, 0.01);
-        let cost = self.tail_cost(distance, time);
-        let (earlier, later) = (
-            self.tail_cost(distance, time - dt),
-            self.tail_cost(distance, time + dt),
-        );
-        let (back, on) = (
-            self.tail_cost(distance - ds, time),
-            self.tail_cost(distance + ds, time),
-        );
-        Tail {
-            cost,
-            by_time: (later - earlier) / (2.0 * dt),
-            by_distance: (on - back) / (2.0 * ds),
-            bend: ((later + earlier - 2.0 * cost) / (dt * dt)).max(0.0),
-            slowness: (self.route.due_at(distance + ds) - self.route.due_at(distance)) / ds,
-        }
+        tail
     }
 
     /// Rates of the slack at an approach.
-    fn approach_row(&self, sailed: &Sailed, approach: &Approach, joining: &(Row, Row)) -> Row {
+    pub(crate) fn approach_row(&self, full: &Full, approach: &Approach) -> Row {
         let of = approach.rates;
-        let leg = &sailed.legs[approach.leg];
-        match (sailed.place(approach.leg, approach.fraction), leg.owner) {
+        let sailed = &full.sailed;
+        match (
+            sailed.place(approach.leg, approach.fraction),
+            sailed.legs[approach.leg].owner,
+        ) {
             (Some(place), _) => sailed.rates(&place, of),
-            (None, Owner::Tail { index }) => self.tail_row(sailed, index, approach, of, joining),
+            (None, Owner::Tail { index }) => {
+                let (by_distance, by_time) = self.tail_rates(sailed, index, approach);
+                let mut row = [0.0; MAX_VARIABLES];
+                let (distances, clocks) = &full.joining;
+                for (to, (distance, clock)) in row.iter_mut().zip(distances.iter().zip(clocks)) {
+                    *to = by_distance * distance + by_time * clock;
+                }
+                row
+            }
             (None, Owner::Slot { .. }) => [0.0; MAX_VARIABLES],
         }
-    }
-
-    /// Rates of `of . (east, north, clock)` of a point of the tail, by differences in the place and time
-    /// of joining.
-    fn tail_row(
-        &self,
-        sailed: &Sailed,
-        index: usize,
-        approach: &Approach,
-        of: [f64; 3],
-        joining: &(Row, Row),
-    ) -> Row {
-        let (s, t) = sailed.joined;
-        let (ds, dt) = (0.05, 0.01);
-        let at = |distance: f64, time: f64| -> Option<f64> {
-            let mut segments = Vec::with_capacity(4);
-            self.route.follow(distance, time, &mut segments);
-            let segment: &Segment = segments.get(index)?;
-            let elapsed = segment.duration * approach.fraction;
-            let position = segment.pose_after(elapsed).position;
-            Some(of[0] * position.x + of[1] * position.y + of[2] * (segment.start_time + elapsed))
-        };
-        let here = at(s, t).unwrap_or_default();
-        let by_distance = (at(s + ds, t).unwrap_or(here) - here) / ds;
-        let by_time = (at(s, t + dt).unwrap_or(here) - here) / dt;
-        let mut row = [0.0; MAX_VARIABLES];
-        for (to, (distance, clock)) in row.iter_mut().zip(joining.0.iter().zip(&joining.1)) {
-            *to = by_distance * distance + by_time * clock;
-        }
-        row
     }
 }
 
 /// Cost and rates in all slots; the lower triangle of the Hessian.
-struct Full {
+struct Sums {
     cost: f64,
     gradient: Row,
     hessian: Matrix,
     moments: Moments,
 }
 
-/// Cost of the route followed from a place at a time, with its rates per second and per metre, its
-/// second rate per second, and the timetable's seconds per metre there.
-struct Tail {
-    cost: f64,
-    by_time: f64,
-    by_distance: f64,
-    bend: f64,
-    slowness: f64,
-}
-
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::super::approach::FINE_CHORD_RAD;
     use super::*;
     use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
-    use crate::obstacle::PolytopeObstacle;
+    use crate::obstacle::{Coast, PolytopeObstacle};
     use crate::planner::SearchKind;
     use crate::planner::space_time::part::parts;
+    use crate::planner::space_time::refinement::Seed;
     use crate::planner::space_time::seeds::{Canonical, Conflict};
     use crate::planner::space_time::template::Slot;
     use crate::trajectory::DesiredTrajectory;
     use crate::vessel::{Hull, OwnShip};
 
-    /// Every rate against central differences, at a manoeuvre with all slots open and a near target.
-    #[test]
-    fn rates_match_differences() {
+    /// Checks three manoeuvres with all slots open, two that return and one that steers for the goal, near a target.
+    pub(crate) fn at_manoeuvres(check: impl Fn(&Scene, &Seed)) {
         let own = OwnShip {
             pose: Pose::new(Vector::new(0.0, 0.0), 0.0),
             speed: 5.0,
@@ -384,10 +337,12 @@ mod tests {
             alternatives: &[],
             objective: crate::planner::Objective::SpaceTimeError,
             obstacles: &obstacles,
+            coast: Coast::none(),
             horizon: 900.0,
             time_weight: 25.0,
             search: SearchKind::AStar,
             deadline: std::time::Duration::from_secs(5),
+            first_turn: None,
         };
         let route = Route::new(&problem).expect("a route");
         let parts = parts(&obstacles, problem.horizon);
@@ -396,6 +351,7 @@ mod tests {
             problem: &problem,
             route: &route,
             hazards: &hazards,
+            blocks: &[],
             chord: FINE_CHORD_RAD,
         };
         let canonical = Canonical {
@@ -411,6 +367,7 @@ mod tests {
             through: 200.0,
             offsets: [80.0, 90.0],
             astern: (90.0, 160.0),
+            ahead: (90.0, 160.0),
         };
         for (side, goal) in [
             (Side::Starboard, false),
@@ -430,6 +387,15 @@ mod tests {
                     11.0
                 } + i as f64;
             }
+            check(&scene, &seed);
+        }
+    }
+
+    /// Every rate against central differences.
+    #[test]
+    fn rates_match_differences() {
+        at_manoeuvres(|scene, seed| {
+            let goal = matches!(seed.template.ending, Ending::Goal { .. });
             let here = scene.model(&seed.template, &seed.lengths).expect("fits");
             let contact_rows = here.rows.len() - if goal { 2 } else { 3 };
             assert!(contact_rows > 0);
@@ -453,10 +419,10 @@ mod tests {
                     let found = here.rows[k].coefficients[i];
                     assert!(
                         (found - rate).abs() < 2e-3 * (1.0 + rate.abs()),
-                        "{side} row {k} slot {i}: {found} {rate}"
+                        "row {k} slot {i}: {found} {rate}"
                     );
                 }
             }
-        }
+        });
     }
 }

@@ -49,13 +49,13 @@ fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn dot4(a: &Motor, b: &[f64; 4]) -> f64 {
+pub(crate) fn dot4(a: &Motor, b: &Motor) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
 /// What the points of one slot, or of all slots after one, contribute.
 #[derive(Debug, Clone, Copy, Default)]
-struct Moment {
+pub(crate) struct Moment {
     weight: Weight,
     /// `W J` summed, and `J W J`.
     mixed: [f64; 3],
@@ -75,6 +75,16 @@ impl Moment {
         for (a, b) in self.pull.iter_mut().zip(other.pull) {
             *a += b;
         }
+    }
+
+    /// The gradient with a motor that moves all these points, as a linear form of it.
+    pub(crate) fn pull(&self) -> Motor {
+        self.pull
+    }
+
+    /// The second rate with such a motor.
+    pub(crate) fn bend(&self, motor: &Motor) -> f64 {
+        dot4(motor, &self.times(motor))
     }
 
     fn times(&self, v: &Motor) -> [f64; 4] {
@@ -163,6 +173,16 @@ impl Moments {
                 lower[k][i] += dot3(*other, weighed);
             }
         }
+    }
+
+    /// For every slot, the sum over its own points and those of all later ones.
+    pub(crate) fn sums_from_each(&self) -> [Moment; MAX_VARIABLES] {
+        let mut sums = self.slots;
+        for i in (1..MAX_VARIABLES).rev() {
+            let later = sums[i];
+            sums[i - 1].add(&later);
+        }
+        sums
     }
 
     /// Adds everything to the gradient and to the lower triangle of the Hessian.

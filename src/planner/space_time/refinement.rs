@@ -2,8 +2,10 @@
 
 use super::approach::FINE_CHORD_RAD;
 use super::model::{Model, Scene};
-use super::quadratic::{MAX_VARIABLES, Programme, Row};
+use super::quadratic::{MAX_VARIABLES, Matrix, Programme, Row};
 use super::template::{Ending, Slot, Template};
+use crate::frame::Side;
+use crate::planner::AGAINST_THE_RULES;
 use crate::trajectory::Segment;
 
 /// Metres by which one step may change a length, at first, at most, at least.
@@ -12,7 +14,7 @@ const LARGEST_RADIUS_M: f64 = 400.0;
 const SMALLEST_RADIUS_M: f64 = 0.02;
 
 /// Steps of one refinement at most.
-pub(crate) const MAX_STEPS: usize = 40;
+const MAX_STEPS: usize = 40;
 
 /// Last corrections of a refinement that ends a little inside, and how far inside that may be, metres.
 const RESTORATIONS: usize = 3;
@@ -38,6 +40,12 @@ const REACHABLE: f64 = 0.8;
 const DEARER: f64 = 6.0;
 const MAX_RAISES: usize = 3;
 
+/// Share of the predicted gain that a step has to bring.
+const LEAST_GAIN: f64 = 0.05;
+
+/// Metres inside that are not worth a correction.
+const CLEAR_ENOUGH_M: f64 = 1e-3;
+
 /// Relative decrease that is no progress.
 const STALLED: f64 = 1e-3;
 
@@ -46,9 +54,15 @@ const STALLED: f64 = 1e-3;
 pub(crate) struct Seed {
     pub template: Template,
     pub lengths: Row,
-    /// All slots, and which of them the template has: the others stay empty until a last refinement.
-    pub whole: Vec<Slot>,
-    pub core: Vec<usize>,
+}
+
+/// Side of the first turn of some length.
+fn first_turn(seed: &Seed) -> Option<Side> {
+    let mut slots = seed.template.slots.iter().zip(&seed.lengths);
+    slots.find_map(|(slot, length)| match slot {
+        Slot::Arc { side, .. } if *length > 0.0 => Some(*side),
+        _ => None,
+    })
 }
 
 /// A manoeuvre clear of every set, with the margin, as far as its contact rows tell.
@@ -62,11 +76,11 @@ struct Refined {
 /// A refinement under way.
 #[derive(Debug)]
 pub(crate) struct Refinement {
-    whole: Vec<Slot>,
-    core: Vec<usize>,
     template: Template,
     lengths: Row,
     model: Model,
+    /// What its costs are multiplied by where it is ranked among others.
+    handicap: f64,
     best: Option<Refined>,
     penalty: f64,
     /// Sum of the multipliers of the last step, m²/m.
@@ -120,9 +134,15 @@ impl Refinement {
     fn new(scene: &Scene, seed: Seed) -> Option<Self> {
         let model = scene.model(&seed.template, &seed.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
+        let first = first_turn(&seed);
+        let wanted = scene.problem.first_turn;
+        let against = wanted.is_some_and(|side| first.is_some_and(|first| first != side));
         let mut refinement = Self {
-            whole: seed.whole,
-            core: seed.core,
+            handicap: if against {
+                1.0 + AGAINST_THE_RULES
+            } else {
+                1.0
+            },
             template: seed.template,
             lengths: seed.lengths,
             model,
@@ -154,21 +174,11 @@ impl Refinement {
         Some(sailed.motion())
     }
 
-    /// The best manoeuvre as a seed: a box that has shrunk around one contact is opened again.
-    pub(crate) fn anew(&self) -> Option<Seed> {
-        let best = self.best.as_ref()?.lengths;
-        let mut lengths: Row = [0.0; MAX_VARIABLES];
-        for (i, c) in self.core.iter().enumerate() {
-            lengths[*c] = best[i];
-        }
+    /// The cheapest clear manoeuvre so far, as a seed.
+    pub(crate) fn best(&self) -> Option<Seed> {
         Some(Seed {
-            template: Template {
-                slots: self.whole.clone(),
-                ending: self.template.ending,
-            },
-            lengths,
-            core: (0..self.whole.len()).collect(),
-            whole: self.whole.clone(),
+            template: self.template.clone(),
+            lengths: self.best.as_ref()?.lengths,
         })
     }
 
@@ -190,7 +200,12 @@ impl Refinement {
     /// What the manoeuvre at hand will cost once it is clear, to first order, m²: the missing metres at the
     /// multipliers of its last step, or at `least` where those are smaller.
     pub(crate) fn expected_cost(&self, least: f64) -> f64 {
-        self.model.cost + self.price.max(least) * self.model.violation
+        self.handicap * (self.model.cost + self.price.max(least) * self.model.violation)
+    }
+
+    /// What it is ranked by among others that are clear, m².
+    pub(crate) fn rank(&self) -> f64 {
+        self.handicap * self.best_cost()
     }
 
     /// Gives up: another one is ahead.
@@ -265,6 +280,12 @@ impl Refinement {
         }
     }
 
+    /// Ends here, clear if it is nearly so.
+    pub(crate) fn settle(&mut self, scene: &Scene) {
+        self.finished = true;
+        self.restore(scene);
+    }
+
     /// One step.
     pub(crate) fn step(&mut self, scene: &Scene) {
         self.steps += 1;
@@ -278,9 +299,37 @@ impl Refinement {
             return;
         }
         if self.steps >= MAX_STEPS || !advanced {
-            self.finished = true;
-            self.restore(scene);
+            self.settle(scene);
         }
+    }
+
+    /// A second-order correction: the least change, by the Hessian, that brings a full step back outside the sets
+    /// that it curves into. Without it steps along a face are cut to nothing.
+    fn corrected(
+        &self,
+        scene: &Scene,
+        trial: &Row,
+        model: &Model,
+        hessian: &Matrix,
+    ) -> Option<(Row, Model)> {
+        if model.violation <= CLEAR_ENOUGH_M {
+            return None;
+        }
+        let programme = Programme {
+            size: self.template.free(),
+            hessian,
+            gradient: &[0.0; MAX_VARIABLES],
+            low: &trial.map(|l| (-self.radius).max(-l)),
+            high: &[self.radius; MAX_VARIABLES],
+            rows: &model.rows,
+        };
+        let solution = programme.solve()?;
+        let mut corrected = *trial;
+        for (length, step) in corrected.iter_mut().zip(&solution.x) {
+            *length = (*length + step).max(0.0);
+        }
+        let model = scene.model(&self.template, &corrected)?;
+        Some((corrected, model))
     }
 
     fn advance(&mut self, scene: &Scene) -> bool {
@@ -294,11 +343,7 @@ impl Refinement {
                 high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
             }
         }
-        let mut hessian = self.model.hessian;
-        let floor = 1e-5 * self.model.cost.max(20.0);
-        for (i, row) in hessian.iter_mut().enumerate().take(n) {
-            row[i] += floor;
-        }
+        let hessian = self.model.regular_hessian(n);
         // a row that the box cannot meet asks for what it can: otherwise it would be left out
         let mut rows = self.model.rows.clone();
         for row in &mut rows {
@@ -335,15 +380,24 @@ impl Refinement {
             for i in 0..n {
                 trial[i] = (trial[i] + share * step[i]).max(0.0);
             }
-            let found = scene.model(&self.template, &trial).map(|model| {
-                let gained = merit - model.cost - self.penalty * model.violation;
-                (model, gained)
-            });
-            if let Some((model, gained)) = found
-                && gained > 0.0
-                && gained >= 0.05 * predicted
+            let mut found = scene.model(&self.template, &trial);
+            let gain = |m: &Model| merit - m.cost - self.penalty * m.violation;
+            let enough = |gained: f64| gained > 0.0 && gained >= LEAST_GAIN * predicted;
+            if share == 1.0
+                && let Some(model) = &found
+                && !enough(gain(model))
+                && let Some(corrected) = self.corrected(scene, &trial, model, &hessian)
+                && enough(gain(&corrected.1))
             {
-                let settled = gained < STALLED * model.cost.max(1.0) && model.violation < 1e-3;
+                trial = corrected.0;
+                found = Some(corrected.1);
+            }
+            let found = found.map(|model| (gain(&model), model));
+            if let Some((gained, model)) = found
+                && enough(gained)
+            {
+                let settled =
+                    gained < STALLED * model.cost.max(1.0) && model.violation < CLEAR_ENOUGH_M;
                 self.stalled = if settled { self.stalled + 1 } else { 0 };
                 (self.lengths, self.model) = (trial, model);
                 self.keep(scene);

@@ -54,6 +54,8 @@ pub(crate) struct Conflict {
     pub offsets: [f64; 2],
     /// Metres astern that clear the set throughout, and the time at which so many are needed.
     pub astern: (f64, f64),
+    /// Metres ahead that clear the set throughout, and the time at which so many are needed.
+    pub ahead: (f64, f64),
 }
 
 impl Conflict {
@@ -85,6 +87,7 @@ impl Conflict {
             through: 0.0,
             offsets: [0.0; 2],
             astern: (0.0, from),
+            ahead: (0.0, from),
         };
         for k in 0..=CONFLICT_SAMPLES {
             let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
@@ -105,6 +108,10 @@ impl Conflict {
             if behind > conflict.astern.0 {
                 conflict.astern = (behind, time);
             }
+            let before = hazard.way_out(pose.position, time, pose.ahead());
+            if before > conflict.ahead.0 {
+                conflict.ahead = (before, time);
+            }
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
                 *offset = offset.max(hazard.way_out(pose.position, time, beam));
@@ -122,12 +129,19 @@ impl Conflict {
 const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 
 /// Radians.
-const WAITING_TURN: f64 = 0.4;
+const WAITING_TURN: f64 = 0.6;
 
 /// Metres by which own ship goes on beyond the route behind a target that she let pass, and radians at which she
 /// comes back.
-const OVERSHOOT_M: f64 = 50.0;
-const OVERSHOOT_RETURN: f64 = 0.15;
+const OVERSHOOT_M: f64 = 20.0;
+const OVERSHOOT_RETURN: f64 = 0.08;
+
+/// A manoeuvre that passes ahead: seconds of rushing over those there are, at most; its turn out, radians; the way back
+/// in, radians; its lines, metres.
+const MOST_RUSHING: f64 = 1.6;
+const AHEAD_TURN: f64 = 0.5;
+const AHEAD_RETURN: f64 = 0.3;
+const AHEAD_OUT_M: f64 = 40.0;
 
 /// Instants at which a conflict's width is taken.
 const CONFLICT_SAMPLES: usize = 24;
@@ -153,23 +167,12 @@ pub(crate) struct Canonical {
 struct Draft {
     slots: Vec<Slot>,
     lengths: Vec<f64>,
-    core: Vec<bool>,
 }
 
 impl Draft {
     fn push(&mut self, slot: Slot, length: f64) {
         self.slots.push(slot);
         self.lengths.push(length);
-        self.core.push(true);
-    }
-
-    /// Slots that stay empty until the last refinement.
-    fn spare(&mut self, slots: &[Slot]) {
-        for slot in slots {
-            self.slots.push(*slot);
-            self.lengths.push(0.0);
-            self.core.push(false);
-        }
     }
 
     fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
@@ -206,20 +209,13 @@ impl Draft {
             return None;
         }
         let mut lengths: Row = [0.0; MAX_VARIABLES];
-        let mut slots = Vec::new();
-        let mut core = Vec::new();
-        for (i, slot) in self.slots.iter().enumerate() {
-            if self.core[i] {
-                lengths[slots.len()] = self.lengths[i];
-                slots.push(*slot);
-                core.push(i);
-            }
-        }
+        lengths[..self.lengths.len()].copy_from_slice(&self.lengths);
         Some(Seed {
-            template: Template { slots, ending },
+            template: Template {
+                slots: self.slots,
+                ending,
+            },
             lengths,
-            whole: self.slots,
-            core,
         })
     }
 }
@@ -268,30 +264,11 @@ impl Canonical {
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();
-        // a set with many corners is rounded in more than one turn: empty groups open where that pays
         draft.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
         draft.line(&[(slow, slow_line), (fast, fast_line)]);
-        draft.spare(&[
-            Slot::Arc { side, speed: fast },
-            Slot::Line { speed: slow },
-            Slot::Line { speed: fast },
-            Slot::Arc {
-                side: back,
-                speed: slow,
-            },
-        ]);
         draft.turn(back, &[(fast, arc)]);
-        draft.spare(&[
-            Slot::Line { speed: slow },
-            Slot::Line {
-                speed: paces.normal,
-            },
-        ]);
         draft.line(&[(fast, 0.5 * along)]);
         draft.turn(back, &[(fast, 0.0)]);
-        draft.spare(&[Slot::Line {
-            speed: paces.normal,
-        }]);
         draft.line(&[(fast, 0.5 * along)]);
         let Some(angle) = angle else {
             return draft.seed(Ending::Goal {
@@ -335,14 +312,8 @@ pub(crate) fn waiting(
     draft.runs(&paces, begin * normal, 0.0, 0.0);
     draft.turn(side, &[(fast, 0.0), (slow, arc)]);
     draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
-    draft.spare(&[
-        Slot::Arc { side, speed: fast },
-        Slot::Line { speed: slow },
-        Slot::Line { speed: fast },
-    ]);
     draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
     draft.line(&[(slow, 0.4 * lines)]);
-    draft.spare(&[Slot::Line { speed: normal }]);
     if across {
         let (sine, cosine) = WAITING_TURN.sin_cos();
         let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
@@ -357,10 +328,41 @@ pub(crate) fn waiting(
     }
     draft.line(&[(fast, 0.0)]);
     draft.turn(back, &[(fast, 0.0)]);
-    draft.spare(&[Slot::Line { speed: normal }]);
     draft.line(&[(fast, 0.0)]);
     draft.turn(back, &[(fast, 0.0)]);
     draft.seed(Ending::Return { leg, speed: fast })
+}
+
+/// A manoeuvre that passes ahead of the target: own ship rushes as early as will do, turns to the side halfway through
+/// the contact for what is missing, and loses her lead on a slow way back.
+pub(crate) fn ahead(
+    problem: &Problem,
+    side: Side,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (slow, normal, fast) = (paces.slow, paces.normal, paces.fast);
+    let (lead, due) = conflict.ahead;
+    let needed = lead / (fast - normal);
+    let begin = (due - needed).max(0.0);
+    let turn = 0.5 * (conflict.from + due);
+    // negated on purpose: a NaN is no seed
+    if !(fast > normal && needed < MOST_RUSHING * due && turn > begin) {
+        return None;
+    }
+    let radius = problem.own.turning_radius;
+    let arc = AHEAD_TURN * radius;
+    let back = side.opposite();
+    let mut draft = Draft::default();
+    draft.runs(&paces, begin * normal, (turn - begin) * fast, 0.0);
+    draft.turn(side, &[(fast, arc)]);
+    draft.line(&[(fast, AHEAD_OUT_M)]);
+    draft.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
+    draft.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
+    draft.turn(side, &[(slow, 0.0), (fast, 0.0)]);
+    draft.line(&[(slow, 0.0), (fast, 0.0)]);
+    draft.seed(Ending::Return { leg, speed: normal })
 }
 
 /// A plan of the graph as a seed: its arcs and lines in its own order, each with the other speeds beside

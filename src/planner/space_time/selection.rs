@@ -1,11 +1,13 @@
 //! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
 
+use super::addition::{enriched, tidied};
 use super::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
+use super::ashore;
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::model::Scene;
 use super::node::State;
-use super::refinement::{MAX_STEPS, Refinement, Seed};
-use super::seeds::{Canonical, Conflict, from_graph, waiting};
+use super::refinement::{Refinement, Seed};
+use super::seeds::{Canonical, Conflict, ahead, from_graph, waiting};
 use crate::frame::{Side, cross};
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
@@ -86,14 +88,29 @@ const SLENDER_FROM: f64 = 2.5;
 const FAR_SIDE: f64 = 1.8;
 
 /// Way lost over way around below which waiting is tried as well.
-const WORTH_WAITING: f64 = 0.85;
+const WORTH_WAITING: f64 = 1.2;
+
+/// Way won over way around below which rushing is tried as well.
+const WORTH_RUSHING: f64 = 1.2;
 
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
 /// How many refinements go on after so many steps: those of the least expected
 /// cost. A winner is seen early.
-const PLACES: [(usize, usize); 6] = [(0, 12), (1, 8), (2, 6), (4, 4), (7, 3), (11, 2)];
+const PLACES: [(usize, usize); 4] = [(0, 12), (1, 6), (2, 4), (4, 3)];
+
+/// Steps of the race: what the winner still lacks are slots, not steps.
+const ROUNDS: usize = 10;
+
+/// Metres of line above which the best manoeuvre is cut for additions, one entry per time it is enriched.
+const UNCUT_M: [f64; 2] = [200.0, 80.0];
+
+/// Share of the cost that an enrichment has to gain for another to be tried.
+const WORTH_ANOTHER: f64 = 0.01;
+
+/// Share of the cost that a manoeuvre without scraps of turns and lines may cost more.
+const TIDINESS: f64 = 2e-3;
 
 /// Rounds after which arcs are cut into fine chords.
 const FINE_FROM: usize = 6;
@@ -193,6 +210,10 @@ impl<'a> Selection<'a> {
                     );
                 }
             }
+            if conflict.ahead.0 < WORTH_RUSHING * conflict.nearest_offset() {
+                let both = Side::BOTH.into_iter();
+                seeds.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
+            }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             for side in Side::BOTH {
@@ -209,7 +230,7 @@ impl<'a> Selection<'a> {
             .into_iter()
             .filter_map(|s| Refinement::fitting(&scene, s))
             .collect();
-        for round in 0..MAX_STEPS {
+        for round in 0..ROUNDS {
             race(&mut running, round);
             if round == FINE_FROM {
                 scene.chord = FINE_CHORD_RAD;
@@ -219,36 +240,53 @@ impl<'a> Selection<'a> {
             }
             for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
                 if out_of_time() {
-                    self.collect(&running);
+                    self.collect(ranked(&running));
                     return true;
                 }
                 refinement.step(&scene);
             }
         }
-        self.polish(&mut running);
-        self.collect(&running);
+        for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
+            refinement.settle(&scene);
+        }
+        let tidy = self.polish(&mut running);
+        self.collect(tidy.iter().chain(ranked(&running)));
         false
     }
 
-    /// Refines the best of all anew, with a box that is open again.
-    fn polish(&self, running: &mut Vec<Refinement>) {
-        let leader = running
-            .iter()
-            .min_by(|a, b| a.best_cost().total_cmp(&b.best_cost()));
-        let seed = leader.and_then(Refinement::anew);
-        let Some(mut again) = seed.and_then(|s| Refinement::fitting(&self.scene, s)) else {
-            return;
-        };
-        while !again.is_finished() {
-            again.step(&self.scene);
+    /// Adds what the best of all lacks, and refines it anew; in the end without scraps, where that costs next to nothing.
+    fn polish(&self, running: &mut Vec<Refinement>) -> Option<Refinement> {
+        let mut best = best_of(running)?.best();
+        for uncut in UNCUT_M {
+            let seed = best.as_ref().and_then(|s| enriched(&self.scene, s, uncut));
+            let Some(again) = seed.and_then(|s| self.refined(s)) else {
+                break;
+            };
+            let gained = 1.0 - again.rank() / best_of(running)?.rank();
+            best = again.best().or(best);
+            running.push(again);
+            // negated on purpose: a NaN has gained nothing
+            if !(gained > WORTH_ANOTHER) {
+                break;
+            }
         }
-        running.push(again);
+        let least = best_of(running)?.rank();
+        let seed = best.and_then(|s| tidied(&self.scene, &s));
+        let tidy = seed.and_then(|s| self.refined(s))?;
+        (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
     }
 
-    /// Tests what the refinements found, cheapest first, until one passes.
-    fn collect(&mut self, running: &[Refinement]) {
-        let mut found: Vec<_> = running.iter().collect();
-        found.sort_by(|a, b| a.best_cost().total_cmp(&b.best_cost()));
+    /// A refinement from beginning to end.
+    fn refined(&self, seed: Seed) -> Option<Refinement> {
+        let mut refinement = Refinement::fitting(&self.scene, seed)?;
+        while !refinement.is_finished() {
+            refinement.step(&self.scene);
+        }
+        Some(refinement)
+    }
+
+    /// Tests what the refinements found, in this order, until one passes.
+    fn collect<'r>(&mut self, found: impl Iterator<Item = &'r Refinement>) {
         for refinement in found {
             let Some(motion) = refinement.best_motion(&self.scene) else {
                 return;
@@ -269,7 +307,10 @@ impl<'a> Selection<'a> {
         let in_time = motion
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);
-        let clear = in_time && cost.is_finite() && first_met(self.scene.hazards, &motion).is_none();
+        let clear = in_time
+            && cost.is_finite()
+            && first_met(self.scene.hazards, &motion).is_none()
+            && !ashore::meets(problem.coast, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }
@@ -280,6 +321,18 @@ impl<'a> Selection<'a> {
     pub(crate) fn cheapest(self) -> Option<(Vec<Segment>, f64)> {
         self.best.map(|c| (c.motion, c.cost))
     }
+}
+
+fn best_of(running: &[Refinement]) -> Option<&Refinement> {
+    let costs = |a: &&Refinement, b: &&Refinement| a.rank().total_cmp(&b.rank());
+    running.iter().min_by(costs)
+}
+
+/// Cheapest first.
+fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
+    let mut found: Vec<_> = running.iter().collect();
+    found.sort_by(|a, b| a.rank().total_cmp(&b.rank()));
+    found.into_iter()
 }
 
 /// Stops what has fallen behind after so many rounds. A missing metre costs at least the median of what it

@@ -5,9 +5,9 @@
 //! centre of its circle. That gives every derivative in closed form. Two last slots, where there are
 //! any, are not free: they are solved so that the chain ends on the desired path or at its end.
 
-use super::moments::Motor;
 use super::quadratic::{MAX_VARIABLES, Row};
 use super::route::{Route, Stretch};
+use super::sailed::{Leg, Owner, Rigid, Sailed, turned};
 use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::interception::Chase;
@@ -58,97 +58,6 @@ impl Ending {
 pub(crate) struct Template {
     pub slots: Vec<Slot>,
     pub ending: Ending,
-}
-
-/// Which variable a motion's length belongs to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Owner {
-    /// Part `[from, to]` of slot `index`.
-    Slot { index: usize, from: f64, to: f64 },
-    /// The route followed after the manoeuvre.
-    Tail { index: usize },
-}
-
-/// A motion and whose it is.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Leg {
-    pub segment: Segment,
-    /// The unit vector ahead at its start.
-    pub ahead: Vector,
-    pub owner: Owner,
-}
-
-impl Leg {
-    /// Position and unit vector ahead at a fraction.
-    pub(crate) fn along(&self, fraction: f64) -> (Vector, Vector) {
-        let s = &self.segment;
-        let length = s.speed * s.duration * fraction;
-        if s.is_arc() {
-            turned(s.start.position, self.ahead, length, s.turn_rate / s.speed)
-        } else {
-            (s.start.position + self.ahead * length, self.ahead)
-        }
-    }
-}
-
-/// Position and unit vector ahead after an arc; `1 - cos` without cancellation.
-fn turned(from: Vector, ahead: Vector, length: f64, curvature: f64) -> (Vector, Vector) {
-    let (sin, cos) = (curvature * length).sin_cos();
-    let versine = if cos > 0.0 {
-        sin * sin / (1.0 + cos)
-    } else {
-        1.0 - cos
-    };
-    let port = to_port(ahead);
-    let end = from + (ahead * sin + port * versine) / curvature;
-    (end, ahead * cos + port * sin)
-}
-
-/// How everything after a slot moves per metre of it.
-#[derive(Debug, Clone, Copy)]
-struct Rigid {
-    /// Where the slot ends, its direction there, its curvature.
-    end: Vector,
-    ahead: Vector,
-    curvature: f64,
-    slowness: f64,
-}
-
-impl Rigid {
-    fn moves(&self, point: Vector) -> Vector {
-        self.ahead + to_port(point - self.end) * self.curvature
-    }
-}
-
-/// A manoeuvre with its lengths.
-#[derive(Debug, Clone)]
-pub(crate) struct Sailed {
-    /// In order of time; slots of no length are there too.
-    pub legs: Vec<Leg>,
-    /// Index in `legs` of the first of the tail.
-    pub tail: usize,
-    /// Distance along the route and time at which the tail begins.
-    pub joined: (f64, f64),
-    /// Metres left of the leg after a return.
-    pub room: Option<f64>,
-    /// Lengths of the solved slots.
-    pub solved: [f64; 2],
-    /// Rates of the solved slots with each free one.
-    pub solved_rates: [Row; 2],
-    /// Slots at the beginning that run along the route.
-    pub runs: usize,
-    rigid: Vec<Rigid>,
-}
-
-/// A point of a manoeuvre that belongs to a slot.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
-    pub position: Vector,
-    pub ahead: Vector,
-    pub time: f64,
-    /// The slot, and the share of it that lies before the point.
-    pub slot: usize,
-    pub share: f64,
 }
 
 impl Template {
@@ -401,99 +310,5 @@ impl Cursor {
             curvature,
             slowness: 1.0 / speed,
         });
-    }
-}
-
-impl Sailed {
-    /// The point at `fraction` of a leg; `None` on the tail.
-    pub(crate) fn place(&self, leg: usize, fraction: f64) -> Option<Place> {
-        let l = &self.legs[leg];
-        let Owner::Slot { index, from, to } = l.owner else {
-            return None;
-        };
-        let (position, ahead) = l.along(fraction);
-        Some(Place {
-            position,
-            ahead,
-            time: l.segment.start_time + l.segment.duration * fraction,
-            slot: index,
-            share: from + (to - from) * fraction,
-        })
-    }
-
-    /// How slot `index` moves a point of its own: (east, north, clock) per metre.
-    pub(crate) fn own_rate(&self, place: &Place, index: usize) -> [f64; 3] {
-        let share = if index == place.slot {
-            place.share
-        } else {
-            1.0
-        };
-        [
-            share * place.ahead.x,
-            share * place.ahead.y,
-            share * self.rigid[index].slowness,
-        ]
-    }
-
-    /// `of . (east, north, clock)` per metre of each slot up to the point's own.
-    pub(crate) fn rates(&self, place: &Place, of: [f64; 3]) -> Row {
-        let mut row = [0.0; MAX_VARIABLES];
-        let on_route = place.slot < self.runs;
-        let all = row.iter_mut().zip(&self.rigid).enumerate();
-        for (i, (rate, rigid)) in all.take(place.slot + 1) {
-            *rate = if on_route || i == place.slot {
-                let own = self.own_rate(place, i);
-                of[0] * own[0] + of[1] * own[1] + of[2] * own[2]
-            } else {
-                let moved = rigid.moves(place.position);
-                of[0] * moved.x + of[1] * moved.y + of[2] * rigid.slowness
-            };
-        }
-        row
-    }
-
-    /// How each slot moves what follows it, about `origin`.
-    pub(crate) fn motors(&self, origin: Vector) -> Vec<Motor> {
-        let motor = |r: &Rigid| {
-            let end = r.end - origin;
-            [
-                r.ahead.x + r.curvature * end.y,
-                r.ahead.y - r.curvature * end.x,
-                r.slowness,
-                r.curvature,
-            ]
-        };
-        self.rigid.iter().map(motor).collect()
-    }
-
-    /// The rates of the place and time at which the tail begins: metres along the route and seconds per
-    /// metre of each slot.
-    pub(crate) fn joining_rates(&self) -> (Row, Row) {
-        let mut distance = [0.0; MAX_VARIABLES];
-        let mut clock = [0.0; MAX_VARIABLES];
-        let Some(last) = self.rigid.last() else {
-            return (distance, clock);
-        };
-        let runs_only = self.runs == self.rigid.len();
-        for (i, r) in self.rigid.iter().enumerate() {
-            distance[i] = if runs_only {
-                1.0
-            } else {
-                last.ahead.dot(&r.moves(last.end))
-            };
-            clock[i] = r.slowness;
-        }
-        (distance, clock)
-    }
-
-    /// Every motion of some length, in order.
-    pub(crate) fn motion(&self) -> Vec<Segment> {
-        self.legs
-            .iter()
-            .map(|l| l.segment)
-            .filter(|s| {
-                s.duration > 0.0 && (s.length() > crate::tolerance::LENGTH_M || s.speed == 0.0)
-            })
-            .collect()
     }
 }

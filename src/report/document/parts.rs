@@ -25,6 +25,8 @@ pub struct OwnShipDocument {
     pub turning_radius_m: f64,
     pub speeds_mps: Vec<f64>,
     pub safety_margin_m: f64,
+    /// 0 without land.
+    pub land_margin_m: f64,
 }
 
 /// The desired trajectory.
@@ -83,6 +85,8 @@ pub struct CostDocument {
     pub max_risk: f64,
     /// Null without targets.
     pub min_clearance_m: Option<f64>,
+    /// Least distance between own hull and land; null without land.
+    pub min_land_distance_m: Option<f64>,
 }
 
 /// What the search did.

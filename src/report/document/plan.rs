@@ -89,7 +89,7 @@ impl PlanDocument {
             horizon_s: scenario.horizon,
             own_ship: own_ship(run),
             mission: mission(run),
-            land: Vec::new(),
+            land: run.land.iter().map(vertices).collect(),
             outcome: verdict.word().to_owned(),
             reason: match &run.planned.outcome {
                 Outcome::Infeasible(reason) => Some(reason.to_string()),
@@ -191,6 +191,7 @@ fn own_ship(run: &Run) -> OwnShipDocument {
         turning_radius_m: own.turning_radius,
         speeds_mps: own.speeds.clone(),
         safety_margin_m: own.safety_margin,
+        land_margin_m: run.scenario.land.as_ref().map_or(0.0, |land| land.margin),
     }
 }
 
@@ -219,6 +220,7 @@ pub(super) fn cost(run: &Run) -> Option<CostDocument> {
         delay_s: evaluation.delay,
         max_risk: run.risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
+        min_land_distance_m: finite(evaluation.min_land_distance),
     })
 }
 

@@ -1,0 +1,60 @@
+//! Land: reading a map, asking it. Every bench asserts the answer, then times it.
+
+use std::hint::black_box;
+use std::path::PathBuf;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use searoom::frame::{Geographic, Georeference, Vector};
+use searoom::map::Map;
+
+fn earth(lat_deg: f64, lon_deg: f64) -> Georeference {
+    Georeference::new(Geographic { lat_deg, lon_deg }).expect("an origin")
+}
+
+fn file(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("maps/{name}.geojson"))
+}
+
+/// From the file to the index.
+fn load(criterion: &mut Criterion) {
+    for (name, lat, lon, vertices) in [
+        ("trondheim-harbour", 63.44, 10.399, 1_593),
+        ("froya-skerries-gshhg", 63.8, 8.8, 8_075),
+    ] {
+        let (file, earth) = (file(name), earth(lat, lon));
+        let map = Map::read(&file, &earth).expect("a map");
+        // a ring of the file has its first vertex twice
+        let found: usize = map
+            .polygons()
+            .iter()
+            .map(|p| p.vertex_count() + p.rings().len())
+            .sum();
+        assert_eq!(found, vertices);
+        criterion.bench_function(&format!("map/load/{vertices} vertices"), |b| {
+            b.iter(|| Map::read(black_box(&file), &earth).expect("a map"))
+        });
+    }
+}
+
+/// A path around Munkholmen, and the distance from land.
+fn ask(criterion: &mut Criterion) {
+    let map = Map::read(&file("trondheim-harbour"), &earth(63.44, 10.399)).expect("a map");
+    let path = [
+        (600.0, 900.0),
+        (-800.0, 800.0),
+        (-1200.0, 1300.0),
+        (-700.0, 1700.0),
+    ]
+    .map(|(x, y)| Vector::new(x, y));
+    assert!(map.crossings(&path, 10.0).is_empty());
+    criterion.bench_function("map/path of 3 legs", |b| {
+        b.iter(|| map.crossings(black_box(&path), 10.0))
+    });
+    assert!(map.signed_distance(path[1]) > 0.0);
+    criterion.bench_function("map/signed distance", |b| {
+        b.iter(|| map.signed_distance(black_box(path[1])))
+    });
+}
+
+criterion_group!(benches, load, ask);
+criterion_main!(benches);

@@ -1,0 +1,153 @@
+//! Land as the checker sees it: the edges of its polygons, and the even-odd rule.
+
+use super::clearance::{Body, least_distance};
+use super::least::Least;
+use super::space_time_set::{MovingSet, nearest_on};
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, Polygon};
+use crate::trajectory::Segment;
+
+/// The least distance between own hull and land along a chain of segments: negative on land. A hull that starts
+/// on water and touches no edge stays on water, so edges are all that is looked at, each as a set of two points
+/// that does not move; a position inside a polygon is on land whatever its edges say. Certified like
+/// [`least_distance`]; infinite without land. O(edges) per segment, and probes for those that are near.
+pub(super) fn least_land_distance(
+    segments: &[Segment],
+    own: Body,
+    reach: f64,
+    land: &[Polygon],
+) -> Least {
+    let mut least = Least::new();
+    let edges: Vec<(Vector, Vector)> = land.iter().flat_map(Polygon::edges).collect();
+    let nearest = |p: Vector| {
+        edges
+            .iter()
+            .map(|e| (nearest_on(*e, p) - p).norm())
+            .fold(f64::INFINITY, f64::min)
+    };
+    for s in segments {
+        for time in [s.start_time, s.end_time()] {
+            let position = s.pose_at(time).position;
+            if land.iter().any(|polygon| polygon.contains(position)) {
+                least.see(-nearest(position), time);
+            }
+        }
+        // no point of the hull leaves this disc meanwhile
+        let middle = s.pose_after(0.5 * s.duration).position;
+        let radius = 0.5 * s.length() + reach;
+        let mut near: Vec<(f64, usize)> = edges
+            .iter()
+            .enumerate()
+            .map(|(index, e)| ((nearest_on(*e, middle) - middle).norm() - radius, index))
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (bound, index) in near {
+            // a NaN on either side is looked at
+            if bound >= least.value {
+                break;
+            }
+            let (a, b) = edges[index];
+            let set = MovingSet::new(
+                &ConvexPolygon::from_ccw(vec![a, b]),
+                &ConvexPolygon::point(Vector::zeros()),
+            );
+            let here = least_distance(std::slice::from_ref(s), own, &set);
+            least.see(here.value, here.time);
+            least.certified &= here.certified;
+            least.probes += here.probes;
+        }
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Pose;
+    use crate::vessel::Hull;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn comb(rng: &mut ChaCha8Rng) -> Polygon {
+        let mut ring: Vec<Vector> = (0..7)
+            .map(|k| Vector::new(f64::from(k) * 25.0, rng.random_range(-40.0..40.0)))
+            .collect();
+        ring.push(Vector::new(150.0, 90.0));
+        ring.push(Vector::new(0.0, 90.0));
+        let hole = [(60.0, 60.0), (90.0, 60.0), (75.0, 80.0)];
+        let hole = hole.map(|(x, y)| Vector::new(x, y)).to_vec();
+        Polygon::new(&[ring, hole]).expect("valid")
+    }
+
+    /// Sampled hulls against every edge.
+    #[test]
+    fn land_distances_match_a_dense_scan() {
+        let mut rng = ChaCha8Rng::seed_from_u64(77);
+        let hull = Hull {
+            length: 20.0,
+            beam: 6.0,
+        };
+        let (mut clear, mut aground) = (0, 0);
+        for case in 0..150 {
+            let land = comb(&mut rng);
+            let s = Segment {
+                start: Pose::new(
+                    Vector::new(
+                        rng.random_range(-50.0..200.0),
+                        rng.random_range(-120.0..20.0),
+                    ),
+                    rng.random_range(-3.0..3.0),
+                ),
+                start_time: 3.0,
+                duration: rng.random_range(1.0..30.0),
+                speed: 4.0,
+                turn_rate: if case % 2 == 0 { 0.0 } else { 0.08 },
+            };
+            let reach = hull.half_diagonal();
+            let land = [land];
+            let found = least_land_distance(&[s], Body::hull(&hull), reach, &land);
+            let mut scan = f64::INFINITY;
+            for k in 0..=300 {
+                let pose = s.pose_after(s.duration * f64::from(k) / 300.0);
+                let rectangle = hull.polygon(&pose);
+                for (a, b) in land[0].edges() {
+                    let edge = ConvexPolygon::hull(&[a, b]).expect("finite");
+                    scan = scan.min(rectangle.separation(&edge));
+                }
+            }
+            assert!(found.certified);
+            if scan > 0.0 && !land[0].contains(s.start.position) {
+                clear += 1;
+                assert!(
+                    found.value <= scan + 1e-7 && scan - found.value < 0.5,
+                    "{found:?} {scan}"
+                );
+            } else {
+                aground += 1;
+                assert!(found.value < 0.0, "{found:?} {scan}");
+            }
+        }
+        assert!(clear > 40 && aground > 20, "{clear} {aground}");
+    }
+
+    #[test]
+    fn a_hull_that_never_leaves_the_inside_is_aground() {
+        let ring = [(0.0, 0.0), (1000.0, 0.0), (1000.0, 1000.0), (0.0, 1000.0)];
+        let land = [Polygon::new(&[ring.map(|(x, y)| Vector::new(x, y)).to_vec()]).expect("valid")];
+        let hull = Hull {
+            length: 20.0,
+            beam: 6.0,
+        };
+        let inland = Segment {
+            start: Pose::new(Vector::new(400.0, 500.0), 0.0),
+            start_time: 0.0,
+            duration: 10.0,
+            speed: 5.0,
+            turn_rate: 0.0,
+        };
+        let found = least_land_distance(&[inland], Body::hull(&hull), 11.0, &land);
+        assert!(found.value <= -400.0, "{found:?}");
+        let nowhere = least_land_distance(&[inland], Body::hull(&hull), 11.0, &[]);
+        assert_eq!(nowhere.value, f64::INFINITY);
+    }
+}

@@ -1,0 +1,112 @@
+//! Upright boxes, and an index over many of them.
+
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+
+use crate::frame::Vector;
+
+/// An upright box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// South-western corner.
+    pub low: Vector,
+    /// North-eastern corner.
+    pub high: Vector,
+}
+
+impl Window {
+    /// The least one around some points; `None` without points.
+    pub fn around<'a>(points: impl IntoIterator<Item = &'a Vector>) -> Option<Self> {
+        let mut points = points.into_iter();
+        let first = points.next()?;
+        let alone = Self::at(*first);
+        Some(points.fold(alone, |w, p| Self {
+            low: w.low.inf(p),
+            high: w.high.sup(p),
+        }))
+    }
+
+    /// The box of one point.
+    pub fn at(point: Vector) -> Self {
+        Self {
+            low: point,
+            high: point,
+        }
+    }
+
+    /// The box with `margin` more on every side.
+    pub fn grown(&self, margin: f64) -> Self {
+        Self {
+            low: self.low.add_scalar(-margin),
+            high: self.high.add_scalar(margin),
+        }
+    }
+
+    fn envelope(&self) -> AABB<[f64; 2]> {
+        AABB::from_corners(self.low.into(), self.high.into())
+    }
+}
+
+/// Which of many boxes meet a box: an R*-tree, built in O(n log n).
+#[derive(Debug, Clone)]
+pub struct BoxIndex {
+    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
+}
+
+impl BoxIndex {
+    /// Of boxes that count from 0.
+    pub fn new(boxes: impl IntoIterator<Item = Window>) -> Self {
+        let boxes = boxes
+            .into_iter()
+            .enumerate()
+            .map(|(index, w)| {
+                GeomWithData::new(Rectangle::from_corners(w.low.into(), w.high.into()), index)
+            })
+            .collect();
+        Self {
+            tree: RTree::bulk_load(boxes),
+        }
+    }
+
+    /// The boxes that meet a window, touching included, in no order. O(log n + found).
+    pub fn meeting<'a>(&'a self, window: &Window) -> impl Iterator<Item = usize> + use<'a> {
+        self.tree
+            .locate_in_envelope_intersecting(window.envelope())
+            .map(|b| b.data)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+
+    #[test]
+    fn the_index_finds_what_a_scan_finds() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(78);
+        let mut draw = || {
+            let mut whole = |most: i32| f64::from(rng.random_range(0..most));
+            let p = Vector::new(whole(50), whole(50));
+            let size = Vector::new(whole(9), whole(9));
+            Window {
+                low: p,
+                high: p + size,
+            }
+        };
+        let boxes: Vec<Window> = (0..200).map(|_| draw()).collect();
+        let index = BoxIndex::new(boxes.iter().copied());
+        for _ in 0..200 {
+            let w = draw();
+            let meets = |b: &Window| {
+                b.low.x <= w.high.x
+                    && b.low.y <= w.high.y
+                    && w.low.x <= b.high.x
+                    && w.low.y <= b.high.y
+            };
+            let expected: Vec<usize> = (0..boxes.len()).filter(|i| meets(&boxes[*i])).collect();
+            let mut found: Vec<usize> = index.meeting(&w).collect();
+            found.sort_unstable();
+            assert_eq!(found, expected);
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! What is wrong with a map.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// One thing wrong in a map: where, what was found, what is allowed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MapFault {
+    /// Which feature, from 0; `None` when the file as a whole is meant.
+    pub feature: Option<usize>,
+    /// What the file says there.
+    pub found: String,
+    /// What it may say.
+    pub allowed: String,
+}
+
+impl MapFault {
+    /// What was found, with the feature.
+    pub fn place_and_found(&self) -> String {
+        match self.feature {
+            Some(index) => format!("features[{index}]: {}", self.found),
+            None => self.found.clone(),
+        }
+    }
+}
+
+impl fmt::Display for MapFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (found, allowed) = (self.place_and_found(), &self.allowed);
+        write!(f, "found {found}; allowed: {allowed}")
+    }
+}
+
+/// Why a file gives no map.
+#[derive(Debug, thiserror::Error)]
+pub enum MapError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read: {source}", file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// The file was read and is wrong.
+    #[error("{}: {}", file.display(), listed(faults))]
+    Faults {
+        /// The file.
+        file: PathBuf,
+        /// Everything wrong with it, in order of features. Never empty.
+        faults: Vec<MapFault>,
+    },
+}
+
+fn listed(faults: &[MapFault]) -> String {
+    let plural = if faults.len() == 1 { "" } else { "s" };
+    let mut text = format!("{} fault{plural}", faults.len());
+    for fault in faults {
+        text.push_str(&format!("\n  {fault}"));
+    }
+    text
+}

@@ -1,0 +1,394 @@
+//! GeoJSON (RFC 7946) → [`Map`], noting every fault.
+
+use std::io::Read;
+use std::path::Path;
+
+use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue, Position};
+
+use super::{Map, MapError, MapFault};
+use crate::frame::{GEOREFERENCE_REACH_M, Geographic, Georeference, Vector};
+use crate::geometry::{Polygon, PolygonError};
+
+/// Bytes of a map.
+const FILE_BYTES: u64 = 64 * 1024 * 1024;
+
+/// What a feature has to be.
+const POLYGON: &str = "a Polygon or a MultiPolygon";
+
+/// What a position has to be.
+const POSITION: &str =
+    "[longitude, latitude] in degrees, WGS84: longitude from -180 to 180, latitude from -90 to 90";
+
+impl Map {
+    /// Reads a GeoJSON file: a feature collection, a feature or a geometry of polygons, holes included, on the
+    /// plane of a georeference. Every fault of the file is in the error, one for each polygon at most.
+    pub fn read(file: &Path, earth: &Georeference) -> Result<Self, MapError> {
+        let unread = |source| MapError::Read {
+            file: file.to_owned(),
+            source,
+        };
+        // a pipe would be waited for, a device read for ever
+        if !std::fs::metadata(file).map_err(unread)?.is_file() {
+            let kind = std::io::ErrorKind::InvalidInput;
+            return Err(unread(std::io::Error::new(kind, "not a regular file")));
+        }
+        let handle = std::fs::File::open(file).map_err(unread)?;
+        let mut bytes = Vec::new();
+        let mut limited = handle.take(FILE_BYTES + 1);
+        limited.read_to_end(&mut bytes).map_err(unread)?;
+        let whole = |found: &str, allowed: &str| {
+            Err(vec![MapFault {
+                feature: None,
+                found: found.to_owned(),
+                allowed: allowed.to_owned(),
+            }])
+        };
+        let map = if bytes.len() as u64 > FILE_BYTES {
+            whole("more than 64 MiB", "a map of at most 64 MiB")
+        } else {
+            match std::str::from_utf8(&bytes) {
+                Ok(text) => Self::parse(text, earth),
+                Err(_) => whole("bytes that are no text", "UTF-8 text"),
+            }
+        };
+        map.map_err(|faults| MapError::Faults {
+            file: file.to_owned(),
+            faults,
+        })
+    }
+
+    /// The same from text.
+    pub fn parse(text: &str, earth: &Georeference) -> Result<Self, Vec<MapFault>> {
+        let mut reading = Reading {
+            earth,
+            polygons: Vec::new(),
+            faults: Vec::new(),
+        };
+        reading.document(text);
+        if !reading.faults.is_empty() {
+            return Err(reading.faults);
+        }
+        if reading.polygons.is_empty() {
+            reading.fault(
+                None,
+                "no polygon",
+                format!("at least one feature that is {POLYGON}"),
+            );
+            return Err(reading.faults);
+        }
+        Self::new(reading.polygons).map_err(|error| {
+            vec![MapFault {
+                feature: None,
+                found: error.to_string(),
+                allowed: "polygons that can be cut into convex pieces".to_owned(),
+            }]
+        })
+    }
+}
+
+struct Reading<'a> {
+    earth: &'a Georeference,
+    polygons: Vec<Polygon>,
+    faults: Vec<MapFault>,
+}
+
+impl Reading<'_> {
+    fn fault(
+        &mut self,
+        feature: Option<usize>,
+        found: impl Into<String>,
+        allowed: impl Into<String>,
+    ) {
+        self.faults.push(MapFault {
+            feature,
+            found: found.into(),
+            allowed: allowed.into(),
+        });
+    }
+
+    fn document(&mut self, text: &str) {
+        match text.parse::<GeoJson>() {
+            Ok(GeoJson::FeatureCollection(collection)) => self.collection(&collection),
+            Ok(GeoJson::Feature(feature)) => self.feature(0, feature.geometry.as_ref()),
+            Ok(GeoJson::Geometry(geometry)) => self.feature(0, Some(&geometry)),
+            Err(error) => {
+                let found = format!("no GeoJSON ({error})");
+                self.fault(None, found, "GeoJSON as in RFC 7946");
+            }
+        }
+    }
+
+    fn collection(&mut self, collection: &FeatureCollection) {
+        let crs = collection
+            .foreign_members
+            .as_ref()
+            .and_then(|m| m.get("crs"));
+        // GeoJSON of 2008 could name another system; RFC 7946 knows WGS84 alone
+        if let Some(crs) = crs.map(ToString::to_string)
+            && !crs.contains("CRS84")
+            && !crs.contains("4326")
+        {
+            let short: String = crs.chars().take(80).collect();
+            self.fault(
+                None,
+                format!("the reference system {short}"),
+                "WGS84, or none named",
+            );
+        }
+        for (index, feature) in collection.features.iter().enumerate() {
+            self.feature(index, feature.geometry.as_ref());
+        }
+    }
+
+    fn feature(&mut self, index: usize, geometry: Option<&Geometry>) {
+        match geometry.map(|g| &g.value) {
+            Some(GeometryValue::Polygon { coordinates }) => self.polygon(index, coordinates),
+            Some(GeometryValue::MultiPolygon { coordinates }) if !coordinates.is_empty() => {
+                for polygon in coordinates {
+                    self.polygon(index, polygon);
+                }
+            }
+            Some(other) => self.fault(Some(index), format!("a {}", other.type_name()), POLYGON),
+            None => self.fault(Some(index), "no geometry", POLYGON),
+        }
+    }
+
+    fn polygon(&mut self, feature: usize, rings: &[Vec<Position>]) {
+        let mut projected = Vec::with_capacity(rings.len());
+        for (index, ring) in rings.iter().enumerate() {
+            match self.ring(ring) {
+                Ok(ring) => projected.push(ring),
+                Err((found, allowed)) => {
+                    let found = format!("in ring {index} {found}");
+                    return self.fault(Some(feature), found, allowed);
+                }
+            }
+        }
+        match Polygon::new(&projected) {
+            Ok(polygon) => self.polygons.push(polygon),
+            Err(error) => {
+                let (found, allowed) = self.described(&error);
+                self.fault(Some(feature), found, allowed);
+            }
+        }
+    }
+
+    /// A closed ring on the plane, open; or what is wrong with it and what is allowed.
+    fn ring(&self, ring: &[Position]) -> Result<Vec<Vector>, (String, String)> {
+        if ring.len() < 4 {
+            let allowed = "at least 4, the first once more at the end";
+            return Err((format!("{} positions", ring.len()), allowed.to_owned()));
+        }
+        let mut points = Vec::with_capacity(ring.len());
+        for (index, position) in ring.iter().enumerate() {
+            points.push(
+                self.point(position).map_err(|(found, allowed)| {
+                    (format!("{found} at position {index}"), allowed)
+                })?,
+            );
+        }
+        if ring[0].as_slice()[..2] != ring[ring.len() - 1].as_slice()[..2] {
+            let found = "an end that is not its beginning".to_owned();
+            return Err((found, "a closed ring".to_owned()));
+        }
+        points.pop();
+        Ok(points)
+    }
+
+    fn point(&self, position: &Position) -> Result<Vector, (String, String)> {
+        let (lon_deg, lat_deg) = (position[0], position[1]);
+        let place = Geographic { lat_deg, lon_deg };
+        if let Some(point) = self.earth.to_near_plane(place) {
+            return Ok(point);
+        }
+        let written = format!("[{lon_deg}, {lat_deg}]");
+        let exchanged = Geographic {
+            lat_deg: lon_deg,
+            lon_deg: lat_deg,
+        };
+        if self.earth.to_near_plane(exchanged).is_some() {
+            let found = format!("{written}, which looks like [latitude, longitude],");
+            return Err((found, POSITION.to_owned()));
+        }
+        if !place.is_on_earth() {
+            return Err((written, POSITION.to_owned()));
+        }
+        let far = self.earth.to_plane(place).norm() / 1000.0;
+        let (reach, origin) = (GEOREFERENCE_REACH_M / 1000.0, self.earth.origin());
+        Err((
+            format!("{written}, {far:.0} km from the origin,"),
+            format!("land within {reach:.0} km of the origin ({origin})"),
+        ))
+    }
+
+    /// What is wrong with a polygon and what is allowed, for a reader of the file.
+    fn described(&self, error: &PolygonError) -> (String, String) {
+        match error {
+            PolygonError::Crosses { crossing } => {
+                let place = self.earth.to_geographic(crossing.at);
+                let [a, b] = crossing.edges;
+                let edge =
+                    |e: crate::geometry::EdgeIndex| format!("edge {} of ring {}", e.vertex, e.ring);
+                (
+                    format!(
+                        "a boundary that crosses itself at {place}: {} and {}",
+                        edge(a),
+                        edge(b)
+                    ),
+                    "rings that touch themselves and one another in points at most".to_owned(),
+                )
+            }
+            PolygonError::TooFewVertices { .. }
+            | PolygonError::NotFinite { .. }
+            | PolygonError::HoleOutside { .. } => (
+                error.to_string(),
+                "an outer ring, then holes inside it, each of 3 different vertices or more"
+                    .to_owned(),
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn earth() -> Georeference {
+        let origin = Geographic {
+            lat_deg: 63.44,
+            lon_deg: 10.4,
+        };
+        Georeference::new(origin).expect("valid")
+    }
+
+    fn collection(geometries: &[&str]) -> String {
+        let features: Vec<String> = geometries
+            .iter()
+            .map(|g| format!(r#"{{"type":"Feature","properties":null,"geometry":{g}}}"#))
+            .collect();
+        format!(
+            r#"{{"type":"FeatureCollection","features":[{}]}}"#,
+            features.join(",")
+        )
+    }
+
+    fn polygon(rings: &str) -> String {
+        format!(r#"{{"type":"Polygon","coordinates":[{rings}]}}"#)
+    }
+
+    const ISLAND: &str = "[[10.4,63.44],[10.41,63.44],[10.41,63.45],[10.4,63.44]]";
+
+    fn only_fault(text: &str) -> MapFault {
+        let faults = Map::parse(text, &earth()).expect_err("faulty");
+        assert_eq!(faults.len(), 1, "{faults:?}");
+        faults[0].clone()
+    }
+
+    #[test]
+    fn every_shape_of_document_with_polygons_is_a_map() {
+        let island = polygon(ISLAND);
+        let moved = ISLAND.replace("10.4", "10.6");
+        let several = format!(r#"{{"type":"MultiPolygon","coordinates":[[{ISLAND}],[{moved}]]}}"#);
+        let feature = format!(r#"{{"type":"Feature","properties":{{}},"geometry":{island}}}"#);
+        for (text, count) in [
+            (island.clone(), 1),
+            (several.clone(), 2),
+            (feature, 1),
+            (collection(&[&island, &several]), 3),
+        ] {
+            let map = Map::parse(&text, &earth()).expect("a map");
+            assert_eq!(map.polygons().len(), count);
+        }
+        // a height is of no interest, nor is the order of turning
+        let high = "[[10.4,63.44,3],[10.41,63.45,3],[10.41,63.44,3],[10.4,63.44,3]]";
+        assert!(Map::parse(&polygon(high), &earth()).is_ok());
+    }
+
+    #[test]
+    fn faults_name_their_feature_and_what_is_allowed() {
+        let island = polygon(ISLAND);
+        let line = r#"{"type":"LineString","coordinates":[[10.4,63.44],[10.41,63.44]]}"#;
+        let cases = [
+            (line.to_owned(), "a LineString", POLYGON),
+            ("null".to_owned(), "no geometry", POLYGON),
+            (
+                polygon("[[63.44,10.4],[63.44,10.41],[63.45,10.41],[63.44,10.4]]"),
+                "looks like [latitude, longitude]",
+                POSITION,
+            ),
+            (
+                polygon("[[10.4,63.44],[10.41,93.44],[10.41,63.45],[10.4,63.44]]"),
+                "in ring 0 [10.41, 93.44] at position 1",
+                POSITION,
+            ),
+            (
+                polygon("[[5.4,60.44],[5.41,60.44],[5.41,60.45],[5.4,60.44]]"),
+                "km from the origin",
+                "within 100 km of the origin (lat 63.44",
+            ),
+            (
+                polygon("[[10.4,63.44],[10.41,63.45],[10.41,63.44],[10.4,63.45],[10.4,63.44]]"),
+                "crosses itself at lat 63.445",
+                "touch",
+            ),
+            (
+                polygon("[[10.4,63.44],[10.41,63.44],[10.41,63.45],[10.4,63.45]]"),
+                "an end that is not its beginning",
+                "a closed ring",
+            ),
+            (
+                polygon("[[10.4,63.44],[10.41,63.44],[10.4,63.44]]"),
+                "3 positions",
+                "at least 4",
+            ),
+            (
+                polygon("[[10.4,63.44],[10.4,63.44],[10.4,63.44],[10.4,63.44]]"),
+                "1 different vertices",
+                "3 different",
+            ),
+            (
+                polygon(&format!("{ISLAND},{}", ISLAND.replace("63.4", "63.5"))),
+                "hole 1 is not inside",
+                "holes inside",
+            ),
+        ];
+        for (geometry, found, allowed) in &cases {
+            let fault = only_fault(&collection(&[&island, geometry]));
+            assert_eq!(fault.feature, Some(1), "{fault}");
+            assert!(fault.found.contains(found), "{fault}");
+            assert!(fault.allowed.contains(allowed), "{fault}");
+        }
+        let all: Vec<&str> = cases.iter().map(|(g, _, _)| g.as_str()).collect();
+        let together = Map::parse(&collection(&all), &earth()).expect_err("faulty");
+        assert_eq!(together.len(), cases.len(), "all at once");
+    }
+
+    #[test]
+    fn what_is_no_map_is_named() {
+        for text in ["", "{}", "[1, 2]", "{\"type\":\"Topology\"}", "\u{0}"] {
+            assert!(only_fault(text).found.starts_with("no GeoJSON"), "{text}");
+        }
+        assert_eq!(only_fault(&collection(&[])).found, "no polygon");
+        let utm = collection(&[&polygon(ISLAND)]).replacen(
+            '{',
+            r#"{"crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::25832"}},"#,
+            1,
+        );
+        assert!(only_fault(&utm).found.contains("25832"));
+    }
+
+    /// Nothing a file can say may panic.
+    #[test]
+    fn hostile_text_is_refused_and_never_panics() {
+        let text = collection(&[&polygon(ISLAND)]);
+        for end in 0..text.len() {
+            assert!(Map::parse(&text[..end], &earth()).is_err());
+        }
+        for hostile in ["1e308", "-1e308", "5e-324", "null", "[]", "\"a\"", "1e999"] {
+            for (at, _) in text.match_indices(char::is_numeric) {
+                let mutated = format!("{}{hostile}{}", &text[..at], &text[at + 1..]);
+                let _ = Map::parse(&mutated, &earth());
+            }
+        }
+    }
+}

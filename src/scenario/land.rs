@@ -1,0 +1,134 @@
+//! The map of a file, and what of the file is not to be on its land.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::file::Entry;
+use super::plane::Plane;
+use super::section::Section;
+use crate::frame::Vector;
+use crate::map::{LandCrossing, Map, MapError};
+use crate::tolerance;
+use crate::trajectory::DesiredTrajectory;
+use crate::vessel::{Hull, OwnShip};
+
+/// Faults of a map or a path that are listed: a map of another place has one in every feature.
+const MAX_LISTED: usize = 20;
+
+/// What own ship keeps off.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Land {
+    /// Shared, not copied, by the copies of a scenario.
+    pub map: Arc<Map>,
+    /// Kept between own hull and the land, metres.
+    pub margin: f64,
+}
+
+impl Land {
+    /// Metres that the middle line of a hull keeps from land while it sails along a straight path.
+    pub fn clearance_along(&self, hull: &Hull) -> f64 {
+        0.5 * hull.beam + self.margin
+    }
+
+    /// Every stretch of a path that own hull cannot sail: nearer to land than half of the beam and the margin.
+    pub fn crossings(&self, hull: &Hull, path: &[Vector]) -> Vec<LandCrossing> {
+        self.map.crossings(path, self.clearance_along(hull))
+    }
+}
+
+/// The map that the key `map` names, from `folder`; `None` without the key, or with a fault noted.
+pub(super) fn map(root: &mut Section, plane: &Plane, folder: &Path) -> Option<Arc<Map>> {
+    let entry = root.take("map")?;
+    let earth = plane.need_earth();
+    let file = entry.file_in(folder)?;
+    match Map::read(&file, &earth?) {
+        Ok(map) => Some(Arc::new(map)),
+        Err(MapError::Read { file, source }) => {
+            let found = format_args!("{}, which cannot be read ({source})", file.display());
+            entry.fault(found, "a GeoJSON file of land polygons");
+            None
+        }
+        Err(MapError::Faults { file, faults }) => {
+            for fault in faults.iter().take(MAX_LISTED) {
+                let place = fault.place_and_found();
+                entry.fault(format_args!("{}: {place}", file.display()), &fault.allowed);
+            }
+            if let Some(more) = faults.len().checked_sub(MAX_LISTED).filter(|n| *n > 0) {
+                let found = format_args!("{}: {more} more faults", file.display());
+                entry.fault(found, "none");
+            }
+            None
+        }
+    }
+}
+
+/// Notes a start on land, and every stretch of the desired path that own hull cannot sail.
+pub(super) fn check(
+    root: &mut Section,
+    land: &Land,
+    plane: &Plane,
+    own: Option<&OwnShip>,
+    desired: Option<&DesiredTrajectory>,
+) {
+    let Some(own) = own else { return };
+    let start = own.hull.polygon(&own.pose);
+    let apart = land.map.separation(&start, land.margin);
+    // negated on purpose: a NaN is on land
+    if !(apart >= land.margin - tolerance::DEPTH_M)
+        && let Some(entry) = table(root, "own_ship").and_then(|mut s| s.take("position"))
+    {
+        let allowed = format_args!("at least {} m of water around own hull", land.margin);
+        if apart < 0.0 {
+            let depth = -apart;
+            entry.fault(format_args!("own hull on land, {depth:.1} m deep"), allowed);
+        } else {
+            entry.fault(format_args!("own hull {apart:.1} m from land"), allowed);
+        }
+    }
+    let Some(desired) = desired else { return };
+    let waypoints = table(root, "mission").and_then(|mut s| s.take("waypoints"));
+    if let Some(entries) = waypoints.and_then(|entry| entry.list(0, "positions")) {
+        check_path(&entries, &desired.waypoints(), land, plane, &own.hull);
+    }
+}
+
+/// Notes every stretch of a path that own hull cannot sail, at the waypoint where its leg ends.
+pub(super) fn check_path(
+    entries: &[Entry],
+    path: &[Vector],
+    land: &Land,
+    plane: &Plane,
+    hull: &Hull,
+) {
+    let clearance = land.clearance_along(hull);
+    for crossing in land.crossings(hull, path).iter().take(MAX_LISTED) {
+        let Some(entry) = entries.get(crossing.leg + 1) else {
+            continue;
+        };
+        let LandCrossing { from, to, .. } = crossing;
+        let how = if crossing.missing > clearance {
+            "crosses land"
+        } else {
+            "comes too near to land"
+        };
+        let at = crossing.worst;
+        let place = plane.earth().map_or_else(String::new, |earth| {
+            format!(" ({})", earth.to_geographic(at))
+        });
+        entry.fault(
+            format_args!(
+                "a leg that {how} from {from:.1} m to {to:.1} m behind its start; {:.1} m are missing at \
+                 east {:.1} m, north {:.1} m{place}",
+                crossing.missing, at.x, at.y
+            ),
+            format_args!(
+                "at least {clearance:.1} m from the leg to land: half of own beam, and land_margin_m"
+            ),
+        );
+    }
+}
+
+/// A table that was read before, to find the place of a value again.
+fn table<'a, 'i>(root: &mut Section<'a, 'i>, key: &str) -> Option<Section<'a, 'i>> {
+    root.take(key)?.section("a table")
+}

@@ -1,0 +1,199 @@
+//! Land from the scenario file on: positions in degrees, maps, and what is not to be on land.
+
+use std::path::Path;
+
+use searoom::frame::{Geographic, Georeference, Vector};
+use searoom::scenario::{Scenario, ScenarioError};
+
+/// South-west of Munkholmen, in the middle of the fjord, in metres and on the map.
+const SCENARIO: &str = r#"
+title = "past Munkholmen"
+horizon_s = 600
+origin = { lat_deg = 63.44, lon_deg = 10.399 }
+map = "harbour.geojson"
+
+[own_ship]
+position = { lat_deg = 63.4470, lon_deg = 10.3700 }
+course_deg = 90
+speed_mps = 5
+length_m = 30
+beam_m = 8
+turning_radius_m = 80
+land_margin_m = 10
+
+[mission]
+waypoints = [
+    { lat_deg = 63.4470, lon_deg = 10.3700 },
+    { east_m = 0, north_m = 780 },
+    { lat_deg = 63.4530, lon_deg = 10.4050 },
+]
+
+[[targets]]
+name = "boat"
+position = { lat_deg = 63.4480, lon_deg = 10.4100 }
+course_deg = 250
+speed_kn = 8
+length_m = 12
+beam_m = 4
+"#;
+
+fn maps() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("maps")
+}
+
+/// A folder with the scenario and the harbour.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let map = maps().join("trondheim-harbour.geojson");
+    std::fs::copy(map, folder.path().join("harbour.geojson")).expect("a copy");
+    folder
+}
+
+fn read(folder: &Path, text: &str) -> Result<Scenario, ScenarioError> {
+    let file = folder.join("scenario.toml");
+    std::fs::write(&file, text).expect("written");
+    Scenario::read(&file)
+}
+
+/// `path: found; allowed` of every fault.
+fn faults(folder: &Path, text: &str) -> Vec<String> {
+    match read(folder, text) {
+        Err(ScenarioError::Faults { faults, .. }) => faults.iter().map(|f| f.to_string()).collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn degrees_and_metres_are_one_plane_and_the_map_lies_on_it() {
+    let folder = folder();
+    let scenario = read(folder.path(), SCENARIO).expect("valid");
+    let origin = Geographic {
+        lat_deg: 63.44,
+        lon_deg: 10.399,
+    };
+    let earth = Georeference::new(origin).expect("valid");
+    assert_eq!(scenario.earth, Some(earth));
+    let at = |lat_deg, lon_deg| earth.to_plane(Geographic { lat_deg, lon_deg });
+    assert_eq!(scenario.own_ship.pose.position, at(63.4470, 10.3700));
+    let waypoints = scenario.desired.waypoints();
+    assert!((waypoints[1] - Vector::new(0.0, 780.0)).norm() < 1e-9);
+    assert!((waypoints[2] - at(63.4530, 10.4050)).norm() < 1e-9);
+    let boat = scenario.targets[0].position_at(0.0);
+    assert!((boat - at(63.4480, 10.4100)).norm() < 1e-9);
+    let land = scenario.land.expect("land");
+    assert_eq!((land.margin, land.map.polygons().len()), (10.0, 27));
+    assert!(land.map.contains(at(63.4512, 10.3833)), "Munkholmen");
+    // without a map nothing is known of land, and degrees do as well
+    let bare = read(folder.path(), &SCENARIO.replace("map =", "# map ="));
+    assert!(bare.expect("valid").land.is_none());
+}
+
+#[test]
+fn what_needs_an_origin_asks_for_it_once() {
+    let folder = folder();
+    let without = SCENARIO.replace("origin = {", "# origin = {");
+    let found = faults(folder.path(), &without);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].contains("origin: found nothing; allowed: a table { lat_deg, lon_deg }"));
+    for (from, to, expected) in [
+        ("63.44,", "89.5,", "origin.lat_deg: found 89.5"),
+        ("10.399 }", "190 }", "origin.lon_deg: found 190"),
+        (
+            "east_m = 0,",
+            "lat_deg = 63.45, east_m = 0,",
+            "mission.waypoints[1]: found east_m or north_m beside lat_deg or lon_deg; allowed: one of the two pairs",
+        ),
+        (
+            "63.4530,",
+            "60.39,",
+            "mission.waypoints[2]: found lat 60.390000°, lon 10.405000°, 340 km from the origin; allowed: a place within 100 km",
+        ),
+        (
+            "{ lat_deg = 63.4480, lon",
+            "{ lat = 63.4480, lon",
+            "targets[0].position.lat: found an unknown key; allowed: did you mean 'lat_deg'?",
+        ),
+    ] {
+        assert!(SCENARIO.contains(from), "{from}");
+        let found = faults(folder.path(), &SCENARIO.replacen(from, to, 1));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains(expected), "{found:?}");
+    }
+}
+
+#[test]
+fn a_bad_map_is_named_with_its_file_its_feature_and_what_is_allowed() {
+    let folder = folder();
+    let map = std::fs::read_to_string(maps().join("trondheim-harbour.geojson")).expect("a map");
+    let write =
+        |text: &str| std::fs::write(folder.path().join("bad.geojson"), text).expect("written");
+    let text = SCENARIO.replace("harbour.geojson", "bad.geojson");
+    let missing = faults(folder.path(), &text);
+    assert!(
+        missing[0].contains("map: found ")
+            && missing[0].contains("bad.geojson, which cannot be read")
+    );
+    write(&map.replacen(r#""type":"Polygon""#, r#""type":"MultiLineString""#, 1));
+    let found = faults(folder.path(), &text);
+    assert_eq!(found.len(), 1);
+    assert!(
+        found[0].contains(
+            "bad.geojson: features[0]: a MultiLineString; allowed: a Polygon or a MultiPolygon"
+        ),
+        "{found:?}"
+    );
+    // the origin in another town: every feature is far
+    let oslo = SCENARIO
+        .replace("63.44,", "59.91,")
+        .replace("10.399", "10.75");
+    let found = faults(folder.path(), &oslo);
+    assert!(
+        found
+            .iter()
+            .any(|f| f.contains("features[0]") && f.contains("km from the origin"))
+    );
+    assert!(
+        found.iter().any(|f| f.contains("7 more faults")),
+        "{found:?}"
+    );
+    // positions are far too: all at once
+    assert!(
+        found.iter().any(|f| f.contains("own_ship.position")),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_start_and_a_path_on_land_are_named_together() {
+    let folder = folder();
+    // the waypoint in the middle moved behind Munkholmen, the start onto the quay
+    let text = SCENARIO
+        .replace(
+            "{ east_m = 0, north_m = 780 }",
+            "{ lat_deg = 63.4520, lon_deg = 10.3900 }",
+        )
+        .replace(
+            "position = { lat_deg = 63.4470, lon_deg = 10.3700 }",
+            "position = { lat_deg = 63.4305, lon_deg = 10.395 }",
+        );
+    let found = faults(folder.path(), &text);
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(
+        found[0].contains("own_ship.position: found own hull on land, "),
+        "{found:?}"
+    );
+    assert!(found[0].contains("at least 10 m of water around own hull"));
+    assert!(
+        found[1].contains("mission.waypoints[1]: found a leg that crosses land from "),
+        "{found:?}"
+    );
+    assert!(found[1].contains("m are missing at east ") && found[1].contains("(lat 63.45"));
+    assert!(found[1].contains("at least 14.0 m from the leg to land"));
+    // near, not on it
+    let near = SCENARIO.replace("land_margin_m = 10", "land_margin_m = 500");
+    let found = faults(folder.path(), &near);
+    assert!(
+        found.iter().all(|f| f.contains("comes too near to land")),
+        "{found:?}"
+    );
+}
