@@ -139,12 +139,12 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         alternatives: &[],
         objective,
         obstacles: &drawn.obstacles,
+        coast: Coast::none(),
+        first_turn: None,
         horizon: drawn.horizon,
         time_weight: 25.0,
         search,
         deadline: Duration::from_secs(60),
-        first_turn: None,
-        coast: Coast::none(),
     })
 }
 
@@ -537,6 +537,8 @@ fn alternatives_are_as_good_as_the_best_way_through_them() {
                 alternatives: &alternatives,
                 objective,
                 obstacles: &drawn.obstacles,
+                coast: Coast::none(),
+                first_turn: None,
                 horizon: drawn.horizon,
                 time_weight: 25.0,
                 search: SearchKind::AStar,
@@ -591,6 +593,8 @@ fn risk_is_weighed_against_length() {
         alternatives: &detour,
         objective: Objective::Length,
         obstacles: &obstacles,
+        coast: Coast::none(),
+        first_turn: None,
         horizon: 90.0,
         time_weight: 25.0,
         search: SearchKind::AStar,
