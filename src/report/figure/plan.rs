@@ -31,6 +31,9 @@ const ALTERNATIVE: Stroke = Stroke {
     dashed: false,
 };
 
+/// Land.
+const LAND: &str = "#e4dcc3";
+
 /// Instants at which the sets are drawn, the start among them.
 const MOMENTS: usize = 4;
 
@@ -100,6 +103,23 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
         }
     }
     let mut panel = Panel::plan(title.to_owned(), PLAN, Window::around(shown, 0.06));
+    let window = panel.window();
+    let beyond = |v: &Vector| {
+        [
+            window.low.x - v.x,
+            v.x - window.high.x,
+            window.low.y - v.y,
+            v.y - window.high.y,
+        ]
+    };
+    for piece in &run.land {
+        let vertices = piece.vertices();
+        // all of it on the far side of one edge of the window
+        let away = (0..4).any(|side| vertices.iter().all(|v| beyond(v)[side] > 0.0));
+        if !away {
+            panel.plots.extend(area(piece, LAND, 1.0));
+        }
+    }
     for (index, k, boundary) in &sets {
         let colour = target_colour(*index);
         let opacity = 0.10 + 0.30 * (1.0 - *k as f64 / MOMENTS as f64);
