@@ -7,13 +7,18 @@ pub use shore::{coast, land_within_reach};
 use std::time::{Duration, Instant};
 
 use crate::colregs::{self, Encounter, Role};
-use crate::evaluation::{Evaluation, Freedom, Request, SetShape, SpaceTimeSet, evaluate};
+use crate::evaluation::{
+    Evaluation, Freedom, Request, SetShape, SpaceTimeSet, Steering, evaluate, evaluate_steered,
+};
 use crate::frame::Side;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
     Coast, EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
-use crate::planner::{Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time};
+use crate::planner::optimal_control::{self, ControlReport, Controlled};
+use crate::planner::{
+    NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time,
+};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
@@ -67,6 +72,10 @@ pub struct Run {
     pub land: Vec<ConvexPolygon>,
     /// The planner's answer.
     pub planned: Planned,
+    /// How the optimal-control planner found it; `None` for another planner.
+    pub control: Option<ControlReport>,
+    /// Targets whose obstacles are ellipsoids around sets of another kind.
+    pub enclosed: Vec<String>,
     /// What had to be given up, most important first; empty when nothing.
     pub relaxations: Vec<Relaxation>,
     /// The largest risk along the plan, per target in the same order, against the sets of which `obstacles` are the
@@ -214,49 +223,63 @@ pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let shaped = scenario.compliance == Compliance::Shape;
     let begun = Instant::now();
+    let forces = scenario.planner == PlannerKind::OptimalControl;
     let land = land_within_reach(&scenario);
     let coast = coast(&scenario, &land);
     let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
-    let plan = |used: fn(&TargetSets) -> &Obstacle| -> (Vec<Obstacle>, Planned) {
-        let whole: Vec<Obstacle> = sets.iter().map(|s| used(s).clone()).collect();
-        let risk = scenario.max_risk;
-        let level_sets: Vec<Obstacle> = if risk > 0.0 {
-            whole.iter().map(|set| set.at_risk(risk)).collect()
-        } else {
-            whole.clone()
+    let plan =
+        |used: fn(&TargetSets) -> &Obstacle| -> (Vec<Obstacle>, Planned, Option<ControlReport>) {
+            let whole: Vec<Obstacle> = sets.iter().map(|s| used(s).clone()).collect();
+            let risk = scenario.max_risk;
+            let level_sets: Vec<Obstacle> = if risk > 0.0 {
+                whole.iter().map(|set| set.at_risk(risk)).collect()
+            } else {
+                whole.clone()
+            };
+            let level_sets = if forces {
+                optimal_control::outer_sets(&level_sets)
+            } else {
+                level_sets
+            };
+            let asked = Problem {
+                deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
+                first_turn: shaped.then(|| first_turn(&sets)).flatten(),
+                ..problem(&scenario, &level_sets, &coast)
+            };
+            let planned = match (scenario.planner, scenario.objective) {
+                (PlannerKind::SpaceTime, _) => space_time::plan(&asked),
+                (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
+                    let asked = Problem {
+                        obstacles: &whole,
+                        ..asked
+                    };
+                    path_time::plan_weighing_risk(&asked, weight, risk)
+                }
+                (PlannerKind::PathTime, _) => path_time::plan(&asked),
+                (PlannerKind::OptimalControl, _) => {
+                    let Controlled { planned, report } =
+                        optimal_control::plan(&asked, &scenario.control);
+                    return (level_sets, planned, Some(report));
+                }
+            };
+            (level_sets, planned, None)
         };
-        let asked = Problem {
-            deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
-            first_turn: shaped.then(|| first_turn(&sets)).flatten(),
-            ..problem(&scenario, &level_sets, &coast)
-        };
-        let planned = match (scenario.planner, scenario.objective) {
-            (PlannerKind::SpaceTime, _) => space_time::plan(&asked),
-            (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
-                let asked = Problem {
-                    obstacles: &whole,
-                    ..asked
-                };
-                path_time::plan_weighing_risk(&asked, weight, risk)
-            }
-            (PlannerKind::PathTime, _) => path_time::plan(&asked),
-        };
-        (level_sets, planned)
-    };
     let mut relaxations = if shaped {
         relaxations(&sets, |s| s.shape_reduced)
     } else {
         Vec::new()
     };
-    let (mut obstacles, mut planned) = plan(used);
+    let (mut obstacles, mut planned, mut control) = plan(used);
     let stuck = match &planned.outcome {
+        // the ellipse around a shape may hold own ship where the shape does not
+        Outcome::Infeasible(NoPlan::StartInside { .. }) => forces,
         Outcome::Infeasible(reason) => reason.is_for_the_sets(),
         Outcome::Solved(_) | Outcome::Deadline(_) => false,
     };
     if shaped && stuck && sets.iter().any(|s| s.shape_reach > 0.0) {
-        let (obstacles_left, again) = plan(|s| &s.hard);
+        let (obstacles_left, again, report) = plan(|s| &s.hard);
         if again.outcome.plan().is_some() {
-            (obstacles, planned) = (obstacles_left, again);
+            (obstacles, planned, control) = (obstacles_left, again, report);
             relaxations = self::relaxations(&sets, |s| s.shape_reach);
             used = |s| &s.hard;
         }
@@ -270,6 +293,9 @@ pub fn run(scenario: Scenario) -> Run {
     if scenario.max_risk > 0.0 {
         relaxations.extend(risks_taken(&sets, &risks));
     }
+    let is_ellipsoid = |s: &&TargetSets| matches!(used(s), Obstacle::Ellipsoid(_));
+    let enclosed = sets.iter().filter(|s| forces && !is_ellipsoid(s));
+    let enclosed = enclosed.map(|s| s.hard.name().to_owned()).collect();
     let evaluation = planned
         .outcome
         .plan()
@@ -280,6 +306,8 @@ pub fn run(scenario: Scenario) -> Run {
         obstacles,
         land,
         planned,
+        control,
+        enclosed,
         relaxations,
         risks,
         evaluation,
@@ -291,7 +319,8 @@ pub fn run(scenario: Scenario) -> Run {
 /// touch it, is at none: a set without spread is at risk 1 on its very boundary.
 fn peak_risk(set: &Obstacle, trajectory: &Trajectory) -> PeakRisk {
     let enters = |s| set.first_contact(s, tolerance::DEPTH_M).is_some();
-    if trajectory.segments().iter().any(enters) {
+    // a motion under forces is looked at instant by instant, there the depth is asked for
+    if trajectory.steered().is_some() || trajectory.segments().iter().any(enters) {
         set.peak_risk_along(trajectory)
     } else {
         PeakRisk {
@@ -346,9 +375,9 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
         .collect();
     let mut paths = vec![scenario.desired.waypoints()];
     paths.extend_from_slice(&scenario.alternatives);
-    evaluate(&Request {
+    let request = Request {
         freedom: match scenario.planner {
-            PlannerKind::SpaceTime => Freedom::Limits,
+            PlannerKind::SpaceTime | PlannerKind::OptimalControl => Freedom::Limits,
             PlannerKind::PathTime => Freedom::Paths(&paths),
         },
         segments: trajectory.segments(),
@@ -361,7 +390,19 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         max_risk: scenario.max_risk,
-    })
+    };
+    match trajectory.steered() {
+        Some(motion) => {
+            let vessel = scenario.control.vessel.exact();
+            let steering = Steering {
+                motion,
+                vessel: vessel.as_ref(),
+                force_limits: scenario.control.force_limits,
+            };
+            evaluate_steered(&request, &steering)
+        }
+        None => evaluate(&request),
+    }
 }
 
 /// The shapes that were drawn back, the largest cut first.

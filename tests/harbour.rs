@@ -13,11 +13,13 @@ use searoom::frame::{Geographic, Georeference, Pose, Vector, direction};
 use searoom::map::Map;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
-use searoom::planner::{Objective, Outcome, PlannerKind, Problem, SearchKind, space_time};
+use searoom::planner::{
+    ControlSettings, Objective, Outcome, PlannerKind, Problem, SearchKind, space_time,
+};
 use searoom::scenario::{Compliance, Land, Scenario};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
-use searoom::vessel::{Hull, OwnShip};
+use searoom::vessel::{Hull, OwnShip, VesselKind};
 use statistics::quantile;
 
 const TARGETS: usize = 3;
@@ -155,6 +157,7 @@ fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
         targets,
         planner: PlannerKind::SpaceTime,
         objective: Objective::SpaceTimeError,
+        control: ControlSettings::of(VesselKind::CyberShip2),
         search: SearchKind::AStar,
         compliance: Compliance::Shape,
         time_weight: speed * speed,

@@ -1,26 +1,28 @@
 //! Distances in continuous time between own ship, a rectangle or a point, and a moving set.
 
 use super::least::{Least, Probe};
+use super::piece::Piece;
 use super::space_time_set::{Face, MovingSet, nearest_on};
 use crate::frame::{Pose, Vector, to_port};
-use crate::trajectory::Segment;
+use crate::trajectory::Bounds;
 use crate::vessel::Hull;
 
-/// The least signed distance between own hull and a moving set along a chain of segments: negative in
+/// The least signed distance between own hull and a moving set along a chain of pieces: negative in
 /// overlap, minus the shortest translation that separates the two. Exact to
 /// [`crate::tolerance::MARGIN_M`] and certified: between two probes the distance is bounded from below
 /// by supporting lines, which separate the two for as long as they do. About a hundred probes a segment
 /// near the minimum and one far from it, each linear in the vertices.
-pub(super) fn least_distance(segments: &[Segment], own: Body, set: &MovingSet) -> Least {
+pub(super) fn least_distance<P: Piece>(pieces: &[P], own: Body, set: &MovingSet) -> Least {
     let mut least = Least::new();
-    for s in segments {
-        for time in [s.start_time, s.end_time()] {
-            least.see(own.probe(s, set, time, 0.0).value, time);
+    for s in pieces {
+        for time in [s.start_time(), s.end_time()] {
+            least.see(own.probe(s, &s.bounds(), set, time, 0.0).value, time);
         }
     }
-    for s in segments {
-        least.search(s.start_time, s.end_time(), |time, half| {
-            own.probe(s, set, time, half)
+    for s in pieces {
+        let bounds = s.bounds();
+        least.search(s.start_time(), s.end_time(), |time, half| {
+            own.probe(s, &bounds, set, time, half)
         });
     }
     least
@@ -31,6 +33,20 @@ pub(super) fn least_distance(segments: &[Segment], own: Body, set: &MovingSet) -
 pub(super) struct Body {
     half_length: f64,
     half_beam: f64,
+}
+
+/// How own ship moves at an instant.
+#[derive(Debug, Clone, Copy)]
+struct Moving {
+    velocity: Vector,
+    turn_rate: f64,
+}
+
+/// One of own ship's sides: its normal, and how far it is from her centre.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    normal: Vector,
+    reach: f64,
 }
 
 /// A corner: where it is, and how it moves.
@@ -60,8 +76,15 @@ impl Body {
     }
 
     /// The distance at `time`, and its lower bound within `half` seconds.
-    fn probe(&self, segment: &Segment, set: &MovingSet, time: f64, half: f64) -> Probe {
-        let pose = segment.pose_at(time);
+    fn probe(
+        &self,
+        piece: &impl Piece,
+        bounds: &Bounds,
+        set: &MovingSet,
+        time: f64,
+        half: f64,
+    ) -> Probe {
+        let pose = piece.pose_at(time);
         // minima and maxima below lose a NaN, so it is caught here
         if !(pose.position.x.is_finite() && pose.position.y.is_finite() && time.is_finite()) {
             return Probe {
@@ -69,7 +92,11 @@ impl Body {
                 lower: f64::NAN,
             };
         }
-        let corners = self.corners(&pose, segment.velocity_at(time), segment.turn_rate);
+        let moving = Moving {
+            velocity: piece.velocity_at(time),
+            turn_rate: piece.turn_rate_at(time),
+        };
+        let corners = self.corners(&pose, &moving);
         let corners = if self.is_point() {
             &corners[..1]
         } else {
@@ -79,8 +106,9 @@ impl Body {
         let bend = 0.5
             * half
             * half
-            * segment.turn_rate.abs()
-            * (segment.speed + segment.turn_rate.abs() * self.half_length.hypot(self.half_beam));
+            * (bounds.acceleration
+                + (bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration)
+                    * self.half_length.hypot(self.half_beam));
         // how far the body is beyond a face now, and at least within the time asked for
         let beyond = |face: &Face| {
             let mut gap = Probe {
@@ -114,7 +142,8 @@ impl Body {
                 (-port, self.half_beam),
             ];
             for (normal, reach) in sides {
-                keep(beyond_side(segment, &pose, normal, reach, set, time, half));
+                let side = Side { normal, reach };
+                keep(beyond_side(&pose, &moving, bounds, side, set, time, half));
             }
         }
         if best.value > 0.0 {
@@ -127,13 +156,13 @@ impl Body {
         best
     }
 
-    fn corners(&self, pose: &Pose, velocity: Vector, turn_rate: f64) -> [Corner; 4] {
+    fn corners(&self, pose: &Pose, moving: &Moving) -> [Corner; 4] {
         let (l, b) = (self.half_length, self.half_beam);
         [(l, -b), (l, b), (-l, b), (-l, -b)].map(|(ahead, port)| {
             let position = pose.world_coordinates(Vector::new(ahead, port));
             Corner {
                 position,
-                velocity: velocity + to_port(position - pose.position) * turn_rate,
+                velocity: moving.velocity + to_port(position - pose.position) * moving.turn_rate,
             }
         })
     }
@@ -166,29 +195,32 @@ impl Body {
 /// How far a set is beyond one of own ship's sides now, and at least within `half` seconds. The side turns
 /// with her: a fixed line through it would lose a distance of first order in time at its ends.
 fn beyond_side(
-    segment: &Segment,
     pose: &Pose,
-    normal: Vector,
-    reach: f64,
+    moving: &Moving,
+    bounds: &Bounds,
+    Side { normal, reach }: Side,
     set: &MovingSet,
     time: f64,
     half: f64,
 ) -> Probe {
-    let (turn, speed) = (segment.turn_rate.abs(), segment.speed);
-    let velocity = segment.velocity_at(time);
-    let turning = to_port(normal) * segment.turn_rate;
+    let turning = to_port(normal) * moving.turn_rate;
+    let (turn, swing) = (
+        bounds.yaw_rate,
+        bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration,
+    );
     let mut gap = Probe {
         value: f64::INFINITY,
         lower: f64::INFINITY,
     };
     for vertex in &set.vertices {
         let offset = vertex.at(time) - pose.position;
-        let relative = vertex.velocity - velocity;
+        let relative = vertex.velocity - moving.velocity;
         let value = normal.dot(&offset) - reach;
         let rate = normal.dot(&relative) + turning.dot(&offset);
         // of n . (p - x): the largest that the second derivative can be within the time asked for
-        let fastest = vertex.velocity.norm() + speed;
-        let bend = turn * (turn * (offset.norm() + fastest * half) + 2.0 * fastest + speed);
+        let fastest = vertex.velocity.norm() + bounds.speed;
+        let bend =
+            swing * (offset.norm() + fastest * half) + 2.0 * turn * fastest + bounds.acceleration;
         gap.value = gap.value.min(value);
         gap.lower = gap
             .lower
@@ -201,6 +233,7 @@ fn beyond_side(
 mod tests {
     use super::*;
     use crate::geometry::ConvexPolygon;
+    use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 

@@ -7,16 +7,20 @@ mod least;
 mod motion;
 mod moving_ellipse;
 mod moving_slabs;
+mod piece;
 mod quadrature;
 mod shore;
 mod space_time_set;
+mod steered;
 
 pub use space_time_set::{SetShape, SpaceTimeSet};
+pub use steered::{Steering, evaluate_steered};
 
 use clearance::{Body, least_distance};
 use least::Least;
 use moving_ellipse::MovingEllipse;
 use moving_slabs::MovingSlabs;
+use piece::Piece;
 use shore::least_land_distance;
 use space_time_set::MovingSet;
 
@@ -140,39 +144,8 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let mut violations = motion::check(request);
     let judged = !segments.is_empty() && segments.iter().all(Segment::is_valid);
     let segments = if judged { segments } else { &[] };
-    let margins: Vec<Least> = request
-        .sets
-        .iter()
-        .map(|set| {
-            let least = set.shape.least_distance(segments);
-            if judged {
-                let label = format!("set of '{}'", set.name);
-                violations.extend(collision(&label, &least, set.shape.has_interior()));
-            }
-            least
-        })
-        .collect();
-    let mut passages = Vec::with_capacity(request.targets.len());
-    for target in request.targets {
-        let mut margin = Least::new();
-        for (set, least) in request.sets.iter().zip(&margins) {
-            if set.name == target.name {
-                margin.see(least.value, least.time);
-            }
-        }
-        let (passage, clearance) = passage(request, segments, target, &margin);
-        // explicit sets are judged above, as sets
-        if judged && target.ship().is_some() {
-            let label = format!("hull of '{}'", target.name);
-            violations.extend(collision(&label, &clearance, true));
-        }
-        passages.push(passage);
-    }
-    let own = &request.own.hull;
-    let shore = least_land_distance(segments, Body::hull(own), own.half_diagonal(), request.land);
-    if judged {
-        violations.extend(grounding(&shore, request.land_margin));
-    }
+    let passages = meetings(request, segments, judged, &mut violations);
+    let shore = shore(request, segments, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
     Evaluation {
@@ -200,6 +173,59 @@ pub fn evaluate(request: &Request) -> Evaluation {
         min_land_distance_time: shore.time,
         passages,
     }
+}
+
+/// Every set and every target along a chain of pieces; what is violated is noted where the pieces are `judged`.
+fn meetings<P: Piece>(
+    request: &Request,
+    pieces: &[P],
+    judged: bool,
+    violations: &mut Vec<Violation>,
+) -> Vec<Passage> {
+    let margins: Vec<Least> = request
+        .sets
+        .iter()
+        .map(|set| {
+            let least = set.shape.least_distance(pieces);
+            if judged {
+                let label = format!("set of '{}'", set.name);
+                violations.extend(collision(&label, &least, set.shape.has_interior()));
+            }
+            least
+        })
+        .collect();
+    let mut passages = Vec::with_capacity(request.targets.len());
+    for target in request.targets {
+        let mut margin = Least::new();
+        for (set, least) in request.sets.iter().zip(&margins) {
+            if set.name == target.name {
+                margin.see(least.value, least.time);
+            }
+        }
+        let (passage, clearance) = passage(request, pieces, target, &margin);
+        // explicit sets are judged above, as sets
+        if judged && target.ship().is_some() {
+            let label = format!("hull of '{}'", target.name);
+            violations.extend(collision(&label, &clearance, true));
+        }
+        passages.push(passage);
+    }
+    passages
+}
+
+/// The land along a chain of pieces; what is violated is noted where they are `judged`.
+fn shore<P: Piece>(
+    request: &Request,
+    pieces: &[P],
+    judged: bool,
+    violations: &mut Vec<Violation>,
+) -> Least {
+    let own = &request.own.hull;
+    let least = least_land_distance(pieces, Body::hull(own), own.half_diagonal(), request.land);
+    if judged {
+        violations.extend(grounding(&least, request.land_margin));
+    }
+    least
 }
 
 /// The violation of the land by a least distance, if there is one.
@@ -268,9 +294,9 @@ fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<Velocity
 
 /// How a target is met, and the least clearance that has to be kept: to every hull she may have at the accepted
 /// risk.
-fn passage(
+fn passage<P: Piece>(
     request: &Request,
-    segments: &[Segment],
+    pieces: &[P],
     target: &Target,
     margin: &Least,
 ) -> (Passage, Least) {
@@ -282,42 +308,43 @@ fn passage(
             let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
             let initial = hull.minkowski_sum(&unknown);
             let spells = ship.outer_velocity_spells(ship.turn_rate, request.horizon);
-            let worst = MovingSlabs::new(&initial, &spells).least_distance(segments, body);
+            let worst = MovingSlabs::new(&initial, &spells).least_distance(pieces, body);
             let kept = if request.max_risk > 0.0 {
                 let spells = at_risk(&spells, target, request.max_risk);
-                MovingSlabs::new(&initial, &spells).least_distance(segments, body)
+                MovingSlabs::new(&initial, &spells).least_distance(pieces, body)
             } else {
                 worst
             };
-            (least_distance(segments, body, &nominal), worst, kept)
+            (least_distance(pieces, body, &nominal), worst, kept)
         }
         Motion::Sets { initial, velocity } => {
             let set = MovingSet::new(initial, velocity);
-            let least = least_distance(segments, Body::POINT, &set);
+            let least = least_distance(pieces, Body::POINT, &set);
             (least, least, least)
         }
         Motion::Ellipses { initial, velocity } => {
-            let least = MovingEllipse::new(initial, velocity).least_distance(segments);
+            let least = MovingEllipse::new(initial, velocity).least_distance(pieces);
             (least, least, least)
         }
         Motion::Spells { initial, spells } => {
             let slabs = MovingSlabs::new(initial, spells);
-            let least = slabs.least_distance(segments, Body::POINT);
+            let least = slabs.least_distance(pieces, Body::POINT);
             (least, least, least)
         }
     };
-    let passing_side = segments
-        .iter()
-        .find(|s| closest.time <= s.end_time())
-        .map_or(Side::Starboard, |s| {
-            let bearing =
-                relative_bearing(&s.pose_at(closest.time), target.position_at(closest.time));
-            if bearing < 0.0 && bearing > -std::f64::consts::PI {
-                Side::Port
-            } else {
-                Side::Starboard
-            }
-        });
+    let passing_side =
+        pieces
+            .iter()
+            .find(|s| closest.time <= s.end_time())
+            .map_or(Side::Starboard, |s| {
+                let bearing =
+                    relative_bearing(&s.pose_at(closest.time), target.position_at(closest.time));
+                if bearing < 0.0 && bearing > -std::f64::consts::PI {
+                    Side::Port
+                } else {
+                    Side::Starboard
+                }
+            });
     let passage = Passage {
         dcpa: closest.value,
         tcpa: closest.time,

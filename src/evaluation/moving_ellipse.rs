@@ -1,9 +1,9 @@
 //! An ellipsoid as the checker sees it: its support function alone.
 
 use super::least::{Least, Probe};
+use super::piece::Piece;
 use crate::frame::{Vector, direction};
 use crate::geometry::Ellipse;
-use crate::trajectory::Segment;
 
 /// Directions among which the best one is looked for first.
 const DIRECTIONS: usize = 64;
@@ -90,27 +90,27 @@ impl MovingEllipse {
         }
     }
 
-    /// The least signed distance along a chain of segments. Every direction's line separates the set from what is
+    /// The least signed distance along a chain of pieces. Every direction's line separates the set from what is
     /// beyond it, so the value is the largest that was found over directions: never above the true distance, and below
     /// it by rounding at most where the search ended beside the best direction: it errs toward rejecting. Between two
     /// probes a line stays below its tangent in time, being concave. About a hundred directions a probe.
-    pub fn least_distance(&self, segments: &[Segment]) -> Least {
+    pub fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         let mut least = Least::new();
-        for s in segments {
-            for time in [s.start_time, s.end_time()] {
+        for s in pieces {
+            for time in [s.start_time(), s.end_time()] {
                 least.see(self.probe(s, time, 0.0).value, time);
             }
         }
-        for s in segments {
-            least.search(s.start_time, s.end_time(), |time, half| {
+        for s in pieces {
+            least.search(s.start_time(), s.end_time(), |time, half| {
                 self.probe(s, time, half)
             });
         }
         least
     }
 
-    fn probe(&self, segment: &Segment, time: f64, half: f64) -> Probe {
-        let position = segment.pose_at(time).position;
+    fn probe(&self, piece: &impl Piece, time: f64, half: f64) -> Probe {
+        let position = piece.pose_at(time).position;
         // a comparison below loses a NaN, so it is caught here
         if !(position.x.is_finite() && position.y.is_finite() && time.is_finite()) {
             return Probe {
@@ -140,8 +140,8 @@ impl MovingEllipse {
             }
         }
         let normal = direction(angle);
-        let rate = normal.dot(&segment.velocity_at(time)) - self.line(normal, time).rate;
-        let bend = 0.5 * half * half * segment.turn_rate.abs() * segment.speed;
+        let rate = normal.dot(&piece.velocity_at(time)) - self.line(normal, time).rate;
+        let bend = 0.5 * half * half * piece.bounds().acceleration;
         Probe {
             value: best,
             lower: best - rate.abs() * half - bend,

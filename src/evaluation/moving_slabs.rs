@@ -2,10 +2,10 @@
 
 use super::clearance::{Body, least_distance};
 use super::least::Least;
+use super::piece::Piece;
 use super::space_time_set::MovingSet;
 use crate::geometry::ConvexPolygon;
 use crate::target::VelocitySpell;
-use crate::trajectory::Segment;
 
 /// One slab. The time of its set counts from its start.
 #[derive(Debug, Clone)]
@@ -45,20 +45,14 @@ impl MovingSlabs {
     }
 
     /// [`least_distance`] over the slabs, each within its time.
-    pub fn least_distance(&self, segments: &[Segment], own: Body) -> Least {
+    pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
         let mut least = Least::new();
         for slab in &self.slabs {
-            let parts: Vec<Segment> = segments
+            let parts: Vec<P> = pieces
                 .iter()
                 // negated on purpose: a NaN is looked at
-                .filter(|s| !(s.end_time() < slab.start || s.start_time > slab.end))
-                .map(|s| {
-                    let part = s.between(slab.start, slab.end);
-                    Segment {
-                        start_time: part.start_time - slab.start,
-                        ..part
-                    }
-                })
+                .filter(|s| !(s.end_time() < slab.start || s.start_time() > slab.end))
+                .map(|s| s.part(slab.start, slab.end, slab.start))
                 .collect();
             let here = least_distance(&parts, own, &slab.set);
             least.see(here.value, here.time + slab.start);

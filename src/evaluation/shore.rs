@@ -2,17 +2,17 @@
 
 use super::clearance::{Body, least_distance};
 use super::least::Least;
+use super::piece::Piece;
 use super::space_time_set::{MovingSet, nearest_on};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Polygon};
-use crate::trajectory::Segment;
 
-/// The least distance between own hull and land along a chain of segments: negative on land. A hull that starts
+/// The least distance between own hull and land along a chain of pieces: negative on land. A hull that starts
 /// on water and touches no edge stays on water, so edges are all that is looked at, each as a set of two points
 /// that does not move; a position inside a polygon is on land whatever its edges say. Certified like
-/// [`least_distance`]; infinite without land. O(edges) per segment, and probes for those that are near.
-pub(super) fn least_land_distance(
-    segments: &[Segment],
+/// [`least_distance`]; infinite without land. O(edges) per piece, and probes for those that are near.
+pub(super) fn least_land_distance<P: Piece>(
+    pieces: &[P],
     own: Body,
     reach: f64,
     land: &[Polygon],
@@ -25,16 +25,17 @@ pub(super) fn least_land_distance(
             .map(|e| (nearest_on(*e, p) - p).norm())
             .fold(f64::INFINITY, f64::min)
     };
-    for s in segments {
-        for time in [s.start_time, s.end_time()] {
+    for s in pieces {
+        for time in [s.start_time(), s.end_time()] {
             let position = s.pose_at(time).position;
             if land.iter().any(|polygon| polygon.contains(position)) {
                 least.see(-nearest(position), time);
             }
         }
         // no point of the hull leaves this disc meanwhile
-        let middle = s.pose_after(0.5 * s.duration).position;
-        let radius = 0.5 * s.length() + reach;
+        let half = 0.5 * (s.end_time() - s.start_time());
+        let middle = s.pose_at(s.start_time() + half).position;
+        let radius = s.bounds().speed * half + reach;
         let mut near: Vec<(f64, usize)> = edges
             .iter()
             .enumerate()
@@ -64,6 +65,7 @@ pub(super) fn least_land_distance(
 mod tests {
     use super::*;
     use crate::frame::Pose;
+    use crate::trajectory::Segment;
     use crate::vessel::Hull;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;

@@ -4,10 +4,10 @@ use super::clearance::Body;
 use super::least::Least;
 use super::moving_ellipse::MovingEllipse;
 use super::moving_slabs::MovingSlabs;
+use super::piece::Piece;
 use crate::frame::{Vector, to_starboard};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::VelocitySpell;
-use crate::trajectory::Segment;
 
 /// A set that a plan was made against.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,14 +60,14 @@ impl SpaceTimeSet {
 }
 
 impl SetShape {
-    /// The least signed distance of own ship's position along a chain of segments.
-    pub(super) fn least_distance(&self, segments: &[Segment]) -> Least {
+    /// The least signed distance of own ship's position along a chain of pieces.
+    pub(super) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         match self {
             Self::Polygons { initial, spells } => {
-                MovingSlabs::new(initial, spells).least_distance(segments, Body::POINT)
+                MovingSlabs::new(initial, spells).least_distance(pieces, Body::POINT)
             }
             Self::Ellipses { initial, velocity } => {
-                MovingEllipse::new(initial, velocity).least_distance(segments)
+                MovingEllipse::new(initial, velocity).least_distance(pieces)
             }
         }
     }

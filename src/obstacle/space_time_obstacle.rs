@@ -4,7 +4,11 @@ use super::cpa::ClosestApproach;
 use super::risk::{PeakRisk, risk_of};
 use crate::frame::Vector;
 use crate::geometry::SignedDistance;
+use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
+
+/// Instants at which the risk of a piece of a motion under forces is looked at.
+const LOOKS: usize = 32;
 
 /// The support function of a section and how it changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,12 +56,32 @@ pub trait SpaceTimeObstacle {
     /// The largest risk along a segment.
     fn peak_risk(&self, segment: &Segment) -> PeakRisk;
 
-    /// The largest risk along a trajectory: that of its segments, the first of those that tie.
+    /// The largest risk along a trajectory: that of its segments, the first of those that tie. Along a motion under
+    /// forces the largest of [`LOOKS`] instants a piece at which it is deeper than [`tolerance::DEPTH_M`] in the set.
     fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
         let mut peak = PeakRisk {
             risk: 0.0,
             time: trajectory.start_time(),
         };
+        for piece in trajectory
+            .steered()
+            .iter()
+            .flat_map(|motion| motion.pieces())
+        {
+            for look in 0..=LOOKS {
+                let part = look as f64 / LOOKS as f64;
+                let (position, time) = (
+                    piece.position(part),
+                    piece.start_time + part * piece.duration,
+                );
+                let risk = self.risk(position, time);
+                if risk > peak.risk
+                    && !(self.signed_distance(position, time).distance >= -tolerance::DEPTH_M)
+                {
+                    peak = PeakRisk { risk, time };
+                }
+            }
+        }
         for segment in trajectory.segments() {
             let here = self.peak_risk(segment);
             if here.risk > peak.risk {

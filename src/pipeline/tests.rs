@@ -3,10 +3,10 @@
 use super::*;
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector};
-use crate::planner::SearchKind;
+use crate::planner::{ControlSettings, SearchKind};
 use crate::target::{DomainKind, ShipTrack};
 use crate::trajectory::{DesiredTrajectory, Segment};
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::{Hull, OwnShip, VesselKind};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn polytope(o: &Obstacle) -> &PolytopeObstacle {
@@ -33,6 +33,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
         alternatives: Vec::new(),
         planner: PlannerKind::SpaceTime,
         objective: Objective::SpaceTimeError,
+        control: ControlSettings::of(VesselKind::CyberShip2),
         targets: vec![Target {
             name: "other".to_owned(),
             motion: Motion::Ship(target),

@@ -21,12 +21,12 @@ pub enum NodeKind {
     },
     /// Straight on from a vertex for a while.
     Held,
-    /// On a path: a corner of an obstacle in distance and time.
+    /// On a path: on the edge of an obstacle in distance and time, mostly at a corner.
     Corner {
         /// Index of the obstacle.
         obstacle: usize,
     },
-    /// On a path: the end of a leg.
+    /// On a path: the end of a leg, or a place on schedule.
     Waypoint,
     /// The end of the desired path.
     End,

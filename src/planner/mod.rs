@@ -1,10 +1,13 @@
 //! A problem, a plan, an outcome: what every planner takes and gives.
 
+mod control_settings;
 pub mod cost;
 mod explored;
+pub mod optimal_control;
 pub mod path_time;
 pub mod space_time;
 
+pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
 
 use std::time::Duration;
@@ -30,6 +33,8 @@ pub enum PlannerKind {
     SpaceTime,
     /// Keeps to given paths and chooses her speed: [`path_time`].
     PathTime,
+    /// Chooses her forces: [`optimal_control`].
+    OptimalControl,
 }
 
 impl PlannerKind {
@@ -38,6 +43,7 @@ impl PlannerKind {
         match self {
             Self::SpaceTime => "space-time",
             Self::PathTime => "path-time",
+            Self::OptimalControl => "optimal-control",
         }
     }
 }
@@ -224,13 +230,51 @@ pub enum NoPlan {
         /// Seconds.
         time: f64,
     },
+    /// No start of the optimal-control planner led out of every set.
+    #[error(
+        "of {starts} starts none leads to a plan clear of every set; the least deep of those solved is {depth:.3} m inside the set of '{target}' at {time:.1} s"
+    )]
+    Locked {
+        /// Starts that were tried.
+        starts: usize,
+        /// Name of the obstacle.
+        target: String,
+        /// Seconds.
+        time: f64,
+        /// Metres.
+        depth: f64,
+    },
+    /// No start of the optimal-control planner was solved at all.
+    #[error("of {starts} starts none was solved: {why}")]
+    Unsolved {
+        /// Starts that were tried.
+        starts: usize,
+        /// How the first one ended.
+        why: String,
+    },
+    /// The motion between the nodes is not the ship's.
+    #[error(
+        "with {intervals} intervals, the most that were tried, the ship would be off the plan by {off:.1e} of her units at the end of an interval, {allowed:.0e} allowed"
+    )]
+    Coarse {
+        /// Of the horizon.
+        intervals: usize,
+        /// In the ship's own units of length, speed and angle.
+        off: f64,
+        /// In the same units.
+        allowed: f64,
+    },
 }
 
 impl NoPlan {
     /// True when smaller sets might leave a way.
     pub fn is_for_the_sets(&self) -> bool {
         match self {
-            Self::NoCandidate { .. } | Self::Barred { .. } | Self::OutOfTime { .. } => true,
+            Self::NoCandidate { .. }
+            | Self::Barred { .. }
+            | Self::OutOfTime { .. }
+            | Self::Locked { .. }
+            | Self::Unsolved { .. } => true,
             Self::StartInside { .. }
             | Self::StartAshore { .. }
             | Self::StartCovered { .. }
@@ -238,6 +282,7 @@ impl NoPlan {
             | Self::PathTooLong { .. }
             | Self::OffPath { .. }
             | Self::NoNetwork(_)
+            | Self::Coarse { .. }
             | Self::NoRoute => false,
         }
     }

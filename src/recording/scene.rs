@@ -57,7 +57,7 @@ impl Motion<'_> {
 
     pub fn speed_at(&self, time: f64) -> f64 {
         match self {
-            Self::Planned(trajectory) => trajectory.segment_at(time).speed,
+            Self::Planned(trajectory) => trajectory.speed_at(time),
             Self::Undisturbed(desired) => desired_leg(desired, time).speed,
         }
     }

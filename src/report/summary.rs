@@ -5,7 +5,7 @@ use crate::frame::{Side, deg_from_radians};
 use crate::pipeline::Run;
 use crate::planner::Outcome;
 use crate::target::{ShipTrack, Target};
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Steered, Trajectory};
 
 /// Degrees. A smaller alteration is no turn: nobody would see it.
 const LEAST_TURN_DEG: f64 = 0.5;
@@ -60,6 +60,9 @@ pub struct Turn {
 impl Turn {
     /// The first alteration of a trajectory: arcs that follow each other to one side are one turn.
     pub fn first_of(trajectory: &Trajectory) -> Option<Self> {
+        if let Some(motion) = trajectory.steered() {
+            return Self::first_under_forces(motion);
+        }
         let mut turn: Option<Self> = None;
         for segment in trajectory.segments() {
             let side = Side::of_turn(segment.turn_rate).filter(|_| segment.duration > 0.0);
@@ -81,6 +84,27 @@ impl Turn {
             }
         }
         turn.filter(|turn| turn.degrees >= LEAST_TURN_DEG)
+    }
+
+    /// Of a motion under forces: from node to node, until the heading goes back.
+    fn first_under_forces(motion: &Steered) -> Option<Self> {
+        let mut turned = 0.0_f64;
+        for pair in motion.nodes().windows(2) {
+            let more = deg_from_radians(pair[1].pose.heading - pair[0].pose.heading);
+            if turned.abs() >= LEAST_TURN_DEG && more * turned < 0.0 {
+                break;
+            }
+            turned = if more * turned < 0.0 {
+                more
+            } else {
+                turned + more
+            };
+        }
+        let side = Side::of_turn(turned)?;
+        (turned.abs() >= LEAST_TURN_DEG).then_some(Self {
+            side,
+            degrees: turned.abs(),
+        })
     }
 }
 
@@ -175,7 +199,7 @@ impl Summary {
             targets: run.scenario.targets.len(),
             turn: trajectory.and_then(Turn::first_of),
             space_time_error: evaluation.map(|e| e.space_time_error),
-            delay: evaluation.map(|e| e.delay),
+            delay: evaluation.map(|e| e.delay).filter(|delay| !delay.is_nan()),
             clearance: evaluation
                 .map(|e| e.min_clearance)
                 .filter(|clearance| clearance.is_finite()),

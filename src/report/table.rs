@@ -3,10 +3,12 @@
 use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets};
 
 use super::summary::{Meeting, Summary, Verdict};
+use super::words;
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::Outcome;
+use crate::planner::optimal_control::ControlReport;
 
 /// Targets of one scenario that a row names; the rest is counted.
 const NAMED: usize = 3;
@@ -90,7 +92,7 @@ fn cells(summary: &Summary) -> Vec<Cell> {
         text(planned.then(|| passings(summary))),
         text(summary.space_time_error.map(square_metres)),
         text(summary.delay.map(signed)),
-        text(summary.clearance.map(|metres| format!("{metres:.1}"))),
+        text(summary.clearance.map(metres)),
         text(summary.max_risk.map(|risk| format!("{risk:.2}"))),
         Cell::new(summary.expanded),
         Cell::new(format!("{:.2}", summary.milliseconds)),
@@ -111,6 +113,11 @@ fn square_metres(value: f64) -> String {
     } else {
         format!("{value:.0}")
     }
+}
+
+/// With one decimal; what rounds to zero has no sign.
+fn metres(value: f64) -> String {
+    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
 }
 
 /// With a sign and one decimal; what rounds to zero is not late and not early.
@@ -178,6 +185,47 @@ fn risk_text(run: &Run, largest: f64) -> String {
         }
     }
     text
+}
+
+/// How a plan of forces was found.
+fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
+    let mut said = Vec::new();
+    if !run.enclosed.is_empty() {
+        let names = run.enclosed.join("', '");
+        said.push((
+            "sets",
+            format!("of '{names}' by the smallest ellipse around each"),
+        ));
+    }
+    if let Some(plan) = run.planned.outcome.plan() {
+        said.push(("stage cost", format!("{:.4}", plan.cost)));
+        said.push((
+            "grid",
+            format!(
+                "{} intervals; at their ends the ship is within {:.1e} of her units",
+                report.intervals, report.defect
+            ),
+        ));
+    }
+    let feasible = report.starts.iter().filter(|start| start.feasible).count();
+    let steps: usize = report.starts.iter().map(|start| start.iterations).sum();
+    said.push((
+        "starts",
+        format!(
+            "{feasible} of {} led to a plan, {} ways to pass the targets, {steps} steps of the solver",
+            report.starts.len(),
+            report.classes.len()
+        ),
+    ));
+    for class in report.classes.iter().take(NAMED) {
+        let sides: Vec<&str> = class
+            .sides
+            .iter()
+            .map(|side| side.map_or("far", words::side))
+            .collect();
+        said.push(("", format!("{:.4}: {}", class.objective, sides.join(", "))));
+    }
+    said
 }
 
 /// The verdict and the costs of one run, aligned.
@@ -249,17 +297,19 @@ pub fn plan_text(run: &Run) -> String {
                 square_metres(evaluation.arc_length_error)
             ),
         );
-        say(
-            "delay",
-            format!(
-                "{} s (arrives after {:.1} s and {:.0} m)",
-                signed(evaluation.delay),
-                evaluation.duration,
-                evaluation.length
-            ),
+        let way = format!(
+            "{:.1} s and {:.0} m",
+            evaluation.duration, evaluation.length
         );
+        match summary.delay {
+            Some(delay) => say(
+                "delay",
+                format!("{} s (arrives after {way})", signed(delay)),
+            ),
+            None => say("horizon", format!("{way}; no arrival is asked for")),
+        }
         if let Some(clearance) = summary.clearance {
-            say("clearance", format!("{clearance:.1} m"));
+            say("clearance", format!("{} m", metres(clearance)));
         }
         if evaluation.min_land_distance.is_finite() {
             let (distance, time) = (
@@ -277,6 +327,13 @@ pub fn plan_text(run: &Run) -> String {
                 format!("{} (at {:.1} s)", violation.what, violation.time),
             );
         }
+    }
+    if let Some(report) = &run.control {
+        forces(run, report)
+            .into_iter()
+            .for_each(|(name, value)| say(name, value));
+        say("time", format!("{:.2} ms", summary.milliseconds));
+        return lines.join("\n");
     }
     let stats = &run.planned.stats;
     say(

@@ -1,7 +1,17 @@
 //! The words of the contract for what the program computes.
 
-use crate::planner::SearchKind;
+use crate::frame::Side;
 use crate::planner::path_time::PathTimeDiagram;
+use crate::planner::{PlannerKind, SearchKind};
+use crate::scenario::Scenario;
+
+/// What the planner minimises.
+pub(super) fn objective(scenario: &Scenario) -> &'static str {
+    match scenario.planner {
+        PlannerKind::OptimalControl => "stage-cost",
+        PlannerKind::SpaceTime | PlannerKind::PathTime => scenario.objective.word(),
+    }
+}
 
 pub(super) fn search(kind: SearchKind) -> &'static str {
     match kind {
@@ -24,4 +34,10 @@ pub(super) fn paths(diagram: &PathTimeDiagram) -> String {
     sailed.dedup();
     let names: Vec<String> = sailed.into_iter().map(path).collect();
     names.join(", ")
+}
+pub(super) fn side(side: Side) -> &'static str {
+    match side {
+        Side::Port => "port",
+        Side::Starboard => "starboard",
+    }
 }

@@ -4,15 +4,16 @@ use std::path::Path;
 
 use toml::de::DeTable;
 
+use super::control::control_settings;
 use super::file::{Entry, Source, TEXT, Word};
 use super::plane::{POSITION, Plane};
 use super::section::Section;
 use super::targets::targets;
 use super::{Compliance, Land, Scenario, land, limits};
 use crate::frame::{Pose, Vector, heading_from_course_deg};
-use crate::planner::{Objective, PlannerKind, SearchKind};
+use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
 use crate::trajectory::DesiredTrajectory;
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::{Hull, OwnShip, VesselKind};
 
 /// Own ship's speeds where the file names none, as fractions of her own speed.
 const DEFAULT_SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
@@ -71,6 +72,9 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
         targets: targets?,
         planner: planner.kind.unwrap_or(PlannerKind::SpaceTime),
         objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
+        control: planner
+            .control
+            .unwrap_or(ControlSettings::of(VesselKind::CyberShip2)),
         search: planner.search.unwrap_or(SearchKind::AStar),
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
         max_risk: planner.max_risk.unwrap_or(0.0),
@@ -287,6 +291,7 @@ fn leg_speeds(
 struct PlannerFields {
     kind: Option<PlannerKind>,
     objective: Option<Objective>,
+    control: Option<ControlSettings>,
     search: Option<SearchKind>,
     compliance: Option<Compliance>,
     time_weight: Option<f64>,
@@ -295,14 +300,14 @@ struct PlannerFields {
 }
 
 fn planner(mut section: Section) -> PlannerFields {
-    section.not_built("optimal_control");
     let fields = PlannerFields {
+        control: control_settings(&mut section),
         kind: section.choice(
             "kind",
             &[
                 ("space-time", Word::Means(PlannerKind::SpaceTime)),
                 ("path-time", Word::Means(PlannerKind::PathTime)),
-                ("optimal-control", Word::NotBuilt),
+                ("optimal-control", Word::Means(PlannerKind::OptimalControl)),
             ],
         ),
         objective: objective(&mut section),

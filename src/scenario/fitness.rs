@@ -10,6 +10,7 @@ pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
     match scenario.planner {
         PlannerKind::SpaceTime => for_space_time(scenario),
         PlannerKind::PathTime => for_path_time(scenario),
+        PlannerKind::OptimalControl => for_optimal_control(scenario),
     }
 }
 
@@ -39,6 +40,35 @@ fn for_space_time(scenario: &Scenario) -> Vec<Fault> {
             "mission.alternatives",
             "other paths for the space-time planner".to_owned(),
             "nothing: it chooses its way; or the path-time planner",
+        ));
+    }
+    faults
+}
+
+fn for_optimal_control(scenario: &Scenario) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    if scenario.objective != Objective::SpaceTimeError {
+        faults.push(fault(
+            "planner.objective",
+            format!(
+                "\"{}\" for the optimal-control planner",
+                scenario.objective.word()
+            ),
+            "nothing: it minimises its own stage cost",
+        ));
+    }
+    if !scenario.alternatives.is_empty() {
+        faults.push(fault(
+            "mission.alternatives",
+            "other paths for the optimal-control planner".to_owned(),
+            "nothing: it chooses its way; or the path-time planner",
+        ));
+    }
+    if scenario.land.is_some() {
+        faults.push(fault(
+            "map",
+            "land for the optimal-control planner".to_owned(),
+            "nothing: it keeps off no land, this is not built yet",
         ));
     }
     faults

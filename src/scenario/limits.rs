@@ -54,6 +54,15 @@ pub(super) const VELOCITY_SETS: usize = 50;
 /// m²/s², the weight of time.
 pub(super) const TIME_WEIGHT: Range = Range::between(0.0, 1e6);
 
+/// Newtons, newton metres: the least is far below what moves a model, the greatest far above what moves a ship.
+pub(super) const FORCE: Range = Range::between(1e-6, 1e12);
+/// Of a state in the stage cost; 0 leaves it free.
+pub(super) const STATE_WEIGHT: Range = Range::between(0.0, 1e9);
+/// Of a force in the stage cost: with 0 the force would not be determined.
+pub(super) const FORCE_WEIGHT: Range = Range::between(1e-24, 1e9);
+/// Intervals of an optimal control problem.
+pub(super) const INTERVALS: Range = Range::between(1.0, 2000.0);
+
 /// Limits for a number in knots: round ones, just inside those in m/s.
 pub(super) fn in_knots(range: Range) -> Range {
     let knot = mps_from_knots(1.0);

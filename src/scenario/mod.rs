@@ -1,6 +1,7 @@
 //! A scenario: read from a file, checked in full, then without invalid state.
 
 mod check;
+mod control;
 mod explicit_sets;
 mod fault;
 mod file;
@@ -18,7 +19,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::frame::{Georeference, Vector};
-use crate::planner::{Objective, PlannerKind, SearchKind};
+use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
 use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
@@ -51,6 +52,8 @@ pub struct Scenario {
     pub planner: PlannerKind,
     /// What it minimises.
     pub objective: Objective,
+    /// What the optimal-control planner needs besides.
+    pub control: ControlSettings,
     /// Which search.
     pub search: SearchKind,
     /// Which sets.

@@ -147,17 +147,6 @@ impl<'a, 'i> Section<'a, 'i> {
         Some((entry, speeds))
     }
 
-    /// Refuses a key whose feature does not exist. True when it was there.
-    pub(super) fn not_built(&mut self, key: &str) -> bool {
-        match self.take(key) {
-            Some(entry) => {
-                entry.refuse::<()>("nothing: this is not built yet, leave the key out");
-                true
-            }
-            None => false,
-        }
-    }
-
     /// Refuses a key that another one rules out.
     pub(super) fn forbid(&mut self, key: &str, because: &str) {
         if let Some(entry) = self.take(key) {

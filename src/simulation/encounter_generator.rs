@@ -8,11 +8,11 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
 use crate::geometry::outer_disc;
-use crate::planner::{Objective, PlannerKind, SearchKind};
+use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::trajectory::{DesiredTrajectory, TrajectoryError};
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::{Hull, OwnShip, VesselKind};
 
 /// m/s, own ship's desired speed.
 const OWN_SPEED: f64 = 5.0;
@@ -257,6 +257,7 @@ fn scene(
             targets: targets.collect(),
             planner: PlannerKind::SpaceTime,
             objective: Objective::SpaceTimeError,
+            control: ControlSettings::of(VesselKind::CyberShip2),
             search: SearchKind::AStar,
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,

@@ -4,10 +4,12 @@
 mod desired;
 mod network;
 mod segment;
+mod steered;
 
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
 pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub use segment::{Mover, Segment};
+pub use steered::{Bounds, Cubic, Node, Steered, hermite};
 
 use crate::frame::{Pose, wrap};
 use crate::tolerance;
@@ -43,10 +45,21 @@ pub enum TrajectoryError {
     },
 }
 
-/// A continuous chain of [`Segment`]s: position continuous, time increasing, and heading continuous but at corners.
+/// A continuous chain of [`Segment`]s: position continuous, time increasing, and heading continuous but at corners. Or a
+/// motion under forces, which has no segments: see [`Trajectory::steered`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     segments: Vec<Segment>,
+    steered: Option<Steered>,
+}
+
+impl From<Steered> for Trajectory {
+    fn from(motion: Steered) -> Self {
+        Self {
+            segments: Vec::new(),
+            steered: Some(motion),
+        }
+    }
 }
 
 impl Trajectory {
@@ -82,53 +95,95 @@ impl Trajectory {
                 }
             }
         }
-        Ok(Self { segments })
+        Ok(Self {
+            segments,
+            steered: None,
+        })
     }
 
-    /// The segments, in order of time.
+    /// The segments, in order of time; none for a motion under forces.
     pub fn segments(&self) -> &[Segment] {
         &self.segments
     }
 
-    /// Seconds at which the first segment starts.
-    pub fn start_time(&self) -> f64 {
-        self.segments[0].start_time
+    /// The nodes with their forces, where the motion is given by these.
+    pub fn steered(&self) -> Option<&Steered> {
+        self.steered.as_ref()
     }
 
-    /// Seconds at which the last segment ends: the arrival of a plan.
+    /// Seconds at which the motion starts.
+    pub fn start_time(&self) -> f64 {
+        match &self.steered {
+            Some(motion) => motion.nodes()[0].time,
+            None => self.segments[0].start_time,
+        }
+    }
+
+    /// Seconds at which the motion ends: the arrival of a plan of segments.
     pub fn end_time(&self) -> f64 {
-        self.segments[self.segments.len() - 1].end_time()
+        match &self.steered {
+            Some(motion) => motion.nodes()[motion.nodes().len() - 1].time,
+            None => self.segments[self.segments.len() - 1].end_time(),
+        }
     }
 
     /// The pose at the end.
     pub fn end(&self) -> Pose {
-        self.segments[self.segments.len() - 1].end()
+        match &self.steered {
+            Some(motion) => motion.nodes()[motion.nodes().len() - 1].pose,
+            None => self.segments[self.segments.len() - 1].end(),
+        }
     }
 
     /// Horizontal length in metres.
     pub fn length(&self) -> f64 {
-        self.segments.iter().map(Segment::length).sum()
+        match &self.steered {
+            Some(motion) => motion.length(),
+            None => self.segments.iter().map(Segment::length).sum(),
+        }
     }
 
-    /// The segment in force at `time`; before the start the first, after the end the last.
-    pub fn segment_at(&self, time: f64) -> &Segment {
+    fn segment_at(&self, time: f64) -> &Segment {
         let after = self.segments.partition_point(|s| s.end_time() <= time);
         &self.segments[after.min(self.segments.len() - 1)]
     }
 
     /// The pose at `time`, clamped to the trajectory's own time span.
     pub fn pose_at(&self, time: f64) -> Pose {
-        self.segment_at(time)
-            .pose_at(time.clamp(self.start_time(), self.end_time()))
+        let clamped = time.clamp(self.start_time(), self.end_time());
+        match &self.steered {
+            Some(motion) => motion.piece_at(clamped).pose_at(clamped),
+            None => self.segment_at(time).pose_at(clamped),
+        }
     }
 
-    /// Every multiple of `step` seconds from the start, each segment's start and the end; increasing,
+    /// Over ground at `time`, m/s, clamped as the pose is; before the start the first speed, after the end the last.
+    pub fn speed_at(&self, time: f64) -> f64 {
+        match &self.steered {
+            Some(motion) => {
+                let clamped = time.clamp(self.start_time(), self.end_time());
+                let piece = motion.piece_at(clamped);
+                piece.velocity(piece.part(clamped)).norm()
+            }
+            None => self.segment_at(time).speed,
+        }
+    }
+
+    /// Seconds at which the motion changes: the starts of segments, or the nodes.
+    pub fn joints(&self) -> Vec<f64> {
+        match &self.steered {
+            Some(motion) => motion.nodes().iter().map(|node| node.time).collect(),
+            None => self.segments.iter().map(|s| s.start_time).collect(),
+        }
+    }
+
+    /// Every multiple of `step` seconds from the start, each segment's start or node and the end; increasing,
     /// without repetition.
     pub fn sample_times(&self, step: f64) -> Vec<f64> {
         let (start, end) = (self.start_time(), self.end_time());
         let count = ((end - start) / step).floor().clamp(0.0, 1e6) as usize;
         let mut times: Vec<f64> = (0..=count).map(|i| start + step * i as f64).collect();
-        times.extend(self.segments.iter().map(|s| s.start_time));
+        times.extend(self.joints());
         times.push(end);
         times.sort_by(f64::total_cmp);
         times.dedup_by(|a, b| *a - *b < tolerance::TIME_S);

@@ -1,6 +1,15 @@
-//! Own ship: her hull, her limits, her shortest paths.
+//! Own ship: her hull, her limits, her shortest paths, and how forces move her.
 
+mod cybership2;
 pub mod dubins;
+mod froude;
+mod kind;
+mod manoeuvring;
+
+pub use cybership2::CyberShip2;
+pub use froude::FroudeScaled;
+pub use kind::{FULL_SCALE, VesselKind};
+pub use manoeuvring::{ForceVector, Manoeuvring, Scales, StateVector};
 
 use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;

@@ -11,7 +11,7 @@
 
 use searoom::frame::{Pose, Vector, heading_of};
 use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
-use searoom::trajectory::Segment;
+use searoom::trajectory::{DesiredTrajectory, Segment};
 
 /// A polyline by distance.
 pub struct Path {
@@ -145,4 +145,52 @@ pub fn earliest(
         }
     }
     None
+}
+
+/// The least space-time error on the grid, m²; `None` when the end is not reached before the horizon. What it finds is a
+/// plan, so nothing is the least that costs more. The error is integrated by Simpson's rule over each step.
+pub fn least_error(
+    path: &Path,
+    obstacles: &[Obstacle],
+    desired: &DesiredTrajectory,
+    time_weight: f64,
+    speed: f64,
+    horizon: f64,
+    cells: usize,
+) -> Option<f64> {
+    let piece = path.length() / cells as f64;
+    let step = piece / speed;
+    let steps = (horizon / step).floor() as usize;
+    let depths: Vec<f64> = obstacles.iter().map(depth).collect();
+    let error = |s: f64, t: f64| desired.nearest(path.at(s).1, t, time_weight).error;
+    let mut cost = vec![f64::INFINITY; cells + 1];
+    cost[0] = 0.0;
+    let mut best = f64::INFINITY;
+    for k in 0..steps {
+        let mut next = vec![f64::INFINITY; cells + 1];
+        for (i, before) in cost.iter().enumerate().filter(|(_, c)| **c < best) {
+            for j in [i, i + 1] {
+                if j > cells || *before >= next[j] {
+                    continue;
+                }
+                let (from, to) = (i as f64 * piece, j as f64 * piece);
+                let start = k as f64 * step;
+                let clear = |s: &Segment| {
+                    let mut each = obstacles.iter().zip(&depths);
+                    each.all(|(o, depth)| o.first_contact(s, *depth).is_none())
+                };
+                let (middle, end) = (start + 0.5 * step, start + step);
+                let mean =
+                    (error(from, start) + 4.0 * error(0.5 * (from + to), middle) + error(to, end))
+                        / 6.0;
+                let total = before + mean * step;
+                if total < next[j] && path.motion(from, to, start, step).iter().all(clear) {
+                    next[j] = total;
+                }
+            }
+        }
+        best = best.min(next[cells]);
+        cost = next;
+    }
+    best.is_finite().then_some(best / desired.duration())
 }

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::measure::Measure;
-use super::nodes::{Known, Node, Place};
+use super::nodes::{Known, Mark, Node, Place};
 use super::scene::Scene;
 use crate::obstacle::PathTime;
 use crate::planner::SearchKind;
@@ -22,6 +22,8 @@ pub(crate) struct State {
     pub from: usize,
     /// The leg that the line is on; `None` for a wait at a point.
     pub leg: Option<usize>,
+    /// Where the line bends: at full speed before and at rest after, or the other way round.
+    pub via: Option<PathTime>,
     /// The obstacle that the line meets, once that is known.
     pub met: Cell<Option<usize>>,
     /// True once the line was tested.
@@ -53,7 +55,10 @@ impl<'a> Graph<'a> {
         let start = Node {
             place: Place::At(scene.network.start()),
             time: 0.0,
-            corner_of: None,
+            on_edge_of: None,
+            // the desired trajectory begins there, then
+            due: true,
+            mark: Mark::Start,
         };
         let mut nodes = vec![start];
         let mut number = |list: Vec<Node>| -> Vec<usize> {
@@ -81,6 +86,7 @@ impl<'a> Graph<'a> {
             node: 0,
             from: 0,
             leg: None,
+            via: None,
             met: Cell::new(None),
             tested: Cell::new(false),
         }
@@ -115,8 +121,15 @@ impl<'a> Graph<'a> {
                 distance,
                 time: node.time,
             };
-            if self.sailable(here, there) {
-                self.offer(from, to, Some(leg), here, there, out);
+            if self.sailable(here, there)
+                && self
+                    .measure
+                    .joins(scene, [&self.nodes[from], &node], here, there)
+            {
+                self.offer(from, to, Some(leg), &[here, there], out);
+            }
+            if let Some(via) = self.measure.bend(scene, leg, &node, here, there) {
+                self.offer(from, to, Some(leg), &[here, via, there], out);
             }
         }
         let arrival = here.time + (length - here.distance) / scene.max_speed;
@@ -130,14 +143,16 @@ impl<'a> Graph<'a> {
         self.nodes.push(Node {
             place: Place::At(end),
             time: arrival,
-            corner_of: None,
+            on_edge_of: None,
+            due: false,
+            mark: Mark::Arrival,
         });
         self.settled.push(false);
         let there = PathTime {
             distance: length,
             time: arrival,
         };
-        self.offer(from, to, Some(leg), here, there, out);
+        self.offer(from, to, Some(leg), &[here, there], out);
     }
 
     fn sailable(&self, from: PathTime, to: PathTime) -> bool {
@@ -145,24 +160,28 @@ impl<'a> Graph<'a> {
         way >= 0.0 && time > 0.0 && way <= self.scene.max_speed * time * (1.0 + FASTER)
     }
 
+    /// Lines from node to node: their ends, and where they bend.
     fn offer(
         &self,
         from: usize,
         to: usize,
         leg: Option<usize>,
-        here: PathTime,
-        there: PathTime,
+        line: &[PathTime],
         out: &mut Vec<(State, f64)>,
     ) {
         let place = leg.map_or(self.nodes[from].place, |leg| Place::On {
             leg,
             distance: 0.0,
         });
-        let step = self.measure.of(self.scene, place, here, there);
+        let step = line
+            .windows(2)
+            .map(|p| self.measure.of(self.scene, place, p[0], p[1]))
+            .sum();
         let state = State {
             node: to,
             from,
             leg,
+            via: (line.len() > 2).then(|| line[1]),
             met: Cell::new(None),
             tested: Cell::new(false),
         };
@@ -193,7 +212,12 @@ impl<'a> Graph<'a> {
                     distance,
                     time: to.time,
                 };
-                self.scene.barrier(leg, here, there)
+                let via = state.via.unwrap_or(there);
+                let first = self.scene.barrier(leg, here, via);
+                first.or_else(|| match state.via {
+                    Some(via) => self.scene.barrier(leg, via, there),
+                    None => None,
+                })
             }
             (None, Place::At(point)) => self.scene.barrier_at(point, from.time, to.time),
             (None, Place::On { .. }) => None,
@@ -226,7 +250,7 @@ impl Space for Graph<'_> {
                                 distance: 0.0,
                                 time: self.nodes[to].time,
                             };
-                            self.offer(from, to, None, here, there, out);
+                            self.offer(from, to, None, &[here, there], out);
                         }
                     }
                 }
@@ -260,8 +284,8 @@ impl Space for Graph<'_> {
             return false;
         }
         let node = self.nodes[state.node];
-        let made = state.leg.is_some() && node.corner_of.is_none();
-        if let (true, true, Place::At(point)) = (made, self.measure.waits_are_free(), node.place)
+        let made = node.mark == Mark::Arrival && self.measure.waits_are_free();
+        if let (true, Place::At(point)) = (made, node.place)
             && self.waited_for(point, node.time)
         {
             return false;

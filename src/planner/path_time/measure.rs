@@ -1,11 +1,12 @@
 //! What is minimised over the graph.
 
-use super::nodes::Place;
+use super::nodes::{Mark, Node, Place};
 use super::scene::Scene;
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::PathTime;
 use crate::planner::cost::space_time_error;
 use crate::planner::{Objective, Problem};
+use crate::tolerance;
 use crate::trajectory::Segment;
 
 /// Metres per second. Of ways of one length the earliest is the best: a thousand seconds weigh a millimetre.
@@ -64,5 +65,63 @@ impl<'a> Measure<'a> {
             Objective::Time | Objective::Length | Objective::LengthRisk { .. } => true,
             Objective::SpaceTimeError => false,
         }
+    }
+
+    /// True when a line between two nodes of a leg may be part of a best profile: of least time or length any may; of least
+    /// space-time error those at an extreme speed, on schedule, along an edge, and those that end at a corner.
+    pub(crate) fn joins(
+        &self,
+        scene: &Scene,
+        ends: [&Node; 2],
+        from: PathTime,
+        to: PathTime,
+    ) -> bool {
+        if self.waits_are_free() {
+            return true;
+        }
+        let [before, after] = ends;
+        let (way, time) = (to.distance - from.distance, to.time - from.time);
+        way <= tolerance::LENGTH_M
+            || scene.max_speed * time - way <= tolerance::LENGTH_M
+            || (before.due && after.due)
+            || after.mark == Mark::Corner
+            || (before.on_edge_of.is_some() && before.on_edge_of == after.on_edge_of)
+    }
+
+    /// Where the way to a corner that keeps nearest to the schedule bends: at full speed first while behind it, at rest first while ahead.
+    /// `None` where that would cross the schedule, or nothing is won.
+    pub(crate) fn bend(
+        &self,
+        scene: &Scene,
+        leg: usize,
+        to: &Node,
+        from: PathTime,
+        at: PathTime,
+    ) -> Option<PathTime> {
+        if self.waits_are_free() || to.mark != Mark::Corner {
+            return None;
+        }
+        let due = scene.dues[leg].as_ref()?;
+        let sailing = (at.distance - from.distance) / scene.max_speed;
+        let idle = at.time - from.time - sailing;
+        // negated on purpose: a NaN is no time
+        if !(sailing > tolerance::TIME_S && idle > tolerance::TIME_S) {
+            return None;
+        }
+        let behind = due.lag(from) >= 0.0 && due.lag(at) >= 0.0;
+        let via = if behind {
+            PathTime {
+                distance: at.distance,
+                time: from.time + sailing,
+            }
+        } else {
+            PathTime {
+                distance: from.distance,
+                time: from.time + idle,
+            }
+        };
+        let lag = due.lag(via);
+        let ahead = due.lag(from) <= 0.0 && due.lag(at) <= 0.0;
+        ((behind && lag >= 0.0) || (ahead && lag <= 0.0)).then_some(via)
     }
 }

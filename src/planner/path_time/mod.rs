@@ -8,10 +8,12 @@
 //! The least time is exact for these polygons; docs/path-time-planner.md has the proof.
 
 mod diagram;
+mod due;
 mod graph;
 mod measure;
 mod nodes;
 mod profile;
+mod rays;
 mod scene;
 mod weighing;
 
@@ -23,8 +25,8 @@ use std::time::Instant;
 use petgraph::graph::NodeIndex;
 
 use super::{
-    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NoPlan, NodeKind, Outcome, Plan,
-    Planned, Problem, SearchStats,
+    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NoPlan, NodeKind, Objective, Outcome,
+    Plan, Planned, Problem, SearchStats,
 };
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
@@ -33,7 +35,7 @@ use crate::tolerance;
 use crate::trajectory::{PathNetwork, Segment};
 use graph::{Graph, State};
 use measure::Measure;
-use nodes::{Known, Place};
+use nodes::{Known, Mark, Place};
 use profile::Profile;
 use scene::Scene;
 
@@ -88,8 +90,12 @@ pub fn plan(problem: &Problem) -> Planned {
         };
     }
     let started = Instant::now();
-    let known = Known::corners(&scene);
-    let mut graph = Graph::new(&scene, known, Measure::new(problem), problem.search);
+    let measure = Measure::new(problem);
+    let mut known = Known::corners(&scene);
+    if problem.objective == Objective::SpaceTimeError {
+        rays::add_rays(&scene, &mut known);
+    }
+    let mut graph = Graph::new(&scene, known, measure, problem.search);
     let mut search = Search::new(graph.root());
     let mut timed_out = false;
     let goal = loop {
@@ -118,13 +124,16 @@ pub fn plan(problem: &Problem) -> Planned {
             match state.leg {
                 Some(leg) => {
                     if let (Some(a), Some(b)) = (from.on(&scene, leg), ahead(&scene, to, leg)) {
-                        profile.sail(&scene, leg, a, b);
+                        profile.sail(&scene, leg, a, state.via.unwrap_or(b));
+                        if let Some(via) = state.via {
+                            profile.sail_on(via, b);
+                        }
                     }
                 }
                 None => profile.wait(to.time),
             }
         }
-        if Measure::new(problem).waits_are_free() {
+        if measure.waits_are_free() {
             profile.pull_taut(&scene);
         }
         profile
@@ -221,7 +230,7 @@ fn farthest(problem: &Problem, graph: &Graph, search: &Search<State>) -> NoPlan 
             distance: length,
             time: from.time + (length - from.distance) / scene.max_speed,
         };
-        let (obstacle, share) = scene.first_barrier(leg, from, to)?;
+        let (obstacle, share) = scene.nearest_barrier(leg, from, to, true)?;
         let met = PathTime {
             distance: from.distance + share * (to.distance - from.distance),
             time: from.time + share * (to.time - from.time),
@@ -236,6 +245,45 @@ fn farthest(problem: &Problem, graph: &Graph, search: &Search<State>) -> NoPlan 
     barrier.unwrap_or(NoPlan::OutOfTime {
         horizon: problem.horizon,
     })
+}
+
+/// The lines into a state as motions.
+fn lines(scene: &Scene, graph: &Graph, state: &State, heading: f64) -> Vec<Segment> {
+    let (from, to) = (&graph.nodes[state.from], &graph.nodes[state.node]);
+    let still = |time| PathTime {
+        distance: 0.0,
+        time,
+    };
+    let ends = match state.leg {
+        Some(leg) => from.on(scene, leg).zip(ahead(scene, to, leg)),
+        None => Some((still(from.time), still(to.time))),
+    };
+    let Some((start, end)) = ends else {
+        return Vec::new();
+    };
+    let place = |p: PathTime| match (state.leg, from.place) {
+        (Some(leg), _) => scene.tracks[leg].at(p.distance),
+        (None, Place::At(point)) => scene.network.place(point),
+        (None, Place::On { leg, distance }) => scene.tracks[leg].at(distance),
+    };
+    let stops: Vec<PathTime> = [Some(start), state.via, Some(end)]
+        .into_iter()
+        .flatten()
+        .collect();
+    stops
+        .windows(2)
+        .map(|p| {
+            let duration = p[1].time - p[0].time;
+            let way = p[1].distance - p[0].distance;
+            Segment {
+                start: Pose::new(place(p[0]), heading),
+                start_time: p[0].time,
+                duration,
+                speed: if duration > 0.0 { way / duration } else { 0.0 },
+                turn_rate: 0.0,
+            }
+        })
+        .collect()
 }
 
 /// The nodes and the lines that were tested.
@@ -259,11 +307,13 @@ fn explored(graph: &Graph, search: Search<State>) -> ExploredGraph {
             (Place::At(point), None) => (scene.network.place(point), 0.0),
             (Place::On { leg, distance }, None) => (scene.tracks[leg].at(distance), 0.0),
         };
-        let kind = match (node.fate, here.corner_of) {
-            (Fate::Goal, _) => NodeKind::End,
-            (_, Some(obstacle)) => NodeKind::Corner { obstacle },
-            (_, None) if index == 0 => NodeKind::Start,
-            (_, None) => NodeKind::Waypoint,
+        let kind = match (here.mark, here.on_edge_of) {
+            _ if node.fate == Fate::Goal => NodeKind::End,
+            (Mark::Start, _) => NodeKind::Start,
+            (Mark::Corner | Mark::Passed | Mark::Due, Some(obstacle)) => {
+                NodeKind::Corner { obstacle }
+            }
+            (_, _) => NodeKind::Waypoint,
         };
         let added = made.add_node(ExploredNode {
             kind,
@@ -276,20 +326,8 @@ fn explored(graph: &Graph, search: Search<State>) -> ExploredGraph {
         let Some((parent, before)) = node.parent.and_then(|p| Some((p, index_of[p]?))) else {
             continue;
         };
-        let start = made[before].pose.position;
-        let duration = here.time - made[before].time;
         let edge = ExploredEdge {
-            segments: vec![Segment {
-                start: Pose::new(start, heading),
-                start_time: made[before].time,
-                duration,
-                speed: if duration > 0.0 {
-                    (position - start).norm() / duration
-                } else {
-                    0.0
-                },
-                turn_rate: 0.0,
-            }],
+            segments: lines(scene, graph, state, heading),
             cost: node.cost - nodes[parent].cost,
             verdict: match state.met.get() {
                 Some(obstacle) => EdgeVerdict::Blocked { obstacle },

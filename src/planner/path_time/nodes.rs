@@ -14,14 +14,32 @@ pub(crate) enum Place {
     At(usize),
 }
 
+/// What a node is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Mark {
+    /// Own ship at t = 0.
+    Start,
+    /// A corner of an obstacle.
+    Corner,
+    /// On the desired trajectory.
+    Due,
+    /// Passed at an extreme speed.
+    Passed,
+    /// The end of a leg, made as the search asks for it.
+    Arrival,
+}
+
 /// A place and a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Node {
     pub place: Place,
     /// Seconds.
     pub time: f64,
-    /// The obstacle whose corner it is.
-    pub corner_of: Option<usize>,
+    /// The obstacle on whose edge it is.
+    pub on_edge_of: Option<usize>,
+    /// True on the desired trajectory.
+    pub due: bool,
+    pub mark: Mark,
 }
 
 impl Node {
@@ -81,7 +99,7 @@ impl Known {
                     let inner = corner.distance > tolerance::LENGTH_M
                         && corner.distance < scene.tracks[leg].length - tolerance::LENGTH_M;
                     if !inner || bends(before, *corner, after, scene.max_speed) {
-                        known.add(scene, leg, *corner, Some(seen.obstacle));
+                        known.add(scene, leg, *corner, Some(seen.obstacle), Mark::Corner);
                     }
                 }
             }
@@ -96,7 +114,8 @@ impl Known {
         scene: &Scene,
         leg: usize,
         at: PathTime,
-        corner_of: Option<usize>,
+        on_edge_of: Option<usize>,
+        mark: Mark,
     ) {
         let ends = scene.network.legs()[leg].ends;
         let length = scene.tracks[leg].length;
@@ -113,10 +132,13 @@ impl Known {
         let node = Node {
             place,
             time: at.time,
-            corner_of,
+            on_edge_of,
+            due: mark == Mark::Due,
+            mark,
         };
+        let latest = scene.horizon + tolerance::TIME_S - node.left(scene) / scene.max_speed;
         // negated on purpose: a NaN is too late
-        if !(node.time + node.left(scene) / scene.max_speed <= scene.horizon + tolerance::TIME_S) {
+        if !(node.time >= 0.0 && node.time <= latest) {
             return;
         }
         match place {
@@ -139,10 +161,17 @@ impl Known {
                 a.time
                     .total_cmp(&b.time)
                     .then(along(a).total_cmp(&along(b)))
+                    .then(a.mark.cmp(&b.mark))
             });
             nodes.dedup_by(|b, a| {
-                b.time - a.time <= tolerance::TIME_S
-                    && (along(b) - along(a)).abs() <= tolerance::LENGTH_M
+                let same = b.time - a.time <= tolerance::TIME_S
+                    && (along(b) - along(a)).abs() <= tolerance::LENGTH_M;
+                if same {
+                    a.due |= b.due;
+                    a.mark = a.mark.min(b.mark);
+                    a.on_edge_of = a.on_edge_of.or(b.on_edge_of);
+                }
+                same
             });
         }
     }

@@ -52,6 +52,12 @@ impl Profile {
         self.push(begin + to.distance, to.time);
     }
 
+    /// Goes on along the same leg.
+    pub(crate) fn sail_on(&mut self, from: PathTime, to: PathTime) {
+        let last = self.knots[self.knots.len() - 1];
+        self.push(last.distance + (to.distance - from.distance), to.time);
+    }
+
     /// Waits where it is.
     pub(crate) fn wait(&mut self, until: f64) {
         let last = self.knots[self.knots.len() - 1];
@@ -139,6 +145,8 @@ impl Profile {
         for pair in self.knots.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let speed = (to.distance - from.distance) / (to.time - from.time);
+            // of a short piece rounding may make more
+            let speed = speed.min(scene.max_speed);
             let pieces = self.pieces(scene, from, to);
             // a wait where legs join is one wait
             let count = if speed > 0.0 { pieces.len() } else { 1 };

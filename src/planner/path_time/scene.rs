@@ -1,6 +1,7 @@
 //! The obstacles as they are seen along every leg, and what is free of them.
 
 use super::TOUCH_M;
+use super::due::Due;
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
@@ -28,6 +29,8 @@ pub(crate) struct Scene<'a> {
     pub seen: Vec<Vec<Seen>>,
     /// Per point the legs that begin or end at its place, with the distance at which they do.
     touching: Vec<Vec<(usize, f64)>>,
+    /// Per leg where own ship is meant to be; `None` on alternatives.
+    pub dues: Vec<Option<Due>>,
     pub max_speed: f64,
     pub horizon: f64,
 }
@@ -96,8 +99,40 @@ impl<'a> Scene<'a> {
             tracks,
             seen,
             touching,
+            dues: network
+                .legs()
+                .iter()
+                .map(|leg| Due::on(problem.desired, leg))
+                .collect(),
             max_speed: problem.own.max_speed(),
             horizon: problem.horizon,
+        }
+    }
+
+    /// The legs that begin or end at the place of a point, with the distance at which they do.
+    pub(crate) fn touching(&self, point: usize) -> &[(usize, f64)] {
+        &self.touching[point]
+    }
+
+    /// The obstacle that a line on a leg, sailed from its beginning or back from its end, meets first, and the share of the line
+    /// at which it does: half as deep as a line may go, so that the place itself is free.
+    pub(crate) fn nearest_barrier(
+        &self,
+        leg: usize,
+        from: PathTime,
+        to: PathTime,
+        forward: bool,
+    ) -> Option<(usize, f64)> {
+        let met = self.seen[leg].iter().filter_map(|seen| {
+            let shares = seen.body.inside(from, to, 0.5 * TOUCH_M)?;
+            Some((seen.obstacle, shares))
+        });
+        if forward {
+            let first = met.min_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+            first.map(|(obstacle, [enter, _])| (obstacle, enter))
+        } else {
+            let last = met.max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
+            last.map(|(obstacle, [_, leave])| (obstacle, leave))
         }
     }
 
@@ -119,22 +154,6 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The first obstacle that a line on a leg meets, and the share of the line at which it does.
-    pub(crate) fn first_barrier(
-        &self,
-        leg: usize,
-        from: PathTime,
-        to: PathTime,
-    ) -> Option<(usize, f64)> {
-        self.seen[leg]
-            .iter()
-            .filter_map(|seen| {
-                let [enter, _] = seen.body.inside(from, to, TOUCH_M)?;
-                Some((seen.obstacle, enter))
-            })
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
     /// Until when, waiting from `time` on at a place of a leg, an obstacle that covers it then goes on to; infinite when it does
     /// up to the horizon.
     pub(crate) fn covered_until(&self, leg: usize, obstacle: usize, at: PathTime) -> f64 {
@@ -145,7 +164,7 @@ impl<'a> Scene<'a> {
         let mut until = at.time;
         // slabs follow one another
         for seen in self.seen[leg].iter().filter(|s| s.obstacle == obstacle) {
-            if let Some([enter, leave]) = seen.body.inside(at, end, TOUCH_M) {
+            if let Some([enter, leave]) = seen.body.inside(at, end, 0.0) {
                 let span = self.horizon - at.time;
                 if at.time + span * enter <= until + 1e-3 {
                     until = until.max(at.time + span * leave);

@@ -3,12 +3,16 @@
 //! A number that is not finite is written as null. Keys of what does not exist yet are absent.
 
 mod assessment;
+mod control;
 mod parts;
 mod path_time;
 mod plan;
 mod suite;
 
 pub use assessment::*;
+pub use control::{
+    ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
+};
 pub use parts::*;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
 pub use plan::{PLAN_FORMAT, PlanDocument};

@@ -80,7 +80,8 @@ pub struct CostDocument {
     pub arrived: bool,
     pub duration_s: f64,
     pub length_m: f64,
-    pub delay_s: f64,
+    /// Null for a plan that never arrives.
+    pub delay_s: Option<f64>,
     /// Against the sets of which `obstacles` are the level sets.
     pub max_risk: f64,
     /// Null without targets.
@@ -134,13 +135,30 @@ pub struct SampleDocument {
     pub north_m: f64,
     pub course_deg: f64,
     pub speed_mps: f64,
+    /// At the nodes of a motion under forces.
+    #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
+    pub node: Option<NodeDocument>,
 }
 
-/// A trajectory, exact and sampled: every second, and wherever a segment starts or ends.
+/// The state at a node, and the forces held until the next one; starboard and clockwise are positive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct NodeDocument {
+    pub heading_deg: f64,
+    pub surge_mps: f64,
+    pub sway_mps: f64,
+    pub yaw_rate_deg_per_s: f64,
+    pub surge_n: f64,
+    pub sway_n: f64,
+    pub yaw_nm: f64,
+}
+
+/// A trajectory, exact and sampled: every second, and wherever a segment starts or ends or a node is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct TrajectoryDocument {
-    pub segments: Vec<SegmentDocument>,
+    /// Null for a motion under forces.
+    pub segments: Option<Vec<SegmentDocument>>,
     pub samples: Vec<SampleDocument>,
 }
 

@@ -2,21 +2,23 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::control::{ControlDocument, control};
 use super::parts::{
-    CostDocument, EncounterDocument, InitialSetDocument, MissionDocument, ObstacleDocument,
-    OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument,
-    SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument, VelocitySetDocument,
-    ViolationDocument,
+    CostDocument, EncounterDocument, InitialSetDocument, MissionDocument, NodeDocument,
+    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
+    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
+    VelocitySetDocument, ViolationDocument,
 };
 use super::path_time::{PathTimeDocument, path_time_document};
-use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading};
+use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::{Objective, Outcome, Plan};
 use crate::report::summary::Verdict;
 use crate::report::words;
-use crate::trajectory::Trajectory;
+use crate::tolerance;
+use crate::trajectory::{Steered, Trajectory};
 
 /// The name of the plan document's format.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
@@ -65,6 +67,9 @@ pub struct PlanDocument {
     /// Of a path-time plan; absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path_time: Option<PathTimeDocument>,
+    /// Of a plan of forces alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimal_control: Option<ControlDocument>,
 }
 
 impl PlanDocument {
@@ -79,7 +84,7 @@ impl PlanDocument {
             planner: scenario.planner.word().to_owned(),
             search: words::search(scenario.search).to_owned(),
             compliance: scenario.compliance.word().to_owned(),
-            objective: scenario.objective.word().to_owned(),
+            objective: words::objective(scenario).to_owned(),
             risk_weight_m: match scenario.objective {
                 Objective::LengthRisk { weight } => Some(weight),
                 _ => None,
@@ -129,6 +134,7 @@ impl PlanDocument {
             encounters: encounters(run),
             path_time: (run.planned.path_time.as_deref())
                 .map(|diagram| path_time_document(run, diagram)),
+            optimal_control: control(run),
         }
     }
 }
@@ -214,10 +220,10 @@ pub(super) fn cost(run: &Run) -> Option<CostDocument> {
         objective: plan.cost,
         space_time_error_m2: evaluation.space_time_error,
         space_time_error_arc_length_m2: evaluation.arc_length_error,
-        arrived: true,
+        arrived: run.control.is_none(),
         duration_s: evaluation.duration,
         length_m: evaluation.length,
-        delay_s: evaluation.delay,
+        delay_s: finite(evaluation.delay),
         max_risk: run.risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
         min_land_distance_m: finite(evaluation.min_land_distance),
@@ -231,31 +237,58 @@ fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
         north_m: pose.position.y + 0.0,
         course_deg: course_deg_from_heading(pose.heading),
     };
+    let segments = trajectory.segments().iter().map(|segment| SegmentDocument {
+        start: start(segment.start, segment.start_time),
+        duration_s: segment.duration,
+        speed_mps: segment.speed,
+        turn_rate_deg_per_s: clockwise_deg_per_s(segment.turn_rate),
+    });
     TrajectoryDocument {
-        segments: trajectory
-            .segments()
-            .iter()
-            .map(|segment| SegmentDocument {
-                start: start(segment.start, segment.start_time),
-                duration_s: segment.duration,
-                speed_mps: segment.speed,
-                turn_rate_deg_per_s: clockwise_deg_per_s(segment.turn_rate),
-            })
-            .collect(),
+        segments: trajectory.steered().is_none().then(|| segments.collect()),
         samples: trajectory
             .sample_times(SAMPLE_STEP)
             .into_iter()
             .map(|time| {
-                let at = start(trajectory.pose_at(time), time);
+                let mut pose = trajectory.pose_at(time);
+                if let Some(motion) = trajectory.steered() {
+                    pose.heading = course(motion, time);
+                }
+                let at = start(pose, time);
                 SampleDocument {
                     t_s: at.t_s,
                     east_m: at.east_m,
                     north_m: at.north_m,
                     course_deg: at.course_deg,
-                    speed_mps: trajectory.segment_at(time).speed,
+                    speed_mps: trajectory.speed_at(time),
+                    node: trajectory.steered().and_then(|motion| node(motion, time)),
                 }
             })
             .collect(),
+    }
+}
+
+/// The node at exactly this time.
+fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
+    let node = motion.node_at(time);
+    (node.time == time).then(|| NodeDocument {
+        heading_deg: course_deg_from_heading(node.pose.heading),
+        surge_mps: node.velocity.x + 0.0,
+        sway_mps: 0.0 - node.velocity.y,
+        yaw_rate_deg_per_s: clockwise_deg_per_s(node.yaw_rate),
+        surge_n: node.force.x + 0.0,
+        sway_n: 0.0 - node.force.y,
+        yaw_nm: 0.0 - node.moment,
+    })
+}
+
+/// The direction of the way made good, radians; the heading where no way is made.
+fn course(motion: &Steered, time: f64) -> f64 {
+    let piece = motion.piece_at(time);
+    let velocity = piece.velocity(piece.part(time));
+    if velocity.norm() > tolerance::LENGTH_M {
+        heading_of(velocity)
+    } else {
+        piece.pose_at(time).heading
     }
 }
 

@@ -7,13 +7,18 @@ mod assessment;
 mod field;
 mod outline;
 mod panel;
+mod path_time;
+mod plan;
 mod render;
 mod sections;
 mod window;
 
 pub use assessment::assessment_figure;
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};
+pub use outline::Stroke;
 pub use panel::Panel;
+pub use path_time::{ProfileLine, path_time_panel};
+pub use plan::{chart_panel, path_panel, plan_figure};
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
 pub use window::Window;

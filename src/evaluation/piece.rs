@@ -1,0 +1,97 @@
+//! What the checker asks of a piece of motion: exact values, and bounds between two looks.
+
+use crate::frame::{Pose, Vector};
+use crate::trajectory::{Bounds, Cubic, Segment};
+
+/// A stretch of own ship's motion, smooth within its time.
+pub(super) trait Piece: Copy {
+    /// Seconds.
+    fn start_time(&self) -> f64;
+    /// Seconds.
+    fn end_time(&self) -> f64;
+    /// At a time in seconds.
+    fn pose_at(&self, time: f64) -> Pose;
+    /// Over ground, m/s.
+    fn velocity_at(&self, time: f64) -> Vector;
+    /// rad/s, counter-clockwise.
+    fn turn_rate_at(&self, time: f64) -> f64;
+    /// The most that derivatives become within it.
+    fn bounds(&self) -> Bounds;
+    /// The part between two times, on a clock that starts at `zero`.
+    fn part(&self, from: f64, to: f64, zero: f64) -> Self;
+}
+
+impl Piece for Segment {
+    fn start_time(&self) -> f64 {
+        self.start_time
+    }
+
+    fn end_time(&self) -> f64 {
+        Segment::end_time(self)
+    }
+
+    fn pose_at(&self, time: f64) -> Pose {
+        Segment::pose_at(self, time)
+    }
+
+    fn velocity_at(&self, time: f64) -> Vector {
+        Segment::velocity_at(self, time)
+    }
+
+    fn turn_rate_at(&self, _: f64) -> f64 {
+        self.turn_rate
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds {
+            speed: self.speed,
+            acceleration: self.speed * self.turn_rate.abs(),
+            yaw_rate: self.turn_rate.abs(),
+            yaw_acceleration: 0.0,
+        }
+    }
+
+    fn part(&self, from: f64, to: f64, zero: f64) -> Self {
+        let part = self.between(from, to);
+        Self {
+            start_time: part.start_time - zero,
+            ..part
+        }
+    }
+}
+
+impl Piece for Cubic {
+    fn start_time(&self) -> f64 {
+        self.start_time
+    }
+
+    fn end_time(&self) -> f64 {
+        Cubic::end_time(self)
+    }
+
+    fn pose_at(&self, time: f64) -> Pose {
+        Cubic::pose_at(self, time)
+    }
+
+    fn velocity_at(&self, time: f64) -> Vector {
+        self.velocity(Cubic::part(self, time))
+    }
+
+    fn turn_rate_at(&self, time: f64) -> f64 {
+        self.yaw_rate_at(time)
+    }
+
+    fn bounds(&self) -> Bounds {
+        Cubic::bounds(self)
+    }
+
+    fn part(&self, from: f64, to: f64, zero: f64) -> Self {
+        let from = from.clamp(self.start_time, Cubic::end_time(self));
+        let to = to.clamp(from, Cubic::end_time(self));
+        let cut = self.between(from, to);
+        Self {
+            start_time: cut.start_time - zero,
+            ..cut
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Judges a motion under forces: does the ship do what the plan says, and is that clear of everything?
+
+use super::piece::Piece;
+use super::quadrature::smooth;
+use super::{Evaluation, Request, Violation, meetings, shore};
+use crate::frame::{Vector, wrap};
+use crate::tolerance;
+use crate::trajectory::{Cubic, DesiredTrajectory, Node, Steered};
+use crate::vessel::{ForceVector, Manoeuvring, StateVector};
+
+/// Steps of the integrator in an interval, first; doubled until two results agree.
+const FIRST_STEPS: usize = 8;
+const MOST_STEPS: usize = 4096;
+
+/// Of the ship's units. Two results this near are the same.
+const AGREED: f64 = 1e-9;
+
+/// Parts of a piece on which one quadrature rule is put.
+const PARTS: usize = 4;
+
+/// A motion under forces and the ship that is to make it.
+#[derive(Debug, Clone, Copy)]
+pub struct Steering<'a> {
+    /// Nodes with forces.
+    pub motion: &'a Steered,
+    /// As published, not smoothed.
+    pub vessel: &'a dyn Manoeuvring,
+    /// To either side of zero: newtons, newtons, newton metres.
+    pub force_limits: ForceVector,
+}
+
+/// Judges a motion under forces over the whole horizon. It has to start where own ship is and end at the horizon; forces
+/// are within their limits; the ship, integrated anew from every node, is at the next one to [`tolerance::DEFECT`] of her
+/// units; and the cubics between the nodes keep out of every set to [`tolerance::DEPTH_M`], and of every hull, with
+/// certified distances. Arrival is not asked for: the delay is NaN. `request.segments` is not looked at.
+pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
+    let mut violations = Vec::new();
+    check(request, steering, &mut violations);
+    let pieces: Vec<Cubic> = steering.motion.pieces().collect();
+    let passages = meetings(request, &pieces, true, &mut violations);
+    let shore = shore(request, &pieces, true, &mut violations);
+    let length = steering.motion.length();
+    let nodes = steering.motion.nodes();
+    Evaluation {
+        violations,
+        space_time_error: space_time_error(&pieces, request.desired, request.time_weight),
+        arc_length_error: arc_length_error(&pieces, request.desired, request.time_weight),
+        duration: nodes[nodes.len() - 1].time - nodes[0].time,
+        length,
+        delay: f64::NAN,
+        min_clearance: passages
+            .iter()
+            .map(|p| p.min_clearance)
+            .fold(f64::INFINITY, f64::min),
+        min_land_distance: shore.value,
+        min_land_distance_time: shore.time,
+        passages,
+    }
+}
+
+/// Start, end, forces and dynamics.
+fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
+    let nodes = steering.motion.nodes();
+    let (first, last) = (&nodes[0], &nodes[nodes.len() - 1]);
+    let own = request.own;
+    // a quantity over its limit; a NaN is over every limit
+    let mut limit = |what: String, time: f64, value: f64, allowed: f64| {
+        if !(value <= allowed) {
+            let what = format!("{what}: {value:.6e}, allowed {allowed:.6e}");
+            found.push(Violation { what, time });
+        }
+    };
+    limit(
+        "start time, s".to_owned(),
+        first.time,
+        first.time.abs(),
+        tolerance::TIME_S,
+    );
+    limit(
+        "end time, s from the horizon".to_owned(),
+        last.time,
+        (last.time - request.horizon).abs(),
+        tolerance::TIME_S * (1.0 + request.horizon),
+    );
+    let gap = (first.pose.position - own.pose.position).norm();
+    limit(
+        "start position, m from own ship".to_owned(),
+        first.time,
+        gap,
+        tolerance::JOINT_M,
+    );
+    let turn = wrap(first.pose.heading - own.pose.heading).abs();
+    limit(
+        "start heading, rad from own ship's".to_owned(),
+        first.time,
+        turn,
+        tolerance::JOINT_RAD,
+    );
+    let speed = (first.velocity - Vector::new(own.speed, 0.0)).norm() + first.yaw_rate.abs();
+    limit(
+        "start velocity, from own ship's".to_owned(),
+        first.time,
+        speed,
+        tolerance::LIMIT * own.speed.max(1.0),
+    );
+    let scales = steering.vessel.scales();
+    for (index, pair) in nodes.windows(2).enumerate() {
+        let (from, to) = (&pair[0], &pair[1]);
+        let force = ForceVector::new(from.force.x, from.force.y, from.moment);
+        for (axis, name) in ["surge force, N", "sway force, N", "yaw moment, Nm"]
+            .into_iter()
+            .enumerate()
+        {
+            let most = steering.force_limits[axis];
+            limit(
+                format!("{name}, in interval {index}"),
+                from.time,
+                force[axis].abs(),
+                most * (1.0 + tolerance::LIMIT),
+            );
+        }
+        let duration = to.time - from.time;
+        let reached = integrated(steering.vessel, &state(from), &force, duration);
+        let off = (reached - state(to)).component_div(&scales.state);
+        // a maximum would lose a NaN
+        let off = if off.sum().is_finite() {
+            off.amax()
+        } else {
+            f64::NAN
+        };
+        limit(
+            format!("the ship off the plan after interval {index}, in her units"),
+            to.time,
+            off,
+            tolerance::DEFECT,
+        );
+    }
+}
+
+fn state(node: &Node) -> StateVector {
+    let place = node.pose.position;
+    StateVector::new(
+        place.x,
+        place.y,
+        node.pose.heading,
+        node.velocity.x,
+        node.velocity.y,
+        node.yaw_rate,
+    )
+}
+
+/// The state after `duration` seconds under a constant force: by the midpoint rule with Richardson's extrapolation (Gragg,
+/// Bulirsch and Stoer) over doubled numbers of steps, until two of them agree to [`AGREED`].
+fn integrated(
+    vessel: &dyn Manoeuvring,
+    from: &StateVector,
+    force: &ForceVector,
+    duration: f64,
+) -> StateVector {
+    let unit = vessel.scales().state;
+    let mut row: Vec<StateVector> = Vec::new();
+    let mut steps = FIRST_STEPS;
+    loop {
+        let mut next = vec![modified_midpoint(vessel, from, force, duration, steps)];
+        for (order, before) in row.iter().enumerate() {
+            let weight = 4f64.powi(order as i32 + 1) - 1.0;
+            let better = next[order] + (next[order] - before) / weight;
+            next.push(better);
+        }
+        let (last, best) = (row.last().copied(), next[next.len() - 1]);
+        let agreed = last.is_some_and(|last| (best - last).component_div(&unit).amax() <= AGREED);
+        if agreed || steps >= MOST_STEPS {
+            return best;
+        }
+        row = next;
+        steps *= 2;
+    }
+}
+
+/// Gragg's midpoint rule with `steps` steps, an even number: its error has even powers of the step alone.
+fn modified_midpoint(
+    vessel: &dyn Manoeuvring,
+    from: &StateVector,
+    force: &ForceVector,
+    duration: f64,
+    steps: usize,
+) -> StateVector {
+    let h = duration / steps as f64;
+    let mut before = *from;
+    let mut here = from + h * vessel.rates(from, force);
+    for _ in 1..steps {
+        let after = before + 2.0 * h * vessel.rates(&here, force);
+        (before, here) = (here, after);
+    }
+    0.5 * (here + before + h * vessel.rates(&here, force))
+}
+
+/// Formulas section 7 over the whole motion, m².
+fn space_time_error(pieces: &[Cubic], desired: &DesiredTrajectory, q: f64) -> f64 {
+    let integral: f64 = pieces
+        .iter()
+        .map(|piece| {
+            over_parts(piece, &|time| {
+                desired.nearest(piece.pose_at(time).position, time, q).error
+            })
+        })
+        .sum();
+    integral / desired.duration()
+}
+
+/// Eq. (30) with both curves by their own fraction of their own length, m²; NaN for a motion of no length.
+fn arc_length_error(pieces: &[Cubic], desired: &DesiredTrajectory, q: f64) -> f64 {
+    let speed = |piece: &Cubic, time: f64| Piece::velocity_at(piece, time).norm();
+    let length_of = |piece: &Cubic| over_parts(piece, &|time| speed(piece, time));
+    let length: f64 = pieces.iter().map(length_of).sum();
+    // negated on purpose: a NaN has no length either
+    if !(length > 0.0) {
+        return f64::NAN;
+    }
+    let mut run = 0.0;
+    let mut sum = 0.0;
+    for piece in pieces {
+        sum += over_parts(piece, &|time| {
+            let way = smooth(piece.start_time, time, &|t| speed(piece, t));
+            let along = (run + way) / length * desired.length();
+            let legs = desired.legs();
+            let index = legs.partition_point(|leg| leg.start_distance <= along);
+            let leg = &legs[index.max(1) - 1];
+            let there = leg.start + leg.direction * (along - leg.start_distance);
+            let due = leg.start_time + (along - leg.start_distance) / leg.speed;
+            let apart = piece.pose_at(time).position - there;
+            (apart.norm_squared() + q * (time - due) * (time - due)) * speed(piece, time) / length
+        });
+        run += length_of(piece);
+    }
+    sum
+}
+
+fn over_parts(piece: &Cubic, value: &dyn Fn(f64) -> f64) -> f64 {
+    let at = |k: usize| piece.start_time + piece.duration * k as f64 / PARTS as f64;
+    (0..PARTS)
+        .map(|k| smooth(at(k), at(k + 1), &|time| value(time)))
+        .sum()
+}

@@ -1,0 +1,122 @@
+//! Where a motion is deepest in a set between the instants at which it is constrained.
+
+use super::keep_out::KeepOut;
+use crate::trajectory::Cubic;
+
+/// Parts that a piece is looked at in, at least, and most.
+const PARTS: f64 = 8.0;
+const MOST_PARTS: f64 = 256.0;
+
+/// A cubic is longer than its duration at the greater of the speeds at its ends by this at most, where it is no loop.
+const BULGE: f64 = 1.5;
+
+/// Sections of a bracket by the golden ratio: to 2e-6 of it, where the level is flat to rounding.
+const GOLDEN_STEPS: usize = 27;
+
+/// A least level on a piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LowPoint {
+    /// Of the duration.
+    pub part: f64,
+    /// `(x - p_t)' Q_t^-1 (x - p_t)`: below 1 inside.
+    pub level: f64,
+}
+
+/// The local minima of the level along a piece that lie below `below`. Parts are short against the time in which the set's
+/// narrowest half width is passed, so that none between is missed; what is missed is for the check of the plan to find.
+pub fn low_points(piece: &Cubic, keep: &KeepOut, below: f64) -> Vec<LowPoint> {
+    let level = |part: f64| {
+        let time = piece.start_time + part * piece.duration;
+        keep.at(time).level(piece.position(part))
+    };
+    let drift = keep.set().velocity().center();
+    let fastest = piece.velocities.map(|v| (v - drift).norm());
+    let way = fastest[0].max(fastest[1]) * piece.duration;
+    // sections only grow: in the norm of the last one the piece is no nearer than its ends less its way
+    let last = keep.at(piece.end_time());
+    let start = piece.positions[0] + drift * piece.duration;
+    let nearest = last.level(start).min(last.level(piece.positions[1])).sqrt();
+    if nearest - BULGE * way / keep.narrowest() > below.sqrt() {
+        return Vec::new();
+    }
+    let parts = (4.0 * way / keep.narrowest())
+        .clamp(PARTS, MOST_PARTS)
+        .ceil();
+    let count = parts as usize;
+    let mut found = Vec::new();
+    // two before, one before, here
+    let mut levels = [f64::INFINITY, f64::INFINITY, level(0.0)];
+    for k in 1..=count + 1 {
+        let next = if k <= count {
+            level(k as f64 / parts)
+        } else {
+            f64::INFINITY
+        };
+        levels = [levels[1], levels[2], next];
+        let [before, here, after] = levels;
+        // the least of a parabola through the three may be far below them
+        let rise = (before.min(1e3) - here).max(after.min(1e3) - here).max(0.0);
+        if here <= before && here <= after && here - rise < below {
+            let low = (k as f64 - 2.0).max(0.0) / parts;
+            let high = (k as f64).min(parts) / parts;
+            let point = least(low, high, &level);
+            if point.level < below {
+                found.push(point);
+            }
+        }
+    }
+    found
+}
+
+fn least(mut low: f64, mut high: f64, level: &impl Fn(f64) -> f64) -> LowPoint {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let ends = [(low, level(low)), (high, level(high))];
+    let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
+    let (mut at_left, mut at_right) = (level(left), level(right));
+    for _ in 0..GOLDEN_STEPS {
+        if at_left < at_right {
+            high = right;
+            (right, at_right) = (left, at_left);
+            left = high - golden * (high - low);
+            at_left = level(left);
+        } else {
+            low = left;
+            (left, at_left) = (right, at_right);
+            right = low + golden * (high - low);
+            at_right = level(right);
+        }
+    }
+    let (part, level) = [(left, at_left), (right, at_right)]
+        .into_iter()
+        .chain(ends)
+        .fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
+    LowPoint { part, level }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::keep_out::ellipsoid;
+    use super::*;
+    use crate::frame::Vector;
+
+    #[test]
+    fn the_deepest_point_of_a_pass_is_found_and_a_clear_one_has_none() {
+        // past a disc at rest of 1 m, 0.8 m off its centre, closest at 3/4 of the piece
+        let keep = ellipsoid([3.0, 0.8], [0.0, 0.0], [1.0, 1.0], [0.0, 0.0]);
+        for speed in [0.2, 2.0, 40.0] {
+            let duration = 4.0 / speed;
+            let piece = Cubic {
+                start_time: 5.0,
+                duration,
+                positions: [Vector::zeros(), Vector::new(4.0, 0.0)],
+                velocities: [Vector::new(speed, 0.0); 2],
+                headings: [0.0; 2],
+                yaw_rates: [0.0; 2],
+            };
+            let found = low_points(&piece, &keep, 1.0);
+            assert_eq!(found.len(), 1);
+            assert!((found[0].part - 0.75).abs() < 1e-5 && (found[0].level - 0.64).abs() < 1e-9);
+            assert!(low_points(&piece, &keep, 0.6).is_empty());
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Where solves start: motions that need not be possible nor clear.
+
+use super::keep_out::KeepOut;
+use super::task::{Profile, Task};
+use crate::frame::{Vector, heading_of, to_port, wrap};
+use crate::vessel::{ForceVector, Manoeuvring, StateVector};
+
+/// Amplitudes of the lateral family as fractions of the way that is meant to be made.
+const AMPLITUDES: [f64; 5] = [0.0, -0.135, 0.135, -0.27, 0.27];
+
+/// Sets in conflict with the desired trajectory that are passed on either side, in every combination: the worst ones.
+const SIDED: usize = 4;
+
+/// Beyond the edge of a set, of its reach: how far a start passes it.
+const CLEAR: f64 = 0.3;
+
+/// Which guess a solve started from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Start {
+    /// The space-time planner's trajectory.
+    SpaceTime,
+    /// The desired trajectory, bent to one side; the index is that of the amplitude.
+    Lateral(usize),
+    /// The desired trajectory, bent past the sets it meets; bit `k` says on which side of the `k`-th worst one.
+    Sided(usize),
+    /// The result of another solve on a coarser grid.
+    Refined,
+    /// Given by the caller.
+    Given,
+}
+
+impl std::fmt::Display for Start {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::SpaceTime => f.write_str("space-time"),
+            Self::Lateral(index) => write!(f, "lateral {}", index + 1),
+            Self::Sided(sides) => write!(f, "sides {}", sides + 1),
+            Self::Refined => f.write_str("refined"),
+            Self::Given => f.write_str("given"),
+        }
+    }
+}
+
+/// The states along positions at the nodes: heading and speed from the way made, forces that hold the speed.
+pub fn profile_along<V: Manoeuvring>(task: &Task<V>, positions: &[Vector]) -> Profile {
+    let n = task.intervals;
+    let step = task.step();
+    // less way than this is no heading
+    let least = 1e-3 * task.vessel.scales().state[0];
+    let mut headings = vec![task.first[2]; n + 1];
+    for k in 1..=n {
+        let way = positions[(k + 1).min(n)] - positions[k - 1];
+        let turn = if way.norm() > least {
+            wrap(heading_of(way) - headings[k - 1])
+        } else {
+            0.0
+        };
+        headings[k] = headings[k - 1] + turn;
+    }
+    let mut states = vec![task.first];
+    for k in 1..=n {
+        let way = (positions[k] - positions[k - 1]).norm() / step;
+        states.push(StateVector::new(
+            positions[k].x,
+            positions[k].y,
+            headings[k],
+            way,
+            0.0,
+            (headings[k] - headings[k - 1]) / step,
+        ));
+    }
+    let limits = task.controls.force_limits;
+    let forces = (0..n)
+        .map(|k| {
+            let held = task.vessel.steady(states[k + 1][3]);
+            ForceVector::from_fn(|i, _| held[i].clamp(-limits[i], limits[i]))
+        })
+        .collect();
+    Profile { states, forces }
+}
+
+/// The desired positions at the nodes, from where the ship is: her offset at the start fades out.
+fn desired_positions<V: Manoeuvring>(task: &Task<V>) -> Vec<Vector> {
+    let at = |k: usize| task.desired.position_at(task.time(k));
+    let offset = Vector::new(task.first[0], task.first[1]) - at(0);
+    (0..=task.intervals)
+        .map(|k| {
+            let left = 1.0 - k as f64 / task.intervals as f64;
+            at(k) + offset * left * left
+        })
+        .collect()
+}
+
+/// The starts that need no other planner, in a fixed order. Repetitions are left out.
+pub fn family<V: Manoeuvring>(task: &Task<V>) -> Vec<(Start, Profile)> {
+    let base = desired_positions(task);
+    let way = base[base.len() - 1] - base[0];
+    let aside = way.try_normalize(0.0).map_or_else(Vector::zeros, to_port);
+    let mut starts: Vec<(Start, Vec<Vector>)> = AMPLITUDES
+        .iter()
+        .enumerate()
+        .map(|(index, amplitude)| {
+            let bent = base.iter().enumerate().map(|(k, place)| {
+                let part = k as f64 / task.intervals as f64;
+                place + aside * (amplitude * way.norm() * (std::f64::consts::PI * part).sin())
+            });
+            (Start::Lateral(index), bent.collect())
+        })
+        .collect();
+    let conflicts = conflicts(task, &base);
+    for sides in 0..1usize << conflicts.len() {
+        if conflicts.is_empty() {
+            break;
+        }
+        let mut bent = base.clone();
+        for (k, conflict) in conflicts.iter().enumerate() {
+            conflict.push(task, &mut bent, sides >> k & 1 == 1);
+        }
+        starts.push((Start::Sided(sides), bent));
+    }
+    starts
+        .into_iter()
+        .map(|(start, positions)| (start, profile_along(task, &positions)))
+        .collect()
+}
+
+/// A set that the desired trajectory comes near.
+#[derive(Debug, Clone, Copy)]
+struct Conflict {
+    /// When it is deepest, seconds.
+    time: f64,
+    level: f64,
+    /// Unit vector to port of the motion relative to the set's centre.
+    port: Vector,
+    /// Metres from the desired position to clear of the set: to port and to starboard.
+    shift: [f64; 2],
+    /// Seconds in which own ship passes it.
+    passing: f64,
+}
+
+impl Conflict {
+    /// Moves positions to port, or to starboard, about the time of the conflict.
+    fn push<V: Manoeuvring>(&self, task: &Task<V>, positions: &mut [Vector], port: bool) {
+        let shift = self.port * if port { self.shift[0] } else { -self.shift[1] };
+        for (k, place) in positions.iter_mut().enumerate().skip(1) {
+            let off = (task.time(k) - self.time) / self.passing;
+            *place += shift * (-0.5 * off * off).exp();
+        }
+    }
+}
+
+/// The worst conflicts of given positions, the worst first.
+fn conflicts<V: Manoeuvring>(task: &Task<V>, positions: &[Vector]) -> Vec<Conflict> {
+    let mut found: Vec<Conflict> = task
+        .keep_outs
+        .iter()
+        .filter_map(|keep| conflict(task, positions, keep))
+        .collect();
+    found.sort_by(|a, b| a.level.total_cmp(&b.level));
+    found.truncate(SIDED);
+    found
+}
+
+fn conflict<V: Manoeuvring>(
+    task: &Task<V>,
+    positions: &[Vector],
+    keep: &KeepOut,
+) -> Option<Conflict> {
+    let level = |k: &usize| keep.at(task.time(*k)).level(positions[*k]);
+    let k = (1..task.intervals).min_by(|a, b| level(a).total_cmp(&level(b)))?;
+    let level = level(&k);
+    // beyond twice its size it is in nobody's way
+    if !(level < 4.0) {
+        return None;
+    }
+    let time = task.time(k);
+    let own = (positions[k + 1] - positions[k - 1]) / (2.0 * task.step());
+    let relative = own - keep.set().velocity().center();
+    let port = to_port(relative.try_normalize(0.0)?);
+    let section = keep.set().outer_section(time);
+    let lateral = port.dot(&(positions[k] - section.center()));
+    let reach = (1.0 + CLEAR) * section.radius(port);
+    Some(Conflict {
+        time,
+        level,
+        port,
+        shift: [(reach - lateral).max(0.0), (reach + lateral).max(0.0)],
+        passing: (reach / relative.norm()).max(0.05 * task.duration),
+    })
+}

@@ -1,0 +1,156 @@
+//! The sets that a plan of forces keeps out of: ellipses as they move and grow.
+
+use nalgebra::Matrix2;
+
+use crate::frame::{Vector, to_port};
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+
+/// Metres. A set without interior cannot be kept out of by a function that vanishes on it: its initial ellipse is given
+/// this much to each side, an outer set.
+const LEAST_SEMI_AXIS: f64 = 1e-3;
+
+/// An ellipsoid with interior at every time, and what it stands for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeepOut {
+    set: EllipsoidObstacle,
+    enclosing: bool,
+}
+
+/// A section as the constraint sees it: `(x - center)' inverse (x - center) >= 1`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Keep {
+    /// Metres.
+    pub center: Vector,
+    /// Of the shape matrix, 1/m².
+    pub inverse: Matrix2<f64>,
+}
+
+impl Keep {
+    /// `(x - center)' inverse (x - center)`: one on the edge, less inside.
+    pub fn level(&self, position: Vector) -> f64 {
+        let d = position - self.center;
+        d.dot(&(self.inverse * d))
+    }
+}
+
+impl KeepOut {
+    /// An ellipsoid as it is; of polytopes and slabs the smallest ellipses around their sets of positions and of
+    /// velocities: an outer set.
+    pub fn outer_of(obstacle: &Obstacle) -> Self {
+        let (set, enclosing) = match obstacle {
+            Obstacle::Ellipsoid(o) => (o.as_ref().clone(), false),
+            Obstacle::Polytope(o) => (EllipsoidObstacle::outer_of(o), true),
+            Obstacle::Slabs(o) => {
+                let velocities: Vec<Vector> = o
+                    .spells()
+                    .iter()
+                    .flat_map(|s| s.velocities.vertices().iter().copied())
+                    .collect();
+                // slabs are never without velocities
+                let all = ConvexPolygon::hull(&velocities)
+                    .unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()));
+                let whole = PolytopeObstacle::new(o.name(), o.initial().clone(), all);
+                (EllipsoidObstacle::outer_of(&whole), true)
+            }
+        };
+        let initial = outer_widened(set.initial());
+        Self {
+            set: EllipsoidObstacle::new(set.name(), initial, *set.velocity()),
+            enclosing,
+        }
+    }
+
+    /// The set that is kept out of.
+    pub fn set(&self) -> &EllipsoidObstacle {
+        &self.set
+    }
+
+    /// True where it is an ellipsoid around a set of another kind.
+    pub fn encloses(&self) -> bool {
+        self.enclosing
+    }
+
+    /// The section at `time >= 0`, seconds. O(1).
+    pub fn at(&self, time: f64) -> Keep {
+        let section = self.set.outer_section(time);
+        let [a, b] = section.semi_axes();
+        let square = |v: Vector| v * v.transpose() / v.norm_squared().powi(2);
+        Keep {
+            center: section.center(),
+            inverse: square(a) + square(b),
+        }
+    }
+
+    /// Half the width of the initial ellipse where it is narrowest, metres: the section is nowhere narrower.
+    pub fn narrowest(&self) -> f64 {
+        let [a, b] = self.set.initial().semi_axes();
+        a.norm().min(b.norm())
+    }
+}
+
+/// With each semi-axis at least [`LEAST_SEMI_AXIS`].
+fn outer_widened(ellipse: &Ellipse) -> Ellipse {
+    let [a, b] = ellipse.semi_axes();
+    let (long, short) = if a.norm() >= b.norm() { (a, b) } else { (b, a) };
+    if short.norm() >= LEAST_SEMI_AXIS {
+        return *ellipse;
+    }
+    let along = long
+        .try_normalize(0.0)
+        .unwrap_or_else(|| Vector::new(1.0, 0.0));
+    let long = along * long.norm().max(LEAST_SEMI_AXIS);
+    let axes = [long, to_port(along) * LEAST_SEMI_AXIS];
+    Ellipse::from_axes(ellipse.center(), axes)
+}
+
+/// Shared by tests: sets named a, b, c, …
+#[cfg(test)]
+pub(super) fn ellipsoid(
+    center: [f64; 2],
+    velocity: [f64; 2],
+    shape: [f64; 2],
+    spread: [f64; 2],
+) -> KeepOut {
+    let ellipse = |c: [f64; 2], q: [f64; 2]| {
+        let axes = [Vector::new(q[0].sqrt(), 0.0), Vector::new(0.0, q[1].sqrt())];
+        Ellipse::from_axes(Vector::new(c[0], c[1]), axes)
+    };
+    let set = EllipsoidObstacle::new("a", ellipse(center, shape), ellipse(velocity, spread));
+    KeepOut::outer_of(&set.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_level_is_one_on_the_edge_and_agrees_with_the_set() {
+        let keep = ellipsoid([3.0, 1.0], [0.2, -0.1], [1.0, 0.36], [4e-4, 1e-4]);
+        for i in 0..60 {
+            let time = 2.0 * f64::from(i);
+            let section = keep.set().outer_section(time);
+            for point in section.sampled_boundary(17) {
+                assert!((keep.at(time).level(point) - 1.0).abs() < 1e-9);
+                let outside = section.center() + (point - section.center()) * 1.01;
+                assert!(keep.at(time).level(outside) > 1.0 && !keep.set().contains(outside, time));
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_interior_is_widened_and_a_polytope_enclosed() {
+        let point = ConvexPolygon::point(Vector::new(5.0, 5.0));
+        let wall =
+            ConvexPolygon::hull(&[Vector::new(0.0, 0.0), Vector::new(0.0, 9.0)]).expect("finite");
+        for initial in [point.clone(), wall] {
+            let polytope = PolytopeObstacle::new("thin", initial.clone(), point.clone());
+            let keep = KeepOut::outer_of(&polytope.into());
+            assert!(keep.encloses() && keep.narrowest() >= LEAST_SEMI_AXIS);
+            for vertex in initial.vertices() {
+                assert!(keep.at(0.0).level(*vertex) <= 1.0 + 1e-9);
+            }
+            assert!(keep.at(3.0).inverse.iter().all(|v| v.is_finite()));
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The same plan a moment later: solved again from where it was, for a controller that looks ahead.
+
+use super::attempt::{Attempt, attempt, go_on};
+use super::keep_out::KeepOut;
+use super::solver::{Iterate, RowPoint, Settings, Workspace};
+use super::task::{Profile, Task};
+use crate::vessel::{Manoeuvring, StateVector};
+
+/// The barrier to begin with after one interval.
+const BARRIER: f64 = 1e-4;
+
+/// A plan that moves on with the ship: each step drops the first interval, adds one at the end and solves again from the
+/// states, forces and multipliers at hand.
+#[derive(Debug, Clone)]
+pub struct RecedingHorizon {
+    attempt: Attempt,
+    settings: Settings,
+}
+
+/// What is new after an interval.
+#[derive(Debug, Clone, Copy)]
+pub struct Measured<'a> {
+    /// Where the ship is.
+    pub state: StateVector,
+    /// The sets, as many as before and in the same order, on the clock of the task.
+    pub keep_outs: &'a [KeepOut],
+}
+
+impl RecedingHorizon {
+    /// The first plan, from a guess.
+    pub fn new<V: Manoeuvring>(
+        task: &Task<V>,
+        guess: &Profile,
+        settings: Settings,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Self {
+        Self {
+            attempt: attempt(task, guess, &settings, keep_going),
+            settings,
+        }
+    }
+
+    /// The plan at hand.
+    pub fn plan(&self) -> &Attempt {
+        &self.attempt
+    }
+
+    /// Moves `task` on by one interval and solves again. A plan with another number of sets than the rows know is
+    /// solved without their multipliers.
+    pub fn step<'a, V: Manoeuvring>(
+        &mut self,
+        task: &Task<'a, V>,
+        measured: Measured<'a>,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Task<'a, V> {
+        let next = Task {
+            first: measured.state,
+            keep_outs: measured.keep_outs,
+            start_time: task.time(1),
+            ..*task
+        };
+        let mut problem = next.transcription();
+        let mut iterate = shifted(&self.attempt.iterate);
+        let known = measured.keep_outs.len();
+        // rows between the nodes stay where they are in their interval
+        let mut rows = Vec::new();
+        let mut taken = 0;
+        for (k, old) in self.attempt.rows.iter().enumerate() {
+            let base = problem.row_sets()[k.saturating_sub(1)].len();
+            let points = &self.attempt.iterate.rows[taken..taken + old.len()];
+            taken += old.len();
+            if k == 0 {
+                continue;
+            }
+            for (obstacle, fraction) in old.iter().skip(base).filter(|(o, _)| *o < known) {
+                let row = next.row(k - 1, *obstacle, *fraction);
+                problem.rows_mut()[k - 1].push(row);
+            }
+            rows.extend_from_slice(points);
+        }
+        let last = problem.row_sets().last().map_or(0, Vec::len);
+        let little = RowPoint {
+            multiplier: BARRIER,
+            ..RowPoint::central(1.0, BARRIER, self.settings.penalty)
+        };
+        rows.extend(std::iter::repeat_n(little, last));
+        let expected: usize = problem.row_sets().iter().map(Vec::len).sum();
+        if rows.len() == expected {
+            iterate.rows = rows;
+        } else {
+            iterate = Iterate::guess(iterate.states, iterate.controls);
+        }
+        let work = Workspace::new(&problem);
+        let settings = Settings {
+            barrier: BARRIER,
+            ..self.settings
+        };
+        self.attempt = go_on(&next, problem, iterate, work, &settings, keep_going);
+        next
+    }
+}
+
+/// One interval on: the last one twice.
+fn shifted(old: &Iterate<6, 3>) -> Iterate<6, 3> {
+    fn on<T: Clone>(values: &[T]) -> Vec<T> {
+        values
+            .iter()
+            .skip(1)
+            .chain(values.last())
+            .cloned()
+            .collect()
+    }
+    Iterate {
+        states: on(&old.states),
+        controls: on(&old.controls),
+        multipliers: on(&old.multipliers),
+        low: on(&old.low),
+        high: on(&old.high),
+        rows: old.rows.clone(),
+    }
+}

@@ -1,0 +1,59 @@
+//! What the stage cost measures from: the desired trajectory as a state at a time.
+
+use crate::frame::heading_of;
+use crate::trajectory::DesiredTrajectory;
+use crate::vessel::StateVector;
+
+/// Which leg counts where two meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The one that ends.
+    Before,
+    /// The one that begins.
+    After,
+}
+
+/// The state of the desired trajectory at `time`: its position, the heading and speed of its leg, neither sway nor
+/// turn; standing still at its end once it is over.
+pub fn reference(desired: &DesiredTrajectory, time: f64, side: Side) -> StateVector {
+    let legs = desired.legs();
+    let index = match side {
+        Side::Before => legs.partition_point(|leg| leg.end_time() < time),
+        Side::After => legs.partition_point(|leg| leg.end_time() <= time),
+    };
+    let over = index == legs.len();
+    let leg = &legs[index.min(legs.len() - 1)];
+    let position = desired.position_at(time);
+    StateVector::new(
+        position.x,
+        position.y,
+        heading_of(leg.direction),
+        if over { 0.0 } else { leg.speed },
+        0.0,
+        0.0,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Vector;
+
+    #[test]
+    fn corners_and_the_end_belong_to_the_side_asked_for() {
+        let points = [(0.0, 0.0), (10.0, 0.0), (10.0, 6.0)].map(|(x, y)| Vector::new(x, y));
+        let desired = DesiredTrajectory::new(&points, &[1.0, 2.0]).expect("valid");
+        let at = |time, side| reference(&desired, time, side);
+        assert_eq!(
+            at(4.0, Side::Before),
+            StateVector::new(4.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+        );
+        assert_eq!(at(10.0, Side::Before)[3], 1.0);
+        assert_eq!(at(10.0, Side::After)[3], 2.0);
+        assert!((at(10.0, Side::After)[2] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+        assert_eq!(at(13.0, Side::Before)[3], 2.0);
+        assert_eq!(at(13.0, Side::After)[3], 0.0);
+        let late = at(99.0, Side::Before);
+        assert_eq!((late[0], late[1], late[3]), (10.0, 6.0, 0.0));
+    }
+}

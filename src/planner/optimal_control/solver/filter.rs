@@ -1,0 +1,92 @@
+//! The filter of a line search: pairs of infeasibility and objective that no later point may be worse than in both.
+
+/// What a point is judged by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Merit {
+    /// Sum of the absolute defects.
+    pub infeasibility: f64,
+    /// Objective with barrier.
+    pub objective: f64,
+}
+
+/// Margins by which a point has to be better, of its infeasibility; Wächter and Biegler 2006, section 3.
+const LESS_INFEASIBLE: f64 = 1e-5;
+const LESS_OBJECTIVE: f64 = 1e-8;
+
+/// Pairs that are taken, with room for a given number: it never grows beyond.
+#[derive(Debug, Clone)]
+pub(super) struct Filter {
+    taken: Vec<Merit>,
+    most: f64,
+}
+
+impl Filter {
+    pub fn new(room: usize) -> Self {
+        Self {
+            taken: Vec::with_capacity(room),
+            most: f64::INFINITY,
+        }
+    }
+
+    /// Forgets all but the greatest infeasibility that may be.
+    pub fn clear(&mut self, most: f64) {
+        self.taken.clear();
+        self.most = most;
+    }
+
+    /// False for what is worse in both than a pair taken, and for what is not a number.
+    pub fn accepts(&self, point: Merit) -> bool {
+        point.infeasibility <= self.most
+            && point.objective.is_finite()
+            && self
+                .taken
+                .iter()
+                .all(|t| point.infeasibility < t.infeasibility || point.objective < t.objective)
+    }
+
+    /// Takes a pair, with its margins. At the end of the room the oldest is forgotten.
+    pub fn take(&mut self, point: Merit) {
+        if self.taken.len() == self.taken.capacity() {
+            self.taken.remove(0);
+        }
+        self.taken.push(Merit {
+            infeasibility: (1.0 - LESS_INFEASIBLE) * point.infeasibility,
+            objective: point.objective - LESS_OBJECTIVE * point.infeasibility,
+        });
+    }
+
+    /// True where a point is enough better than another in one of the two.
+    pub fn improves(point: Merit, on: Merit) -> bool {
+        point.infeasibility <= (1.0 - LESS_INFEASIBLE) * on.infeasibility
+            || point.objective <= on.objective - LESS_OBJECTIVE * on.infeasibility
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn merit(infeasibility: f64, objective: f64) -> Merit {
+        Merit {
+            infeasibility,
+            objective,
+        }
+    }
+
+    #[test]
+    fn what_is_worse_in_both_is_refused_and_the_room_is_kept() {
+        let mut filter = Filter::new(2);
+        filter.clear(10.0);
+        filter.take(merit(1.0, 1.0));
+        assert!(!filter.accepts(merit(1.0, 1.0)) && !filter.accepts(merit(2.0, 3.0)));
+        assert!(filter.accepts(merit(0.5, 9.0)) && filter.accepts(merit(2.0, 0.5)));
+        assert!(!filter.accepts(merit(11.0, 0.0)) && !filter.accepts(merit(f64::NAN, 0.0)));
+        assert!(
+            !filter.accepts(merit(0.0, f64::NAN)) && !filter.accepts(merit(0.0, f64::NEG_INFINITY))
+        );
+        for _ in 0..5 {
+            filter.take(merit(0.1, 0.1));
+        }
+        assert_eq!(filter.taken.capacity(), 2);
+    }
+}

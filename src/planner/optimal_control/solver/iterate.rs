@@ -1,0 +1,135 @@
+//! A point of the interior-point method: primal and dual, kept from one solve to the next.
+
+use super::dense::Vector;
+use super::stage::{Multipliers, Point, StageProblem};
+
+/// A row `row + elastic - slack = 0`, both not negative, the elastic at a price.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RowPoint {
+    /// What the row exceeds zero by.
+    pub slack: f64,
+    /// What it falls short by.
+    pub elastic: f64,
+    /// Multiplier of the row and of its slack, below the penalty.
+    pub multiplier: f64,
+    /// Multiplier of the elastic.
+    pub price: f64,
+}
+
+impl RowPoint {
+    /// Where both products are `barrier` and the row's equation holds: the root of a quadratic, in the form that does
+    /// not cancel.
+    pub fn central(row: f64, barrier: f64, penalty: f64) -> Self {
+        let spread = (row * penalty).hypot(2.0 * barrier);
+        // z or penalty - z, whichever is the smaller, from a sum
+        let small = 2.0 * barrier * penalty / (row.abs() * penalty + 2.0 * barrier + spread);
+        let (multiplier, price) = if row >= 0.0 {
+            (small, penalty - small)
+        } else {
+            (penalty - small, small)
+        };
+        Self {
+            slack: barrier / multiplier,
+            elastic: barrier / price,
+            multiplier,
+            price,
+        }
+    }
+}
+
+/// States, controls and every multiplier. Start of a solve and, afterwards, its result: a later solve may go on
+/// from it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Iterate<const N: usize, const M: usize> {
+    /// One more than stages; the first is the given one.
+    pub states: Vec<Vector<N>>,
+    /// Per stage.
+    pub controls: Vec<Vector<M>>,
+    /// Of the defects, per stage.
+    pub multipliers: Vec<Vector<N>>,
+    /// Of the lower limits of the controls, per stage.
+    pub low: Vec<Vector<M>>,
+    /// Of the upper ones.
+    pub high: Vec<Vector<M>>,
+    /// All rows, stage after stage.
+    pub rows: Vec<RowPoint>,
+}
+
+impl<const N: usize, const M: usize> Iterate<N, M> {
+    /// A guess without multipliers: the solve makes its own.
+    pub fn guess(states: Vec<Vector<N>>, controls: Vec<Vector<M>>) -> Self {
+        Self {
+            states,
+            controls,
+            multipliers: Vec::new(),
+            low: Vec::new(),
+            high: Vec::new(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// The variables of one stage.
+    pub fn point(&self, stage: usize) -> Point<'_, N, M> {
+        Point {
+            x: &self.states[stage],
+            u: &self.controls[stage],
+            y: &self.states[stage + 1],
+        }
+    }
+
+    /// Multipliers of the defect and of the rows of a stage; `row_values` are the rows' multipliers, all stages'.
+    pub(super) fn multipliers<'a>(
+        &'a self,
+        stage: usize,
+        row_values: &'a [f64],
+    ) -> Multipliers<'a, N> {
+        Multipliers {
+            defect: &self.multipliers[stage],
+            rows: row_values,
+        }
+    }
+
+    /// True when sizes and numbers fit the problem; multipliers may be missing altogether.
+    pub(super) fn fits(&self, problem: &impl StageProblem<N, M>, rows: usize) -> bool {
+        let n = problem.stages();
+        let sized = self.states.len() == n + 1
+            && self.controls.len() == n
+            && [0, n].contains(&self.multipliers.len())
+            && self.low.len() == self.multipliers.len()
+            && self.high.len() == self.multipliers.len()
+            && (self.multipliers.is_empty() || self.rows.len() == rows);
+        let finite = |v: &[f64]| v.iter().all(|x| x.is_finite());
+        sized
+            && self.states.iter().all(|x| finite(x.as_slice()))
+            && self.controls.iter().all(|x| finite(x.as_slice()))
+            && self.multipliers.iter().all(|x| finite(x.as_slice()))
+    }
+
+    /// True when multipliers came with it.
+    pub(super) fn is_warm(&self) -> bool {
+        !self.multipliers.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_central_row_solves_its_three_equations() {
+        for row in [-1e6, -3.0, -1e-9, 0.0, 1e-12, 0.4, 70.0, 1e8] {
+            for barrier in [1.0, 1e-4, 1e-9] {
+                let p = RowPoint::central(row, barrier, 100.0);
+                assert!(p.slack > 0.0 && p.elastic > 0.0, "{row} {barrier} {p:?}");
+                assert!((p.slack * p.multiplier - barrier).abs() <= 1e-12 * barrier);
+                assert!((p.elastic * p.price - barrier).abs() <= 1e-12 * barrier);
+                assert!((p.multiplier + p.price - 100.0).abs() < 1e-12);
+                let off = row + p.elastic - p.slack;
+                assert!(
+                    off.abs() <= 1e-9 * (1.0 + row.abs()),
+                    "{row} {barrier} {off:e}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! The Newton step by a recursion over the stages: the cost is linear in their number.
+
+use super::dense::{Cholesky, Lu, Matrix, Vector};
+use super::stage::{Blocks, Derivatives, Triple};
+
+/// One stage of the equations
+///
+/// ```text
+/// min  sum 1/2 d' H d + g . d     s.t.  defect + C d = 0,    d = (dx, du, dy)
+/// ```
+///
+/// factorised: `dy = A dx + B du + b` from the stage's own equations, `du = K dx + k` from the cost to go.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StageFactor<const N: usize, const M: usize> {
+    equations: Lu<N>,
+    by_state: Matrix<N, N>,
+    by_control: Matrix<N, M>,
+    constant: Vector<N>,
+    /// Of the stage, the part of `H` that holds the state after with the cost to go from there added to `yy`.
+    after: Blocks<N, M>,
+    cholesky: Cholesky<M>,
+    gain: Matrix<M, N>,
+    feed: Vector<M>,
+    /// `ux` of the condensed stage.
+    mixed: Matrix<M, N>,
+    /// Linear part of the cost to go from the state after, with the stage's own.
+    slope: Vector<N>,
+}
+
+impl<const N: usize, const M: usize> StageFactor<N, M> {
+    pub fn new() -> Self {
+        Self {
+            equations: Lu::identity(),
+            by_state: Matrix::zeros(),
+            by_control: Matrix::zeros(),
+            constant: Vector::zeros(),
+            after: Blocks::zeros(),
+            cholesky: Cholesky::identity(),
+            gain: Matrix::zeros(),
+            feed: Vector::zeros(),
+            mixed: Matrix::zeros(),
+            slope: Vector::zeros(),
+        }
+    }
+}
+
+/// Solves every stage's equations for the state after. False where they do not determine it. O(stages N³).
+pub(super) fn eliminate<const N: usize, const M: usize>(
+    factors: &mut [StageFactor<N, M>],
+    derivatives: &[Derivatives<N, M>],
+) -> bool {
+    for (factor, stage) in factors.iter_mut().zip(derivatives) {
+        let Some(lu) = Lu::new(stage.defect_y) else {
+            return false;
+        };
+        factor.equations = lu;
+        factor.by_state = -stage.defect_x;
+        lu.solve(&mut factor.by_state);
+        factor.by_control = -stage.defect_u;
+        lu.solve(&mut factor.by_control);
+    }
+    true
+}
+
+/// Factorises from the last stage to the first. False where a condensed control block is not positive definite: then
+/// the equations have the wrong inertia. O(stages (N + M)³).
+pub(super) fn factorise<const N: usize, const M: usize>(
+    factors: &mut [StageFactor<N, M>],
+    hessian: &[Blocks<N, M>],
+) -> bool {
+    let mut to_go = Matrix::<N, N>::zeros();
+    for (factor, h) in factors.iter_mut().zip(hessian).rev() {
+        let (a, b) = (&factor.by_state, &factor.by_control);
+        factor.after = *h;
+        factor.after.yy += to_go;
+        // the products with the state after, each once
+        let half_a = factor.after.yy * a * 0.5 + h.yx;
+        let full_b = factor.after.yy * b + h.yu;
+        let mixed = h.ux + full_b.tr_mul(a) + b.tr_mul(&h.yx);
+        let across = full_b.tr_mul(b);
+        let uu = h.uu + 0.5 * (across + across.transpose()) + symmetric_half(&h.yu, b);
+        let Some(cholesky) = Cholesky::new(&uu) else {
+            return false;
+        };
+        let mut gain = -mixed;
+        cholesky.solve(&mut gain);
+        let round = half_a.tr_mul(a);
+        let square = mixed.tr_mul(&gain);
+        to_go = h.xx + round + round.transpose() + 0.5 * (square + square.transpose());
+        factor.cholesky = cholesky;
+        factor.gain = gain;
+        factor.mixed = mixed;
+    }
+    true
+}
+
+/// The part of `h' b + b' h` that `(yy b + h)' b`, made symmetric, has not.
+fn symmetric_half<const N: usize, const M: usize>(
+    h: &Matrix<N, M>,
+    b: &Matrix<N, M>,
+) -> Matrix<M, M> {
+    let across = h.tr_mul(b);
+    0.5 * (across + across.transpose())
+}
+
+/// What changes from one solution with the same factors to another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RightSide<'a, const N: usize, const M: usize> {
+    /// `g`, per stage.
+    pub gradient: &'a [Triple<N, M>],
+    /// Per stage.
+    pub defect: &'a [Vector<N>],
+}
+
+/// The step and the new multipliers of the equations; `steps[k].y` is `steps[k + 1].x`. O(stages N²).
+pub(super) fn solve<const N: usize, const M: usize>(
+    factors: &mut [StageFactor<N, M>],
+    right: RightSide<N, M>,
+    steps: &mut [Triple<N, M>],
+    multipliers: &mut [Vector<N>],
+) {
+    let mut slope = Vector::<N>::zeros();
+    for (k, factor) in factors.iter_mut().enumerate().rev() {
+        let g = &right.gradient[k];
+        factor.constant = -right.defect[k];
+        factor.equations.solve(&mut factor.constant);
+        factor.slope = g.y + slope;
+        let to_go = factor.slope + factor.after.yy * factor.constant;
+        let mut feed =
+            -(g.u + factor.by_control.tr_mul(&to_go) + factor.after.yu.tr_mul(&factor.constant));
+        let bent = g.x + factor.by_state.tr_mul(&to_go) + factor.after.yx.tr_mul(&factor.constant);
+        factor.cholesky.solve(&mut feed);
+        slope = bent + factor.mixed.tr_mul(&feed);
+        factor.feed = feed;
+    }
+    let mut x = Vector::<N>::zeros();
+    for (k, factor) in factors.iter().enumerate() {
+        let u = factor.gain * x + factor.feed;
+        let y = factor.by_state * x + factor.by_control * u + factor.constant;
+        let mut multiplier =
+            -(factor.after.yx * x + factor.after.yu * u + factor.after.yy * y + factor.slope);
+        factor.equations.solve_transposed(&mut multiplier);
+        multipliers[k] = multiplier;
+        steps[k] = Triple { x, u, y };
+        x = y;
+    }
+}

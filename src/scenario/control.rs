@@ -1,0 +1,149 @@
+//! The table `[planner.optimal_control]`.
+
+use super::file::{Entry, Range, Word};
+use super::limits;
+use super::section::Section;
+use crate::planner::ControlSettings;
+use crate::vessel::{ForceVector, StateVector, VesselKind};
+
+/// The settings of a planner's table; the defaults where there is none.
+pub(super) fn control_settings(planner: &mut Section) -> Option<ControlSettings> {
+    let Some(entry) = planner.take("optimal_control") else {
+        return Some(ControlSettings::of(VesselKind::CyberShip2));
+    };
+    let mut section = entry.section("a table")?;
+    let words = VesselKind::ALL.map(|kind| (kind.word(), Word::Means(kind)));
+    let vessel = if section.has("vessel") {
+        section.choice("vessel", &words)
+    } else {
+        Some(VesselKind::CyberShip2)
+    };
+    let limits = match section.take("force_limits") {
+        Some(entry) => force_limits(&entry).map(Some),
+        None => Some(None),
+    };
+    let intervals = match section.take("intervals") {
+        Some(entry) => intervals(&entry).map(Some),
+        None => Some(None),
+    };
+    let state = weights::<6>(&mut section, "state_weights", limits::STATE_WEIGHT);
+    let force = weights::<3>(&mut section, "control_weights", limits::FORCE_WEIGHT);
+    section.finish();
+    let default = ControlSettings::of(vessel?);
+    Some(ControlSettings {
+        vessel: default.vessel,
+        force_limits: limits?.unwrap_or(default.force_limits),
+        intervals: intervals?.unwrap_or(default.intervals),
+        state_weights: state?.map_or(default.state_weights, StateVector::from),
+        // sway and yaw have the sign of starboard in files, which a square does not see
+        force_weights: force?.map_or(default.force_weights, ForceVector::from),
+    })
+}
+
+fn force_limits(entry: &Entry) -> Option<ForceVector> {
+    let mut section = entry.section("a table { surge_n, sway_n, yaw_nm }")?;
+    let [surge, sway, yaw] =
+        ["surge_n", "sway_n", "yaw_nm"].map(|key| section.required_number(key, limits::FORCE));
+    section.finish();
+    Some(ForceVector::new(surge?, sway?, yaw?))
+}
+
+fn intervals(entry: &Entry) -> Option<usize> {
+    let number = entry.number(limits::INTERVALS)?;
+    if number.fract() == 0.0 {
+        Some(number as usize)
+    } else {
+        entry.refuse(format_args!("a whole number {}", limits::INTERVALS))
+    }
+}
+
+/// A list of exactly `N` weights; `Some(None)` where there is none.
+fn weights<const N: usize>(
+    section: &mut Section,
+    key: &str,
+    range: Range,
+) -> Option<Option<[f64; N]>> {
+    let Some(entry) = section.take(key) else {
+        return Some(None);
+    };
+    let numbers = entry.numbers(range)?;
+    let count = numbers.len();
+    match <[f64; N]>::try_from(numbers) {
+        Ok(weights) => Some(Some(weights)),
+        Err(_) => {
+            entry.fault(format_args!("{count} numbers"), format_args!("{N} numbers"));
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Fault, Scenario};
+    use super::*;
+
+    const LEAST: &str = r#"
+title = "least"
+horizon_s = 100
+own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 0.2, length_m = 1.255, beam_m = 0.29, turning_radius_m = 2 }
+mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 20, north_m = 0 }] }
+[planner]
+kind = "optimal-control"
+"#;
+
+    fn settings(table: &str) -> Result<ControlSettings, Vec<String>> {
+        let text = format!("{LEAST}[planner.optimal_control]\n{table}");
+        let faults = |faults: Vec<Fault>| faults.into_iter().map(|f| f.path).collect();
+        Scenario::parse(&text).map(|s| s.control).map_err(faults)
+    }
+
+    #[test]
+    fn what_is_left_out_is_that_of_the_ship() {
+        let default = ControlSettings::of(VesselKind::CyberShip2);
+        assert_eq!(settings(""), Ok(default));
+        assert_eq!(default.force_limits, ForceVector::new(2.0, 1.5, 1.5));
+        let full = settings("vessel = \"cybership2-full\"").expect("valid");
+        assert!((full.force_limits[0] - 2.0 * 343e3).abs() < 1e-6);
+        assert!((full.force_limits[2] - 1.5 * 343e3 * 70.0).abs() < 1e-3);
+        let given = "intervals = 80\nforce_limits = { surge_n = 1, sway_n = 0.5, yaw_nm = 0.25 }\n\
+                     state_weights = [1, 2, 3, 4, 5, 6]\ncontrol_weights = [7, 8, 9]";
+        let given = settings(given).expect("valid");
+        assert_eq!(given.intervals, 80);
+        assert_eq!(given.force_limits, ForceVector::new(1.0, 0.5, 0.25));
+        assert_eq!(
+            given.state_weights,
+            StateVector::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+        );
+        assert_eq!(given.force_weights, ForceVector::new(7.0, 8.0, 9.0));
+    }
+
+    #[test]
+    fn one_mistake_is_one_fault() {
+        for (table, path) in [
+            ("vessel = \"tanker\"", "vessel"),
+            ("intervals = 0", "intervals"),
+            ("intervals = 12.5", "intervals"),
+            ("intervals = 2001", "intervals"),
+            (
+                "force_limits = { surge_n = 0, sway_n = 1, yaw_nm = 1 }",
+                "force_limits.surge_n",
+            ),
+            (
+                "force_limits = { surge_n = 1, sway_n = -1, yaw_nm = 1 }",
+                "force_limits.sway_n",
+            ),
+            (
+                "force_limits = { surge_n = 1, sway_n = 1 }",
+                "force_limits.yaw_nm",
+            ),
+            ("state_weights = [1, 1, 1, 1, 1]", "state_weights"),
+            ("state_weights = [1, 1, -1, 1, 1, 1]", "state_weights[2]"),
+            ("control_weights = [1, 0, 1]", "control_weights[1]"),
+            ("control_weights = [1, nan, 1]", "control_weights[1]"),
+            ("weights = [1]", "weights"),
+        ] {
+            let path = format!("planner.optimal_control.{path}");
+            assert_eq!(settings(table), Err(vec![path]), "{table}");
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! Motion under forces: states at nodes, forces held between them.
+
+use super::TrajectoryError;
+use crate::frame::{Pose, Vector, direction, to_port};
+
+/// The state of a ship at an instant, and the forces on her from then on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Seconds.
+    pub time: f64,
+    /// Where she is; the heading goes on through full circles.
+    pub pose: Pose,
+    /// Velocity in the ship's frame: surge ahead and sway to port, m/s.
+    pub velocity: Vector,
+    /// rad/s, counter-clockwise.
+    pub yaw_rate: f64,
+    /// Surge ahead and sway to port, newtons; held until the next node.
+    pub force: Vector,
+    /// Newton metres, counter-clockwise; held until the next node.
+    pub moment: f64,
+}
+
+impl Node {
+    /// Over ground, m/s.
+    pub fn ground_velocity(&self) -> Vector {
+        let ahead = self.pose.ahead();
+        ahead * self.velocity.x + to_port(ahead) * self.velocity.y
+    }
+
+    fn is_finite(&self) -> bool {
+        [
+            self.time,
+            self.pose.position.x,
+            self.pose.position.y,
+            self.pose.heading,
+            self.velocity.x,
+            self.velocity.y,
+            self.yaw_rate,
+            self.force.x,
+            self.force.y,
+            self.moment,
+        ]
+        .iter()
+        .all(|v| v.is_finite())
+    }
+}
+
+/// A motion given at nodes. Between two of them position and heading are the cubics through both with both rates: what a
+/// plan of forces claims to sail. How near the ship comes to that is for a check to say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Steered {
+    nodes: Vec<Node>,
+}
+
+impl Steered {
+    /// From at least two nodes of finite numbers, one after another in time.
+    pub fn new(nodes: Vec<Node>) -> Result<Self, TrajectoryError> {
+        if nodes.len() < 2 {
+            return Err(TrajectoryError::Empty);
+        }
+        for (index, node) in nodes.iter().enumerate() {
+            let later = index == 0 || node.time > nodes[index - 1].time;
+            if !node.is_finite() || !later {
+                return Err(TrajectoryError::Invalid { index });
+            }
+        }
+        Ok(Self { nodes })
+    }
+
+    /// In order of time.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// From each node to the next.
+    pub fn pieces(&self) -> impl Iterator<Item = Cubic> + '_ {
+        self.nodes
+            .windows(2)
+            .map(|pair| Cubic::from_nodes(&pair[0], &pair[1]))
+    }
+
+    /// The piece in force at `time`; before the start the first, after the end the last.
+    pub fn piece_at(&self, time: f64) -> Cubic {
+        let after = self.nodes.partition_point(|node| node.time <= time);
+        let index = after.clamp(1, self.nodes.len() - 1);
+        Cubic::from_nodes(&self.nodes[index - 1], &self.nodes[index])
+    }
+
+    /// The node in force at `time`, clamped as the pieces are.
+    pub fn node_at(&self, time: f64) -> &Node {
+        let after = self.nodes.partition_point(|node| node.time <= time);
+        &self.nodes[after.clamp(1, self.nodes.len()) - 1]
+    }
+
+    /// Metres along the way, to about a thousandth of a per cent.
+    pub fn length(&self) -> f64 {
+        // Simpson on quarters of each piece
+        let speed = |piece: &Cubic, part: f64| piece.velocity(part).norm();
+        self.pieces()
+            .map(|piece| {
+                (0..4)
+                    .map(|k| 0.25 * f64::from(k))
+                    .map(|from| {
+                        speed(&piece, from)
+                            + 4.0 * speed(&piece, from + 0.125)
+                            + speed(&piece, from + 0.25)
+                    })
+                    .sum::<f64>()
+                    * piece.duration
+                    / 24.0
+            })
+            .sum()
+    }
+}
+
+/// Motion between two instants: position and heading are cubics of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cubic {
+    /// Seconds.
+    pub start_time: f64,
+    /// Seconds, positive.
+    pub duration: f64,
+    /// Position and its rate over ground at both ends.
+    pub positions: [Vector; 2],
+    /// m/s.
+    pub velocities: [Vector; 2],
+    /// Heading and yaw rate at both ends.
+    pub headings: [f64; 2],
+    /// rad/s.
+    pub yaw_rates: [f64; 2],
+}
+
+/// The largest that some derivatives become in a piece, in absolute value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// m/s.
+    pub speed: f64,
+    /// m/s².
+    pub acceleration: f64,
+    /// rad/s.
+    pub yaw_rate: f64,
+    /// rad/s².
+    pub yaw_acceleration: f64,
+}
+
+impl Cubic {
+    /// From a node to the next one.
+    pub fn from_nodes(from: &Node, to: &Node) -> Self {
+        Self {
+            start_time: from.time,
+            duration: to.time - from.time,
+            positions: [from.pose.position, to.pose.position],
+            velocities: [from.ground_velocity(), to.ground_velocity()],
+            headings: [from.pose.heading, to.pose.heading],
+            yaw_rates: [from.yaw_rate, to.yaw_rate],
+        }
+    }
+
+    /// The same cubics between two times within it, the second one later.
+    pub fn between(&self, from: f64, to: f64) -> Self {
+        let [a, b] = [from, to].map(|time| self.part(time));
+        Self {
+            start_time: from,
+            // an instant is a piece, too: parts of it are 0
+            duration: (to - from).max(f64::MIN_POSITIVE),
+            positions: [self.position(a), self.position(b)],
+            velocities: [self.velocity(a), self.velocity(b)],
+            headings: [self.pose_at(from).heading, self.pose_at(to).heading],
+            yaw_rates: [self.yaw_rate_at(from), self.yaw_rate_at(to)],
+        }
+    }
+
+    /// Seconds.
+    pub fn end_time(&self) -> f64 {
+        self.start_time + self.duration
+    }
+
+    /// Of the duration, at a time in seconds.
+    pub fn part(&self, time: f64) -> f64 {
+        (time - self.start_time) / self.duration
+    }
+
+    /// Position at a part of the duration, in `[0, 1]`.
+    pub fn position(&self, part: f64) -> Vector {
+        let [a, b, c, d] = hermite(part);
+        self.positions[0] * a
+            + self.velocities[0] * (b * self.duration)
+            + self.positions[1] * c
+            + self.velocities[1] * (d * self.duration)
+    }
+
+    /// m/s at a part of the duration.
+    pub fn velocity(&self, part: f64) -> Vector {
+        let [a, b, c, d] = hermite_rate(part);
+        self.positions[0] * (a / self.duration)
+            + self.velocities[0] * b
+            + self.positions[1] * (c / self.duration)
+            + self.velocities[1] * d
+    }
+
+    /// Pose at a time in seconds; outside its time the cubic goes on.
+    pub fn pose_at(&self, time: f64) -> Pose {
+        let part = self.part(time);
+        let [a, b, c, d] = hermite(part);
+        let heading = self.headings[0] * a
+            + self.yaw_rates[0] * (b * self.duration)
+            + self.headings[1] * c
+            + self.yaw_rates[1] * (d * self.duration);
+        Pose::new(self.position(part), heading)
+    }
+
+    /// rad/s at a time in seconds.
+    pub fn yaw_rate_at(&self, time: f64) -> f64 {
+        let [a, b, c, d] = hermite_rate(self.part(time));
+        (self.headings[0] * a + self.headings[1] * c) / self.duration
+            + self.yaw_rates[0] * b
+            + self.yaw_rates[1] * d
+    }
+
+    /// Bounds over the whole piece: second derivatives of cubics are largest at an end, first ones are within half of
+    /// that times the duration of the mean.
+    pub fn bounds(&self) -> Bounds {
+        let t = self.duration;
+        let ends = |rise: f64, first: f64, last: f64| {
+            [
+                (6.0 * rise / t - 4.0 * first - 2.0 * last) / t,
+                (-6.0 * rise / t + 2.0 * first + 4.0 * last) / t,
+            ]
+        };
+        let rise = self.positions[1] - self.positions[0];
+        let [x, y] = [0, 1].map(|i| ends(rise[i], self.velocities[0][i], self.velocities[1][i]));
+        let acceleration = [0, 1]
+            .map(|end| Vector::new(x[end], y[end]).norm())
+            .into_iter()
+            .fold(0.0, f64::max);
+        let turn = self.headings[1] - self.headings[0];
+        let [a, b] = ends(turn, self.yaw_rates[0], self.yaw_rates[1]);
+        let yaw_acceleration = a.abs().max(b.abs());
+        let [v, w] = self.velocities.map(|v| v.norm());
+        let [p, q] = self.yaw_rates.map(f64::abs);
+        Bounds {
+            speed: v.max(w) + 0.5 * acceleration * t,
+            acceleration,
+            yaw_rate: p.max(q) + 0.5 * yaw_acceleration * t,
+            yaw_acceleration,
+        }
+    }
+}
+
+/// The four cubics of Hermite: weights of a value, its rate times the duration, the value and that at the end.
+pub fn hermite(part: f64) -> [f64; 4] {
+    let (s, r) = (part, 1.0 - part);
+    [
+        r * r * (1.0 + 2.0 * s),
+        s * r * r,
+        s * s * (3.0 - 2.0 * s),
+        -s * s * r,
+    ]
+}
+
+/// Their derivatives.
+fn hermite_rate(part: f64) -> [f64; 4] {
+    let (s, r) = (part, 1.0 - part);
+    [
+        -6.0 * s * r,
+        r * (1.0 - 3.0 * s),
+        6.0 * s * r,
+        s * (3.0 * s - 2.0),
+    ]
+}
+
+/// Speed along the heading and course over ground differ where she drifts.
+impl Cubic {
+    /// Forward and port components of the velocity at a time, m/s.
+    pub fn body_velocity_at(&self, time: f64) -> Vector {
+        let velocity = self.velocity(self.part(time));
+        let ahead = direction(self.pose_at(time).heading);
+        Vector::new(ahead.dot(&velocity), to_port(ahead).dot(&velocity))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn node(time: f64, x: f64, y: f64, heading: f64) -> Node {
+        Node {
+            time,
+            pose: Pose::new(Vector::new(x, y), heading),
+            velocity: Vector::new(0.3 + 0.1 * x, -0.1),
+            yaw_rate: 0.2 - 0.1 * heading,
+            force: Vector::zeros(),
+            moment: 0.0,
+        }
+    }
+
+    fn motion() -> Steered {
+        Steered::new(vec![
+            node(0.0, 0.0, 0.0, 0.0),
+            node(2.0, 0.5, 0.3, 0.4),
+            node(5.0, 1.5, -0.3, 1.1),
+        ])
+        .expect("in order")
+    }
+
+    #[test]
+    fn pieces_meet_with_their_rates_and_stay_within_their_bounds() {
+        let motion = motion();
+        for (piece, pair) in motion.pieces().zip(motion.nodes().windows(2)) {
+            assert!((piece.pose_at(pair[1].time).position - pair[1].pose.position).norm() < 1e-12);
+            assert!((piece.velocity(0.0) - pair[0].ground_velocity()).norm() < 1e-12);
+            assert!((piece.body_velocity_at(pair[1].time) - pair[1].velocity).norm() < 1e-12);
+            assert!((piece.yaw_rate_at(pair[0].time) - pair[0].yaw_rate).abs() < 1e-12);
+            let (from, to) = (piece.start_time + 0.3, piece.start_time + 1.1);
+            let cut = piece.between(from, to);
+            for time in [from, from + 0.5, to] {
+                assert!((cut.pose_at(time).position - piece.pose_at(time).position).norm() < 1e-12);
+                assert!((cut.yaw_rate_at(time) - piece.yaw_rate_at(time)).abs() < 1e-12);
+            }
+            let bounds = piece.bounds();
+            for k in 0..200 {
+                let t = piece.start_time + piece.duration * f64::from(k) / 200.0;
+                let step = 1e-5;
+                let velocity = (piece.pose_at(t + step).position
+                    - piece.pose_at(t - step).position)
+                    / (2.0 * step);
+                assert!((velocity - piece.velocity(piece.part(t))).norm() < 1e-8);
+                let bend = (piece.velocity(piece.part(t + step))
+                    - piece.velocity(piece.part(t - step)))
+                    / (2.0 * step);
+                assert!(bend.norm() <= bounds.acceleration + 1e-6);
+                assert!(velocity.norm() <= bounds.speed + 1e-9);
+                assert!(piece.yaw_rate_at(t).abs() <= bounds.yaw_rate + 1e-9);
+                let turn =
+                    (piece.yaw_rate_at(t + step) - piece.yaw_rate_at(t - step)) / (2.0 * step);
+                assert!(turn.abs() <= bounds.yaw_acceleration + 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn the_length_is_that_of_a_dense_sum() {
+        let motion = motion();
+        let n = 20_000;
+        let at = |k: i32| {
+            let t = 5.0 * f64::from(k) / f64::from(n);
+            motion.piece_at(t).pose_at(t).position
+        };
+        let dense: f64 = (0..n).map(|k| (at(k + 1) - at(k)).norm()).sum();
+        assert!(
+            (motion.length() - dense).abs() < 2e-3 * dense,
+            "{} {dense}",
+            motion.length()
+        );
+        assert_eq!(motion.node_at(-1.0).time, 0.0);
+        assert_eq!(motion.node_at(2.5).time, 2.0);
+        assert_eq!(motion.node_at(9.0).time, 5.0);
+    }
+
+    #[test]
+    fn disorder_is_refused() {
+        assert!(Steered::new(vec![node(0.0, 0.0, 0.0, 0.0)]).is_err());
+        assert!(Steered::new(vec![node(1.0, 0.0, 0.0, 0.0), node(1.0, 1.0, 0.0, 0.0)]).is_err());
+        assert!(
+            Steered::new(vec![
+                node(0.0, 0.0, 0.0, 0.0),
+                node(1.0, f64::NAN, 0.0, 0.0)
+            ])
+            .is_err()
+        );
+    }
+}

@@ -1,0 +1,59 @@
+//! The interior-point iteration allocates nothing.
+
+mod optimal_control_scenes;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use optimal_control_scenes as scenes;
+use searoom::planner::optimal_control::solver::{Iterate, Settings, Workspace, solve};
+
+struct Counting;
+
+static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: hands everything on to the system's allocator
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller's
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Alone in its program: another test's thread would be counted, too.
+#[test]
+fn steps_allocate_nothing() {
+    let desired = scenes::desired();
+    let keep_outs = scenes::figure_9();
+    let task = scenes::task(&desired, &keep_outs, 50);
+    let guess = scenes::straight(&task);
+    let problem = task.transcription();
+    let mut work = Workspace::new(&problem);
+    let mut counts = Vec::with_capacity(3);
+    let mut steps = Vec::with_capacity(3);
+    for max_iterations in [1, 10, 200] {
+        let mut at = Iterate::guess(guess.states.clone(), guess.forces.clone());
+        let settings = Settings {
+            max_iterations,
+            ..Settings::default()
+        };
+        let before = COUNT.load(Ordering::Relaxed);
+        let report = solve(&problem, &mut at, &mut work, &settings, &|| true);
+        counts.push(COUNT.load(Ordering::Relaxed) - before);
+        steps.push(report.iterations);
+    }
+    assert!(steps[2] > 25 && steps[0] == 1, "{steps:?}");
+    // the multipliers at the start, however many steps follow
+    assert_eq!(counts[0], counts[2], "{counts:?} in {steps:?} steps");
+    assert_eq!(counts[0], counts[1]);
+    assert!(counts[0] <= 4, "{counts:?}");
+}
