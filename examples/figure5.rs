@@ -9,6 +9,7 @@ mod shared;
 use std::time::Duration;
 
 use searoom::frame::{Pose, Vector};
+use searoom::obstacle::Coast;
 use searoom::planner::{Objective, Problem, SearchKind, path_time};
 use searoom::report::figure::{
     Figure, FigureError, ProfileLine, Stroke, path_panel, path_time_panel,
@@ -38,10 +39,12 @@ fn main() -> Result<(), FigureError> {
         alternatives: &[],
         objective: Objective::Time,
         obstacles: &obstacles,
+        coast: Coast::none(),
         horizon: 200.0,
         time_weight: 1.0,
         search: SearchKind::AStar,
         deadline: Duration::from_secs(5),
+        first_turn: None,
     });
     let diagram = planned.path_time.expect("a diagram");
     let line = ProfileLine {
