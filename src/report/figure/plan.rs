@@ -1,14 +1,17 @@
 //! The figure of a plan: the chart, and of a path-time plan its diagram.
 
+use kuva::render::plots::Plot;
+
 use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
 use super::{Figure, Panel, Window};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{self, ConvexPolygon};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::Run;
 use crate::report::words;
+use crate::scenario::Land;
 
 /// The desired trajectory.
 const DESIRED: Stroke = Stroke {
@@ -31,8 +34,8 @@ const ALTERNATIVE: Stroke = Stroke {
     dashed: false,
 };
 
-/// Land.
-const LAND: &str = "#e4dcc3";
+/// Of land.
+const LAND: &str = "#d9cba3";
 
 /// Instants at which the sets are drawn, the start among them.
 const MOMENTS: usize = 4;
@@ -103,23 +106,8 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
         }
     }
     let mut panel = Panel::plan(title.to_owned(), PLAN, Window::around(shown, 0.06));
-    let window = panel.window();
-    let beyond = |v: &Vector| {
-        [
-            window.low.x - v.x,
-            v.x - window.high.x,
-            window.low.y - v.y,
-            v.y - window.high.y,
-        ]
-    };
-    for piece in &run.land {
-        let vertices = piece.vertices();
-        // all of it on the far side of one edge of the window
-        let away = (0..4).any(|side| vertices.iter().all(|v| beyond(v)[side] > 0.0));
-        if !away {
-            panel.plots.extend(area(piece, LAND, 1.0));
-        }
-    }
+    let land = scenario.land.as_ref();
+    panel.plots.extend(land_areas(land, panel.window()));
     for (index, k, boundary) in &sets {
         let colour = target_colour(*index);
         let opacity = 0.10 + 0.30 * (1.0 - *k as f64 / MOMENTS as f64);
@@ -149,6 +137,14 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
         panel.point_key(&format!("at {} s", list.join(", ")), PLANNED.colour);
     }
     panel.line_key("desired", DESIRED);
+    if land.is_some() {
+        let stroke = Stroke {
+            colour: LAND,
+            width: 3.0,
+            dashed: false,
+        };
+        panel.line_key("land", stroke);
+    }
     for (index, obstacle) in run.obstacles.iter().enumerate() {
         let stroke = Stroke {
             colour: target_colour(index),
@@ -158,4 +154,17 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
         panel.line_key(&format!("set of {}", obstacle.name()), stroke);
     }
     panel
+}
+
+/// The land within a window, filled, piece by piece.
+fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
+    let window = geometry::Window {
+        low: shown.low,
+        high: shown.high,
+    };
+    land.into_iter()
+        .flat_map(|land| land.map.pieces_within(&window))
+        .filter_map(|piece| ConvexPolygon::hull(&window.part_of(piece)).ok())
+        .filter_map(|piece| area(&piece, LAND, 1.0))
+        .collect()
 }
