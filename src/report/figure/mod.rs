@@ -5,6 +5,7 @@
 
 mod assessment;
 mod field;
+mod motion;
 mod outline;
 mod panel;
 mod render;
@@ -13,6 +14,7 @@ mod window;
 
 pub use assessment::assessment_figure;
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};
+pub use motion::plan_figure;
 pub use panel::Panel;
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
