@@ -40,17 +40,56 @@ fn harbour() -> Arc<Map> {
     Arc::new(Map::read(&file, &earth).expect("a map"))
 }
 
+/// Where scenes lie, and the ship in them.
+struct Waters {
+    name: &'static str,
+    /// Metres from land that some waypoint, or some place of the path, is within.
+    near: f64,
+    land_margin: f64,
+    safety_margin: f64,
+    hull: Hull,
+    turning_radius: f64,
+    speeds: [f64; 3],
+    legs: std::ops::Range<f64>,
+}
+
+/// A small ferry in the fjord and among the piers, and a boat along the quays, in the basins and in the river.
+const FJORD: Waters = Waters {
+    name: "fjord",
+    near: 250.0,
+    land_margin: 10.0,
+    safety_margin: 20.0,
+    hull: Hull {
+        length: 20.0,
+        beam: 6.0,
+    },
+    turning_radius: 40.0,
+    speeds: [2.0, 4.0, 5.0],
+    legs: 250.0..700.0,
+};
+const QUAYS: Waters = Waters {
+    name: "quays",
+    near: 25.0,
+    land_margin: 2.0,
+    safety_margin: 5.0,
+    hull: Hull {
+        length: 10.0,
+        beam: 3.0,
+    },
+    turning_radius: 20.0,
+    speeds: [1.0, 3.0, 4.0],
+    legs: 120.0..350.0,
+};
+
 /// A path of two or three legs on water, not far from land, and targets that are near it at some time.
-fn scene(map: &Arc<Map>, seed: u64) -> Scenario {
+fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let land = Land {
         map: Arc::clone(map),
-        margin: 10.0,
+        margin: waters.land_margin,
     };
-    let hull = Hull {
-        length: 20.0,
-        beam: 6.0,
-    };
+    let hull = waters.hull;
+    let ends = 1.2 * (hull.half_diagonal() + waters.land_margin);
     let path = loop {
         let start = Vector::new(
             rng.random_range(-1500.0..2500.0),
@@ -60,17 +99,19 @@ fn scene(map: &Arc<Map>, seed: u64) -> Scenario {
         let mut heading = rng.random_range(-3.1..3.1);
         for _ in 0..rng.random_range(2..4) {
             let from = path[path.len() - 1];
-            path.push(from + direction(heading) * rng.random_range(250.0..700.0));
+            path.push(from + direction(heading) * rng.random_range(waters.legs.clone()));
             heading += rng.random_range(-1.2..1.2);
         }
         let off = |p: &Vector| map.signed_distance(*p);
-        let near = path.iter().map(off).fold(f64::INFINITY, f64::min) < 250.0;
-        let ends_free = off(&path[0]) > 40.0 && off(&path[path.len() - 1]) > 40.0;
+        let middles = path.windows(2).map(|p| (p[0] + p[1]) * 0.5);
+        let places: Vec<Vector> = path.iter().copied().chain(middles).collect();
+        let near = places.iter().map(off).fold(f64::INFINITY, f64::min) < waters.near;
+        let ends_free = off(&path[0]) > ends && off(&path[path.len() - 1]) > ends;
         if near && ends_free && land.crossings(&hull, &path).is_empty() {
             break path;
         }
     };
-    let speed = 4.0;
+    let speed = waters.speeds[1];
     let desired = DesiredTrajectory::new(&path, &vec![speed; path.len() - 1]).expect("a path");
     let duration = desired.duration();
     let targets = (0..TARGETS)
@@ -78,7 +119,7 @@ fn scene(map: &Arc<Map>, seed: u64) -> Scenario {
             let meeting = rng.random_range(0.2..0.9) * duration;
             let course = rng.random_range(-3.1..3.1);
             let pace = rng.random_range(2.0..6.0);
-            let aside = Vector::new(rng.random_range(-60.0..60.0), rng.random_range(-60.0..60.0));
+            let aside = Vector::new(rng.random_range(-40.0..40.0), rng.random_range(-40.0..40.0));
             let place = desired.position_at(meeting) + aside - direction(course) * (pace * meeting);
             Target {
                 name: format!("target {k}"),
@@ -86,8 +127,8 @@ fn scene(map: &Arc<Map>, seed: u64) -> Scenario {
                     pose: Pose::new(place, course),
                     speed: pace,
                     hull: Hull {
-                        length: 25.0,
-                        beam: 8.0,
+                        length: 1.2 * hull.length,
+                        beam: 1.2 * hull.beam,
                     },
                     position_std: 0.0,
                     speed_spread: 0.2,
@@ -101,22 +142,22 @@ fn scene(map: &Arc<Map>, seed: u64) -> Scenario {
         .collect();
     let first = desired.legs()[0];
     Scenario {
-        title: format!("harbour {seed}"),
+        title: format!("{} {seed}", waters.name),
         horizon: 2.0 * duration,
         own_ship: OwnShip {
             pose: Pose::new(first.start, searoom::frame::heading_of(first.direction)),
             speed,
             hull,
-            turning_radius: 40.0,
-            speeds: vec![2.0, 4.0, 5.0],
-            safety_margin: 20.0,
+            turning_radius: waters.turning_radius,
+            speeds: waters.speeds.to_vec(),
+            safety_margin: waters.safety_margin,
         },
         desired,
         alternatives: Vec::new(),
+        targets,
         planner: PlannerKind::SpaceTime,
         objective: Objective::SpaceTimeError,
         control: ControlSettings::of(VesselKind::CyberShip2),
-        targets,
         search: SearchKind::AStar,
         compliance: Compliance::Shape,
         time_weight: speed * speed,
@@ -127,69 +168,86 @@ fn scene(map: &Arc<Map>, seed: u64) -> Scenario {
     }
 }
 
-fn scenes() -> Vec<Scenario> {
-    let asked = std::env::var("SEAROOM_HARBOUR").ok();
-    let count = asked.and_then(|n| n.parse().ok()).unwrap_or(30);
-    let map = harbour();
-    (0..count).map(|seed| scene(&map, seed)).collect()
+/// A straight path through Munkholmen, which no file may ask for: a planner is asked all the same.
+fn across_the_island(map: &Arc<Map>, seed: u64) -> Option<Scenario> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut scenario = scene(map, &FJORD, seed);
+    let aside = Vector::new(rng.random_range(-70.0..70.0), rng.random_range(-70.0..70.0));
+    let (middle, heading) = (
+        Vector::new(-331.0, 801.0) + aside,
+        rng.random_range(-3.1..3.1),
+    );
+    let path = [-500.0, 500.0].map(|along| middle + direction(heading) * along);
+    if path.iter().any(|p| map.signed_distance(*p) < 60.0) {
+        return None;
+    }
+    scenario.desired = DesiredTrajectory::new(&path, &[scenario.own_ship.speed]).ok()?;
+    scenario.own_ship.pose = Pose::new(path[0], heading);
+    scenario.targets.clear();
+    scenario.horizon = 600.0;
+    Some(scenario)
 }
 
-#[test]
-fn every_plan_keeps_off_land_and_targets() {
-    let (mut solved, mut conflicts, mut touched) = (0, 0, 0);
-    let mut milliseconds = Vec::new();
-    let mut costs = Vec::new();
-    let scenes = scenes();
-    for scenario in &scenes {
+fn count() -> u64 {
+    let asked = std::env::var("SEAROOM_HARBOUR").ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(30)
+}
+
+fn scenes(waters: &Waters) -> Vec<Scenario> {
+    let map = harbour();
+    (0..count()).map(|seed| scene(&map, waters, seed)).collect()
+}
+
+/// Plans scenes and holds what is claimed of every plan; prints what it took.
+fn hold(name: &str, scenes: &[Scenario]) {
+    let (mut solved, mut near) = (0, 0);
+    let (mut milliseconds, mut costs) = (Vec::new(), Vec::new());
+    for scenario in scenes {
         let run = pipeline::run(scenario.clone());
         milliseconds.push(run.plan_time.as_secs_f64() * 1e3);
-        if std::env::var("SEAROOM_VERBOSE").is_ok() {
-            println!(
-                "{}: {:.1} ms, expanded {}+{}, land pieces {}, {:?}, J {:?}, land {:?}",
-                scenario.title,
-                run.plan_time.as_secs_f64() * 1e3,
-                run.planned.stats.expanded,
-                run.planned.stats.further_expanded,
-                run.land.len(),
-                match &run.planned.outcome {
-                    Outcome::Solved(_) => "solved".to_owned(),
-                    Outcome::Infeasible(why) => why.to_string(),
-                    Outcome::Deadline(_) => "deadline".to_owned(),
-                },
-                run.evaluation.as_ref().map(|e| e.space_time_error),
-                run.evaluation.as_ref().map(|e| e.min_land_distance),
-            );
-        }
         let Outcome::Solved(plan) = &run.planned.outcome else {
             continue;
         };
-        solved += 1;
         let evaluation = run.evaluation.expect("judged");
-        assert!(
-            evaluation.verified(),
-            "{}: {:?}",
-            scenario.title,
-            evaluation.violations
-        );
-        assert!(evaluation.min_land_distance >= 10.0 - 1e-6);
-        conflicts += usize::from(plan.cost > 20.0);
-        touched += usize::from(evaluation.min_land_distance < 20.0);
+        let wrong = &evaluation.violations;
+        assert!(wrong.is_empty(), "{}: {wrong:?}", scenario.title);
+        let margin = scenario.land.as_ref().map_or(0.0, |l| l.margin);
+        assert!(evaluation.min_land_distance >= margin - 1e-6);
+        assert!(evaluation.min_clearance >= -1e-6 || scenario.targets.is_empty());
+        solved += 1;
+        near += usize::from(evaluation.min_land_distance < 2.0 * margin);
         costs.push(plan.cost);
     }
     let all = scenes.len();
-    println!(
-        "solved                      {solved} of {all}, {conflicts} with a conflict, {touched} within 20 m of land"
-    );
-    println!("planning, ms                {}", spread(&milliseconds));
-    println!("space-time error, m²        {}", spread(&costs));
-    assert!(10 * solved >= 9 * all, "{solved} of {all}");
+    println!("{name}: {solved} of {all} solved, {near} within twice the land margin");
+    println!("  planning, ms          {}", spread(&milliseconds));
+    println!("  space-time error, m²  {}", spread(&costs));
+    assert!(20 * solved >= 19 * all, "{name}: {solved} of {all}");
+}
+
+#[test]
+fn plans_keep_off_land_and_targets() {
+    hold("fjord", &scenes(&FJORD));
+    hold("quays", &scenes(&QUAYS));
+}
+
+#[test]
+fn an_island_in_the_way_is_sailed_round() {
+    let map = harbour();
+    let scenes: Vec<Scenario> = (0..count())
+        .filter_map(|seed| across_the_island(&map, seed))
+        .collect();
+    hold("across the island", &scenes);
 }
 
 /// The same graph without the bound.
 #[test]
 fn a_star_costs_what_dijkstra_costs_among_land() {
     let mut compared = 0;
-    for scenario in scenes().iter().take(12) {
+    let map = harbour();
+    let island = (0..12).filter_map(|seed| across_the_island(&map, seed));
+    for scenario in scenes(&QUAYS).into_iter().take(8).chain(island) {
+        let scenario = &scenario;
         let obstacles: Vec<Obstacle> = pipeline::sets(scenario)
             .into_iter()
             .map(|s| s.hard)
@@ -217,5 +275,5 @@ fn a_star_costs_what_dijkstra_costs_among_land() {
             compared += 1;
         }
     }
-    assert!(compared > 5, "{compared}");
+    assert!(compared > 12, "{compared}");
 }

@@ -11,6 +11,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::ConvexPolygon;
+use searoom::obstacle::Coast;
 use searoom::obstacle::{
     Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
@@ -139,6 +140,7 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         alternatives: &[],
         objective,
         obstacles: &drawn.obstacles,
+        coast: Coast::none(),
         horizon: drawn.horizon,
         time_weight: 25.0,
         search,

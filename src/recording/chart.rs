@@ -125,6 +125,9 @@ fn log_legend(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
             ));
         }
     }
+    if scene.run.scenario.land.is_some() {
+        entries.push(("land".into(), style::land(), style::points(1.2)));
+    }
     entries.push((
         format!("grid {:.0} m", grid_spacing(scene)),
         style::chart_text(),

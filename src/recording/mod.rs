@@ -9,6 +9,7 @@
 //! | `summary` | verdict, manoeuvre, encounters, costs, claims, as markdown |
 //! | `chart/map` | turns north up (views of Rerun are y-down); everything below is east, north |
 //! | `chart/map/grid`, `legend` | scale, north, line styles |
+//! | `chart/map/land` | outlines of the land, where there is a map |
 //! | `chart/map/desired` | the desired trajectory, dashed |
 //! | `chart/map/planned` | the plan, one line per segment: thin and blue below the desired speed, white at it, thick and yellow above it |
 //! | `chart/map/time_marks` | own ship every round number of seconds |
@@ -22,6 +23,7 @@
 //! | `chart/map/hard_sets/<target>`, `shaped_sets/<target>` | sections of the sets at the cursor; the shaped one only where it differs |
 //! | `chart/map/explored/free`, `blocked` | edges that the search tested; hidden until asked for |
 //! | `space_time/axes` | the sea at t = 0, the time axis (upward) |
+//! | `space_time/land` | the land within the sea that is shown, at t = 0 |
 //! | `space_time/desired`, `planned`, `targets` | the motions as lines; the plan's shadow lies on the sea |
 //! | `space_time/hard_sets/<target>`, `shaped_sets/<target>` | the bodies, translucent, from t = 0 to the end |
 //! | `space_time/now` | the plane of the cursor and the ships in it |
@@ -47,6 +49,7 @@ mod curves;
 mod explored;
 mod file;
 mod forces;
+mod land;
 mod movers;
 mod scene;
 mod space_time;
@@ -129,6 +132,7 @@ fn encode(run: &Run) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>
 
 fn log_run(rec: &rerun::RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     blueprint::send_blueprint(rec, scene)?;
+    land::log_land(rec, scene)?;
     chart::log_chart(rec, scene)?;
     movers::log_movers(rec, scene)?;
     space_time::log_volume(rec, scene)?;

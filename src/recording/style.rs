@@ -10,6 +10,7 @@ pub const BACKGROUND: (u8, u8, u8) = (11, 18, 32);
 const OWN_SHIP: (u8, u8, u8) = (255, 255, 255);
 const DESIRED: (u8, u8, u8) = (143, 163, 184);
 const GRID: (u8, u8, u8) = (38, 52, 74);
+const LAND: (u8, u8, u8) = (104, 92, 62);
 const CHART_TEXT: (u8, u8, u8) = (160, 174, 192);
 const ALARM: (u8, u8, u8) = (255, 45, 45);
 const GRAPH_FREE: (u8, u8, u8) = (30, 76, 84);
@@ -41,6 +42,10 @@ pub fn desired() -> Color {
 
 pub fn grid() -> Color {
     rgb(GRID)
+}
+
+pub fn land() -> Color {
+    rgb(LAND)
 }
 
 pub fn chart_text() -> Color {

@@ -47,8 +47,10 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
     let targets = targets(&mut root, &plane);
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
     if let Some(land) = &land {
-        let desired = mission.as_ref().map(|m| &m.desired);
-        land::check(&mut root, land, &plane, own_ship.as_ref(), desired);
+        let paths = mission
+            .as_ref()
+            .map(|m| (&m.desired, m.alternatives.as_slice()));
+        land::check(&mut root, land, &plane, own_ship.as_ref(), paths);
     }
     plane.finish(&mut root);
     root.finish();

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::file::Entry;
 use super::plane::Plane;
 use super::section::Section;
-use crate::frame::Vector;
+use crate::frame::{Pose, Vector, heading_of};
 use crate::map::{LandCrossing, Map, MapError};
 use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;
@@ -68,7 +68,7 @@ pub(super) fn check(
     land: &Land,
     plane: &Plane,
     own: Option<&OwnShip>,
-    desired: Option<&DesiredTrajectory>,
+    paths: Option<(&DesiredTrajectory, &[Vec<Vector>])>,
 ) {
     let Some(own) = own else { return };
     let start = own.hull.polygon(&own.pose);
@@ -85,23 +85,29 @@ pub(super) fn check(
             entry.fault(format_args!("own hull {apart:.1} m from land"), allowed);
         }
     }
-    let Some(desired) = desired else { return };
-    let waypoints = table(root, "mission").and_then(|mut s| s.take("waypoints"));
-    if let Some(entries) = waypoints.and_then(|entry| entry.list(0, "positions")) {
-        check_path(&entries, &desired.waypoints(), land, plane, &own.hull);
+    let Some((desired, alternatives)) = paths else {
+        return;
+    };
+    let Some(mut mission) = table(root, "mission") else {
+        return;
+    };
+    let waypoints = mission.take("waypoints").map(positions).unwrap_or_default();
+    check_path(&waypoints, &desired.waypoints(), land, plane, &own.hull);
+    let others = mission
+        .take("alternatives")
+        .map(positions)
+        .unwrap_or_default();
+    for (entry, path) in others.into_iter().zip(alternatives) {
+        check_path(&positions(entry), path, land, plane, &own.hull);
     }
 }
 
-/// Notes every stretch of a path that own hull cannot sail, at the waypoint where its leg ends.
-pub(super) fn check_path(
-    entries: &[Entry],
-    path: &[Vector],
-    land: &Land,
-    plane: &Plane,
-    hull: &Hull,
-) {
+/// Notes every stretch of a path that own hull cannot sail, at the waypoint where its leg ends, and every waypoint where
+/// it cannot lie on the course of a leg that begins or ends there.
+fn check_path(entries: &[Entry], path: &[Vector], land: &Land, plane: &Plane, hull: &Hull) {
     let clearance = land.clearance_along(hull);
-    for crossing in land.crossings(hull, path).iter().take(MAX_LISTED) {
+    let crossings = land.crossings(hull, path);
+    for crossing in crossings.iter().take(MAX_LISTED) {
         let Some(entry) = entries.get(crossing.leg + 1) else {
             continue;
         };
@@ -126,6 +132,35 @@ pub(super) fn check_path(
             ),
         );
     }
+    for (leg, pair) in path.windows(2).enumerate() {
+        let course = heading_of(pair[1] - pair[0]);
+        for (end, waypoint) in pair.iter().enumerate() {
+            let lying = hull.polygon(&Pose::new(*waypoint, course));
+            let apart = land.map.separation(&lying, land.margin);
+            let along = (waypoint - pair[0]).norm();
+            let known = crossings
+                .iter()
+                .any(|c| c.leg == leg && along >= c.from && along <= c.to);
+            // negated on purpose: a NaN is on land
+            if !known
+                && !(apart >= land.margin - tolerance::DEPTH_M)
+                && let Some(entry) = entries.get(leg + end)
+            {
+                entry.fault(
+                    format_args!(
+                        "own hull {apart:.1} m from land on the course of the leg that {} here",
+                        if end == 0 { "begins" } else { "ends" }
+                    ),
+                    format_args!("at least {} m of water around own hull", land.margin),
+                );
+            }
+        }
+    }
+}
+
+/// The positions of a path that was read before.
+fn positions<'a, 'i>(entry: Entry<'a, 'i>) -> Vec<Entry<'a, 'i>> {
+    entry.list(0, "positions").unwrap_or_default()
 }
 
 /// A table that was read before, to find the place of a value again.

@@ -9,8 +9,11 @@ use crate::obstacle::{Coast, LAND, PolytopeObstacle, window_of};
 use crate::planner::Problem;
 use crate::trajectory::Segment;
 
+/// Metres. Blocks farther than this from the undisturbed motion are not aimed at.
+const AIMED_M: f64 = 40.0;
+
 /// Vertices at most of a block whose corners are nodes.
-const BLOCK_VERTICES: usize = 12;
+const BLOCK_VERTICES: usize = 8;
 
 /// Metres. A corner this deep inside another block is inside it, not on its edge.
 const CORNER_M: f64 = 1e-3;
@@ -124,15 +127,17 @@ fn pose_at(segments: &[Segment], time: f64) -> Option<Pose> {
         .map(|s| s.pose_at(time))
 }
 
-/// The corners of the land near the undisturbed motion, each block with few: those that are inside other blocks are
-/// left out, for no way leads past them.
-pub(crate) fn aims(
-    problem: &Problem,
-    undisturbed: &[Segment],
-    margin: f64,
-) -> impl Iterator<Item = Aims> {
+/// The corners of the land near the undisturbed motion, where that goes aground, each block with few: those that are
+/// inside other blocks are left out, for no way leads past them. Where it stays on water ways around targets need no
+/// corner of the land: to aim at them too took twice the time and found no cheaper plan among 150 along quays.
+pub(crate) fn aims(problem: &Problem, undisturbed: &[Segment]) -> impl Iterator<Item = Aims> {
     let coast = problem.coast;
-    let blocks = near(coast, undisturbed.iter(), margin);
+    let aground = first_contact(coast, undisturbed).is_some();
+    let blocks = if aground {
+        near(coast, undisturbed.iter(), AIMED_M)
+    } else {
+        Vec::new()
+    };
     let paces = Paces::of(problem);
     blocks.into_iter().filter_map(move |b| {
         let block = &coast.blocks()[b];

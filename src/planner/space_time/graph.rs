@@ -104,7 +104,7 @@ impl<'a> Graph<'a> {
                 );
                 Aims::new(h, &body, moving(problem.own))
             })
-            .chain(ashore::aims(problem, undisturbed, RELEVANT_M).filter(|_| !contacts.is_empty()))
+            .chain(ashore::aims(problem, undisturbed).filter(|_| !contacts.is_empty()))
             .collect();
         let heuristic = (problem.search == SearchKind::AStar).then(|| {
             let keep_out = KeepOut::new(problem, hazards);

@@ -14,7 +14,7 @@ const LARGEST_RADIUS_M: f64 = 400.0;
 const SMALLEST_RADIUS_M: f64 = 0.02;
 
 /// Steps of one refinement at most.
-const MAX_STEPS: usize = 40;
+pub(crate) const MAX_STEPS: usize = 40;
 
 /// Last corrections of a refinement that ends a little inside, and how far inside that may be, metres.
 const RESTORATIONS: usize = 3;

@@ -6,7 +6,7 @@ use super::ashore;
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::model::Scene;
 use super::node::State;
-use super::refinement::{Refinement, Seed};
+use super::refinement::{MAX_STEPS, Refinement, Seed};
 use super::seeds::{Canonical, Conflict, ahead, from_graph, waiting};
 use crate::frame::{Side, cross};
 use crate::planner::cost::space_time_error;
@@ -100,7 +100,7 @@ const MAX_CONFLICTS: usize = 2;
 /// cost. A winner is seen early.
 const PLACES: [(usize, usize); 4] = [(0, 12), (1, 6), (2, 4), (4, 3)];
 
-/// Steps of the race: what the winner still lacks are slots, not steps.
+/// Steps of the race once a manoeuvre is clear: what the winner still lacks are slots, not steps.
 const ROUNDS: usize = 10;
 
 /// Metres of line above which the best manoeuvre is cut for additions, one entry per time it is enriched.
@@ -230,7 +230,11 @@ impl<'a> Selection<'a> {
             .into_iter()
             .filter_map(|s| Refinement::fitting(&scene, s))
             .collect();
-        for round in 0..ROUNDS {
+        for round in 0..MAX_STEPS {
+            let decided = round >= ROUNDS && running.iter().any(|r| r.best_cost().is_finite());
+            if decided || running.iter().all(Refinement::is_finished) {
+                break;
+            }
             race(&mut running, round);
             if round == FINE_FROM {
                 scene.chord = FINE_CHORD_RAD;
