@@ -62,7 +62,7 @@
 //! | [`colregs`] | roles by the rules of the road; the shapes that answer them |
 //! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
 //! | [`assessment`] | risk, closest approach and the least alteration of own ship among the obstacles, without a plan |
-//! | [`planner`] | problem, plan, outcome; the space-time planner |
+//! | [`planner`] | problem, plan, outcome; the space-time planner, the optimal-control planner |
 //! | [`evaluation`] | judges any trajectory, sharing no collision code with the planner |
 //! | [`scenario`] | scenario files: every fault of a file at once |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |

@@ -20,12 +20,16 @@ use super::curves::{CLEARANCE, COURSE, MARGIN, RISK, SPEED, clearances, courses,
 use super::explored::BLOCKED;
 use super::scene::Scene;
 use super::{
-    APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, style, velocities,
+    APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, forces, style,
+    velocities,
 };
 use crate::frame::{Vector, knots_from_mps, to_starboard};
 
 /// Seconds in which the whole run is played.
 const PLAY_S: f64 = 25.0;
+
+/// Metres that a plot of distances shows at least, or half of the sea that is shown.
+const LEAST_RANGE_M: f64 = 50.0;
 
 /// Properties of views, with the path they are logged at.
 type Properties = Vec<(String, Box<dyn AsComponents>)>;
@@ -37,6 +41,9 @@ pub fn send_blueprint(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     let volume = volume_view(scene, &mut properties);
     let summary = TextDocumentView::new("Verdict").with_origin(SUMMARY).into();
     let mut small = Vec::from(curve_views(scene, &mut properties));
+    if forces::steered(scene).is_some() {
+        small.extend(force_views(scene, &mut properties));
+    }
     small.push(velocity_view(scene, &mut properties));
     let left = Vertical::new([chart, summary]).with_row_shares(vec![0.66, 0.34]);
     let right = Vertical::new([volume, Grid::new(small).with_grid_columns(2).into()])
@@ -171,12 +178,12 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 5]
         (
             "Clearance between hulls (m)",
             CLEARANCE,
-            near_zero(clearance, margin),
+            near_zero(scene, clearance, margin),
         ),
         (
             "Margin to the sets (m)",
             MARGIN,
-            near_zero(least(margins(scene, &sets)), margin),
+            near_zero(scene, least(margins(scene, &sets)), margin),
         ),
         ("Risk", RISK, [-0.05, 1.2]),
         (
@@ -206,6 +213,26 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 5]
     })
 }
 
+/// Of a plan of forces: what the ship does, and what makes her do it.
+fn force_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 2] {
+    let names = [
+        ("Velocity (m/s, deg/s)", forces::STATES),
+        ("Forces (N, Nm)", forces::FORCES),
+    ];
+    names.map(|(name, origin)| {
+        let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
+        let times = TimeAxis::new().with_view_range(whole_time(scene));
+        with(
+            TimeSeriesView::new(name).with_origin(origin),
+            properties,
+            vec![
+                ("PlotLegend", Box::new(legend)),
+                ("TimeAxis", Box::new(times)),
+            ],
+        )
+    })
+}
+
 fn velocity_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
     let limit = 1.05 * velocities::limit(scene);
     let shown = rerun::datatypes::Range2D {
@@ -223,9 +250,11 @@ fn velocity_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
 }
 
 /// The interesting part of a distance that falls to `least`, where `margin` is asked for; metres.
-fn near_zero(least: f64, margin: f64) -> [f64; 2] {
+fn near_zero(scene: &Scene, least: f64, margin: f64) -> [f64; 2] {
     let least = if least.is_finite() { least } else { 0.0 };
-    let top = (3.0 * least.abs()).max(8.0 * margin).max(50.0);
+    let top = (3.0 * least.abs())
+        .max(8.0 * margin)
+        .max(LEAST_RANGE_M.min(0.5 * scene.bounds.extent()));
     [least.min(0.0) - 0.1 * top, top]
 }
 

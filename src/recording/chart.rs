@@ -196,17 +196,36 @@ fn log_planned(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
     rec.log_static(path(&[MAP, "planned"]), &lines.archetype())
 }
 
-/// The plan's segments as polylines through `(position, time)`. Empty without a plan.
+/// Points of a piece of a motion under forces, less one.
+const PIECE_POINTS: usize = 4;
+
+/// The plan's segments, or pieces, as polylines through `(position, time)`. Empty without a plan.
 pub fn planned_strips(scene: &Scene) -> Vec<(Pace, Vec<(Vector, f64)>)> {
     let super::scene::Motion::Planned(trajectory) = scene.motion else {
         return Vec::new();
     };
+    let desired = &scene.run.scenario.desired;
+    if let Some(motion) = trajectory.steered() {
+        let strip = |piece: crate::trajectory::Cubic| {
+            let points = (0..=PIECE_POINTS).map(|k| {
+                let part = k as f64 / PIECE_POINTS as f64;
+                (
+                    piece.position(part),
+                    piece.start_time + part * piece.duration,
+                )
+            });
+            let speed = piece.velocity(0.5).norm();
+            let wanted = desired_leg(desired, piece.start_time).speed;
+            (Pace::of(speed, wanted), points.collect())
+        };
+        return motion.pieces().map(strip).collect();
+    }
     trajectory
         .segments()
         .iter()
         .filter(|segment| segment.duration > 0.0)
         .map(|segment| {
-            let desired = desired_leg(&scene.run.scenario.desired, segment.start_time).speed;
+            let desired = desired_leg(desired, segment.start_time).speed;
             (Pace::of(segment.speed, desired), polyline(segment))
         })
         .collect()

@@ -202,7 +202,7 @@ fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> 
     let mut times: Vec<f64> = desired.legs().iter().map(|l| l.start_time).collect();
     times.extend([desired.duration(), scene.end]);
     if let Motion::Planned(trajectory) = scene.motion {
-        times.extend(trajectory.segments().iter().map(|s| s.start_time));
+        times.extend(trajectory.joints());
         times.push(trajectory.end_time());
     }
     times.retain(|&t| t <= scene.end);

@@ -35,6 +35,7 @@
 //! | `velocities/plane/axes`, `own_ship` | the plane of velocities, m/s; own ship's velocity at the cursor |
 //! | `velocities/plane/obstacles/<target>` | velocities that, kept from the cursor on, meet the hard set within 300 s or by the end: outline, clipped to the view |
 //! | `curves/speed_kn` | desired and own speed, knots; a row where one changes, no number where one has ended |
+//! | `curves/states`, `curves/forces` | of a plan of forces: surge, sway and yaw rate at its nodes, and the forces held between them; starboard and clockwise are positive |
 //! | `curves/course_deg` | desired and own course, degrees clockwise from true north, continuous |
 //!
 //! A plot is one entity; its curves are the scalars of each row, named in `SeriesLines:names`.
@@ -47,6 +48,7 @@ mod chart;
 mod curves;
 mod explored;
 mod file;
+mod forces;
 mod land;
 mod movers;
 mod scene;
@@ -136,6 +138,7 @@ fn log_run(rec: &rerun::RecordingStream, scene: &Scene) -> RecordingStreamResult
     space_time::log_volume(rec, scene)?;
     let drawn = explored::log_explored(rec, scene)?;
     curves::log_curves(rec, scene)?;
+    forces::log_forces(rec, scene)?;
     velocities::log_velocities(rec, scene)?;
     summary::log_summary(rec, scene, drawn)
 }

@@ -178,7 +178,7 @@ fn log_own_outline(
         .with_radii([style::points(1.2), style::points(0.8)]);
     rec.log_static(entity.clone(), &look)?;
     let mut times = match scene.motion {
-        Motion::Planned(trajectory) => trajectory.segments().iter().map(|s| s.start_time).collect(),
+        Motion::Planned(trajectory) => trajectory.joints(),
         Motion::Undisturbed(desired) => desired.legs().iter().map(|l| l.start_time).collect(),
     };
     dedup_increasing(&mut times);

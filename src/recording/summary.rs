@@ -14,7 +14,7 @@ use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Relaxation;
 use crate::planner::{Outcome, Plan};
 use crate::scenario::Compliance;
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Steered, Trajectory};
 
 /// Writes the text once, for all times.
 pub fn log_summary(
@@ -76,13 +76,8 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
         )),
         None => said.push("keeps her course".to_owned()),
     }
-    let speeds = || {
-        trajectory
-            .segments()
-            .iter()
-            .filter(|s| s.duration > 0.0)
-            .map(|s| s.speed)
-    };
+    let joints = trajectory.joints();
+    let speeds = || joints.iter().map(|&time| trajectory.speed_at(time));
     let slowest = speeds().fold(f64::INFINITY, f64::min);
     let fastest = speeds().fold(0.0, f64::max);
     said.push(if slowest < fastest {
@@ -95,6 +90,10 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
         format!("keeps {:.1} kn", knots_from_mps(fastest))
     });
     let arrival = trajectory.end_time();
+    if trajectory.steered().is_some() {
+        said.push(format!("is planned for {arrival:.0} s, all of the horizon"));
+        return format!("**Own ship {}.**", said.join(", "));
+    }
     let delay = arrival - scene.run.scenario.desired.duration();
     said.push(if delay.abs() < 0.05 {
         format!("arrives on time at {arrival:.0} s")
@@ -119,6 +118,9 @@ const LEAST_TURN: f64 = 0.01;
 
 /// Turning segments to one side, one after another, are one alteration.
 fn first_turn(trajectory: &Trajectory) -> Option<Turn> {
+    if let Some(motion) = trajectory.steered() {
+        return first_swing(motion);
+    }
     let mut turn: Option<Turn> = None;
     for segment in trajectory.segments().iter().filter(|s| s.duration > 0.0) {
         let side = Side::of_turn(segment.turn_rate);
@@ -143,6 +145,29 @@ fn first_turn(trajectory: &Trajectory) -> Option<Turn> {
         }
     }
     turn.filter(|t| t.angle >= LEAST_TURN)
+}
+
+/// The first stretch of nodes over which the heading goes to one side by more than [`LEAST_TURN`].
+fn first_swing(motion: &Steered) -> Option<Turn> {
+    let mut swing: Option<Turn> = None;
+    for pair in motion.nodes().windows(2) {
+        let more = pair[1].pose.heading - pair[0].pose.heading;
+        let Some(side) = Side::of_turn(more) else {
+            continue;
+        };
+        match &mut swing {
+            Some(begun) if begun.side == side => begun.angle += more.abs(),
+            Some(done) if done.angle >= LEAST_TURN => break,
+            _ => {
+                swing = Some(Turn {
+                    side,
+                    angle: more.abs(),
+                    time: pair[0].time,
+                });
+            }
+        }
+    }
+    swing.filter(|turn| turn.angle >= LEAST_TURN)
 }
 
 fn reason(outcome: &Outcome) -> String {

@@ -219,3 +219,25 @@ fn nothing_is_said_of_the_margin_after_arrival() {
         assert_eq!(margin.is_nan(), Some(*time) > arrival, "{time} {margin}");
     }
 }
+
+#[test]
+fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("figure_9.rrd");
+    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper/figure_9.toml");
+    let run = pipeline::run(Scenario::read(&scenario).expect("valid"));
+    write(&run, &path).expect("writes");
+    let entities = read(&path);
+    let nodes = run.control.as_ref().expect("forces").intervals as u64 + 1;
+    for entity in ["/curves/states", "/curves/forces"] {
+        // and the look of the curves
+        assert!(entities[entity].0 > nodes, "{entity}");
+    }
+    for entity in [
+        "/chart/map/planned",
+        "/space_time/planned",
+        "/chart/map/hard_sets/ahead",
+    ] {
+        assert!(entities.contains_key(entity), "{entity} in {entities:#?}");
+    }
+}

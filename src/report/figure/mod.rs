@@ -5,6 +5,7 @@
 
 mod assessment;
 mod field;
+mod motion;
 mod outline;
 mod panel;
 mod path_time;
@@ -15,6 +16,7 @@ mod window;
 
 pub use assessment::assessment_figure;
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};
+pub use motion::moments_figure;
 pub use outline::Stroke;
 pub use panel::Panel;
 pub use path_time::{ProfileLine, path_time_panel};

@@ -5,7 +5,7 @@ use kuva::render::plots::Plot;
 use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
-use super::{Figure, Panel, Window};
+use super::{Figure, Panel, Window, moments_figure};
 use crate::frame::Vector;
 use crate::geometry::{self, ConvexPolygon};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -43,8 +43,14 @@ const MOMENTS: usize = 4;
 /// Seconds between two points of a curve.
 const STEP: f64 = 1.0;
 
-/// The chart of a run, and its path-time diagram where it has one.
+/// The chart of a run, and its path-time diagram where it has one; of a plan of forces, its moments.
 pub fn plan_figure(run: &Run) -> Figure {
+    let plan = run.planned.outcome.plan();
+    if plan.is_some_and(|p| p.trajectory.steered().is_some())
+        && let Some(figure) = moments_figure(run)
+    {
+        return figure;
+    }
     let mut panels = vec![chart_panel("Chart", run)];
     if let Some(diagram) = run.planned.path_time.as_deref() {
         let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
