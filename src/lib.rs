@@ -12,7 +12,7 @@
 //! Because `V` is convex, `O_t` holds whatever she does with a velocity that stays in `V`, changing or
 //! not. Own ship is meant to follow the desired trajectory, at `x_d` when it is `t_d`, for `T_d` seconds. A
 //! plan is a motion `x(t)` of lines and of arcs with her turning radius, at speeds of a finite set, from
-//! her pose at t = 0 to the last waypoint at `T`. It costs its space-time error
+//! her pose at t = 0 to the last waypoint at `T`, or along given paths at any speed up to her greatest. It costs its space-time error
 //!
 //! ```text
 //! J = 1/T_d ∫ min over σ of ( |x(t) - x_d(σ)|² + q (t - t_d(σ))² ) dt          m², t from 0 to T
@@ -62,7 +62,7 @@
 //! | [`colregs`] | roles by the rules of the road; the shapes that answer them |
 //! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
 //! | [`assessment`] | risk, closest approach and the least alteration of own ship among the obstacles, without a plan |
-//! | [`planner`] | problem, plan, outcome; the space-time planner, the optimal-control planner |
+//! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
 //! | [`evaluation`] | judges any trajectory, sharing no collision code with the planner |
 //! | [`scenario`] | scenario files: every fault of a file at once |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |

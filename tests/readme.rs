@@ -149,6 +149,7 @@ fn every_file_that_the_documents_link_to_is_there() {
         "docs/sets.md",
         "docs/assess.md",
         "docs/space-time-planner.md",
+        "docs/path-time-planner.md",
         "docs/development.md",
     ] {
         let text = read(name);
