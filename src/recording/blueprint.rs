@@ -20,8 +20,8 @@ use super::curves::{CLEARANCE, COURSE, MARGIN, RISK, SPEED, clearances, courses,
 use super::explored::BLOCKED;
 use super::scene::Scene;
 use super::{
-    APPLICATION, CHART, EXPLORED, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, forces, style,
-    velocities,
+    APPLICATION, CHART, EXPLORED, PATH_TIME, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, forces,
+    path_time, style, velocities,
 };
 use crate::frame::{Vector, knots_from_mps, to_starboard};
 
@@ -46,8 +46,12 @@ pub fn send_blueprint(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     }
     small.push(velocity_view(scene, &mut properties));
     let left = Vertical::new([chart, summary]).with_row_shares(vec![0.66, 0.34]);
-    let right = Vertical::new([volume, Grid::new(small).with_grid_columns(2).into()])
-        .with_row_shares(vec![0.5, 0.5]);
+    let mut views = vec![volume];
+    views.extend(path_time_view(scene, &mut properties));
+    let mut shares = vec![0.5 / views.len() as f32; views.len()];
+    views.push(Grid::new(small).with_grid_columns(2).into());
+    shares.push(0.5);
+    let right = Vertical::new(views).with_row_shares(shares);
     let root = Horizontal::new([left.into(), right.into()]).with_column_shares(vec![0.54, 0.46]);
     let blueprint = Blueprint::new(root)
         .with_auto_views(false)
@@ -247,6 +251,26 @@ fn velocity_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
             ("Background", plain_background()),
         ],
     )
+}
+
+/// The diagram of a path-time plan, beside the volume.
+fn path_time_view(scene: &Scene, properties: &mut Properties) -> Option<ContainerLike> {
+    let diagram = scene.run.planned.path_time.as_deref()?;
+    let frame = path_time::Frame::of(diagram);
+    let height = frame.top * frame.rise;
+    // the view's own axis points down: time is negative there
+    let shown = rerun::datatypes::Range2D {
+        x_range: [-0.08 * frame.length, 1.04 * frame.length].into(),
+        y_range: [-1.04 * height, 0.08 * height].into(),
+    };
+    Some(with(
+        Spatial2DView::new("Path and time: time upward").with_origin(PATH_TIME),
+        properties,
+        vec![
+            ("VisualBounds2D", Box::new(VisualBounds2D::new(shown))),
+            ("Background", plain_background()),
+        ],
+    ))
 }
 
 /// The interesting part of a distance that falls to `least`, where `margin` is asked for; metres.

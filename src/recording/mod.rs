@@ -34,6 +34,10 @@
 //! | `velocities/plane` | turns north up; everything below is east, north, m/s |
 //! | `velocities/plane/axes`, `own_ship` | the plane of velocities, m/s; own ship's velocity at the cursor |
 //! | `velocities/plane/obstacles/<target>` | velocities that, kept from the cursor on, meet the hard set within 300 s or by the end: outline, clipped to the view |
+//! | `path_time/plane` | of a path-time plan: the diagram it was found in, time upward; everything below is metres along the path and seconds, these drawn to fit |
+//! | `path_time/plane/axes`, `profile` | the grid with its units and the joints of legs; the planned speeds |
+//! | `path_time/plane/obstacles/<target>` | the set along the path |
+//! | `path_time/plane/now`, `own_ship` | the cursor's instant, and own ship in it |
 //! | `curves/speed_kn` | desired and own speed, knots; a row where one changes, no number where one has ended |
 //! | `curves/states`, `curves/forces` | of a plan of forces: surge, sway and yaw rate at its nodes, and the forces held between them; starboard and clockwise are positive |
 //! | `curves/course_deg` | desired and own course, degrees clockwise from true north, continuous |
@@ -51,6 +55,7 @@ mod file;
 mod forces;
 mod land;
 mod movers;
+mod path_time;
 mod scene;
 mod space_time;
 mod style;
@@ -75,6 +80,8 @@ const EXPLORED: &str = "chart/map/explored";
 const VOLUME: &str = "space_time";
 const VELOCITIES: &str = "velocities";
 const PLANE: &str = "velocities/plane";
+const PATH_TIME: &str = "path_time";
+const PATH_TIME_PLANE: &str = "path_time/plane";
 
 /// Why there is no recording.
 #[derive(Debug, thiserror::Error)]
@@ -140,6 +147,7 @@ fn log_run(rec: &rerun::RecordingStream, scene: &Scene) -> RecordingStreamResult
     curves::log_curves(rec, scene)?;
     forces::log_forces(rec, scene)?;
     velocities::log_velocities(rec, scene)?;
+    path_time::log_path_time(rec, scene)?;
     summary::log_summary(rec, scene, drawn)
 }
 

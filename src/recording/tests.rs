@@ -241,3 +241,40 @@ fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
         assert!(entities.contains_key(entity), "{entity} in {entities:#?}");
     }
 }
+
+/// The diagram is there with a plan and without, and only for plans along paths.
+#[test]
+fn a_path_time_plan_has_its_diagram() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("path-time.rrd");
+    let crossing = HEAD_ON
+        .replace("course_deg = 270.0", "course_deg = 180.0")
+        .replace(
+            "east_m = 1500.0, north_m = 0.0 }\ncourse",
+            "east_m = 700.0, north_m = 700.0 }\ncourse",
+        );
+    for (text, planned) in [(HEAD_ON, false), (crossing.as_str(), true)] {
+        let text = text.replace(
+            "[[targets]]",
+            "[planner]\nkind = \"path-time\"\n[[targets]]",
+        );
+        let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
+        assert_eq!(run.planned.outcome.plan().is_some(), planned);
+        write(&run, &path).expect("writes");
+        let entities = read(&path);
+        let name = EntityPathPart::new(NAME).escaped_string();
+        for part in ["axes", "profile", "now", &format!("obstacles/{name}")] {
+            assert!(
+                entities.contains_key(&format!("/path_time/plane/{part}")),
+                "{part}"
+            );
+        }
+        assert_eq!(entities.contains_key("/path_time/plane/own_ship"), planned);
+    }
+    write(&run(), &path).expect("writes");
+    assert!(
+        !read(&path)
+            .keys()
+            .any(|entity| entity.starts_with("/path_time"))
+    );
+}
