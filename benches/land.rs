@@ -1,4 +1,4 @@
-//! Land: reading a map, asking it. Every bench asserts the answer, then times it.
+//! Land: reading a map, asking it, planning round it. Every bench asserts the answer, then times it.
 
 use std::hint::black_box;
 use std::path::PathBuf;
@@ -6,6 +6,9 @@ use std::path::PathBuf;
 use criterion::{Criterion, criterion_group, criterion_main};
 use searoom::frame::{Geographic, Georeference, Vector};
 use searoom::map::Map;
+use searoom::pipeline;
+use searoom::planner::space_time;
+use searoom::scenario::Scenario;
 
 fn earth(lat_deg: f64, lon_deg: f64) -> Georeference {
     Georeference::new(Geographic { lat_deg, lon_deg }).expect("an origin")
@@ -56,5 +59,33 @@ fn ask(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, load, ask);
+/// Round Munkholmen among three targets: the plan alone, and with it the land that is folded in.
+fn plan(criterion: &mut Criterion) {
+    let scenario =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenarios/harbour/munkholmen.toml");
+    let scenario = Scenario::read(&scenario).expect("a scenario");
+    let run = pipeline::run(scenario.clone());
+    let evaluation = run.evaluation.expect("a plan");
+    assert!(evaluation.verified() && evaluation.min_land_distance >= 15.0 - 1e-6);
+    assert_eq!(scenario.targets.len(), 3);
+    let obstacles: Vec<_> = pipeline::sets(&scenario)
+        .into_iter()
+        .map(|s| s.shaped)
+        .collect();
+    let land = pipeline::land_within_reach(&scenario);
+    let coast = pipeline::coast(&scenario, &land);
+    let asked = pipeline::problem(&scenario, &obstacles, &coast);
+    let id = format!("plan/3 targets, {} pieces of land", land.len());
+    criterion.bench_function(&id, |b| b.iter(|| space_time::plan(black_box(&asked))));
+    criterion.bench_function("plan/land folded in", |b| {
+        b.iter(|| {
+            pipeline::coast(
+                &scenario,
+                &pipeline::land_within_reach(black_box(&scenario)),
+            )
+        })
+    });
+}
+
+criterion_group!(benches, load, ask, plan);
 criterion_main!(benches);

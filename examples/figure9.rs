@@ -8,12 +8,12 @@
 mod shared;
 
 use searoom::pipeline;
-use searoom::report::figure::{FigureError, plan_figure};
+use searoom::report::figure::{FigureError, control_figure};
 use searoom::scenario::Scenario;
 
 fn main() -> Result<(), FigureError> {
     let text = include_str!("../scenarios/paper/figure_9.toml");
     let run = pipeline::run(Scenario::parse(text).expect("a sound scenario"));
-    let figure = plan_figure(&run).expect("a plan");
+    let figure = control_figure(&run).expect("a plan");
     shared::write(figure, "figure9.svg")
 }

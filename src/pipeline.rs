@@ -225,7 +225,15 @@ pub fn run(scenario: Scenario) -> Run {
     let begun = Instant::now();
     let forces = scenario.planner == PlannerKind::OptimalControl;
     let land = land_within_reach(&scenario);
-    let coast = coast(&scenario, &land);
+    let shore;
+    let coast: &Coast = match scenario.planner {
+        PlannerKind::SpaceTime | PlannerKind::OptimalControl => {
+            shore = coast(&scenario, &land);
+            &shore
+        }
+        // the paths are kept off land when the scenario is read
+        PlannerKind::PathTime => Coast::none(),
+    };
     let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
     let plan =
         |used: fn(&TargetSets) -> &Obstacle| -> (Vec<Obstacle>, Planned, Option<ControlReport>) {
@@ -244,7 +252,7 @@ pub fn run(scenario: Scenario) -> Run {
             let asked = Problem {
                 deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
                 first_turn: shaped.then(|| first_turn(&sets)).flatten(),
-                ..problem(&scenario, &level_sets, &coast)
+                ..problem(&scenario, &level_sets, coast)
             };
             let planned = match (scenario.planner, scenario.objective) {
                 (PlannerKind::SpaceTime, _) => space_time::plan(&asked),

@@ -224,7 +224,10 @@ fn files_that_are_none_are_named() {
     searoom(&["plan"]).code(2).stderr(contains("Usage"));
     searoom(&["suite", "--json", "--figure", "x.svg"])
         .code(2)
-        .stderr(contains("--figure"));
+        .stderr(contains("--figure x.svg: a file, but there are"));
+    searoom(&["suite", "--figure", "x.pdf"])
+        .code(2)
+        .stderr(contains("--figure: x.pdf").and(contains(".svg")));
 }
 
 #[test]

@@ -11,7 +11,6 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::ConvexPolygon;
-use searoom::obstacle::Coast;
 use searoom::obstacle::{
     Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
@@ -146,7 +145,6 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         search,
         deadline: Duration::from_secs(60),
         first_turn: None,
-        coast: Coast::none(),
     })
 }
 
@@ -534,6 +532,8 @@ fn alternatives_are_as_good_as_the_best_way_through_them() {
             let own = own(&drawn.path, drawn.speed);
             let desired = DesiredTrajectory::new(&main, &[drawn.speed; 3]).expect("valid");
             let planned = path_time::plan(&Problem {
+                first_turn: None,
+                coast: Coast::none(),
                 own: &own,
                 desired: &desired,
                 alternatives: &alternatives,
@@ -588,6 +588,8 @@ fn risk_is_weighed_against_length() {
     let own = own(&path, 5.0);
     let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
     let problem = Problem {
+        first_turn: None,
+        coast: Coast::none(),
         own: &own,
         desired: &desired,
         alternatives: &detour,

@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand};
 use searoom::planner::{PlannerKind, SearchKind};
 use searoom::scenario::{Compliance, Fault, Scenario};
 
+use super::products::Wanted;
 use super::rows;
 
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
@@ -108,12 +109,24 @@ pub struct Shared {
     /// Write a Rerun recording: a file ending in .rrd, or a folder
     #[arg(long, value_name = "PATH")]
     pub rrd: Option<PathBuf>,
+    /// Draw the chart, and the path-time diagram of a path-time plan: a file ending in .svg or .png, or a folder
+    #[arg(long, value_name = "PATH")]
+    pub figure: Option<PathBuf>,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
 }
 
 impl Shared {
+    /// The files to be written.
+    pub fn wanted(&self) -> Wanted<'_> {
+        Wanted {
+            recordings: self.rrd.as_deref(),
+            figures: self.figure.as_deref(),
+            plans: None,
+        }
+    }
+
     /// Puts what the command line says in the place of what the scenario says; what the planner cannot do then.
     pub fn apply(&self, scenario: &mut Scenario) -> Result<(), Vec<Fault>> {
         if let Some(planner) = self.planner {

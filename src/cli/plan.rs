@@ -24,7 +24,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
         .into_iter()
         .flatten()
         .collect();
-    let products = match Products::prepare(&found, args.shared.rrd.as_deref(), None) {
+    let products = match Products::prepare(&found, args.shared.wanted()) {
         Ok(products) => products,
         Err(error) => {
             output.error(&format_args!("{error:#}"));

@@ -1,4 +1,4 @@
-//! The files that a command writes: recordings and plan documents.
+//! The files that a command writes: recordings, figures and plan documents.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow, bail};
 use searoom::pipeline::Run;
 use searoom::report::document::PlanDocument;
+use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
 use searoom::report::write_atomically;
 
 use super::files::{Found, refuse_clashes};
@@ -13,11 +14,20 @@ use super::output::json;
 use super::runner::guarded;
 use super::status::Status;
 
-/// Where recordings and plans go.
+/// Where recordings, figures and plans go.
 #[derive(Debug)]
 pub struct Products {
     recordings: Option<Place>,
+    figures: Option<Place>,
     plans: Option<PathBuf>,
+}
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Wanted<'a> {
+    pub recordings: Option<&'a Path>,
+    pub figures: Option<&'a Path>,
+    pub plans: Option<&'a Path>,
 }
 
 #[derive(Debug)]
@@ -27,47 +37,44 @@ enum Place {
 }
 
 impl Products {
-    /// Makes the folders, before anything is planned. `--rrd` means a file when it ends in `.rrd` and
-    /// is no folder.
-    pub fn prepare(
-        found: &[Found],
-        recordings: Option<&Path>,
-        plans: Option<&Path>,
-    ) -> anyhow::Result<Self> {
+    /// Makes the folders, before anything is planned. A path means a file when it ends as such files do and is no folder.
+    pub fn prepare(found: &[Found], wanted: Wanted) -> anyhow::Result<Self> {
+        let Wanted {
+            recordings,
+            figures,
+            plans,
+        } = wanted;
         if recordings.is_some() && !cfg!(feature = "recording") {
             bail!(
                 "--rrd: this program was built without recordings; \
                  build it with its default features, `cargo build`"
             );
         }
-        if recordings.is_some() || plans.is_some() {
+        if recordings.is_some() || figures.is_some() || plans.is_some() {
             refuse_clashes(found)?;
         }
-        let recordings = match recordings {
-            Some(path) if path.extension().is_some_and(|e| e == "rrd") && !path.is_dir() => {
-                if found.len() > 1 {
-                    bail!(
-                        "--rrd {}: a file, but there are {} scenarios; name a folder",
-                        path.display(),
-                        found.len()
-                    );
-                }
-                if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
-                    make(folder)?;
-                }
-                Some(Place::File(path.to_owned()))
-            }
-            Some(path) => {
-                make(path)?;
-                Some(Place::Folder(path.to_owned()))
-            }
-            None => None,
-        };
+        let is_recording = |path: &Path| path.extension().is_some_and(|e| e == "rrd");
+        let is_figure = |path: &Path| FigureFormat::of(path).is_some();
+        let recordings = recordings
+            .map(|path| Place::prepare("--rrd", path, is_recording(path), found.len()))
+            .transpose()?;
+        if let Some(path) = figures
+            && !is_figure(path)
+            && path.extension().is_some()
+            && !path.is_dir()
+        {
+            let file = path.to_owned();
+            bail!("--figure: {}", FigureError::Format { file });
+        }
+        let figures = figures
+            .map(|path| Place::prepare("--figure", path, is_figure(path), found.len()))
+            .transpose()?;
         if let Some(folder) = plans {
             make(folder)?;
         }
         Ok(Self {
             recordings,
+            figures,
             plans: plans.map(Path::to_owned),
         })
     }
@@ -82,10 +89,15 @@ impl Products {
     }
 
     fn try_write(&self, stem: &str, run: &Run) -> anyhow::Result<()> {
-        match &self.recordings {
-            Some(Place::File(file)) => record(run, file)?,
-            Some(Place::Folder(folder)) => record(run, &folder.join(format!("{stem}.rrd")))?,
-            None => {}
+        if let Some(place) = &self.recordings {
+            record(run, &place.file(stem, "rrd"))?;
+        }
+        if let Some(place) = &self.figures {
+            let file = place.file(stem, "svg");
+            // the message names its cause already
+            plan_figure(run)
+                .write(&file)
+                .map_err(|error| anyhow!("{error}"))?;
         }
         if let Some(folder) = &self.plans {
             let file = folder.join(format!("{stem}.json"));
@@ -94,6 +106,33 @@ impl Products {
             write_atomically(&file, document.as_bytes()).map_err(|error| anyhow!("{error}"))?;
         }
         Ok(())
+    }
+}
+
+impl Place {
+    /// `file` says that the path's name is one of such a file.
+    fn prepare(option: &str, path: &Path, file: bool, scenarios: usize) -> anyhow::Result<Self> {
+        if !file || path.is_dir() {
+            make(path)?;
+            return Ok(Self::Folder(path.to_owned()));
+        }
+        if scenarios > 1 {
+            bail!(
+                "{option} {}: a file, but there are {scenarios} scenarios; name a folder",
+                path.display(),
+            );
+        }
+        if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
+            make(folder)?;
+        }
+        Ok(Self::File(path.to_owned()))
+    }
+
+    fn file(&self, stem: &str, ending: &str) -> PathBuf {
+        match self {
+            Self::File(file) => file.clone(),
+            Self::Folder(folder) => folder.join(format!("{stem}.{ending}")),
+        }
     }
 }
 

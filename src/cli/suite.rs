@@ -7,7 +7,7 @@ use searoom::report::{Row, Summary, suite_table};
 use super::args::SuiteArgs;
 use super::files::{self, Found};
 use super::output::Output;
-use super::products::Products;
+use super::products::{Products, Wanted};
 use super::runner::{Attempt, attempt};
 use super::status::Status;
 
@@ -51,8 +51,11 @@ impl Tally {
 pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     let all = files::find(&args.paths);
     let found: Vec<Found> = all.iter().flatten().cloned().collect();
-    let (rrd, plans) = (args.shared.rrd.as_deref(), args.plans.as_deref());
-    let products = match Products::prepare(&found, rrd, plans) {
+    let wanted = Wanted {
+        plans: args.plans.as_deref(),
+        ..args.shared.wanted()
+    };
+    let products = match Products::prepare(&found, wanted) {
         Ok(products) => products,
         Err(error) => {
             output.error(&format_args!("{error:#}"));

@@ -3,6 +3,7 @@
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
+use super::ConvexPolygon;
 use crate::frame::Vector;
 
 /// An upright box.
@@ -40,6 +41,34 @@ impl Window {
             low: self.low.add_scalar(-margin),
             high: self.high.add_scalar(margin),
         }
+    }
+
+    /// The vertices of what of a convex set is within the box, counter-clockwise; empty where nothing is. Cut side by
+    /// side (Sutherland & Hodgman, doi:10.1145/360767.360802).
+    pub fn part_of(&self, set: &ConvexPolygon) -> Vec<Vector> {
+        let sides = [
+            (Vector::new(1.0, 0.0), self.high.x),
+            (Vector::new(-1.0, 0.0), -self.low.x),
+            (Vector::new(0.0, 1.0), self.high.y),
+            (Vector::new(0.0, -1.0), -self.low.y),
+        ];
+        let mut kept = set.vertices().to_vec();
+        for (normal, limit) in sides {
+            let beyond = |p: &Vector| normal.dot(p) - limit;
+            let mut next = Vec::with_capacity(kept.len() + 1);
+            for (i, a) in kept.iter().enumerate() {
+                let b = &kept[(i + 1) % kept.len()];
+                let (fa, fb) = (beyond(a), beyond(b));
+                if fa <= 0.0 {
+                    next.push(*a);
+                }
+                if (fa <= 0.0) != (fb <= 0.0) {
+                    next.push(a + (b - a) * (fa / (fa - fb)));
+                }
+            }
+            kept = next;
+        }
+        kept
     }
 
     fn envelope(&self) -> AABB<[f64; 2]> {
@@ -108,5 +137,21 @@ mod tests {
             found.sort_unstable();
             assert_eq!(found, expected);
         }
+    }
+
+    #[test]
+    fn a_set_is_cut_at_the_edges_of_the_box() {
+        let at = |x: f64, y: f64| Vector::new(x, y);
+        let window = Window {
+            low: at(0.0, 0.0),
+            high: at(10.0, 10.0),
+        };
+        let hull = |points: &[Vector]| ConvexPolygon::hull(points).expect("finite");
+        let across = hull(&[at(5.0, 5.0), at(15.0, 5.0), at(15.0, 15.0), at(5.0, 15.0)]);
+        assert!((hull(&window.part_of(&across)).area() - 25.0).abs() < 1e-9);
+        let around = hull(&[at(-50.0, -50.0), at(50.0, -50.0), at(0.0, 90.0)]);
+        assert!((hull(&window.part_of(&around)).area() - 100.0).abs() < 1e-9);
+        let beside = hull(&[at(20.0, 0.0), at(30.0, 0.0), at(30.0, 5.0)]);
+        assert!(window.part_of(&beside).is_empty());
     }
 }

@@ -94,15 +94,18 @@ fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
     )
 }
 
-/// Metres between own hull and the target's expected hull (or its set, where that is given) at every
-/// sample; negative in overlap, no number after arrival.
+/// Metres between own hull and the target's expected hull, or between own ship's centre and the target's set
+/// where that is given (it has her hull in it), at every sample; negative in overlap, no number after arrival.
 pub fn clearances(scene: &Scene, target: &Target) -> Vec<f64> {
     let own = &scene.run.scenario.own_ship.hull;
     let at = |&time: &f64| {
-        let own = own.polygon(&scene.motion.pose_at(time));
+        let pose = scene.motion.pose_at(time);
         let clearance = match (target.ship(), target.outer_set_at(time)) {
-            (Some(ship), _) => own.separation(&ship.hull.polygon(&ship.pose_at(time))),
-            (None, Some(set)) => own.separation(&set),
+            (Some(ship), _) => {
+                let hull = ship.hull.polygon(&ship.pose_at(time));
+                own.polygon(&pose).separation(&hull)
+            }
+            (None, Some(set)) => set.signed_distance(pose.position),
             (None, None) => f64::NAN,
         };
         scene.motion.until_arrival(time, clearance)

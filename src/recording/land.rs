@@ -5,7 +5,7 @@ use rerun::{LineStrips2D, LineStrips3D, Mesh3D, RecordingStream, RecordingStream
 use super::scene::{Bounds, Scene, flat};
 use super::{MAP, VOLUME, path, style};
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, Polygon, Window};
+use crate::geometry::{Polygon, Window};
 
 /// Of the sea that is shown, how much more is drawn: the views are wider than the sea is high.
 const BEYOND: f64 = 0.6;
@@ -36,7 +36,7 @@ pub fn log_land(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
     let mut corners: Vec<[f32; 3]> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     for piece in land.map.pieces_within(&window) {
-        let clipped = clipped(piece, &window);
+        let clipped = window.part_of(piece);
         let base = corners.len() as u32;
         corners.extend(clipped.iter().map(|p| scene.lifted(*p, 0.0)));
         triangles.extend((2..clipped.len() as u32).map(|i| [base, base + i - 1, base + i]));
@@ -60,53 +60,4 @@ pub fn log_land(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
         .with_radii([style::points(0.8)]);
     let parts: [&dyn rerun::AsComponents; 2] = [&surface, &shores];
     rec.log_static(path(&[VOLUME, "land"]), &parts)
-}
-
-/// The part of a piece within a window, counter-clockwise: cut side by side (Sutherland & Hodgman).
-fn clipped(piece: &ConvexPolygon, window: &Window) -> Vec<Vector> {
-    let sides = [
-        (Vector::new(1.0, 0.0), window.high.x),
-        (Vector::new(-1.0, 0.0), -window.low.x),
-        (Vector::new(0.0, 1.0), window.high.y),
-        (Vector::new(0.0, -1.0), -window.low.y),
-    ];
-    let mut kept = piece.vertices().to_vec();
-    for (normal, limit) in sides {
-        let beyond = |p: &Vector| normal.dot(p) - limit;
-        let mut next = Vec::with_capacity(kept.len() + 1);
-        for (i, a) in kept.iter().enumerate() {
-            let b = &kept[(i + 1) % kept.len()];
-            let (fa, fb) = (beyond(a), beyond(b));
-            if fa <= 0.0 {
-                next.push(*a);
-            }
-            if (fa <= 0.0) != (fb <= 0.0) {
-                next.push(a + (b - a) * (fa / (fa - fb)));
-            }
-        }
-        kept = next;
-    }
-    kept
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_piece_is_cut_at_the_edges_of_what_is_shown() {
-        let at = |x: f64, y: f64| Vector::new(x, y);
-        let window = Window {
-            low: at(0.0, 0.0),
-            high: at(10.0, 10.0),
-        };
-        let hull = |points: &[Vector]| ConvexPolygon::hull(points).expect("finite");
-        let across = hull(&[at(5.0, 5.0), at(15.0, 5.0), at(15.0, 15.0), at(5.0, 15.0)]);
-        let area = |points: &[Vector]| hull(points).area();
-        assert!((area(&clipped(&across, &window)) - 25.0).abs() < 1e-9);
-        let around = hull(&[at(-50.0, -50.0), at(50.0, -50.0), at(0.0, 90.0)]);
-        assert!((area(&clipped(&around, &window)) - 100.0).abs() < 1e-9);
-        let beside = hull(&[at(20.0, 0.0), at(30.0, 0.0), at(30.0, 5.0)]);
-        assert!(clipped(&beside, &window).is_empty());
-    }
 }

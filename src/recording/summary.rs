@@ -298,13 +298,21 @@ fn claim(scene: &Scene) -> String {
         Compliance::Shape => "shaped and hard sets",
         Compliance::None => "hard sets",
     };
-    format!(
-        "**Claimed** until arrival at {:.0} s: own ship's centre stays out of all {sets}, so at least \
-         {:.0} m remain between the hulls, wherever in its initial set a target starts and however its \
-         velocity varies within its velocity set. **Not claimed:** anything after arrival, or of a target \
-         that leaves its sets.",
-        trajectory.end_time(),
+    let ships = run.scenario.targets.iter().filter(|t| t.ship().is_some());
+    let margin = format!(
+        "so at least {:.0} m remain between the hulls, ",
         run.scenario.own_ship.safety_margin
+    );
+    let hulls = match ships.count() {
+        0 => String::new(),
+        n if n == run.scenario.targets.len() => margin,
+        _ => format!("{margin}except of targets whose sets are given, "),
+    };
+    format!(
+        "**Claimed** until arrival at {:.0} s: own ship's centre stays out of all {sets}, {hulls}wherever in its \
+         initial set a target starts and however its velocity varies within its velocity set. **Not claimed:** \
+         anything after arrival, or of a target that leaves its sets.",
+        trajectory.end_time(),
     )
 }
 

@@ -92,7 +92,7 @@ fn cells(summary: &Summary) -> Vec<Cell> {
         text(planned.then(|| passings(summary))),
         text(summary.space_time_error.map(square_metres)),
         text(summary.delay.map(signed)),
-        text(summary.clearance.map(|metres| format!("{metres:.1}"))),
+        text(summary.clearance.map(metres)),
         text(summary.max_risk.map(|risk| format!("{risk:.2}"))),
         Cell::new(summary.expanded),
         Cell::new(format!("{:.2}", summary.milliseconds)),
@@ -113,6 +113,11 @@ fn square_metres(value: f64) -> String {
     } else {
         format!("{value:.0}")
     }
+}
+
+/// With one decimal; what rounds to zero has no sign.
+fn metres(value: f64) -> String {
+    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
 }
 
 /// With a sign and one decimal; what rounds to zero is not late and not early.
@@ -304,7 +309,7 @@ pub fn plan_text(run: &Run) -> String {
             None => say("horizon", format!("{way}; no arrival is asked for")),
         }
         if let Some(clearance) = summary.clearance {
-            say("clearance", format!("{clearance:.1} m"));
+            say("clearance", format!("{} m", metres(clearance)));
         }
         if evaluation.min_land_distance.is_finite() {
             let (distance, time) = (

@@ -173,10 +173,14 @@ impl<'a> Graph<'a> {
             leg,
             distance: 0.0,
         });
-        let step = line
-            .windows(2)
-            .map(|p| self.measure.of(self.scene, place, p[0], p[1]))
-            .sum();
+        let on_schedule = line.len() == 2 && self.nodes[from].due && self.nodes[to].due;
+        let step = if on_schedule && leg.is_some() {
+            self.measure.on_schedule(line[0], line[1])
+        } else {
+            line.windows(2)
+                .map(|p| self.measure.of(self.scene, place, p[0], p[1]))
+                .sum()
+        };
         let state = State {
             node: to,
             from,

@@ -49,6 +49,16 @@ impl<'a> Measure<'a> {
         }
     }
 
+    /// The cost of following the schedule on one leg.
+    pub(crate) fn on_schedule(&self, from: PathTime, to: PathTime) -> f64 {
+        let (way, time) = (to.distance - from.distance, to.time - from.time);
+        match self.problem.objective {
+            Objective::Time => time,
+            Objective::Length | Objective::LengthRisk { .. } => way + METRES_PER_SECOND * time,
+            Objective::SpaceTimeError => 0.0,
+        }
+    }
+
     /// At most the cost of the way to the end, of which so many metres are left.
     pub(crate) fn bound(&self, scene: &Scene, to_go: f64) -> f64 {
         let time = to_go / scene.max_speed;

@@ -106,6 +106,10 @@ const ROUNDS: usize = 10;
 /// Metres of line above which the best manoeuvre is cut for additions, one entry per time it is enriched.
 const UNCUT_M: [f64; 2] = [200.0, 80.0];
 
+/// Steps of a refinement after an enrichment, and of the last one, without scraps.
+const STEPS_ENRICHED: usize = 12;
+const STEPS_TIDY: usize = 6;
+
 /// Share of the cost that an enrichment has to gain for another to be tried.
 const WORTH_ANOTHER: f64 = 0.01;
 
@@ -263,7 +267,7 @@ impl<'a> Selection<'a> {
         let mut best = best_of(running)?.best();
         for uncut in UNCUT_M {
             let seed = best.as_ref().and_then(|s| enriched(&self.scene, s, uncut));
-            let Some(again) = seed.and_then(|s| self.refined(s)) else {
+            let Some(again) = seed.and_then(|s| self.refined(s, STEPS_ENRICHED)) else {
                 break;
             };
             let gained = 1.0 - again.rank() / best_of(running)?.rank();
@@ -276,16 +280,20 @@ impl<'a> Selection<'a> {
         }
         let least = best_of(running)?.rank();
         let seed = best.and_then(|s| tidied(&self.scene, &s));
-        let tidy = seed.and_then(|s| self.refined(s))?;
+        let tidy = seed.and_then(|s| self.refined(s, STEPS_TIDY))?;
         (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
     }
 
-    /// A refinement from beginning to end.
-    fn refined(&self, seed: Seed) -> Option<Refinement> {
+    /// A refinement from beginning to end, of so many steps at most.
+    fn refined(&self, seed: Seed, most: usize) -> Option<Refinement> {
         let mut refinement = Refinement::fitting(&self.scene, seed)?;
-        while !refinement.is_finished() {
+        for _ in 0..most {
+            if refinement.is_finished() {
+                return Some(refinement);
+            }
             refinement.step(&self.scene);
         }
+        refinement.settle(&self.scene);
         Some(refinement)
     }
 

@@ -40,9 +40,10 @@ const SET: Stroke = Stroke {
 const MARGIN: f64 = 0.12;
 
 /// Where own ship is among the obstacles at the start and at the closest approach to each target, in order of time, and
-/// where she is driven by forces, these over time. `None` without a plan.
-pub fn plan_figure(run: &Run) -> Option<Figure> {
+/// her velocities and forces over time. `None` without a plan of forces.
+pub fn control_figure(run: &Run) -> Option<Figure> {
     let trajectory = &run.planned.outcome.plan()?.trajectory;
+    let motion = trajectory.steered()?;
     let mut times: Vec<f64> = run
         .evaluation
         .iter()
@@ -57,10 +58,8 @@ pub fn plan_figure(run: &Run) -> Option<Figure> {
         .iter()
         .map(|time| moment_panel(run, trajectory, *time))
         .collect();
-    if let Some(motion) = trajectory.steered() {
-        panels.push(velocity_panel(motion));
-        panels.push(force_panel(motion));
-    }
+    panels.push(velocity_panel(motion));
+    panels.push(force_panel(motion));
     Some(Figure::new(COLUMNS, panels))
 }
 

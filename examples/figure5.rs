@@ -1,0 +1,65 @@
+//! Figure 5 of the paper: a space-time polytope projected along a path, and the path-time diagram.
+//!
+//! ```text
+//! cargo run --release --no-default-features --example figure5 [FILE.svg|FILE.png]
+//! ```
+
+mod shared;
+
+use std::time::Duration;
+
+use searoom::frame::{Pose, Vector};
+use searoom::obstacle::Coast;
+use searoom::planner::{Objective, Problem, SearchKind, path_time};
+use searoom::report::figure::{
+    Figure, FigureError, ProfileLine, Stroke, path_panel, path_time_panel,
+};
+use searoom::trajectory::DesiredTrajectory;
+use searoom::vessel::{Hull, OwnShip};
+
+fn main() -> Result<(), FigureError> {
+    let path = [(20.0, 60.0), (90.0, -60.0)].map(|(x, y)| Vector::new(x, y));
+    let way = path[1] - path[0];
+    let own = OwnShip {
+        pose: Pose::new(path[0], way.y.atan2(way.x)),
+        speed: 1.5,
+        hull: Hull {
+            length: 0.0,
+            beam: 0.0,
+        },
+        turning_radius: 1.0,
+        speeds: vec![1.5],
+        safety_margin: 0.0,
+    };
+    let desired = DesiredTrajectory::new(&path, &[1.5]).expect("a leg");
+    let obstacles = [shared::figure_1()];
+    let planned = path_time::plan(&Problem {
+        own: &own,
+        desired: &desired,
+        alternatives: &[],
+        objective: Objective::Time,
+        obstacles: &obstacles,
+        coast: Coast::none(),
+        first_turn: None,
+        horizon: 200.0,
+        time_weight: 1.0,
+        search: SearchKind::AStar,
+        deadline: Duration::from_secs(5),
+    });
+    let diagram = planned.path_time.expect("a diagram");
+    let line = ProfileLine {
+        label: "at most 1.5 m/s".to_owned(),
+        diagram: &diagram,
+        stroke: Stroke {
+            colour: "#000000",
+            width: 2.4,
+            dashed: false,
+        },
+    };
+    let times = [0.0, 30.0, 60.0, 90.0];
+    let panels = vec![
+        path_panel("Space-time polytope and path", &obstacles, &times, &path),
+        path_time_panel("Path-time diagram", &["polytope"], &[line]),
+    ];
+    shared::write(Figure::new(2, panels), "figure5.svg")
+}

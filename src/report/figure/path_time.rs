@@ -1,0 +1,112 @@
+//! The path-time diagram: distance along the path across, time up, paper figures 5b and 6b.
+
+use super::outline::{Stroke, area, curve};
+use super::{Panel, Window};
+use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::PathTime;
+use crate::planner::path_time::PathTimeDiagram;
+
+/// Where legs join.
+const JOINT: Stroke = Stroke {
+    colour: "#bbbbbb",
+    width: 0.8,
+    dashed: true,
+};
+
+/// Of targets one after another: colours that differ in lightness, too.
+const COLOURS: [&str; 7] = [
+    "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31",
+];
+
+/// Time shown after what is to be seen, as a share of it.
+const AFTER: f64 = 0.08;
+
+/// Of the last arrival: how much longer an obstacle may last to be shown whole.
+const MUCH: f64 = 0.5;
+
+/// The colour of a target by its index.
+pub(super) fn target_colour(index: usize) -> &'static str {
+    COLOURS[index % COLOURS.len()]
+}
+
+/// A profile to be drawn.
+pub struct ProfileLine<'a> {
+    /// In the legend.
+    pub label: String,
+    /// The diagram that it was planned in.
+    pub diagram: &'a PathTimeDiagram,
+    /// How it is drawn.
+    pub stroke: Stroke,
+}
+
+/// The obstacles of the first diagram, filled, and the profiles of all; `names` are those of the obstacles, by
+/// their index. Without a plan up to the horizon.
+pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) -> Panel {
+    let point = |p: &PathTime| Vector::new(p.distance, p.time);
+    let arrival = profiles
+        .iter()
+        .filter(|line| line.diagram.profile.len() > 1)
+        .filter_map(|line| line.diagram.profile.last())
+        .map(|last| last.time)
+        .fold(0.0, f64::max);
+    let diagram = profiles.first().map(|line| line.diagram);
+    let horizon = diagram.map_or(1.0, |d| d.horizon);
+    // what begins before the last arrival is shown whole, unless it lasts for much longer
+    let whole = diagram
+        .iter()
+        .flat_map(|d| &d.obstacles)
+        .filter(|seen| seen.corners.iter().any(|c| c.time < arrival))
+        .flat_map(|seen| seen.corners.iter().map(|c| c.time))
+        .filter(|time| *time < (1.0 + MUCH) * arrival)
+        .fold(arrival, f64::max);
+    let top = if arrival > 0.0 {
+        (whole * (1.0 + AFTER)).min(horizon)
+    } else {
+        horizon
+    };
+    let window = Window {
+        low: Vector::zeros(),
+        high: Vector::new(diagram.map_or(1.0, PathTimeDiagram::length), top),
+    };
+    let axes = ["Distance along the path [m]", "Time [s]"];
+    let mut panel = Panel::free(title.to_owned(), axes, window);
+    let mut named: Vec<usize> = Vec::new();
+    for seen in diagram.iter().flat_map(|d| &d.obstacles) {
+        let corners: Vec<Vector> = seen.corners.iter().map(point).collect();
+        let colour = target_colour(seen.obstacle);
+        let polygon = ConvexPolygon::hull(&corners).ok();
+        panel
+            .plots
+            .extend(polygon.and_then(|p| area(&p, colour, 0.35)));
+        let outline = Stroke {
+            colour,
+            width: 1.0,
+            dashed: false,
+        };
+        panel.plots.push(curve(&corners, true, outline));
+        if corners.iter().any(|c| c.y < top) {
+            named.push(seen.obstacle);
+        }
+    }
+    for leg in diagram.iter().flat_map(|d| &d.legs).skip(1) {
+        let line = [Vector::new(leg.begin, 0.0), Vector::new(leg.begin, top)];
+        panel.plots.push(curve(&line, false, JOINT));
+    }
+    for line in profiles {
+        let points: Vec<Vector> = line.diagram.profile.iter().map(point).collect();
+        panel.plots.push(curve(&points, false, line.stroke));
+        panel.line_key(&line.label, line.stroke);
+    }
+    named.sort_unstable();
+    named.dedup();
+    for index in named {
+        let stroke = Stroke {
+            colour: target_colour(index),
+            width: 3.0,
+            dashed: false,
+        };
+        panel.line_key(names.get(index).copied().unwrap_or_default(), stroke);
+    }
+    panel
+}

@@ -1,0 +1,175 @@
+//! The figure of a plan: the chart, and of a path-time plan its diagram.
+
+use kuva::render::plots::Plot;
+
+use super::motion::control_figure;
+use super::outline::{Stroke, area, curve, mark, sampled_boundary};
+use super::path_time::{ProfileLine, path_time_panel, target_colour};
+use super::sections::{PLAN, seconds, sections_beside};
+use super::{Figure, Panel, Window};
+use crate::frame::Vector;
+use crate::geometry::{self, ConvexPolygon};
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::pipeline::Run;
+use crate::report::words;
+use crate::scenario::Land;
+
+/// The desired trajectory.
+const DESIRED: Stroke = Stroke {
+    colour: "#777777",
+    width: 1.4,
+    dashed: true,
+};
+
+/// Where own ship goes.
+pub(super) const PLANNED: Stroke = Stroke {
+    colour: "#000000",
+    width: 2.4,
+    dashed: false,
+};
+
+/// Other paths.
+const ALTERNATIVE: Stroke = Stroke {
+    colour: "#b0b0b0",
+    width: 1.4,
+    dashed: false,
+};
+
+/// Of land.
+const LAND: &str = "#d9cba3";
+
+/// Instants at which the sets are drawn, the start among them.
+const MOMENTS: usize = 4;
+
+/// Seconds between two points of a curve.
+const STEP: f64 = 1.0;
+
+/// The chart of a run, and its path-time diagram where it has one; of a plan of forces the closest approaches, velocities
+/// and forces.
+pub fn plan_figure(run: &Run) -> Figure {
+    if let Some(figure) = control_figure(run) {
+        return figure;
+    }
+    let mut panels = vec![chart_panel("Chart", run)];
+    if let Some(diagram) = run.planned.path_time.as_deref() {
+        let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
+        let line = ProfileLine {
+            label: match run.planned.outcome.plan() {
+                Some(_) => "planned".to_owned(),
+                None => "no plan".to_owned(),
+            },
+            diagram,
+            stroke: PLANNED,
+        };
+        let title = format!("Path {} and time", words::paths(diagram));
+        panels.push(path_time_panel(&title, &names, &[line]));
+    }
+    Figure::new(2, panels)
+}
+
+/// Sections of obstacles at `times`, seconds, and a path, waypoints in metres.
+pub fn path_panel(title: &str, obstacles: &[Obstacle], times: &[f64], path: &[Vector]) -> Panel {
+    let mut panel = sections_beside(title, obstacles, times, path);
+    panel.plots.push(curve(path, false, PLANNED));
+    panel.line_key("path", PLANNED);
+    panel
+}
+
+/// Desired and planned way, the sets at some times of the plan, each with own ship's place at that time.
+pub fn chart_panel(title: &str, run: &Run) -> Panel {
+    let scenario = &run.scenario;
+    let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
+    let end = trajectory.map_or(scenario.desired.duration(), |t| t.end_time());
+    let end = end.min(scenario.horizon);
+    let waypoints = scenario.desired.waypoints();
+    let way: Vec<Vector> = match trajectory {
+        Some(trajectory) => trajectory
+            .sample_times(STEP)
+            .into_iter()
+            .map(|time| trajectory.pose_at(time).position)
+            .collect(),
+        None => Vec::new(),
+    };
+    let moments: Vec<f64> = (0..MOMENTS)
+        .map(|i| end * i as f64 / (MOMENTS - 1) as f64)
+        .collect();
+    let paths = scenario.alternatives.iter().flatten();
+    let mut shown: Vec<Vector> = waypoints.iter().chain(&way).chain(paths).copied().collect();
+    let reach = Window::around(shown.iter().copied(), 0.3);
+    // of what goes far away the beginning is enough
+    let within = |p: &Vector| {
+        p.x > reach.low.x && p.x < reach.high.x && p.y > reach.low.y && p.y < reach.high.y
+    };
+    let mut sets: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
+    for (index, obstacle) in run.obstacles.iter().enumerate() {
+        for (k, time) in moments.iter().enumerate() {
+            let boundary = sampled_boundary(&obstacle.section(*time));
+            if boundary.iter().any(within) {
+                shown.extend(boundary.iter().copied().filter(within));
+                sets.push((index, k, boundary));
+            }
+        }
+    }
+    let mut panel = Panel::plan(title.to_owned(), PLAN, Window::around(shown, 0.06));
+    let land = scenario.land.as_ref();
+    panel.plots.extend(land_areas(land, panel.window()));
+    for (index, k, boundary) in &sets {
+        let colour = target_colour(*index);
+        let opacity = 0.10 + 0.30 * (1.0 - *k as f64 / MOMENTS as f64);
+        let polygon = ConvexPolygon::hull(boundary).ok();
+        panel
+            .plots
+            .extend(polygon.and_then(|p| area(&p, colour, opacity)));
+        let outline = Stroke {
+            colour,
+            width: 1.0,
+            dashed: *k > 0,
+        };
+        panel.plots.push(curve(boundary, true, outline));
+    }
+    for path in &scenario.alternatives {
+        panel.plots.push(curve(path, false, ALTERNATIVE));
+    }
+    panel.plots.push(curve(&waypoints, false, DESIRED));
+    if let Some(trajectory) = trajectory {
+        panel.plots.push(curve(&way, false, PLANNED));
+        for time in &moments {
+            let at = trajectory.pose_at(*time).position;
+            panel.plots.push(mark(at, PLANNED.colour));
+        }
+        let list: Vec<String> = moments.iter().map(|t| seconds(*t)).collect();
+        panel.line_key("planned", PLANNED);
+        panel.point_key(&format!("at {} s", list.join(", ")), PLANNED.colour);
+    }
+    panel.line_key("desired", DESIRED);
+    if land.is_some() {
+        let stroke = Stroke {
+            colour: LAND,
+            width: 3.0,
+            dashed: false,
+        };
+        panel.line_key("land", stroke);
+    }
+    for (index, obstacle) in run.obstacles.iter().enumerate() {
+        let stroke = Stroke {
+            colour: target_colour(index),
+            width: 3.0,
+            dashed: false,
+        };
+        panel.line_key(&format!("set of {}", obstacle.name()), stroke);
+    }
+    panel
+}
+
+/// The land within a window, filled, piece by piece.
+fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
+    let window = geometry::Window {
+        low: shown.low,
+        high: shown.high,
+    };
+    land.into_iter()
+        .flat_map(|land| land.map.pieces_within(&window))
+        .filter_map(|piece| ConvexPolygon::hull(&window.part_of(piece)).ok())
+        .filter_map(|piece| area(&piece, LAND, 1.0))
+        .collect()
+}
