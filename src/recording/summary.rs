@@ -258,13 +258,17 @@ fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
     let graph = plan
         .graph_cost
         .map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
+    let delay = if evaluation.delay.is_finite() {
+        format!("{:+.1} s", evaluation.delay)
+    } else {
+        "–".to_owned()
+    };
     format!(
         "| J, space-time error | graph alone | over arc length | delay | duration | length | worst-case clearance |\n\
          |---|---|---|---|---|---|---|\n\
-         | {:.1} m² | {graph} | {:.1} m² | {:+.1} s | {:.1} s | {:.0} m | {:.1} m |",
+         | {:.1} m² | {graph} | {:.1} m² | {delay} | {:.1} s | {:.0} m | {:.1} m |",
         evaluation.space_time_error,
         evaluation.arc_length_error,
-        evaluation.delay,
         evaluation.duration,
         evaluation.length,
         evaluation.min_clearance,

@@ -129,7 +129,7 @@ fn pose_at(segments: &[Segment], time: f64) -> Option<Pose> {
 
 /// The corners of the land near the undisturbed motion, where that goes aground, each block with few: those that are
 /// inside other blocks are left out, for no way leads past them. Where it stays on water ways around targets need no
-/// corner of the land: to aim at them too took twice the time and found no cheaper plan among 150 along quays.
+/// corner of the land: to aim at them too took twice the time and found no cheaper plan among 60 along quays.
 pub(crate) fn aims(problem: &Problem, undisturbed: &[Segment]) -> impl Iterator<Item = Aims> {
     let coast = problem.coast;
     let aground = first_contact(coast, undisturbed).is_some();
