@@ -11,13 +11,13 @@ use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::planner::path_time::PathTimeDiagram;
 
 /// Height of the view over its width.
-const SHAPE: f64 = 0.6;
+const SHAPE: f64 = 0.3;
 
 /// Time shown beyond the arrival, as a share of it.
 const AFTER: f64 = 0.15;
 
-/// Lines of the grid to each side, about.
-const LINES: f64 = 6.0;
+/// Lines of the grid to each side, at least.
+const LINES: f64 = 3.0;
 
 /// What the view shows, and how many metres a second is drawn as.
 #[derive(Debug, Clone, Copy)]

@@ -135,6 +135,8 @@ pub fn plan(problem: &Problem) -> Planned {
         }
         if measure.waits_are_free() {
             profile.pull_taut(&scene);
+        } else {
+            profile.tidy(&scene);
         }
         profile
     });

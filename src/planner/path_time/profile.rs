@@ -8,6 +8,9 @@ use crate::obstacle::PathTime;
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
+/// Seconds. Bends no further apart than this are one: she moves some micrometres meanwhile.
+const INSTANT_S: f64 = 1e-6;
+
 /// Legs one after another, and where own ship is on them when.
 #[derive(Debug, Clone)]
 pub(crate) struct Profile {
@@ -127,6 +130,21 @@ impl Profile {
         self.knots = taut;
     }
 
+    /// Leaves out bends that are no more than an instant from the next, where the line without them is free: a place against an
+    /// edge is beside the corner of the edge.
+    pub(crate) fn tidy(&mut self, scene: &Scene) {
+        let mut k = 1;
+        while k + 1 < self.knots.len() {
+            let [before, here, after] = [self.knots[k - 1], self.knots[k], self.knots[k + 1]];
+            let beside = (here.time - before.time).min(after.time - here.time) <= INSTANT_S;
+            if beside && self.is_free(scene, before, after) {
+                self.knots.remove(k);
+            } else {
+                k += 1;
+            }
+        }
+    }
+
     /// The motion, from a pose at the start: she turns on the spot where legs join.
     pub(crate) fn trajectory(&self, scene: &Scene, start: Pose) -> Option<Trajectory> {
         let mut segments = Vec::new();
@@ -144,9 +162,13 @@ impl Profile {
         }
         for pair in self.knots.windows(2) {
             let (from, to) = (pair[0], pair[1]);
-            let speed = (to.distance - from.distance) / (to.time - from.time);
-            // of a short piece rounding may make more
-            let speed = speed.min(scene.max_speed);
+            let way = to.distance - from.distance;
+            // what is no way is a wait; of a short piece rounding may make more than the greatest speed
+            let speed = if way > TOUCH_M {
+                (way / (to.time - from.time)).min(scene.max_speed)
+            } else {
+                0.0
+            };
             let pieces = self.pieces(scene, from, to);
             // a wait where legs join is one wait
             let count = if speed > 0.0 { pieces.len() } else { 1 };
