@@ -57,7 +57,7 @@ pub trait SpaceTimeObstacle {
     fn peak_risk(&self, segment: &Segment) -> PeakRisk;
 
     /// The largest risk along a trajectory: that of its segments, the first of those that tie. Along a motion under
-    /// forces the largest of [`LOOKS`] instants a piece at which it is deeper than [`tolerance::DEPTH_M`] in the set.
+    /// forces the largest of `LOOKS` instants a piece at which it is deeper than [`tolerance::DEPTH_M`] in the set.
     fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
         let mut peak = PeakRisk {
             risk: 0.0,
