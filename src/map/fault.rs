@@ -52,7 +52,8 @@ pub enum MapError {
     },
 }
 
-fn listed(faults: &[MapFault]) -> String {
+/// How many, then one on each line.
+pub(crate) fn listed<F: fmt::Display>(faults: &[F]) -> String {
     let plural = if faults.len() == 1 { "" } else { "s" };
     let mut text = format!("{} fault{plural}", faults.len());
     for fault in faults {

@@ -8,6 +8,7 @@ mod fault;
 mod path;
 mod reading;
 
+pub(crate) use fault::listed;
 pub use fault::{MapError, MapFault};
 pub use path::LandCrossing;
 

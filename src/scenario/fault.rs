@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use crate::map::listed;
+
 /// One thing wrong in a file: where, what was found, what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
@@ -47,13 +49,4 @@ pub enum ScenarioError {
         /// Everything wrong with it, in order of lines. Never empty.
         faults: Vec<Fault>,
     },
-}
-
-fn listed(faults: &[Fault]) -> String {
-    let plural = if faults.len() == 1 { "" } else { "s" };
-    let mut text = format!("{} fault{plural}", faults.len());
-    for fault in faults {
-        text.push_str(&format!("\n  {fault}"));
-    }
-    text
 }

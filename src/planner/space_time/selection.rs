@@ -236,7 +236,8 @@ impl<'a> Selection<'a> {
             .collect();
         for round in 0..MAX_STEPS {
             let decided = round >= ROUNDS && running.iter().any(|r| r.best_cost().is_finite());
-            if decided || running.iter().all(Refinement::is_finished) {
+            // nothing counts as clear before fine chords have seen it
+            if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
             race(&mut running, round);
