@@ -64,6 +64,7 @@
 //! | [`assessment`] | risk, closest approach and the least alteration of own ship among the obstacles, without a plan |
 //! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
 //! | [`evaluation`] | judges any trajectory, sharing no collision code with the planner |
+//! | [`verification`] | checks a plan document alone, without scenario and planner |
 //! | [`scenario`] | scenario files: every fault of a file at once |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
 //! | [`simulation`] | random encounters, and targets that do anything their sets allow |
@@ -137,4 +138,5 @@ pub mod simulation;
 pub mod target;
 pub mod tolerance;
 pub mod trajectory;
+pub mod verification;
 pub mod vessel;

@@ -80,3 +80,7 @@ pub const GRAZE_M: f64 = 1e-8;
 /// of a plan of forces, she may be off the next one by this: a tenth of a millimetre for a ship of one metre, what
 /// any feedback takes out at once.
 pub const DEFECT: f64 = 1e-4;
+
+/// Relative, and absolute below one. A figure of a document may differ from the one that is computed anew by this: angles are
+/// written in degrees, and a least distance is exact to [`MARGIN_M`].
+pub const FIGURE: f64 = 1e-6;

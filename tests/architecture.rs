@@ -73,6 +73,18 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "verification",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "vessel",
+            "target",
+            "trajectory",
+            "evaluation",
+        ],
+    ),
+    (
         "scenario",
         &[
             "frame",
@@ -139,6 +151,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "assessment",
             "planner",
             "evaluation",
+            "verification",
             "scenario",
             "pipeline",
             "simulation",
@@ -402,6 +415,12 @@ fn every_border_can_be_broken() {
             "evaluation/mod.rs",
             "use crate::obstacle::contact::first_contact;",
         ),
+        (
+            "verification/mod.rs",
+            "use crate::report::document::PlanDocument;",
+        ),
+        ("verification/coverage.rs", "use crate::obstacle::Obstacle;"),
+        ("verification/motion.rs", "use crate::planner::PlannerKind;"),
         (
             "scenario/mod.rs",
             "use crate::planner::{SearchKind, space_time};",

@@ -30,6 +30,8 @@ pub enum Command {
     Plan(PlanArgs),
     /// Runs every scenario below the paths: one row each, a summary, one exit status
     Suite(SuiteArgs),
+    /// Checks plan documents again from themselves alone, with code that shares nothing with the planners
+    Verify(VerifyArgs),
 }
 
 #[derive(Debug, Args)]
@@ -89,6 +91,16 @@ pub struct SuiteArgs {
     /// Write one plan document per scenario into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct VerifyArgs {
+    /// Plan documents, as `plan --json` and `suite --plans` write them
+    #[arg(required = true, value_name = "PLAN.json")]
+    pub plans: Vec<PathBuf>,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What every planning command takes.

@@ -12,6 +12,7 @@ mod rows;
 mod runner;
 mod status;
 mod suite;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -34,6 +35,7 @@ pub fn main() -> ExitCode {
         Command::Assess(args) => assess::assess(args, &output),
         Command::Plan(args) => plan::plan(args, &output),
         Command::Suite(args) => suite::suite(args, &output),
+        Command::Verify(args) => verify::verify(args, &output),
     };
     let status = runner::guarded(run).unwrap_or_else(|fault| {
         output.error(&fault);

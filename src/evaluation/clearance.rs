@@ -13,7 +13,21 @@ use crate::vessel::Hull;
 /// by supporting lines, which separate the two for as long as they do. About a hundred probes a segment
 /// near the minimum and one far from it, each linear in the vertices.
 pub(super) fn least_distance<P: Piece>(pieces: &[P], own: Body, set: &MovingSet) -> Least {
-    let mut least = Least::new();
+    least_distance_below(Least::new(), pieces, own, set)
+}
+
+/// The same where a least distance to something else is known already: what is not nearer is not looked at closely.
+pub(super) fn least_distance_below<P: Piece>(
+    known: Least,
+    pieces: &[P],
+    own: Body,
+    set: &MovingSet,
+) -> Least {
+    let mut least = Least {
+        certified: true,
+        probes: 0,
+        ..known
+    };
     for s in pieces {
         for time in [s.start_time(), s.end_time()] {
             least.see(own.probe(s, &s.bounds(), set, time, 0.0).value, time);

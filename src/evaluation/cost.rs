@@ -9,17 +9,25 @@ const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
 /// The space-time error `J = (1 / T_d) ∫ e² dt` in m², formulas section 7, `q` in m²/s². Accurate to
 /// 1e-9 of itself; corners of `e²`, where the nearest leg changes, are closed in on by halving.
 pub(super) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
+    let error = |s: &Segment, time: f64| desired.nearest(s.pose_at(time).position, time, q).error;
+    let joints = |s: &Segment| -> Vec<f64> {
+        let pieces = pieces(s);
+        (0..=pieces)
+            .map(|k| s.start_time + s.duration * k as f64 / pieces as f64)
+            .collect()
+    };
+    // what is small beside the whole need not be exact to its own last digits
+    let about: f64 = segments
+        .iter()
+        .flat_map(|s| {
+            let joints = joints(s);
+            let rule = |w: &[f64]| smooth(w[0], w[1], &|time| error(s, time));
+            joints.windows(2).map(rule).collect::<Vec<_>>()
+        })
+        .sum();
     let integral: f64 = segments
         .iter()
-        .map(|s| {
-            let pieces = pieces(s);
-            let joints: Vec<f64> = (0..=pieces)
-                .map(|k| s.start_time + s.duration * k as f64 / pieces as f64)
-                .collect();
-            adaptive(&joints, &|time| {
-                desired.nearest(s.pose_at(time).position, time, q).error
-            })
-        })
+        .map(|s| adaptive(&joints(s), about, &|time| error(s, time)))
         .sum();
     integral / desired.duration()
 }

@@ -175,6 +175,21 @@ pub fn evaluate(request: &Request) -> Evaluation {
     }
 }
 
+/// The least signed distance to each set of a request along its segments, metres, certified; minus infinity where that was
+/// not proven.
+pub fn least_margins(request: &Request) -> Vec<f64> {
+    let proven = |least: Least| {
+        if least.certified {
+            least.value
+        } else {
+            f64::NEG_INFINITY
+        }
+    };
+    let sets = request.sets.iter();
+    sets.map(|set| proven(set.shape.least_distance(request.segments)))
+        .collect()
+}
+
 /// Every set and every target along a chain of pieces; what is violated is noted where the pieces are `judged`.
 fn meetings<P: Piece>(
     request: &Request,

@@ -46,15 +46,16 @@ fn rule(rule: &[(f64, f64)], from: f64, until: f64, f: &impl Fn(f64) -> f64) -> 
 
 /// The integral of a function that is smooth but for kinks, over consecutive intervals between the
 /// sorted `joints`: intervals are halved until two rules, and one rule and its two halves, agree to
-/// [`tolerance::QUADRATURE`] of the whole. NaN where the function is.
-pub(super) fn adaptive(joints: &[f64], f: &impl Fn(f64) -> f64) -> f64 {
+/// [`tolerance::QUADRATURE`] of the whole, or of `least` where that is more: what this is added to. NaN where the
+/// function is.
+pub(super) fn adaptive(joints: &[f64], least: f64, f: &impl Fn(f64) -> f64) -> f64 {
     let mut open: Vec<(f64, f64, f64, u32)> = joints
         .windows(2)
         .map(|w| (w[0], w[1], smooth(w[0], w[1], f), 0))
         .collect();
     let size: f64 = open.iter().map(|piece| piece.2.abs()).sum();
     let span: f64 = open.iter().map(|piece| piece.1 - piece.0).sum();
-    let allowed = tolerance::QUADRATURE * size.max(tolerance::LENGTH_M);
+    let allowed = tolerance::QUADRATURE * size.max(least).max(tolerance::LENGTH_M);
     let mut total = 0.0;
     let mut done = 0;
     while let Some((from, until, whole, depth)) = open.pop() {
@@ -89,14 +90,14 @@ mod tests {
 
     #[test]
     fn kinks_are_found() {
-        let found = adaptive(&[0.0, 1.0, 7.0], &|x| (x - std::f64::consts::PI).abs());
+        let found = adaptive(&[0.0, 1.0, 7.0], 0.0, &|x| (x - std::f64::consts::PI).abs());
         let (a, b) = (std::f64::consts::PI, 7.0 - std::f64::consts::PI);
         let exact = 0.5 * (a * a + b * b);
         assert!((found - exact).abs() < 1e-9 * exact, "{found} {exact}");
         // so near to an end that the open rule and both of its halves miss it
-        let found = adaptive(&[0.0, 1.0], &|x| 1.0 + (x - 0.999).max(0.0));
+        let found = adaptive(&[0.0, 1.0], 0.0, &|x| 1.0 + (x - 0.999).max(0.0));
         assert!((found - 1.0 - 0.5e-6).abs() < 1e-10, "{found}");
-        assert_eq!(adaptive(&[0.0, 5.0], &|_| 0.0), 0.0);
-        assert!(adaptive(&[0.0, 5.0], &|_| f64::NAN).is_nan());
+        assert_eq!(adaptive(&[0.0, 5.0], 0.0, &|_| 0.0), 0.0);
+        assert!(adaptive(&[0.0, 5.0], 0.0, &|_| f64::NAN).is_nan());
     }
 }

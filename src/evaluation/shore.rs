@@ -1,6 +1,6 @@
 //! Land as the checker sees it: the edges of its polygons, and the even-odd rule.
 
-use super::clearance::{Body, least_distance};
+use super::clearance::{Body, least_distance_below};
 use super::least::Least;
 use super::piece::Piece;
 use super::space_time_set::{MovingSet, nearest_on};
@@ -10,7 +10,7 @@ use crate::geometry::{ConvexPolygon, Polygon};
 /// The least distance between own hull and land along a chain of pieces: negative on land. A hull that starts
 /// on water and touches no edge stays on water, so edges are all that is looked at, each as a set of two points
 /// that does not move; a position inside a polygon is on land whatever its edges say. Certified like
-/// [`least_distance`]; infinite without land. O(edges) per piece, and probes for those that are near.
+/// [`least_distance_below`]; infinite without land. O(edges) per piece, and probes for those that are near.
 pub(super) fn least_land_distance<P: Piece>(
     pieces: &[P],
     own: Body,
@@ -52,7 +52,7 @@ pub(super) fn least_land_distance<P: Piece>(
                 &ConvexPolygon::from_ccw(vec![a, b]),
                 &ConvexPolygon::point(Vector::zeros()),
             );
-            let here = least_distance(std::slice::from_ref(s), own, &set);
+            let here = least_distance_below(least, std::slice::from_ref(s), own, &set);
             least.see(here.value, here.time);
             least.certified &= here.certified;
             least.probes += here.probes;

@@ -6,10 +6,12 @@ pub mod document;
 pub mod figure;
 mod summary;
 mod table;
+mod verification;
 mod words;
 mod write;
 
 pub use assessment::assessment_text;
 pub use summary::{Meeting, Summary, Turn, Verdict};
 pub use table::{Row, plan_text, suite_table};
+pub use verification::verification_text;
 pub use write::{WriteError, write_atomically};

@@ -48,22 +48,7 @@ pub enum Row {
 
 /// The table of a suite. Colour only when `colour`; never wider than the terminal when there is one.
 pub fn suite_table(rows: &[Row], colour: bool) -> String {
-    let mut table = Table::new();
-    table
-        .load_style(presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(HEADER);
-    table.style_mut().row_separator = presets::NOTHING.row_separator;
-    if colour {
-        table.enforce_styling();
-    } else {
-        table.force_no_tty();
-    }
-    for index in NUMBERS {
-        if let Some(column) = table.column_mut(index) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
+    let mut table = figures(&HEADER, NUMBERS, colour);
     for row in rows {
         table.add_row(match row {
             Row::Run(summary) => cells(summary),
@@ -75,6 +60,27 @@ pub fn suite_table(rows: &[Row], colour: bool) -> String {
         });
     }
     table.trim_fmt()
+}
+
+/// An empty table with these names, lines between them and the rows alone, and the columns `numbers` set to the right.
+pub(super) fn figures(header: &[&str], numbers: std::ops::Range<usize>, colour: bool) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(presets::UTF8_HORIZONTAL_ONLY)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(header);
+    table.style_mut().row_separator = presets::NOTHING.row_separator;
+    if colour {
+        table.enforce_styling();
+    } else {
+        table.force_no_tty();
+    }
+    for index in numbers {
+        if let Some(column) = table.column_mut(index) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
 }
 
 fn cells(summary: &Summary) -> Vec<Cell> {
@@ -104,7 +110,7 @@ fn cells(summary: &Summary) -> Vec<Cell> {
     ]
 }
 
-fn square_metres(value: f64) -> String {
+pub(super) fn square_metres(value: f64) -> String {
     if value.is_nan() {
         return "undefined".to_owned();
     }
@@ -116,12 +122,12 @@ fn square_metres(value: f64) -> String {
 }
 
 /// With one decimal; what rounds to zero has no sign.
-fn metres(value: f64) -> String {
+pub(super) fn metres(value: f64) -> String {
     format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
 }
 
 /// With a sign and one decimal; what rounds to zero is not late and not early.
-fn signed(value: f64) -> String {
+pub(super) fn signed(value: f64) -> String {
     format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
 }
 

@@ -8,6 +8,8 @@ mod parts;
 mod path_time;
 mod plan;
 mod suite;
+mod targets;
+mod verification;
 
 pub use assessment::*;
 pub use control::{
@@ -19,3 +21,5 @@ pub use plan::{PLAN_FORMAT, PlanDocument};
 pub use suite::{
     INTERNAL_FAULT, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument, UNREADABLE,
 };
+pub use targets::{ShipDocument, SpellDocument, TargetDocument};
+pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};

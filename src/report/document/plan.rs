@@ -10,6 +10,7 @@ use super::parts::{
     VelocitySetDocument, ViolationDocument,
 };
 use super::path_time::{PathTimeDocument, path_time_document};
+use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
 use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
@@ -62,6 +63,8 @@ pub struct PlanDocument {
     pub search_stats: SearchStatsDocument,
     pub timing: TimingDocument,
     pub trajectory: Option<TrajectoryDocument>,
+    /// As the scenario has them: what the sets have to contain.
+    pub targets: Vec<TargetDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
     /// Of a path-time plan; absent elsewhere.
@@ -126,6 +129,7 @@ impl PlanDocument {
             },
             timing: timing(run),
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
+            targets: scenario.targets.iter().map(target).collect(),
             obstacles: run
                 .obstacles
                 .iter()
@@ -147,7 +151,7 @@ pub(super) fn verified(run: &Run) -> bool {
     run.evaluation.as_ref().is_some_and(|e| e.verified())
 }
 
-fn finite(value: f64) -> Option<f64> {
+pub(super) fn finite(value: f64) -> Option<f64> {
     // +0.0 turns a negative zero into zero
     value.is_finite().then_some(value + 0.0)
 }
@@ -159,7 +163,7 @@ fn position(p: Vector) -> PositionDocument {
     }
 }
 
-fn vertices(polygon: &ConvexPolygon) -> Vec<[f64; 2]> {
+pub(super) fn vertices(polygon: &ConvexPolygon) -> Vec<[f64; 2]> {
     polygon.vertices().iter().copied().map(plain).collect()
 }
 
@@ -315,14 +319,8 @@ fn obstacles(set: &Obstacle, horizon: f64) -> Vec<ObstacleDocument> {
         Obstacle::Polytope(o) => vec![polytope(o, [0.0, horizon])],
         Obstacle::Ellipsoid(o) => vec![entry(
             [0.0, horizon],
-            InitialSetDocument::Ellipse {
-                center_m: plain(o.initial().center()),
-                shape_m2: rows(o.initial()),
-            },
-            VelocitySetDocument::Ellipse {
-                center_mps: plain(o.velocity().center()),
-                shape_m2_per_s2: rows(o.velocity()),
-            },
+            ellipse(o.initial()),
+            velocity_ellipse(o.velocity()),
         )],
         Obstacle::Slabs(o) => o
             .slabs()
@@ -333,12 +331,12 @@ fn obstacles(set: &Obstacle, horizon: f64) -> Vec<ObstacleDocument> {
     }
 }
 
-fn plain(p: Vector) -> [f64; 2] {
+pub(super) fn plain(p: Vector) -> [f64; 2] {
     // +0.0 turns a negative zero into zero
     [p.x + 0.0, p.y + 0.0]
 }
 
-fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
+pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
     let q = ellipse.shape();
     [
         plain(Vector::new(q[(0, 0)], q[(0, 1)])),

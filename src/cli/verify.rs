@@ -1,0 +1,88 @@
+//! `searoom verify`: plan documents, checked again from themselves alone.
+
+use std::fs::File;
+use std::io::{Error, ErrorKind, Read};
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use searoom::report::document::{VerificationDocument, VerifiedPlanDocument};
+use searoom::report::verification_text;
+use searoom::verification::{Verification, verify as check};
+
+use super::args::VerifyArgs;
+use super::output::Output;
+use super::runner::guarded;
+use super::status::Status;
+
+/// Bytes, 64 MiB: a plan among a hundred targets has less than one.
+const FILE_BYTES: u64 = 1 << 26;
+
+/// Checks every file; one that cannot be read does not stop the others.
+pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
+    let mut status = Status::Good;
+    let mut documents = Vec::new();
+    for file in &args.plans {
+        let name = file.display().to_string();
+        let reached = match guarded(|| one(file)) {
+            Ok(Ok(verification)) => {
+                let shown = if args.json {
+                    documents.push(VerifiedPlanDocument::of(name, &verification));
+                    Status::Good
+                } else {
+                    output.result(&verification_text(&verification, output.colour))
+                };
+                shown.max(if verification.verified() {
+                    Status::Good
+                } else {
+                    Status::NoPlan
+                })
+            }
+            Ok(Err(error)) => {
+                let error = format!("{name}: {error:#}");
+                documents.push(VerifiedPlanDocument::unreadable(name, error.clone()));
+                output.error(&error);
+                Status::BadInput
+            }
+            Err(fault) => {
+                output.error(&format_args!("{name}: {fault}"));
+                Status::InternalFault
+            }
+        };
+        status = status.max(reached);
+    }
+    if args.json {
+        status = status.max(output.document(&VerificationDocument::of(documents)));
+    }
+    status
+}
+
+fn one(file: &Path) -> anyhow::Result<Verification> {
+    let text = document(file)?;
+    // the message names its field already
+    check(&text).map_err(|error| anyhow!("{error}"))
+}
+
+/// The text of a plan document.
+fn document(file: &Path) -> anyhow::Result<String> {
+    let unread = "cannot be read";
+    // a pipe would be waited for, a device read for ever
+    if !std::fs::metadata(file).context(unread)?.is_file() {
+        let error = Error::new(ErrorKind::InvalidInput, "not a regular file");
+        return Err(error).context(unread);
+    }
+    let mut bytes = Vec::new();
+    let handle = File::open(file).context(unread)?;
+    handle
+        .take(FILE_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .context(unread)?;
+    if bytes.len() as u64 > FILE_BYTES {
+        return Err(anyhow!("more than 64 MiB; a plan document has less"));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        anyhow!(
+            "bytes that are no text at byte {}",
+            error.utf8_error().valid_up_to()
+        )
+    })
+}

@@ -1,0 +1,100 @@
+//! A check of a plan document for the eye.
+
+use comfy_table::{Cell, Color};
+
+use super::table::{figures, metres};
+use crate::verification::Verification;
+
+/// Units below the names.
+const HEADER: [&str; 6] = [
+    "target",
+    "margin\n[m]",
+    "at\n[s]",
+    "clearance\n[m]",
+    "dCPA\n[m]",
+    "tCPA\n[s]",
+];
+
+/// Violations that are listed; the rest is counted.
+const LISTED: usize = 20;
+
+/// The verdict, the least margin to every target and when, and everything that is wrong.
+pub fn verification_text(checked: &Verification, colour: bool) -> String {
+    let verdict = match (&checked.evaluation, checked.violations.len()) {
+        (None, _) => format!(
+            "no plan in it (outcome {}): nothing to verify",
+            checked.outcome
+        ),
+        (Some(_), 0) if checked.max_risk > 0.0 => {
+            format!("verified, at an accepted risk of {}", checked.max_risk)
+        }
+        (Some(_), 0) => "verified".to_owned(),
+        (Some(_), 1) => "REJECTED, 1 fault".to_owned(),
+        (Some(_), n) => format!("REJECTED, {n} faults"),
+    };
+    let mut lines = vec![format!("{}: {verdict}", checked.scenario)];
+    let mut faults = checked.violations.iter();
+    for fault in faults.by_ref().take(LISTED) {
+        lines.push(format!("  at {:.3} s: {}", fault.time, fault.what));
+    }
+    let more = faults.count();
+    if more > 0 {
+        lines.push(format!("  and {more} more"));
+    }
+    let Some(evaluation) = &checked.evaluation else {
+        return lines.join("\n");
+    };
+    lines.push(format!(
+        "{} plan, {} piece{} until {:.1} s; {} set{}, {} piece{} of land",
+        checked.planner,
+        checked.pieces,
+        plural(checked.pieces),
+        evaluation.duration,
+        checked.sets,
+        plural(checked.sets),
+        checked.land,
+        plural(checked.land),
+    ));
+    if evaluation.min_land_distance.is_finite() {
+        lines.push(format!(
+            "Least distance from land {} m, at {:.1} s",
+            metres(evaluation.min_land_distance),
+            evaluation.min_land_distance_time
+        ));
+    }
+    if !checked.targets.is_empty() {
+        lines.push(String::new());
+        lines.push(margins(checked, colour));
+    }
+    lines.join("\n")
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
+fn margins(checked: &Verification, colour: bool) -> String {
+    let passages = checked.evaluation.as_ref().map_or(&[][..], |e| &e.passages);
+    let mut table = figures(&HEADER, 1..HEADER.len(), colour);
+    for (target, passage) in checked.targets.iter().zip(passages) {
+        let margin = Cell::new(millimetres(passage.min_margin));
+        table.add_row(vec![
+            Cell::new(target),
+            if passage.min_margin >= -crate::tolerance::DEPTH_M {
+                margin
+            } else {
+                margin.fg(Color::Red)
+            },
+            Cell::new(format!("{:.1}", passage.min_margin_time)),
+            Cell::new(metres(passage.min_clearance)),
+            Cell::new(metres(passage.dcpa)),
+            Cell::new(format!("{:.1}", passage.tcpa)),
+        ]);
+    }
+    table.trim_fmt()
+}
+
+/// With three decimals; what rounds to zero has no sign.
+fn millimetres(value: f64) -> String {
+    format!("{:.3}", (value * 1000.0).round() / 1000.0 + 0.0)
+}

@@ -1,0 +1,354 @@
+//! From the text of a document to what it claims, without invalid state.
+
+use super::FORMAT;
+use super::file::{OwnShipFile, PlaceFile, PlanFile, SetFile, TargetFile};
+use super::motion;
+use super::sets;
+use crate::evaluation::{SpaceTimeSet, Violation};
+use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
+use crate::geometry::{ConvexPolygon, Ellipse, Polygon};
+use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, VelocitySpell};
+use crate::trajectory::{DesiredTrajectory, Segment, Steered};
+use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
+
+/// The planner whose plans keep to paths.
+const PATH_TIME: &str = "path-time";
+
+/// One field of a document that is not as it has to be.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ClaimFault {
+    /// The field.
+    pub path: String,
+    /// What is there.
+    pub found: String,
+    /// What may be there.
+    pub allowed: String,
+}
+
+/// Why a text is no plan document that can be checked.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ClaimError {
+    /// No JSON, a key that is missing, or a value of another kind.
+    #[error("{}{reason}", place(.path))]
+    Shape {
+        /// The field; "." for the whole.
+        path: String,
+        /// In words, with line and column.
+        reason: String,
+    },
+    /// A value that cannot be.
+    #[error("{}: found {}; allowed: {}", .0.path, .0.found, .0.allowed)]
+    Value(ClaimFault),
+}
+
+fn place(path: &str) -> String {
+    if path == "." || path == "?" {
+        String::new()
+    } else {
+        format!("{path}: ")
+    }
+}
+
+/// The motion that is claimed.
+#[derive(Debug, Clone)]
+pub(super) enum ClaimedMotion {
+    /// Lines and arcs, right or wrong.
+    Segments(Vec<Segment>),
+    /// Nodes with forces.
+    Steered {
+        motion: Steered,
+        vessel: VesselKind,
+        force_limits: ForceVector,
+    },
+}
+
+/// A document, read.
+#[derive(Debug)]
+pub(super) struct Claim {
+    pub file: PlanFile,
+    pub own: OwnShip,
+    pub desired: DesiredTrajectory,
+    /// Where she is bound to paths.
+    pub paths: Option<Vec<Vec<Vector>>>,
+    pub targets: Vec<Target>,
+    pub sets: Vec<SpaceTimeSet>,
+    pub land: Vec<Polygon>,
+    pub motion: Option<ClaimedMotion>,
+    /// What cannot be true of the parts together.
+    pub faults: Vec<Violation>,
+}
+
+impl Claim {
+    /// Reads a document; the first field that cannot be read or cannot be so is the error.
+    pub fn read(text: &str) -> Result<Self, ClaimError> {
+        let mut json = serde_json::Deserializer::from_str(text);
+        let file: PlanFile =
+            serde_path_to_error::deserialize(&mut json).map_err(|error| ClaimError::Shape {
+                path: error.path().to_string(),
+                reason: error.inner().to_string(),
+            })?;
+        json.end().map_err(|error| ClaimError::Shape {
+            path: ".".to_owned(),
+            reason: error.to_string(),
+        })?;
+        if file.format != FORMAT {
+            return Err(fault("format", format!("'{}'", file.format), FORMAT));
+        }
+        within(
+            "horizon_s",
+            file.horizon_s,
+            f64::MIN_POSITIVE,
+            f64::INFINITY,
+        )?;
+        within("max_risk", file.max_risk, 0.0, 1.0 - f64::EPSILON)?;
+        within(
+            "time_weight_m2_per_s2",
+            file.time_weight_m2_per_s2,
+            0.0,
+            f64::INFINITY,
+        )?;
+        let own = own_ship(&file.own_ship)?;
+        let waypoints: Vec<Vector> = file.mission.waypoints.iter().copied().map(point).collect();
+        let desired =
+            DesiredTrajectory::new(&waypoints, &file.mission.leg_speeds_mps).map_err(|e| {
+                fault(
+                    "mission",
+                    format!("what makes no way ({e})"),
+                    "at least two waypoints, with a speed for each leg",
+                )
+            })?;
+        let paths = (file.planner == PATH_TIME).then(|| {
+            let others = file.mission.alternatives.iter();
+            let others = others.map(|path| path.iter().copied().map(point).collect());
+            std::iter::once(waypoints).chain(others).collect()
+        });
+        let targets = file
+            .targets
+            .iter()
+            .enumerate()
+            .map(|(index, t)| target(&format!("targets[{index}]"), t))
+            .collect::<Result<Vec<_>, _>>()?;
+        let (sets, mut faults) = sets::read(&file.obstacles, file.horizon_s)?;
+        let land = file
+            .land
+            .iter()
+            .enumerate()
+            .map(|(index, ring)| {
+                let ring: Vec<Vector> = ring.iter().copied().map(vector).collect();
+                Polygon::new(&[ring]).map_err(|e| fault(&format!("land[{index}]"), e, "a polygon"))
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let motion = motion::read(&file, &mut faults)?;
+        Ok(Self {
+            own,
+            desired,
+            paths,
+            targets,
+            sets,
+            land,
+            motion,
+            faults,
+            file,
+        })
+    }
+}
+
+pub(super) fn fault(path: &str, found: impl std::fmt::Display, allowed: &str) -> ClaimError {
+    ClaimError::Value(ClaimFault {
+        path: path.to_owned(),
+        found: found.to_string(),
+        allowed: allowed.to_owned(),
+    })
+}
+
+fn within(path: &str, value: f64, least: f64, most: f64) -> Result<f64, ClaimError> {
+    if value >= least && value <= most {
+        return Ok(value);
+    }
+    let allowed = if most.is_finite() {
+        format!("a number from {least} to {most}")
+    } else if least > 0.0 {
+        "a positive number".to_owned()
+    } else {
+        "a number that is not negative".to_owned()
+    };
+    Err(fault(path, value, &allowed))
+}
+
+fn positive(path: &str, value: f64) -> Result<f64, ClaimError> {
+    within(path, value, f64::MIN_POSITIVE, f64::INFINITY)
+}
+
+fn not_negative(path: &str, value: f64) -> Result<f64, ClaimError> {
+    within(path, value, 0.0, f64::INFINITY)
+}
+
+pub(super) fn point(place: PlaceFile) -> Vector {
+    Vector::new(place.east_m, place.north_m)
+}
+
+pub(super) fn vector([x, y]: [f64; 2]) -> Vector {
+    Vector::new(x, y)
+}
+
+fn own_ship(own: &OwnShipFile) -> Result<OwnShip, ClaimError> {
+    let mut least = 0.0;
+    for (index, speed) in own.speeds_mps.iter().enumerate() {
+        within(
+            &format!("own_ship.speeds_mps[{index}]"),
+            *speed,
+            least,
+            f64::INFINITY,
+        )?;
+        least = *speed;
+    }
+    if !(least > 0.0) {
+        return Err(fault(
+            "own_ship.speeds_mps",
+            "no speed above 0",
+            "increasing speeds, the last one positive",
+        ));
+    }
+    not_negative("own_ship.land_margin_m", own.land_margin_m)?;
+    Ok(OwnShip {
+        pose: Pose::new(point(own.position), heading_from_course_deg(own.course_deg)),
+        speed: not_negative("own_ship.speed_mps", own.speed_mps)?,
+        hull: Hull {
+            length: not_negative("own_ship.length_m", own.length_m)?,
+            beam: not_negative("own_ship.beam_m", own.beam_m)?,
+        },
+        turning_radius: positive("own_ship.turning_radius_m", own.turning_radius_m)?,
+        speeds: own.speeds_mps.clone(),
+        safety_margin: not_negative("own_ship.safety_margin_m", own.safety_margin_m)?,
+    })
+}
+
+/// A set of positions or of velocities.
+#[derive(Debug, Clone)]
+pub(super) enum PlaneSet {
+    Polygon(ConvexPolygon),
+    Ellipse(Ellipse),
+}
+
+pub(super) fn plane_set(path: &str, set: &SetFile) -> Result<PlaneSet, ClaimError> {
+    match (&set.vertices_m, set.center_m, set.shape_m2) {
+        (Some(vertices), None, None) => {
+            let points: Vec<Vector> = vertices.iter().copied().map(vector).collect();
+            ConvexPolygon::from_vertices(&points)
+                .map(PlaneSet::Polygon)
+                .map_err(|e| fault(path, e, "the vertices of a convex polygon"))
+        }
+        (None, Some(center), Some([a, b])) => Ellipse::new(
+            vector(center),
+            nalgebra::Matrix2::new(a[0], a[1], b[0], b[1]),
+        )
+        .map(PlaneSet::Ellipse)
+        .map_err(|e| fault(path, e, "a centre and a shape matrix")),
+        _ => Err(fault(
+            path,
+            "neither vertices alone nor centre and shape alone",
+            "one of the two",
+        )),
+    }
+}
+
+fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
+    let representation = match target.representation.as_str() {
+        "polytope" => Representation::Polytope,
+        "ellipsoid" => Representation::Ellipsoid,
+        other => {
+            let field = format!("{path}.representation");
+            return Err(fault(&field, format!("'{other}'"), "polytope, ellipsoid"));
+        }
+    };
+    let motion = match (&target.ship, &target.initial_set) {
+        (Some(ship), None) if target.velocity_sets.is_empty() => {
+            let at = |key: &str| format!("{path}.ship.{key}");
+            Motion::Ship(ShipTrack {
+                pose: Pose::new(
+                    point(ship.position),
+                    heading_from_course_deg(ship.course_deg),
+                ),
+                speed: not_negative(&at("speed_mps"), ship.speed_mps)?,
+                hull: Hull {
+                    length: not_negative(&at("length_m"), ship.length_m)?,
+                    beam: not_negative(&at("beam_m"), ship.beam_m)?,
+                },
+                position_std: not_negative(&at("position_std_m"), ship.position_std_m)?,
+                speed_spread: not_negative(&at("speed_spread_mps"), ship.speed_spread_mps)?,
+                course_spread: radians_from_deg(within(
+                    &at("course_spread_deg"),
+                    ship.course_spread_deg,
+                    0.0,
+                    180.0,
+                )?),
+                turn_rate: radians_from_deg(not_negative(
+                    &at("turn_rate_deg_per_s"),
+                    ship.turn_rate_deg_per_s,
+                )?),
+                // the shape is no part of what is proven
+                domain: DomainKind::Hull,
+            })
+        }
+        (None, Some(initial)) if !target.velocity_sets.is_empty() => {
+            explicit(path, initial, target)?
+        }
+        _ => {
+            return Err(fault(
+                path,
+                "neither a ship alone nor an initial set with velocity sets",
+                "one of the two",
+            ));
+        }
+    };
+    Ok(Target {
+        name: target.name.clone(),
+        motion,
+        representation,
+    })
+}
+
+fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion, ClaimError> {
+    let initial = plane_set(&format!("{path}.initial_set"), initial)?;
+    let mut spells = Vec::new();
+    let mut ellipse = None;
+    for (index, spell) in target.velocity_sets.iter().enumerate() {
+        let field = format!("{path}.velocity_sets[{index}]");
+        let last = index + 1 == target.velocity_sets.len();
+        if spell.until_s.is_none() != last {
+            return Err(fault(
+                &format!("{field}.until_s"),
+                if last { "a time" } else { "null" },
+                "a time, and null for the last",
+            ));
+        }
+        match plane_set(&field, &spell.set)? {
+            PlaneSet::Polygon(velocities) => spells.push(VelocitySpell {
+                until: spell.until_s.unwrap_or(f64::INFINITY),
+                velocities,
+            }),
+            PlaneSet::Ellipse(velocity) => ellipse = Some(velocity),
+        }
+    }
+    if spells
+        .windows(2)
+        .any(|pair| !(pair[0].until < pair[1].until))
+    {
+        return Err(fault(
+            &format!("{path}.velocity_sets"),
+            "ends that do not increase",
+            "one set after another",
+        ));
+    }
+    match (initial, ellipse, spells.as_slice()) {
+        (PlaneSet::Ellipse(initial), Some(velocity), []) => {
+            Ok(Motion::Ellipses { initial, velocity })
+        }
+        (PlaneSet::Polygon(initial), None, [only]) => Ok(Motion::Sets {
+            initial,
+            velocity: only.velocities.clone(),
+        }),
+        (PlaneSet::Polygon(initial), None, [_, ..]) => Ok(Motion::Spells { initial, spells }),
+        _ => Err(fault(path, "a polygon with an ellipse", "sets of one kind")),
+    }
+}

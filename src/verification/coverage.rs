@@ -1,0 +1,313 @@
+//! Are the sets large enough for what is known of the targets?
+//!
+//! A tracked ship's initial set has to contain her hull ⊕ a disc of own half-diagonal, safety margin and three
+//! standard deviations of her position; her velocity set every velocity with a speed and a course within the spreads, turned
+//! as far as she may have turned. Explicit sets have to be contained as they are. Where risk was accepted, the velocity
+//! sets are first scaled back about their centres.
+
+use super::claim::Claim;
+use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
+use crate::frame::{Vector, direction};
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::target::{Motion, ShipTrack, Target, VelocitySpell};
+use crate::tolerance;
+
+/// Standard deviations of the position that a set covers.
+const POSITION_SIGMAS: f64 = 3.0;
+
+/// Radians, a quarter of a degree: half the angle between tangents of the faster arc. What they cut off beyond the arc is a
+/// hundred-thousandth of the speed.
+const TANGENT_SPACING: f64 = std::f64::consts::PI / 720.0;
+
+/// Directions in which an ellipse is compared with an ellipse.
+const SAMPLED_DIRECTIONS: usize = 720;
+
+/// Every target without a set of her own, or with one that is too small; every set of nobody.
+pub(super) fn check(claim: &Claim) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let mut note = |what: String, time: f64| found.push(Violation { what, time });
+    for set in &claim.sets {
+        if !claim.targets.iter().any(|t| t.name == set.name) {
+            note(
+                format!("set of '{}': no target has this name", set.name),
+                0.0,
+            );
+        }
+    }
+    for (index, target) in claim.targets.iter().enumerate() {
+        let name = &target.name;
+        if claim.targets[..index].iter().any(|t| t.name == *name) {
+            note(format!("target '{name}': twice"), 0.0);
+        }
+        let mut own = claim.sets.iter().filter(|s| s.name == *name);
+        let (Some(set), None) = (own.next(), own.next()) else {
+            note(format!("target '{name}': not exactly one set"), 0.0);
+            continue;
+        };
+        for (what, time) in lacks(claim, target, set) {
+            note(format!("set of '{name}': {what}"), time);
+        }
+    }
+    found
+}
+
+/// What a set lacks of a target, and from when.
+fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64)> {
+    let level = 1.0 - claim.file.max_risk;
+    let enclosed = claim.file.optimal_control.is_some();
+    // the ellipse around a polygon that was scaled has a centre of its own: it cannot be scaled back
+    let velocities_known = level == 1.0 || !enclosed;
+    let whole = Whole::of(&set.shape, level);
+    let mut lacks = Vec::new();
+    let mut need = |what: &str, short: f64, allowed: f64, time: f64| {
+        // negated on purpose: a NaN is too small
+        if !(short <= allowed) {
+            lacks.push((format!("too small for {what}: by {short:.3e}"), time));
+        }
+    };
+    match &target.motion {
+        Motion::Ship(ship) => {
+            let reach = claim.own.hull.half_diagonal()
+                + claim.own.safety_margin
+                + POSITION_SIGMAS * ship.position_std;
+            let hull = ship.hull.polygon(&ship.pose);
+            let outside = hull
+                .vertices()
+                .iter()
+                .map(|p| whole.initial.distance(*p) + reach);
+            need(
+                "the hull, the margin and the uncertainty, m",
+                largest(outside),
+                tolerance::DEPTH_M,
+                0.0,
+            );
+            if velocities_known {
+                for spell in &whole.spells {
+                    let short = spell
+                        .set
+                        .beyond(&Sector::of(ship, spell.until.min(claim.file.horizon_s)));
+                    need(
+                        "her velocities, m/s",
+                        short,
+                        tolerance::DEPTH_M,
+                        spell.start,
+                    );
+                }
+            }
+        }
+        Motion::Sets { initial, velocity } => {
+            need(
+                "the initial set, m",
+                whole.initial.beyond_polygon(initial),
+                tolerance::DEPTH_M,
+                0.0,
+            );
+            if velocities_known {
+                for spell in &whole.spells {
+                    need(
+                        "the velocity set, m/s",
+                        spell.set.beyond_polygon(velocity),
+                        tolerance::DEPTH_M,
+                        spell.start,
+                    );
+                }
+            }
+        }
+        Motion::Ellipses { initial, velocity } => {
+            need(
+                "the initial set, m",
+                whole.initial.beyond_ellipse(initial),
+                tolerance::DEPTH_M,
+                0.0,
+            );
+            if velocities_known {
+                for spell in &whole.spells {
+                    need(
+                        "the velocity set, m/s",
+                        spell.set.beyond_ellipse(velocity),
+                        tolerance::DEPTH_M,
+                        spell.start,
+                    );
+                }
+            }
+        }
+        Motion::Spells { initial, spells } => {
+            need(
+                "the initial set, m",
+                whole.initial.beyond_polygon(initial),
+                tolerance::DEPTH_M,
+                0.0,
+            );
+            if velocities_known {
+                for spell in &whole.spells {
+                    for known in
+                        overlapping(spells, spell.start, spell.until.min(claim.file.horizon_s))
+                    {
+                        need(
+                            "the velocity set, m/s",
+                            spell.set.beyond_polygon(&known.velocities),
+                            tolerance::DEPTH_M,
+                            spell.start,
+                        );
+                    }
+                }
+            }
+        }
+    }
+    lacks
+}
+
+/// The largest, NaN if any is.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::NEG_INFINITY, |most, v| {
+        if v > most || v.is_nan() { v } else { most }
+    })
+}
+
+/// Those that hold for a while between two times.
+fn overlapping(
+    spells: &[VelocitySpell],
+    from: f64,
+    until: f64,
+) -> impl Iterator<Item = &VelocitySpell> {
+    let starts = std::iter::once(0.0).chain(spells.iter().map(|s| s.until));
+    starts
+        .zip(spells)
+        .filter(move |(start, s)| start.max(from) + tolerance::TIME_S < s.until.min(until))
+        .map(|(_, s)| s)
+}
+
+/// A set before risk was accepted.
+struct Whole {
+    initial: Bounded,
+    spells: Vec<Spell>,
+}
+
+struct Spell {
+    start: f64,
+    until: f64,
+    set: Bounded,
+}
+
+impl Whole {
+    fn of(shape: &SetShape, level: f64) -> Self {
+        match shape {
+            SetShape::Polygons { initial, spells } => {
+                let starts = std::iter::once(0.0).chain(spells.iter().map(|s| s.until));
+                Self {
+                    initial: Bounded::Polygon(initial.clone()),
+                    spells: starts
+                        .zip(spells)
+                        .map(|(start, spell)| Spell {
+                            start,
+                            until: spell.until,
+                            set: Bounded::Polygon(about_centroid(&spell.velocities, level.recip())),
+                        })
+                        .collect(),
+                }
+            }
+            SetShape::Ellipses { initial, velocity } => Self {
+                initial: Bounded::Ellipse(*initial),
+                spells: vec![Spell {
+                    start: 0.0,
+                    until: f64::INFINITY,
+                    set: Bounded::Ellipse(velocity.scaled_about_center(level.recip())),
+                }],
+            },
+        }
+    }
+}
+
+/// A polygon scaled about its centroid: what a level of risk does to a velocity set.
+pub(super) fn about_centroid(set: &ConvexPolygon, factor: f64) -> ConvexPolygon {
+    let center = set.centroid();
+    set.translated(-center).scaled(factor).translated(center)
+}
+
+enum Bounded {
+    Polygon(ConvexPolygon),
+    Ellipse(Ellipse),
+}
+
+impl Bounded {
+    /// Signed, negative inside: a disc is contained when its centre is as deep as its radius.
+    fn distance(&self, p: Vector) -> f64 {
+        match self {
+            Self::Polygon(set) => set.signed_distance(p),
+            Self::Ellipse(set) => set.signed_distance(p).distance,
+        }
+    }
+
+    /// How far the farthest point of a polygon is outside.
+    fn beyond_polygon(&self, set: &ConvexPolygon) -> f64 {
+        largest(set.vertices().iter().map(|p| self.distance(*p)))
+    }
+
+    /// How far an ellipse reaches outside, in directions sampled evenly.
+    fn beyond_ellipse(&self, set: &Ellipse) -> f64 {
+        let support = |n: Vector| match self {
+            Self::Polygon(own) => own.support(n),
+            Self::Ellipse(own) => own.support(n),
+        };
+        let step = std::f64::consts::TAU / SAMPLED_DIRECTIONS as f64;
+        let directions = (0..SAMPLED_DIRECTIONS).map(|k| direction(step * k as f64));
+        largest(directions.map(|n| set.support(n) - support(n)))
+    }
+
+    /// How far a sector of velocities reaches outside: exactly for a polygon, by tangents that contain the sector for an ellipse.
+    fn beyond(&self, sector: &Sector) -> f64 {
+        match self {
+            Self::Polygon(set) if set.vertices().len() > 2 => largest(
+                set.normals()
+                    .into_iter()
+                    .map(|n| sector.support(n) - set.support(n)),
+            ),
+            _ => largest(sector.outer_points().into_iter().map(|p| self.distance(p))),
+        }
+    }
+}
+
+/// Every velocity with a speed and a course within bounds.
+struct Sector {
+    slow: f64,
+    fast: f64,
+    heading: f64,
+    /// To either side, radians.
+    spread: f64,
+}
+
+impl Sector {
+    fn of(ship: &ShipTrack, until: f64) -> Self {
+        Self {
+            slow: (ship.speed - ship.speed_spread).max(0.0),
+            fast: ship.speed + ship.speed_spread,
+            heading: ship.pose.heading,
+            spread: (ship.course_spread + ship.turn_rate * until).min(std::f64::consts::PI),
+        }
+    }
+
+    /// In closed form: the course within the spread that is nearest to the direction.
+    fn support(&self, n: Vector) -> f64 {
+        let off = crate::frame::wrap(crate::frame::heading_of(n) - self.heading).abs();
+        let along = (off - self.spread).max(0.0).cos();
+        (self.fast * along).max(self.slow * along)
+    }
+
+    /// Points whose hull contains the sector, on it but for the tangents' corners.
+    fn outer_points(&self) -> Vec<Vector> {
+        let edges = [-self.spread, self.spread].map(|edge| direction(self.heading + edge));
+        let mut points: Vec<Vector> = edges
+            .into_iter()
+            .flat_map(|ahead| [ahead * self.slow, ahead * self.fast])
+            .collect();
+        if self.spread > 0.0 {
+            let pieces = (self.spread / TANGENT_SPACING).ceil().max(1.0);
+            let half = self.spread / pieces;
+            points.extend((0..pieces as usize).map(|piece| {
+                let middle = self.heading - self.spread + half * (2 * piece + 1) as f64;
+                direction(middle) * (self.fast / half.cos())
+            }));
+        }
+        points
+    }
+}

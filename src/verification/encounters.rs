@@ -1,0 +1,110 @@
+//! Are the encounters of a document those of its motion?
+
+use super::claim::{Claim, ClaimedMotion};
+use super::figures::near;
+use super::untrue;
+use crate::evaluation::{Evaluation, Violation};
+use crate::frame::{Pose, relative_bearing};
+use crate::geometry::Ellipse;
+use crate::target::{Motion, Target};
+use nalgebra::Matrix2;
+
+/// Per target: the least distance, that it is so near at the time given, and the side.
+pub(super) fn check(
+    claim: &Claim,
+    motion: &ClaimedMotion,
+    evaluation: &Evaluation,
+) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let said = &claim.file.encounters;
+    let names =
+        |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");
+    let (have, want) = (
+        names(&mut said.iter().map(|e| &e.target)),
+        names(&mut claim.targets.iter().map(|t| &t.name)),
+    );
+    if have != want {
+        found.push(untrue(
+            "encounters",
+            format!("'{have}'"),
+            format!("'{want}'"),
+        ));
+        return found;
+    }
+    let all = said.iter().zip(&claim.targets).zip(&evaluation.passages);
+    for ((said, target), passage) in all {
+        let label = |key: &str| format!("encounter with '{}', {key}", target.name);
+        let dcpa = passage.dcpa;
+        if !said.dcpa_m.is_some_and(|d| near(d, dcpa)) {
+            let value = said
+                .dcpa_m
+                .map_or_else(|| "nothing".to_owned(), |d| d.to_string());
+            found.push(untrue(&label("dcpa_m"), value, dcpa));
+            continue;
+        }
+        // the least distance may last, so the time is asked what the distance is then
+        let tcpa = said.tcpa_s.unwrap_or(f64::NAN);
+        let poses = motion.poses_at(tcpa);
+        let then = poses.iter().map(|pose| distance(claim, target, pose, tcpa));
+        let then = then.fold(f64::INFINITY, f64::min);
+        if !(then.is_finite() && near(then, dcpa)) {
+            found.push(untrue(
+                &label("tcpa_s"),
+                tcpa,
+                format!(
+                    "{} s; at the time given the distance is {then} m",
+                    passage.tcpa
+                ),
+            ));
+            continue;
+        }
+        let bearing = |pose: &Pose| relative_bearing(pose, target.position_at(tcpa));
+        let side = |pose: &Pose| {
+            if (-std::f64::consts::PI < bearing(pose)) && bearing(pose) < 0.0 {
+                "port"
+            } else {
+                "starboard"
+            }
+        };
+        let side_said = said.passing_side.as_deref().unwrap_or("nothing");
+        if !poses.iter().any(|pose| side(pose) == side_said) {
+            let so = poses.first().map_or("unknown", side);
+            found.push(untrue(&label("passing_side"), side_said, so));
+        }
+    }
+    found
+}
+
+/// Between the hulls, or from own position to the set.
+fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -> f64 {
+    match target.ship() {
+        Some(ship) => claim
+            .own
+            .hull
+            .polygon(pose)
+            .separation(&ship.hull.polygon(&ship.pose_at(time))),
+        None => match &target.motion {
+            Motion::Ellipses { initial, velocity } => {
+                let section = least_trace_sum(initial, velocity, time);
+                section.map_or(f64::NAN, |set| set.signed_distance(pose.position).distance)
+            }
+            _ => (target.outer_set_at(time))
+                .map_or(f64::NAN, |set| set.signed_distance(pose.position)),
+        },
+    }
+}
+
+/// The ellipse of least trace around `initial + t velocity`, formulas section 3.
+fn least_trace_sum(initial: &Ellipse, velocity: &Ellipse, time: f64) -> Option<Ellipse> {
+    let center = initial.center() + velocity.center() * time;
+    let (still, moving) = (initial.shape(), velocity.shape() * (time * time));
+    let (a, b) = (still.trace().sqrt(), moving.trace().sqrt());
+    let share = |shape: Matrix2<f64>, root: f64| {
+        if root > 0.0 {
+            shape / root
+        } else {
+            Matrix2::zeros()
+        }
+    };
+    Ellipse::new(center, (share(still, a) + share(moving, b)) * (a + b)).ok()
+}

@@ -1,0 +1,199 @@
+//! Are the figures of a document those of its motion?
+
+use super::claim::{Claim, ClaimedMotion};
+use super::coverage::about_centroid;
+use super::untrue;
+use crate::evaluation::{Evaluation, Request, SetShape, SpaceTimeSet, Violation, least_margins};
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// Costs, the mission's own figures, the largest risk and the path-time profile.
+pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let file = &claim.file;
+    let mut same = |what: &str, said: Option<f64>, so: f64| {
+        let so = so.is_finite().then_some(so);
+        let agree = match (said, so) {
+            (Some(said), Some(so)) => near(said, so),
+            (said, so) => said.is_none() && so.is_none(),
+        };
+        if !agree {
+            found.push(untrue(what, words(said), words(so)));
+        }
+    };
+    same(
+        "mission.duration_s",
+        Some(file.mission.duration_s),
+        claim.desired.duration(),
+    );
+    same(
+        "mission.length_m",
+        Some(file.mission.length_m),
+        claim.desired.length(),
+    );
+    let Some(cost) = &file.cost else {
+        found.push(untrue("cost", "nothing", "that of a motion"));
+        return found;
+    };
+    let forces = file.optimal_control.is_some();
+    same(
+        "cost.space_time_error_m2",
+        Some(cost.space_time_error_m2),
+        evaluation.space_time_error,
+    );
+    same(
+        "cost.space_time_error_arc_length_m2",
+        cost.space_time_error_arc_length_m2,
+        evaluation.arc_length_error,
+    );
+    same(
+        "cost.duration_s",
+        Some(cost.duration_s),
+        evaluation.duration,
+    );
+    same("cost.length_m", Some(cost.length_m), evaluation.length);
+    same("cost.delay_s", cost.delay_s, evaluation.delay);
+    same(
+        "cost.min_clearance_m",
+        cost.min_clearance_m,
+        evaluation.min_clearance,
+    );
+    let minimised = match file.objective.as_str() {
+        "space-time-error" if claim.paths.is_none() => Some(evaluation.space_time_error),
+        "time" => Some(evaluation.duration),
+        "length" => Some(evaluation.length),
+        _ => None,
+    };
+    if let Some(so) = minimised {
+        same("cost.objective", Some(cost.objective), so);
+    }
+    // along paths the error is minimised leg by leg, each place against its own leg: never below that against the nearest
+    let least = evaluation.space_time_error;
+    let bound = claim.paths.is_some() && file.objective == "space-time-error";
+    if bound && !(cost.objective >= least || near(cost.objective, least)) {
+        found.push(untrue(
+            "cost.objective",
+            cost.objective,
+            format!("{least} at least"),
+        ));
+    }
+    if cost.arrived == forces {
+        found.push(untrue("cost.arrived", cost.arrived, !forces));
+    }
+    // the document holds the land within reach, the nearest of the map may lie beyond
+    let land = evaluation.min_land_distance;
+    if let Some(said) = cost
+        .min_land_distance_m
+        .filter(|said| !(*said <= land || near(*said, land)))
+    {
+        found.push(untrue("cost.min_land_distance_m", said, land));
+    }
+    if cost.min_land_distance_m.is_none() && land.is_finite() {
+        found.push(untrue("cost.min_land_distance_m", "nothing", land));
+    }
+    found.extend(risk(claim, cost.max_risk, request));
+    found.extend(profile(claim));
+    found
+}
+
+/// Equal to [`tolerance::FIGURE`], relative above one.
+pub(super) fn near(said: f64, so: f64) -> bool {
+    (said - so).abs() <= tolerance::FIGURE * so.abs().max(1.0)
+}
+
+fn words(value: Option<f64>) -> String {
+    value.map_or_else(|| "nothing".to_owned(), |v| format!("{v}"))
+}
+
+/// A largest risk of `r` means: nowhere inside the level set of `r`, and no more was accepted.
+fn risk(claim: &Claim, said: f64, request: &Request) -> Option<Violation> {
+    let accepted = claim.file.max_risk;
+    if !(said >= 0.0 && said <= accepted + tolerance::FIGURE) {
+        return Some(untrue(
+            "cost.max_risk",
+            said,
+            format!("from 0 to {accepted}"),
+        ));
+    }
+    // ellipses around sets that were scaled cannot be scaled again; without risk the sets themselves are the level sets
+    if claim.file.optimal_control.is_some() || accepted == 0.0 {
+        return None;
+    }
+    // a little above what is said: a set is closed, and risk falls to none beyond its edge
+    let factor = (1.0 - said - tolerance::FIGURE).max(0.0) / (1.0 - accepted);
+    let sets: Vec<SpaceTimeSet> = claim.sets.iter().map(|set| scaled(set, factor)).collect();
+    let least = least_margins(&Request {
+        sets: &sets,
+        ..request.clone()
+    });
+    let entered = sets
+        .iter()
+        .zip(least)
+        .find(|(_, margin)| !(*margin >= -tolerance::DEPTH_M));
+    entered.map(|(set, _)| {
+        untrue(
+            "cost.max_risk",
+            said,
+            format!("more: that of '{}'", set.name),
+        )
+    })
+}
+
+fn scaled(set: &SpaceTimeSet, factor: f64) -> SpaceTimeSet {
+    let shape = match &set.shape {
+        SetShape::Polygons { initial, spells } => SetShape::Polygons {
+            initial: initial.clone(),
+            spells: spells
+                .iter()
+                .map(|spell| crate::target::VelocitySpell {
+                    until: spell.until,
+                    velocities: about_centroid(&spell.velocities, factor),
+                })
+                .collect(),
+        },
+        SetShape::Ellipses { initial, velocity } => SetShape::Ellipses {
+            initial: *initial,
+            velocity: velocity.scaled_about_center(factor),
+        },
+    };
+    SpaceTimeSet {
+        name: set.name.clone(),
+        shape,
+    }
+}
+
+/// The profile is the way sailed over time.
+fn profile(claim: &Claim) -> Option<Violation> {
+    let profile = &claim.file.path_time.as_ref()?.profile;
+    let Some(ClaimedMotion::Segments(segments)) = &claim.motion else {
+        return None;
+    };
+    let sailed = |time: f64| -> f64 {
+        let way = |s: &Segment| s.speed * (time - s.start_time).clamp(0.0, s.duration);
+        segments.iter().map(way).sum()
+    };
+    let Some([begin, _]) = profile.first() else {
+        return Some(untrue("path_time.profile", "nothing", "that of a motion"));
+    };
+    let wrong = profile.iter().find(|[s, t]| !near(*s - begin, sailed(*t)));
+    if let Some([s, t]) = wrong {
+        let so = begin + sailed(*t);
+        return Some(Violation {
+            time: *t,
+            ..untrue(
+                "path_time.profile",
+                format!("{s} m at {t} s"),
+                format!("{so} m"),
+            )
+        });
+    }
+    let end = segments.last().map_or(f64::NAN, Segment::end_time);
+    let last = profile.last().map_or(f64::NAN, |[_, t]| *t);
+    (!near(last, end)).then(|| {
+        untrue(
+            "path_time.profile",
+            format!("an end at {last} s"),
+            format!("{end} s"),
+        )
+    })
+}

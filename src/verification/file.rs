@@ -1,0 +1,186 @@
+//! The plan document as this checker reads it: the keys that it needs, in the units of the file.
+//!
+//! A mirror of its own, so that a slip of the writer is not read back as if it were right.
+
+use serde::Deserialize;
+
+#[derive(Debug, Deserialize)]
+pub(super) struct PlanFile {
+    pub format: String,
+    pub scenario: String,
+    pub planner: String,
+    pub outcome: String,
+    pub time_weight_m2_per_s2: f64,
+    pub max_risk: f64,
+    pub objective: String,
+    pub horizon_s: f64,
+    pub own_ship: OwnShipFile,
+    pub mission: MissionFile,
+    pub land: Vec<Vec<[f64; 2]>>,
+    pub targets: Vec<TargetFile>,
+    pub obstacles: Vec<ObstacleFile>,
+    pub cost: Option<CostFile>,
+    pub trajectory: Option<TrajectoryFile>,
+    pub encounters: Vec<EncounterFile>,
+    pub path_time: Option<PathTimeFile>,
+    pub optimal_control: Option<ControlFile>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+pub(super) struct PlaceFile {
+    pub east_m: f64,
+    pub north_m: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct OwnShipFile {
+    pub position: PlaceFile,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+    pub length_m: f64,
+    pub beam_m: f64,
+    pub turning_radius_m: f64,
+    pub speeds_mps: Vec<f64>,
+    pub safety_margin_m: f64,
+    pub land_margin_m: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct MissionFile {
+    pub waypoints: Vec<PlaceFile>,
+    pub leg_speeds_mps: Vec<f64>,
+    pub duration_s: f64,
+    pub length_m: f64,
+    #[serde(default)]
+    pub alternatives: Vec<Vec<PlaceFile>>,
+}
+
+/// A tracked ship, or the sets outright.
+#[derive(Debug, Deserialize)]
+pub(super) struct TargetFile {
+    pub name: String,
+    pub representation: String,
+    pub ship: Option<ShipFile>,
+    pub initial_set: Option<SetFile>,
+    #[serde(default)]
+    pub velocity_sets: Vec<SpellFile>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct ShipFile {
+    pub position: PlaceFile,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+    pub length_m: f64,
+    pub beam_m: f64,
+    pub position_std_m: f64,
+    pub speed_spread_mps: f64,
+    pub course_spread_deg: f64,
+    pub turn_rate_deg_per_s: f64,
+}
+
+/// Positions or velocities: the two have keys of their own, and one is there.
+#[derive(Debug, Deserialize)]
+pub(super) struct SetFile {
+    #[serde(alias = "vertices_mps")]
+    pub vertices_m: Option<Vec<[f64; 2]>>,
+    #[serde(alias = "center_mps")]
+    pub center_m: Option<[f64; 2]>,
+    #[serde(alias = "shape_m2_per_s2")]
+    pub shape_m2: Option<[[f64; 2]; 2]>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct SpellFile {
+    /// Null for the last.
+    pub until_s: Option<f64>,
+    #[serde(flatten)]
+    pub set: SetFile,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct ObstacleFile {
+    pub name: String,
+    pub valid_s: [f64; 2],
+    pub initial_set: SetFile,
+    pub velocity_set: SetFile,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct CostFile {
+    pub objective: f64,
+    pub space_time_error_m2: f64,
+    pub space_time_error_arc_length_m2: Option<f64>,
+    pub arrived: bool,
+    pub duration_s: f64,
+    pub length_m: f64,
+    pub delay_s: Option<f64>,
+    pub max_risk: f64,
+    pub min_clearance_m: Option<f64>,
+    pub min_land_distance_m: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct TrajectoryFile {
+    pub segments: Option<Vec<SegmentFile>>,
+    pub samples: Vec<SampleFile>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+pub(super) struct StartFile {
+    pub t_s: f64,
+    pub east_m: f64,
+    pub north_m: f64,
+    pub course_deg: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct SegmentFile {
+    pub start: StartFile,
+    pub duration_s: f64,
+    pub speed_mps: f64,
+    pub turn_rate_deg_per_s: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct SampleFile {
+    pub t_s: f64,
+    pub east_m: f64,
+    pub north_m: f64,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+    /// At the nodes of a motion under forces these are all there, elsewhere none.
+    pub heading_deg: Option<f64>,
+    pub surge_mps: Option<f64>,
+    pub sway_mps: Option<f64>,
+    pub yaw_rate_deg_per_s: Option<f64>,
+    pub surge_n: Option<f64>,
+    pub sway_n: Option<f64>,
+    pub yaw_nm: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct EncounterFile {
+    pub target: String,
+    pub dcpa_m: Option<f64>,
+    pub tcpa_s: Option<f64>,
+    pub passing_side: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct PathTimeFile {
+    pub profile: Vec<[f64; 2]>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct ControlFile {
+    pub vessel: String,
+    pub force_limits: ForceLimitsFile,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct ForceLimitsFile {
+    pub surge_n: f64,
+    pub sway_n: f64,
+    pub yaw_nm: f64,
+}

@@ -1,0 +1,151 @@
+//! Checks a plan document alone: without the scenario, the map or the planner that it came from.
+//!
+//! A document holds the motion, own ship and her limits, the mission, the targets as they are known, the sets that
+//! were kept out of, and the pieces of land within reach. From these [`verify`] proves anew
+//!
+//! - that the motion starts where own ship is, has no gap, keeps her turning radius, speeds or paths (or, under forces, her
+//!   dynamics and her forces), and arrives in time;
+//! - that it keeps out of every set, of every hull that a target may have, and of the land, in continuous time, with
+//!   certified distances ([`crate::evaluation`]);
+//! - that the sets are not too small: each contains the target's hull, the margin and the uncertainty, and every velocity
+//!   that she may take;
+//! - that what the document says of the motion is true of it: costs, samples, encounters, path-time profile.
+//!
+//! Nothing here is shared with the planners, their sets or their contact tests; the document is read by a mirror of its own.
+
+mod claim;
+mod coverage;
+mod encounters;
+mod figures;
+mod file;
+mod motion;
+mod samples;
+mod sets;
+
+pub use claim::{ClaimError, ClaimFault};
+
+use claim::{Claim, ClaimedMotion};
+
+use crate::evaluation::{
+    Evaluation, Freedom, Request, Steering, Violation, evaluate, evaluate_steered,
+};
+use crate::trajectory::Segment;
+
+/// The name of the format that can be checked.
+pub const FORMAT: &str = "searoom-plan/1";
+
+/// What became of a plan document.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verification {
+    /// Title of the scenario.
+    pub scenario: String,
+    /// Who planned.
+    pub planner: String,
+    /// What the document says came out.
+    pub outcome: String,
+    /// The risk that the plan was allowed, in `[0, 1)`.
+    pub max_risk: f64,
+    /// Names of the targets, in the document's order: that of the passages.
+    pub targets: Vec<String>,
+    /// The judgement of the motion; `None` for a document without one.
+    pub evaluation: Option<Evaluation>,
+    /// Segments, or intervals between nodes.
+    pub pieces: usize,
+    /// Sets that were checked, and pieces of land.
+    pub sets: usize,
+    /// Convex pieces.
+    pub land: usize,
+    /// Everything that is wrong, in order of time.
+    pub violations: Vec<Violation>,
+}
+
+impl Verification {
+    /// True for a plan in which nothing was found wrong; false without a plan.
+    pub fn verified(&self) -> bool {
+        self.evaluation.is_some() && self.violations.is_empty()
+    }
+}
+
+/// Checks the text of a plan document. The error is for what is no plan document at all: it names the field, what was
+/// found and what is allowed. Some milliseconds; O(segments (vertices of sets + edges of land)) and probes near the
+/// least distances.
+///
+/// ```
+/// use searoom::verification::verify;
+/// let error = verify("{\"format\": \"searoom-plan/1\"}").expect_err("nothing in it");
+/// assert!(error.to_string().contains("scenario"));
+/// ```
+pub fn verify(text: &str) -> Result<Verification, ClaimError> {
+    let claim = Claim::read(text)?;
+    let mut violations = claim.faults.clone();
+    let request = request(&claim);
+    let evaluation = claim.motion.as_ref().map(|motion| match motion {
+        ClaimedMotion::Segments(_) => evaluate(&request),
+        ClaimedMotion::Steered {
+            motion,
+            vessel,
+            force_limits,
+        } => evaluate_steered(
+            &request,
+            &Steering {
+                motion,
+                vessel: vessel.exact().as_ref(),
+                force_limits: *force_limits,
+            },
+        ),
+    });
+    violations.extend(coverage::check(&claim));
+    if let (Some(evaluation), Some(motion)) = (&evaluation, &claim.motion) {
+        violations.extend(evaluation.violations.iter().cloned());
+        if motion.is_sound() {
+            violations.extend(figures::check(&claim, evaluation, &request));
+            violations.extend(samples::check(&claim, motion));
+            violations.extend(encounters::check(&claim, motion, evaluation));
+        }
+    }
+    // a NaN has no place in time and goes last
+    violations.sort_by(|a, b| a.time.total_cmp(&b.time));
+    Ok(Verification {
+        scenario: claim.file.scenario.clone(),
+        planner: claim.file.planner.clone(),
+        outcome: claim.file.outcome.clone(),
+        max_risk: claim.file.max_risk,
+        targets: claim.targets.iter().map(|t| t.name.clone()).collect(),
+        pieces: claim.motion.as_ref().map_or(0, ClaimedMotion::pieces),
+        sets: claim.sets.len(),
+        land: claim.land.len(),
+        evaluation,
+        violations,
+    })
+}
+
+fn request(claim: &Claim) -> Request<'_> {
+    let segments: &[Segment] = match &claim.motion {
+        Some(ClaimedMotion::Segments(segments)) => segments,
+        Some(ClaimedMotion::Steered { .. }) | None => &[],
+    };
+    Request {
+        segments,
+        own: &claim.own,
+        freedom: match &claim.paths {
+            Some(paths) => Freedom::Paths(paths),
+            None => Freedom::Limits,
+        },
+        desired: &claim.desired,
+        targets: &claim.targets,
+        sets: &claim.sets,
+        land: &claim.land,
+        land_margin: claim.file.own_ship.land_margin_m,
+        horizon: claim.file.horizon_s,
+        time_weight: claim.file.time_weight_m2_per_s2,
+        max_risk: claim.file.max_risk,
+    }
+}
+
+/// Notes what a document says wrongly: the quantity, what was found and what is so.
+fn untrue(what: &str, said: impl std::fmt::Display, so: impl std::fmt::Display) -> Violation {
+    Violation {
+        what: format!("{what}: the document says {said}, it is {so}"),
+        time: 0.0,
+    }
+}

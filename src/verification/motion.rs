@@ -1,0 +1,156 @@
+//! The motion of a document: segments, or nodes with forces.
+
+use super::claim::{ClaimError, ClaimedMotion, fault};
+use super::file::{PlanFile, SampleFile, SegmentFile, StartFile};
+use crate::evaluation::Violation;
+use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
+use crate::trajectory::{Node, Segment, Steered};
+use crate::vessel::{ForceVector, VesselKind};
+
+impl ClaimedMotion {
+    /// Segments, or intervals between nodes.
+    pub fn pieces(&self) -> usize {
+        match self {
+            Self::Segments(segments) => segments.len(),
+            Self::Steered { motion, .. } => motion.nodes().len() - 1,
+        }
+    }
+
+    /// False for segments that are no motion: of these nothing more can be said.
+    pub fn is_sound(&self) -> bool {
+        match self {
+            Self::Segments(segments) => {
+                !segments.is_empty() && segments.iter().all(Segment::is_valid)
+            }
+            Self::Steered { .. } => true,
+        }
+    }
+
+    /// Seconds; NaN without segments.
+    pub fn end_time(&self) -> f64 {
+        match self {
+            Self::Segments(segments) => segments.last().map_or(f64::NAN, Segment::end_time),
+            Self::Steered { motion, .. } => motion.nodes()[motion.nodes().len() - 1].time,
+        }
+    }
+
+    /// The poses that it has at a time: two where one piece ends and the next begins.
+    pub fn poses_at(&self, time: f64) -> Vec<Pose> {
+        match self {
+            Self::Segments(segments) => around(segments, time).map(|s| s.pose_at(time)).collect(),
+            Self::Steered { motion, .. } => vec![motion.piece_at(time).pose_at(time)],
+        }
+    }
+}
+
+/// The segments that a time belongs to.
+pub(super) fn around(segments: &[Segment], time: f64) -> impl Iterator<Item = &Segment> {
+    // the end of one and the start of the next differ by rounding
+    let slack = crate::tolerance::TIME_S;
+    segments
+        .iter()
+        .filter(move |s| s.start_time - slack <= time && time <= s.end_time() + slack)
+}
+
+/// What a document without a plan has is `None`; nodes that are no motion are noted.
+pub(super) fn read(
+    file: &PlanFile,
+    faults: &mut Vec<Violation>,
+) -> Result<Option<ClaimedMotion>, ClaimError> {
+    let Some(trajectory) = &file.trajectory else {
+        return Ok(None);
+    };
+    match (&trajectory.segments, &file.optimal_control) {
+        (Some(segments), None) => Ok(Some(ClaimedMotion::Segments(
+            segments.iter().map(segment).collect(),
+        ))),
+        (None, Some(control)) => {
+            let known = VesselKind::ALL
+                .into_iter()
+                .find(|v| v.word() == control.vessel);
+            let Some(vessel) = known else {
+                let words = VesselKind::ALL.map(VesselKind::word).join(", ");
+                let found = format!("'{}'", control.vessel);
+                return Err(fault("optimal_control.vessel", found, &words));
+            };
+            let limits = &control.force_limits;
+            let force_limits = ForceVector::new(limits.surge_n, limits.sway_n, limits.yaw_nm);
+            match Steered::new(nodes(&trajectory.samples)) {
+                Ok(motion) => Ok(Some(ClaimedMotion::Steered {
+                    motion,
+                    vessel,
+                    force_limits,
+                })),
+                Err(error) => {
+                    faults.push(Violation {
+                        what: format!("nodes among trajectory.samples: {error}"),
+                        time: 0.0,
+                    });
+                    // judged as a chain without segments, which is no motion
+                    Ok(Some(ClaimedMotion::Segments(Vec::new())))
+                }
+            }
+        }
+        (Some(_), Some(_)) => Err(fault(
+            "optimal_control",
+            "beside segments",
+            "one of the two",
+        )),
+        (None, None) => Err(fault(
+            "trajectory.segments",
+            "null without optimal_control",
+            "segments, or a motion under forces",
+        )),
+    }
+}
+
+fn pose(start: &StartFile) -> Pose {
+    Pose::new(
+        Vector::new(start.east_m, start.north_m),
+        heading_from_course_deg(start.course_deg),
+    )
+}
+
+fn segment(segment: &SegmentFile) -> Segment {
+    Segment {
+        start: pose(&segment.start),
+        start_time: segment.start.t_s,
+        duration: segment.duration_s,
+        speed: segment.speed_mps,
+        turn_rate: radians_from_deg(-segment.turn_rate_deg_per_s) + 0.0,
+    }
+}
+
+/// The samples that are nodes. A course has lost its full circles: the heading goes on by the turn that is nearest to
+/// what the yaw rates make.
+fn nodes(samples: &[SampleFile]) -> Vec<Node> {
+    let mut nodes: Vec<Node> = Vec::new();
+    for sample in samples {
+        let Some(mut node) = node(sample) else {
+            continue;
+        };
+        if let Some(before) = nodes.last() {
+            let duration = node.time - before.time;
+            let expected = before.pose.heading + 0.5 * (before.yaw_rate + node.yaw_rate) * duration;
+            node.pose.heading = expected + wrap(node.pose.heading - expected);
+        }
+        nodes.push(node);
+    }
+    nodes
+}
+
+/// Starboard and clockwise are positive in the file, port and counter-clockwise here.
+fn node(sample: &SampleFile) -> Option<Node> {
+    let yaw_rate = radians_from_deg(-sample.yaw_rate_deg_per_s?);
+    Some(Node {
+        time: sample.t_s,
+        pose: Pose::new(
+            Vector::new(sample.east_m, sample.north_m),
+            heading_from_course_deg(sample.heading_deg?),
+        ),
+        velocity: Vector::new(sample.surge_mps?, -sample.sway_mps?),
+        yaw_rate,
+        force: Vector::new(sample.surge_n?, -sample.sway_n?),
+        moment: -sample.yaw_nm?,
+    })
+}

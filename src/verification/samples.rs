@@ -1,0 +1,88 @@
+//! Do the samples of a document lie on its motion?
+
+use super::claim::{Claim, ClaimedMotion};
+use super::file::SampleFile;
+use super::motion::around;
+use crate::evaluation::Violation;
+use crate::frame::{Vector, heading_from_course_deg, heading_of, wrap};
+use crate::tolerance;
+
+/// Seconds. Between two samples there is at most this, and rounding.
+const STEP: f64 = 1.0;
+
+/// The first sample that is not on the motion, or leaves a part of it out.
+pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> {
+    let samples = claim
+        .file
+        .trajectory
+        .as_ref()
+        .map_or(&[][..], |t| &t.samples);
+    let wrong = |index: usize, what: String, time: f64| {
+        Some(Violation {
+            what: format!("trajectory.samples[{index}]: {what}"),
+            time,
+        })
+    };
+    let mut before = -tolerance::TIME_S;
+    for (index, sample) in samples.iter().enumerate() {
+        let gap = sample.t_s - before;
+        let most = if index == 0 {
+            2.0 * tolerance::TIME_S
+        } else {
+            STEP * (1.0 + tolerance::FIGURE)
+        };
+        if !(gap > 0.0 && gap <= most) {
+            let allowed = if index == 0 {
+                "0"
+            } else {
+                "at most a second later"
+            };
+            return wrong(
+                index,
+                format!("at {} s, expected {allowed}", sample.t_s),
+                before.max(0.0),
+            );
+        }
+        before = sample.t_s;
+        if let Some(what) = off(sample, motion) {
+            return wrong(index, what, sample.t_s);
+        }
+    }
+    let end = motion.end_time();
+    if !((before - end).abs() <= tolerance::TIME_S * (1.0 + end)) {
+        return wrong(
+            samples.len(),
+            format!("none at the end of the motion, {end} s"),
+            before.max(0.0),
+        );
+    }
+    None
+}
+
+/// How a sample differs from the motion at its time, if it does.
+fn off(sample: &SampleFile, motion: &ClaimedMotion) -> Option<String> {
+    let place = Vector::new(sample.east_m, sample.north_m);
+    let course = heading_from_course_deg(sample.course_deg);
+    let away = motion
+        .poses_at(sample.t_s)
+        .iter()
+        .map(|pose| (pose.position - place).norm())
+        .fold(f64::INFINITY, f64::min);
+    if !(away <= tolerance::FIGURE) {
+        return Some(format!("{away:.3e} m off the motion"));
+    }
+    let agrees = match motion {
+        ClaimedMotion::Segments(segments) => around(segments, sample.t_s).any(|s| {
+            wrap(s.pose_at(sample.t_s).heading - course).abs() <= tolerance::FIGURE
+                && (s.speed - sample.speed_mps).abs() <= tolerance::FIGURE
+        }),
+        ClaimedMotion::Steered { motion, .. } => {
+            let piece = motion.piece_at(sample.t_s);
+            let velocity = piece.velocity(piece.part(sample.t_s));
+            let slow = velocity.norm() <= tolerance::FIGURE;
+            (velocity.norm() - sample.speed_mps).abs() <= tolerance::FIGURE
+                && (slow || wrap(heading_of(velocity) - course).abs() <= tolerance::FIGURE)
+        }
+    };
+    (!agrees).then(|| "course or speed is not that of the motion".to_owned())
+}

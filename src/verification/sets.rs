@@ -1,0 +1,115 @@
+//! The sets of a document, put together again where velocity sets follow one another.
+
+use super::claim::{ClaimError, PlaneSet, fault, plane_set};
+use super::file::ObstacleFile;
+use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
+use crate::geometry::ConvexPolygon;
+use crate::target::VelocitySpell;
+use crate::tolerance;
+
+/// The sets, and what is wrong between entries of one name: each holds until the next one starts, with the section that
+/// is reached then, and the last one until the horizon.
+pub(super) fn read(
+    entries: &[ObstacleFile],
+    horizon: f64,
+) -> Result<(Vec<SpaceTimeSet>, Vec<Violation>), ClaimError> {
+    let mut sets: Vec<SpaceTimeSet> = Vec::new();
+    let mut faults = Vec::new();
+    let mut until = 0.0;
+    let mut section: Option<ConvexPolygon> = None;
+    for (index, entry) in entries.iter().enumerate() {
+        let path = format!("obstacles[{index}]");
+        let [from, to] = entry.valid_s;
+        if !(from < to) {
+            let found = format!("{from} to {to}");
+            return Err(fault(
+                &format!("{path}.valid_s"),
+                found,
+                "a start before an end",
+            ));
+        }
+        let follows = index > 0 && entries[index - 1].name == entry.name;
+        let mut note = |what: String, time: f64| {
+            let what = format!("set of '{}': {what}", entry.name);
+            faults.push(Violation { what, time });
+        };
+        let starts = if follows { until } else { 0.0 };
+        if !((from - starts).abs() <= tolerance::TIME_S * (1.0 + horizon)) {
+            note(
+                format!("valid from {from} s, expected {starts} s"),
+                from.min(starts),
+            );
+        }
+        let last = entries
+            .get(index + 1)
+            .is_none_or(|next| next.name != entry.name);
+        if last && !(to >= horizon - tolerance::TIME_S * (1.0 + horizon)) {
+            note(
+                format!("valid until {to} s, expected the horizon, {horizon} s"),
+                to,
+            );
+        }
+        let initial = plane_set(&format!("{path}.initial_set"), &entry.initial_set)?;
+        let velocity = plane_set(&format!("{path}.velocity_set"), &entry.velocity_set)?;
+        let shape = match (initial, velocity) {
+            (PlaneSet::Polygon(initial), PlaneSet::Polygon(velocities)) => {
+                if follows && !section.as_ref().is_some_and(|s| same(s, &initial)) {
+                    note(
+                        "its slabs do not begin with the section that the one before ends with"
+                            .to_owned(),
+                        from,
+                    );
+                }
+                section = Some(initial.minkowski_sum(&velocities.scaled(to - from)));
+                let spell = VelocitySpell {
+                    until: if last { f64::INFINITY } else { to },
+                    velocities,
+                };
+                if let (
+                    true,
+                    Some(SpaceTimeSet {
+                        shape: SetShape::Polygons { spells, .. },
+                        ..
+                    }),
+                ) = (follows, sets.last_mut())
+                {
+                    spells.push(spell);
+                    until = to;
+                    continue;
+                }
+                SetShape::Polygons {
+                    initial,
+                    spells: vec![spell],
+                }
+            }
+            (PlaneSet::Ellipse(initial), PlaneSet::Ellipse(velocity)) => {
+                if follows || !last {
+                    return Err(fault(&path, "ellipses one after another", "polygons"));
+                }
+                SetShape::Ellipses { initial, velocity }
+            }
+            _ => {
+                return Err(fault(
+                    &path,
+                    "a polygon with an ellipse",
+                    "sets of one kind",
+                ));
+            }
+        };
+        until = to;
+        sets.push(SpaceTimeSet {
+            name: entry.name.clone(),
+            shape,
+        });
+    }
+    Ok((sets, faults))
+}
+
+/// Each contains the other, to [`tolerance::DEPTH_M`].
+fn same(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
+    let within = |inner: &ConvexPolygon, outer: &ConvexPolygon| {
+        let mut vertices = inner.vertices().iter();
+        vertices.all(|p| outer.signed_distance(*p) <= tolerance::DEPTH_M)
+    };
+    within(a, b) && within(b, a)
+}

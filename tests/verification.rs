@@ -1,0 +1,965 @@
+//! The check of plan documents: what the planners wrote passes, and whatever is altered in it is caught.
+
+use std::path::{Path, PathBuf};
+
+use searoom::pipeline;
+use searoom::planner::Objective;
+use searoom::report::document::PlanDocument;
+use searoom::scenario::Scenario;
+use searoom::target::Representation;
+use searoom::verification::{Verification, verify};
+use serde_json::{Value, json};
+
+fn file(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenarios")
+        .join(path)
+}
+
+fn scenario(path: &str) -> Scenario {
+    Scenario::read(&file(path)).expect(path)
+}
+
+fn document(scenario: Scenario) -> Value {
+    let run = pipeline::run(scenario);
+    assert!(run.evaluation.as_ref().is_some_and(|e| e.verified()));
+    // through text, as a file would be
+    let text = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+fn checked(document: &Value) -> Verification {
+    verify(&document.to_string()).expect("a plan document")
+}
+
+/// One of every kind: space-time, with land, with slabs, with ellipses, at an accepted risk, path-time, forces.
+fn documents() -> Vec<(&'static str, Value)> {
+    let mut risky = scenario("colregs/give-way.toml");
+    risky.max_risk = 0.4;
+    let mut round = scenario("colregs/head-on.toml");
+    round.targets[0].representation = Representation::Ellipsoid;
+    let mut quick = scenario("harbour/ferry-crossing.toml");
+    quick.objective = Objective::Time;
+    let mut one = scenario("paper/figure_9.toml");
+    one.targets.truncate(1);
+    vec![
+        ("head-on", document(scenario("colregs/head-on.toml"))),
+        ("at a risk", document(risky)),
+        ("ellipsoid", document(round)),
+        ("munkholmen", document(scenario("harbour/munkholmen.toml"))),
+        ("turning", document(scenario("uncertainty/turning.toml"))),
+        ("spells", document(scenario("uncertainty/spells.toml"))),
+        ("ellipses", document(scenario("uncertainty/ellipse.toml"))),
+        ("canal", document(scenario("harbour/canal-transit.toml"))),
+        ("quick ferry", document(quick)),
+        ("figure 9", document(scenario("paper/figure_9.toml"))),
+        ("one ellipsoid", document(one)),
+    ]
+}
+
+#[test]
+fn what_was_planned_passes() {
+    let mut count = 0;
+    for folder in ["colregs", "harbour", "paper", "uncertainty"] {
+        for entry in std::fs::read_dir(file(folder)).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.extension().is_none_or(|e| e != "toml") {
+                continue;
+            }
+            let found = checked(&document(Scenario::read(&path).expect("a scenario")));
+            assert!(found.verified(), "{path:?}: {:#?}", found.violations);
+            let evaluation = found.evaluation.expect("a plan");
+            assert_eq!(evaluation.passages.len(), found.targets.len());
+            assert!(evaluation.passages.iter().all(|p| p.min_margin >= -1e-6));
+            count += 1;
+        }
+    }
+    assert!(count >= 14, "{count}");
+    for (name, document) in documents() {
+        let found = checked(&document);
+        assert!(found.verified(), "{name}: {:#?}", found.violations);
+    }
+}
+
+/// Every number below `value`, as JSON pointers.
+fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Number(_) => found.push(at.to_owned()),
+        Value::Array(list) => {
+            for (i, v) in list.iter().enumerate() {
+                numbers(v, &format!("{at}/{i}"), found);
+            }
+        }
+        Value::Object(map) => {
+            for (key, v) in map {
+                numbers(v, &format!("{at}/{key}"), found);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// What no proof rests on: how the plan was found, what it was weighed with, and what belongs to the map or the run.
+fn is_said_only(pointer: &str) -> bool {
+    [
+        "/search_stats",
+        "/timing",
+        "/relaxation",
+        "/optimal_control",
+        "/path_time/legs",
+        "/path_time/obstacles",
+        "/path_time/corners",
+        "/mission/alternatives",
+        "/land/",
+        "/obstacles/",
+        "/targets/",
+        "/own_ship/",
+        "/horizon_s",
+        "/max_risk",
+        "/risk_weight_m",
+    ]
+    .iter()
+    .any(|part| pointer.starts_with(part))
+        || pointer.contains("undisturbed")
+        || pointer.contains("max_risk")
+}
+
+/// Numbers altered per document; all of them where `SEAROOM_MUTATIONS` is set.
+const ALTERED: usize = 120;
+
+/// The motion, its samples, its costs, its encounters, the mission: no number in these can be moved by a thousandth
+/// without being caught.
+#[test]
+fn every_number_of_the_motion_and_its_figures_is_held() {
+    let all = std::env::var_os("SEAROOM_MUTATIONS").is_some();
+    for (name, document) in documents() {
+        let forces = document["optimal_control"].is_object();
+        let along_paths = document["path_time"].is_object();
+        let is_held = |pointer: &String| {
+            // a cost may be more than what the motion has to cost, and nearer land may lie beyond the document
+            let one_sided = pointer == "/cost/min_land_distance_m"
+                || (pointer == "/cost/objective" && (forces || along_paths));
+            // forces are held to what the dynamics forgive
+            let loose = forces
+                && ["surge_n", "sway_n", "yaw_nm"]
+                    .iter()
+                    .any(|k| pointer.ends_with(k));
+            // the barge is touched for a while: any time of that while is one of the closest approach
+            let lasting = name == "canal" && pointer == "/encounters/0/tcpa_s";
+            !(is_said_only(pointer) || one_sided || loose || lasting)
+        };
+        let mut pointers = Vec::new();
+        numbers(&document, "", &mut pointers);
+        pointers.retain(is_held);
+        // an odd stride meets every column of the samples
+        let stride = if all {
+            1
+        } else {
+            (pointers.len() / ALTERED) | 1
+        };
+        let mut altered = 0;
+        for pointer in pointers.iter().step_by(stride) {
+            let value = document
+                .pointer(pointer)
+                .and_then(Value::as_f64)
+                .expect("a number");
+            // of a state under forces, angles are held to what the dynamics forgive
+            let angle = forces
+                && ["heading_deg", "yaw_rate_deg_per_s"]
+                    .iter()
+                    .any(|k| pointer.ends_with(k));
+            let step = if angle { 0.1 } else { 1e-3 } * value.abs().max(1.0);
+            let sign = if altered % 2 == 0 { 1.0 } else { -1.0 };
+            let wrong = value + sign * step;
+            let mut document = document.clone();
+            *document.pointer_mut(pointer).expect("there") = json!(wrong);
+            assert!(
+                is_caught(&document),
+                "{name}: {pointer} from {value} to {wrong}"
+            );
+            altered += 1;
+        }
+        assert!(altered >= ALTERED / 2, "{name}: {altered}");
+    }
+}
+
+fn is_caught(document: &Value) -> bool {
+    match verify(&document.to_string()) {
+        Ok(found) => !found.verified(),
+        Err(_) => true,
+    }
+}
+
+fn at<'a>(document: &'a mut Value, pointer: &str) -> &'a mut Value {
+    document
+        .pointer_mut(pointer)
+        .unwrap_or_else(|| panic!("{pointer}"))
+}
+
+fn list<'a>(document: &'a mut Value, pointer: &str) -> &'a mut Vec<Value> {
+    at(document, pointer).as_array_mut().expect("a list")
+}
+
+fn add(number: &mut Value, step: f64) {
+    *number = json!(number.as_f64().expect("a number") + step);
+}
+
+fn scale(number: &mut Value, factor: f64) {
+    *number = json!(number.as_f64().expect("a number") * factor);
+}
+
+/// Alters the segments alone: the samples and figures stay, so what catches is looked at besides.
+fn segments(document: &mut Value) -> &mut Vec<Value> {
+    list(document, "/trajectory/segments")
+}
+
+type Alteration = (&'static str, fn(&mut Value), &'static str);
+
+/// What is done to the segments, and a word of the violation that has to be among those found.
+const SEGMENTS: &[Alteration] = &[
+    (
+        "all moved",
+        |d| {
+            for s in segments(d) {
+                add(&mut s["start"]["north_m"], 0.01);
+            }
+        },
+        "start position",
+    ),
+    (
+        "one moved",
+        |d| add(&mut segments(d)[2]["start"]["east_m"], 1e-3),
+        "position at the joint",
+    ),
+    (
+        "one turned",
+        |d| add(&mut segments(d)[1]["start"]["course_deg"], 0.01),
+        "",
+    ),
+    (
+        "all turned",
+        |d| {
+            for s in segments(d) {
+                add(&mut s["start"]["course_deg"], 1.0);
+            }
+        },
+        "",
+    ),
+    (
+        "sped up, over the same time",
+        |d| {
+            for s in segments(d) {
+                scale(&mut s["speed_mps"], 1.01);
+            }
+        },
+        "",
+    ),
+    (
+        "sped up, over the same way",
+        |d| {
+            let mut time = 0.0;
+            for s in segments(d) {
+                scale(&mut s["speed_mps"], 1.05);
+                scale(&mut s["turn_rate_deg_per_s"], 1.05);
+                scale(&mut s["duration_s"], 1.0 / 1.05);
+                s["start"]["t_s"] = json!(time);
+                time += s["duration_s"].as_f64().expect("a number");
+            }
+        },
+        "speed",
+    ),
+    (
+        "the first cut off",
+        |d| drop(segments(d).remove(0)),
+        "start time",
+    ),
+    ("one cut out", |d| drop(segments(d).remove(1)), "joint"),
+    ("the last cut off", |d| drop(segments(d).pop()), "arrival"),
+    ("none left", |d| segments(d).clear(), "segments: none"),
+    (
+        "one twice",
+        |d| {
+            let again = segments(d)[1].clone();
+            segments(d).insert(1, again);
+        },
+        "joint",
+    ),
+    ("two changed about", |d| segments(d).swap(0, 1), ""),
+    ("backwards", |d| segments(d).reverse(), ""),
+    (
+        "shifted in time",
+        |d| {
+            for s in segments(d) {
+                add(&mut s["start"]["t_s"], 0.5);
+            }
+        },
+        "start time",
+    ),
+    (
+        "shifted in time from the third on",
+        |d| {
+            for s in segments(d).iter_mut().skip(2) {
+                add(&mut s["start"]["t_s"], 0.5);
+            }
+        },
+        "time at the joint",
+    ),
+    (
+        "one longer",
+        |d| add(&mut segments(d)[0]["duration_s"], 0.01),
+        "joint",
+    ),
+    (
+        "one for less than no time",
+        |d| segments(d)[0]["duration_s"] = json!(-1.0),
+        "values",
+    ),
+    (
+        "one at less than no speed",
+        |d| segments(d)[0]["speed_mps"] = json!(-5.0),
+        "values",
+    ),
+    (
+        "turned the other way",
+        |d| {
+            for s in segments(d) {
+                scale(&mut s["turn_rate_deg_per_s"], -1.0);
+            }
+            // where nothing turns, this is what a corner cut short looks like
+            add(&mut segments(d)[0]["turn_rate_deg_per_s"], 1e-3);
+        },
+        "",
+    ),
+    (
+        "bent",
+        |d| add(&mut segments(d)[0]["turn_rate_deg_per_s"], 0.01),
+        "joint",
+    ),
+    (
+        "a wait put in",
+        |d| {
+            let mut wait = segments(d)[1].clone();
+            wait["speed_mps"] = json!(0.0);
+            wait["turn_rate_deg_per_s"] = json!(0.0);
+            wait["duration_s"] = json!(20.0);
+            segments(d).insert(1, wait);
+            for s in segments(d).iter_mut().skip(2) {
+                add(&mut s["start"]["t_s"], 20.0);
+            }
+        },
+        "",
+    ),
+    (
+        "straight to the end",
+        |d| {
+            let end = at(d, "/mission/waypoints")
+                .as_array()
+                .and_then(|w| w.last())
+                .cloned()
+                .expect("one");
+            let own = at(d, "/own_ship").clone();
+            let (east, north) = (&own["position"]["east_m"], &own["position"]["north_m"]);
+            let way = |a: &Value, b: &Value| b.as_f64().expect("m") - a.as_f64().expect("m");
+            let (x, y) = (way(east, &end["east_m"]), way(north, &end["north_m"]));
+            let speed = own["speed_mps"].as_f64().expect("m/s");
+            *segments(d) = vec![json!({
+                "start": { "t_s": 0.0, "east_m": east, "north_m": north, "course_deg": x.atan2(y).to_degrees() },
+                "duration_s": x.hypot(y) / speed, "speed_mps": speed, "turn_rate_deg_per_s": 0.0,
+            })];
+        },
+        "",
+    ),
+];
+
+#[test]
+fn every_altered_motion_is_caught() {
+    for (name, document) in documents() {
+        if !document["trajectory"]["segments"].is_array() {
+            continue;
+        }
+        for (what, alter, word) in SEGMENTS {
+            let mut document = document.clone();
+            alter(&mut document);
+            let found = checked(&document);
+            assert!(!found.verified(), "{name}, {what}");
+            let along_paths = document["path_time"].is_object();
+            // own ship on paths is told so in other words
+            let told = found.violations.iter().any(|v| v.what.contains(word));
+            assert!(
+                told || along_paths,
+                "{name}, {what}: {:#?}",
+                found.violations
+            );
+        }
+    }
+}
+
+/// A motion that runs through the target, told without a contradiction: the sets alone catch it.
+#[test]
+fn a_consistent_run_through_a_target_is_caught_by_her_set_and_her_hull() {
+    let mut document = document(scenario("colregs/head-on.toml"));
+    let straight = SEGMENTS.last().expect("the last");
+    straight.1(&mut document);
+    let found = checked(&document);
+    for part in ["set of 'target'", "hull of 'target'"] {
+        assert!(
+            found.violations.iter().any(|v| v.what.starts_with(part)),
+            "{:#?}",
+            found.violations
+        );
+    }
+    let times: Vec<f64> = found.violations.iter().map(|v| v.time).collect();
+    assert!(times.is_sorted(), "{times:?}");
+    // nor does a set that is made small save it: she has to be in it
+    for v in list(&mut document, "/obstacles/0/initial_set/vertices_m") {
+        scale(&mut v[1], 1e-3);
+    }
+    let found = checked(&document);
+    assert!(
+        found
+            .violations
+            .iter()
+            .any(|v| v.what.contains("too small for the hull"))
+    );
+}
+
+/// What is done to the setting, toward harm.
+const SETTING: &[Alteration] = &[
+    ("a set less", |d| drop(list(d, "/obstacles").remove(0)), ""),
+    (
+        "a set for nobody",
+        |d| at(d, "/obstacles/0")["name"] = json!("nobody"),
+        "no target",
+    ),
+    ("a target less", |d| drop(list(d, "/targets").remove(0)), ""),
+    (
+        "no sets and no targets",
+        |d| {
+            list(d, "/obstacles").clear();
+            list(d, "/targets").clear();
+        },
+        "encounters",
+    ),
+    (
+        "none of targets, sets and encounters",
+        |d| {
+            for part in ["/obstacles", "/targets", "/encounters"] {
+                list(d, part).clear();
+            }
+        },
+        "cost.min_clearance_m",
+    ),
+    (
+        "a set that ends before the horizon",
+        |d| add(&mut at(d, "/obstacles/0")["valid_s"][1], -300.0),
+        "",
+    ),
+    (
+        "a set that begins late",
+        |d| add(&mut at(d, "/obstacles/0")["valid_s"][0], 1.0),
+        "valid from",
+    ),
+    (
+        "a turning radius above the plan's",
+        |d| scale(at(d, "/own_ship/turning_radius_m"), 1.01),
+        "turning radius",
+    ),
+    (
+        "a speed that own ship has not",
+        |d| {
+            for s in list(d, "/own_ship/speeds_mps") {
+                scale(s, 0.9);
+            }
+        },
+        "speed",
+    ),
+    (
+        "a horizon before arrival",
+        |d| *at(d, "/horizon_s") = json!(100.0),
+        "arrival time",
+    ),
+    (
+        "own ship elsewhere",
+        |d| add(at(d, "/own_ship/position/north_m"), 0.01),
+        "start position",
+    ),
+    (
+        "own ship on another course",
+        |d| add(at(d, "/own_ship/course_deg"), 0.01),
+        "start heading",
+    ),
+    (
+        "a longer ship",
+        |d| add(at(d, "/own_ship/length_m"), 5.0),
+        "cost.min_clearance_m",
+    ),
+    (
+        "a wider margin",
+        |d| add(at(d, "/own_ship/safety_margin_m"), 300.0),
+        "too small for the hull",
+    ),
+    (
+        "another mission",
+        |d| add(&mut at(d, "/mission/waypoints/1")["north_m"], 1.0),
+        "arrival",
+    ),
+    (
+        "a target elsewhere",
+        |d| add(at(d, "/targets/0/ship/position/north_m"), 100.0),
+        "encounter",
+    ),
+    (
+        "a longer target",
+        |d| add(at(d, "/targets/0/ship/length_m"), 200.0),
+        "too small for the hull",
+    ),
+    (
+        "a target less well known",
+        |d| add(at(d, "/targets/0/ship/position_std_m"), 40.0),
+        "too small for the hull",
+    ),
+    (
+        "a target on another course",
+        |d| add(at(d, "/targets/0/ship/course_deg"), 1.0),
+        "too small for her velocities",
+    ),
+    (
+        "a faster target",
+        |d| add(at(d, "/targets/0/ship/speed_mps"), 0.1),
+        "too small for her velocities",
+    ),
+    (
+        "a target that may alter more",
+        |d| add(at(d, "/targets/0/ship/course_spread_deg"), 1.0),
+        "too small for her velocities",
+    ),
+    (
+        "a target that may hurry more",
+        |d| add(at(d, "/targets/0/ship/speed_spread_mps"), 0.1),
+        "too small for her velocities",
+    ),
+    (
+        "a target that may turn",
+        |d| add(at(d, "/targets/0/ship/turn_rate_deg_per_s"), 0.1),
+        "too small for her velocities",
+    ),
+    (
+        "a set over the plan",
+        |d| {
+            for v in list(d, "/obstacles/0/initial_set/vertices_m") {
+                scale(&mut v[0], 1.2);
+                scale(&mut v[1], 5.0);
+            }
+        },
+        "set of 'target'",
+    ),
+    (
+        "a smaller set of velocities",
+        |d| {
+            for v in list(d, "/obstacles/0/velocity_set/vertices_mps") {
+                scale(&mut v[1], 0.9);
+            }
+        },
+        "too small for her velocities",
+    ),
+    (
+        "one encounter less",
+        |d| drop(list(d, "/encounters").remove(0)),
+        "encounters",
+    ),
+    (
+        "another side",
+        |d| *at(d, "/encounters/0/passing_side") = json!("starboard"),
+        "passing_side",
+    ),
+    (
+        "a mission that was not fulfilled",
+        |d| *at(d, "/cost/arrived") = json!(false),
+        "cost.arrived",
+    ),
+    ("no cost", |d| *at(d, "/cost") = Value::Null, "cost"),
+    (
+        "samples cut off",
+        |d| drop(list(d, "/trajectory/samples").pop()),
+        "samples",
+    ),
+    (
+        "a sample cut out",
+        |d| drop(list(d, "/trajectory/samples").remove(40)),
+        "samples",
+    ),
+    (
+        "samples changed about",
+        |d| list(d, "/trajectory/samples").swap(30, 31),
+        "samples",
+    ),
+    (
+        "no samples",
+        |d| list(d, "/trajectory/samples").clear(),
+        "samples",
+    ),
+];
+
+#[test]
+fn every_altered_setting_is_caught() {
+    let original = document(scenario("colregs/head-on.toml"));
+    for (what, alter, word) in SETTING {
+        let mut document = original.clone();
+        alter(&mut document);
+        let found = checked(&document);
+        assert!(!found.verified(), "{what}");
+        assert!(
+            found.violations.iter().any(|v| v.what.contains(word)),
+            "{what}: {:#?}",
+            found.violations
+        );
+    }
+}
+
+/// Slabs, ellipses, level sets of risk, forces and land have ways of their own to be altered.
+#[test]
+fn what_only_some_plans_have_is_held_too() {
+    let mut turning = document(scenario("uncertainty/turning.toml"));
+    let last = list(&mut turning, "/obstacles").len() - 1;
+    assert!(last > 0);
+    let cases: Vec<(Value, Vec<Alteration>)> = vec![
+        (
+            turning,
+            vec![
+                (
+                    "a slab less",
+                    |d| drop(list(d, "/obstacles").remove(1)),
+                    "valid from",
+                ),
+                (
+                    "the last slab less",
+                    |d| drop(list(d, "/obstacles").pop()),
+                    "valid until",
+                ),
+                (
+                    "a slab elsewhere",
+                    |d| add(&mut at(d, "/obstacles/1/initial_set/vertices_m")[0][0], 0.1),
+                    "",
+                ),
+                (
+                    "a slab that lags",
+                    |d| {
+                        for v in list(d, "/obstacles/1/initial_set/vertices_m") {
+                            add(&mut v[1], 5.0);
+                        }
+                    },
+                    "do not begin with the section",
+                ),
+                (
+                    "a target that turns faster",
+                    |d| scale(at(d, "/targets/0/ship/turn_rate_deg_per_s"), 1.2),
+                    "too small for her velocities",
+                ),
+            ],
+        ),
+        (
+            document(scenario("uncertainty/spells.toml")),
+            vec![
+                (
+                    "a velocity set that begins earlier",
+                    |d| add(&mut at(d, "/targets/0/velocity_sets/0")["until_s"], -20.0),
+                    "too small for the velocity set",
+                ),
+                (
+                    "a larger set",
+                    |d| scale(&mut at(d, "/targets/0/initial_set/vertices_m")[0][0], 1.5),
+                    "",
+                ),
+            ],
+        ),
+        (
+            document(scenario("uncertainty/ellipse.toml")),
+            vec![
+                (
+                    "a larger target",
+                    |d| scale(&mut at(d, "/targets/0/initial_set/shape_m2")[0][0], 1.1),
+                    "too small for the initial set",
+                ),
+                (
+                    "a faster target",
+                    |d| {
+                        scale(
+                            &mut at(d, "/targets/0/velocity_sets/0")["shape_m2_per_s2"][1][1],
+                            1.1,
+                        )
+                    },
+                    "too small for the velocity set",
+                ),
+                (
+                    "a larger ellipse",
+                    |d| {
+                        for row in 0..2 {
+                            for column in 0..2 {
+                                scale(
+                                    &mut at(d, "/obstacles/0/initial_set/shape_m2")[row][column],
+                                    9.0,
+                                );
+                            }
+                        }
+                    },
+                    "set of 'tracked': distance",
+                ),
+            ],
+        ),
+        (
+            documents().swap_remove(1).1,
+            vec![
+                (
+                    "less risk than was taken",
+                    |d| scale(at(d, "/cost/max_risk"), 0.9),
+                    "cost.max_risk",
+                ),
+                (
+                    "less risk accepted",
+                    |d| *at(d, "/max_risk") = json!(0.1),
+                    "",
+                ),
+                (
+                    "more risk accepted",
+                    |d| *at(d, "/max_risk") = json!(0.6),
+                    "",
+                ),
+                (
+                    "no risk",
+                    |d| *at(d, "/cost/max_risk") = json!(0.0),
+                    "cost.max_risk",
+                ),
+            ],
+        ),
+        (
+            document(scenario("harbour/munkholmen.toml")),
+            vec![
+                (
+                    "a margin to land that is not kept",
+                    |d| *at(d, "/own_ship/land_margin_m") = json!(70.0),
+                    "land",
+                ),
+                (
+                    "land moved",
+                    |d| {
+                        for piece in list(d, "/land") {
+                            for v in piece.as_array_mut().expect("a ring") {
+                                add(&mut v[1], 60.0);
+                            }
+                        }
+                    },
+                    "land",
+                ),
+                (
+                    "farther from land",
+                    |d| add(at(d, "/cost/min_land_distance_m"), 1.0),
+                    "cost.min_land_distance_m",
+                ),
+                (
+                    "no land to be far from",
+                    |d| *at(d, "/cost/min_land_distance_m") = Value::Null,
+                    "cost.min_land_distance_m",
+                ),
+            ],
+        ),
+        (
+            document(scenario("paper/figure_9.toml")),
+            vec![
+                (
+                    "weaker engines",
+                    |d| scale(at(d, "/optimal_control/force_limits/surge_n"), 0.01),
+                    "surge force",
+                ),
+                (
+                    "a weaker rudder",
+                    |d| scale(at(d, "/optimal_control/force_limits/yaw_nm"), 0.01),
+                    "yaw moment",
+                ),
+                (
+                    "another ship",
+                    |d| *at(d, "/optimal_control/vessel") = json!("cybership2-full"),
+                    "off the plan",
+                ),
+                (
+                    "other forces",
+                    |d| {
+                        for s in list(d, "/trajectory/samples") {
+                            if s["surge_n"].is_number() {
+                                scale(&mut s["surge_n"], 0.9);
+                            }
+                        }
+                    },
+                    "off the plan",
+                ),
+                (
+                    "a node less",
+                    |d| {
+                        let nodes = list(d, "/trajectory/samples");
+                        let node = nodes.iter().position(|s| {
+                            s["t_s"].as_f64() > Some(20.0) && s["surge_n"].is_number()
+                        });
+                        let node = nodes[node.expect("one")].as_object_mut().expect("a sample");
+                        node.remove("surge_n");
+                    },
+                    "off the plan",
+                ),
+                (
+                    "a larger ellipse",
+                    |d| {
+                        for row in 0..2 {
+                            for column in 0..2 {
+                                scale(
+                                    &mut at(d, "/obstacles/0/initial_set/shape_m2")[row][column],
+                                    1.5,
+                                );
+                            }
+                        }
+                    },
+                    "set of",
+                ),
+            ],
+        ),
+        (
+            document(scenario("harbour/canal-transit.toml")),
+            vec![
+                (
+                    "another profile",
+                    |d| add(&mut at(d, "/path_time/profile")[3][1], 1.0),
+                    "path_time.profile",
+                ),
+                (
+                    "a profile cut off",
+                    |d| drop(list(d, "/path_time/profile").pop()),
+                    "path_time.profile",
+                ),
+                (
+                    "off the path",
+                    |d| add(&mut at(d, "/mission/waypoints")[1]["east_m"], 0.5),
+                    "path",
+                ),
+                (
+                    "a slower ship",
+                    |d| {
+                        for s in list(d, "/own_ship/speeds_mps") {
+                            scale(s, 0.5);
+                        }
+                    },
+                    "speed",
+                ),
+            ],
+        ),
+    ];
+    for (original, alterations) in cases {
+        assert!(!is_caught(&original));
+        for (what, alter, word) in alterations {
+            let mut document = original.clone();
+            alter(&mut document);
+            let name = &original["scenario"];
+            match verify(&document.to_string()) {
+                Ok(found) => {
+                    assert!(!found.verified(), "{name}, {what}");
+                    let told = found.violations.iter().any(|v| v.what.contains(word));
+                    assert!(told, "{name}, {what}: {:#?}", found.violations);
+                }
+                // a corner that is no longer one makes the set no convex polygon
+                Err(error) => assert!(word.is_empty(), "{name}, {what}: {error}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_no_plan_document_is_named() {
+    let original = document(scenario("colregs/head-on.toml"));
+    let said = |alter: &dyn Fn(&mut Value)| {
+        let mut document = original.clone();
+        alter(&mut document);
+        verify(&document.to_string())
+            .expect_err("no plan document")
+            .to_string()
+    };
+    for (error, expected) in [
+        (
+            said(&|d| d["format"] = json!("other/2")),
+            "format: found 'other/2'; allowed: searoom-plan/1",
+        ),
+        (
+            said(&|d| d["horizon_s"] = json!(-1.0)),
+            "horizon_s: found -1; allowed: a positive number",
+        ),
+        (said(&|d| d["max_risk"] = json!(1.0)), "max_risk: found 1"),
+        (
+            said(&|d| d["trajectory"]["segments"][3]["speed_mps"] = json!("fast")),
+            "trajectory.segments[3].speed_mps: invalid type: string",
+        ),
+        (
+            said(&|d| drop(d.as_object_mut().expect("an object").remove("targets"))),
+            "missing field `targets`",
+        ),
+        (
+            said(&|d| d["own_ship"]["turning_radius_m"] = json!(0.0)),
+            "own_ship.turning_radius_m: found 0; allowed: a positive number",
+        ),
+        (
+            said(&|d| d["own_ship"]["speeds_mps"] = json!([])),
+            "own_ship.speeds_mps: found no speed above 0",
+        ),
+        (
+            said(&|d| d["mission"]["waypoints"] = json!([])),
+            "mission: found what makes no way",
+        ),
+        (
+            said(&|d| d["obstacles"][0]["initial_set"] = json!({})),
+            "obstacles[0].initial_set: found neither",
+        ),
+        (
+            said(&|d| d["obstacles"][0]["valid_s"] = json!([5.0, 5.0])),
+            "obstacles[0].valid_s: found 5 to 5",
+        ),
+        (
+            said(&|d| d["targets"][0]["representation"] = json!("box")),
+            "targets[0].representation: found 'box'",
+        ),
+        (
+            said(&|d| d["trajectory"]["segments"] = Value::Null),
+            "trajectory.segments: found null without optimal_control",
+        ),
+        (
+            said(&|d| d["land"] = json!([[[0.0, 0.0], [1.0, 1.0]]])),
+            "land[0]: found",
+        ),
+    ] {
+        assert!(error.contains(expected), "{error}");
+    }
+    assert!(verify("").is_err() && verify("[1, 2]").is_err() && verify("{} x").is_err());
+    // nothing that a file can hold may panic
+    let text = original.to_string();
+    for end in (0..text.len()).step_by(997) {
+        assert!(verify(text.get(..end).unwrap_or("")).is_err());
+    }
+}
+
+#[test]
+fn no_number_makes_the_check_panic() {
+    for (_, document) in documents() {
+        let mut pointers = Vec::new();
+        numbers(&document, "", &mut pointers);
+        let stride = (pointers.len() / 60) | 1;
+        for (index, pointer) in pointers.iter().step_by(stride).enumerate() {
+            let hostile = [1e300, -1e300, 0.0, 1e-300, -1.0][index % 5];
+            let mut document = document.clone();
+            *at(&mut document, pointer) = json!(hostile);
+            let _ = verify(&document.to_string());
+        }
+    }
+}
+
+#[test]
+fn a_document_without_a_plan_is_not_verified_and_not_refused() {
+    let mut scenario = scenario("colregs/head-on.toml");
+    scenario.horizon = 100.0;
+    let run = pipeline::run(scenario);
+    let text = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
+    let found = verify(&text).expect("a document");
+    assert!(!found.verified() && found.evaluation.is_none() && found.violations.is_empty());
+}
