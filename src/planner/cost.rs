@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::line_error;
 use crate::frame::cross;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Mover, Nearest, Segment};
 
@@ -27,12 +28,16 @@ const FLAT_RADIUS_M: f64 = 3e3;
 const SHORT_RAD: f64 = 1e-3;
 
 /// `(1/T_d) integral of e² dt` over one segment, m²: its part of the space-time error `J`. In closed form for
-/// one leg, and exact to rounding on a line near one of several; elsewhere 4-point Gauss-Legendre on arcs
-/// up to pi/4, cut by halves to a thousandth of the stretch where the nearest leg or the clamp at its ends
-/// changes.
+/// one leg and on lines; elsewhere 4-point Gauss-Legendre on arcs up to pi/4, cut by halves to a thousandth of the
+/// stretch where the nearest leg or the clamp at its ends changes.
 pub fn space_time_error(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64) -> f64 {
     if let [leg] = desired.legs()
         && let Some(integral) = Alone::new(leg, segment, time_weight).integral()
+    {
+        return integral / desired.duration();
+    }
+    if !segment.is_arc()
+        && let Some(integral) = line_error::integral(desired, segment, time_weight)
     {
         return integral / desired.duration();
     }
@@ -242,7 +247,7 @@ mod tests {
     use crate::frame::{Pose, Vector};
 
     fn dense(desired: &DesiredTrajectory, s: &Segment, q: f64) -> f64 {
-        let n = 200_000;
+        let n = 50_000;
         let sum: f64 = (0..n)
             .map(|i| {
                 let t = s.start_time + s.duration * (f64::from(i) + 0.5) / f64::from(n);
@@ -323,6 +328,51 @@ mod tests {
             );
         }
         assert!(closed > 2500, "{closed}");
+    }
+
+    /// Round trips, legs in line, sharp corners, waits, motions on the legs and off them.
+    #[test]
+    fn lines_near_several_legs_are_the_dense_sum() {
+        let mut closed = 0;
+        for i in 0..400 {
+            let k = f64::from(i);
+            let mut points = vec![Vector::new(-40.0, 10.0)];
+            for leg in 0..2 + i % 7 {
+                let j = f64::from(leg);
+                let heading =
+                    [0.0, 0.8 * (k + j).sin(), 3.0 * (k * 0.3 + j).cos(), PI * j][i as usize % 4];
+                let way = 40.0 + 160.0 * (0.7 * k + j).sin().powi(2);
+                points.push(points[leg as usize] + crate::frame::direction(heading) * way);
+            }
+            let speeds: Vec<f64> = (0..points.len() - 1)
+                .map(|j| 1.0 + ((i as usize + j) % 3) as f64)
+                .collect();
+            let desired = DesiredTrajectory::new(&points, &speeds).expect("valid");
+            let on_path = desired.position_at(0.5 * desired.duration() * (1.0 + (0.31 * k).sin()));
+            let aside = if i % 3 == 0 {
+                0.0
+            } else {
+                60.0 * (0.9 * k).cos()
+            };
+            let segment = Segment {
+                start: Pose::new(on_path + Vector::new(0.3, 1.0) * aside, k * 0.41),
+                start_time: (k * 3.7) % 200.0,
+                duration: 120.0 * (k * 0.19).sin().powi(4),
+                speed: [0.0, 2.5, 1.0, 6.0][i as usize % 4],
+                turn_rate: 0.0,
+            };
+            let q = [0.5, 25.0, 0.0, 400.0][(i as usize / 4) % 4];
+            let Some(found) = line_error::integral(&desired, &segment, q) else {
+                continue;
+            };
+            closed += 1;
+            let (found, exact) = (found / desired.duration(), dense(&desired, &segment, q));
+            assert!(
+                (found - exact).abs() <= 1e-7 * (1.0 + exact),
+                "{i}: {found} {exact} {segment:?}"
+            );
+        }
+        assert!(closed > 395, "{closed}");
     }
 
     #[test]

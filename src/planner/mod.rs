@@ -3,6 +3,7 @@
 mod control_settings;
 pub mod cost;
 mod explored;
+mod line_error;
 pub mod optimal_control;
 pub mod path_time;
 pub mod space_time;
