@@ -39,6 +39,13 @@ pub struct TargetSets {
     pub shape_reach: f64,
 }
 
+impl TargetSets {
+    /// The shaped or the hard set.
+    pub fn either(&self, shaped: bool) -> &Obstacle {
+        if shaped { &self.shaped } else { &self.hard }
+    }
+}
+
 /// What a plan gave up.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Relaxation {
@@ -65,6 +72,8 @@ pub struct Run {
     pub scenario: Scenario,
     /// The sets, in the order of the scenario's targets.
     pub sets: Vec<TargetSets>,
+    /// True where the plan was made against the shaped sets, false where against the hard ones.
+    pub shaped: bool,
     /// The obstacles that the plan was made against, in the same order: the level sets `O_alpha`,
     /// `alpha = 1 - max_risk`.
     pub obstacles: Vec<Obstacle>,
@@ -85,6 +94,14 @@ pub struct Run {
     pub evaluation: Option<Evaluation>,
     /// Wall-clock time of planning alone.
     pub plan_time: Duration,
+}
+
+impl Run {
+    /// The whole sets, in the order of the targets, of which `obstacles` are the level sets: those that [`Run::risks`]
+    /// are against.
+    pub fn whole_sets(&self) -> impl Iterator<Item = &Obstacle> {
+        self.sets.iter().map(|sets| sets.either(self.shaped))
+    }
 }
 
 /// The sets and the encounter of every target, in the scenario's order.
@@ -234,50 +251,49 @@ pub fn run(scenario: Scenario) -> Run {
         // the paths are kept off land when the scenario is read
         PlannerKind::PathTime => Coast::none(),
     };
-    let mut used: fn(&TargetSets) -> &Obstacle = if shaped { |s| &s.shaped } else { |s| &s.hard };
-    let plan =
-        |used: fn(&TargetSets) -> &Obstacle| -> (Vec<Obstacle>, Planned, Option<ControlReport>) {
-            let whole: Vec<Obstacle> = sets.iter().map(|s| used(s).clone()).collect();
-            let risk = scenario.max_risk;
-            let level_sets: Vec<Obstacle> = if risk > 0.0 {
-                whole.iter().map(|set| set.at_risk(risk)).collect()
-            } else {
-                whole.clone()
-            };
-            let level_sets = if forces {
-                optimal_control::outer_sets(&level_sets)
-            } else {
-                level_sets
-            };
-            let asked = Problem {
-                deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
-                first_turn: shaped.then(|| first_turn(&sets)).flatten(),
-                ..problem(&scenario, &level_sets, coast)
-            };
-            let planned = match (scenario.planner, scenario.objective) {
-                (PlannerKind::SpaceTime, _) => space_time::plan(&asked),
-                (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
-                    let asked = Problem {
-                        obstacles: &whole,
-                        ..asked
-                    };
-                    path_time::plan_weighing_risk(&asked, weight, risk)
-                }
-                (PlannerKind::PathTime, _) => path_time::plan(&asked),
-                (PlannerKind::OptimalControl, _) => {
-                    let Controlled { planned, report } =
-                        optimal_control::plan(&asked, &scenario.control);
-                    return (level_sets, planned, Some(report));
-                }
-            };
-            (level_sets, planned, None)
+    let plan = |kept: bool| -> (Vec<Obstacle>, Planned, Option<ControlReport>) {
+        let whole: Vec<Obstacle> = sets.iter().map(|s| s.either(kept).clone()).collect();
+        let risk = scenario.max_risk;
+        let level_sets: Vec<Obstacle> = if risk > 0.0 {
+            whole.iter().map(|set| set.at_risk(risk)).collect()
+        } else {
+            whole.clone()
         };
+        let level_sets = if forces {
+            optimal_control::outer_sets(&level_sets)
+        } else {
+            level_sets
+        };
+        let asked = Problem {
+            deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
+            first_turn: shaped.then(|| first_turn(&sets)).flatten(),
+            ..problem(&scenario, &level_sets, coast)
+        };
+        let planned = match (scenario.planner, scenario.objective) {
+            (PlannerKind::SpaceTime, _) => space_time::plan(&asked),
+            (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
+                let asked = Problem {
+                    obstacles: &whole,
+                    ..asked
+                };
+                path_time::plan_weighing_risk(&asked, weight, risk)
+            }
+            (PlannerKind::PathTime, _) => path_time::plan(&asked),
+            (PlannerKind::OptimalControl, _) => {
+                let Controlled { planned, report } =
+                    optimal_control::plan(&asked, &scenario.control);
+                return (level_sets, planned, Some(report));
+            }
+        };
+        (level_sets, planned, None)
+    };
+    let mut kept_shapes = shaped;
     let mut relaxations = if shaped {
         relaxations(&sets, |s| s.shape_reduced)
     } else {
         Vec::new()
     };
-    let (mut obstacles, mut planned, mut control) = plan(used);
+    let (mut obstacles, mut planned, mut control) = plan(shaped);
     let stuck = match &planned.outcome {
         // the ellipse around a shape may hold own ship where the shape does not
         Outcome::Infeasible(NoPlan::StartInside { .. }) => forces,
@@ -285,23 +301,23 @@ pub fn run(scenario: Scenario) -> Run {
         Outcome::Solved(_) | Outcome::Deadline(_) => false,
     };
     if shaped && stuck && sets.iter().any(|s| s.shape_reach > 0.0) {
-        let (obstacles_left, again, report) = plan(|s| &s.hard);
+        let (obstacles_left, again, report) = plan(false);
         if again.outcome.plan().is_some() {
             (obstacles, planned, control) = (obstacles_left, again, report);
             relaxations = self::relaxations(&sets, |s| s.shape_reach);
-            used = |s| &s.hard;
+            kept_shapes = false;
         }
     }
     let plan_time = begun.elapsed();
     let risks: Vec<PeakRisk> = planned.outcome.plan().map_or_else(Vec::new, |plan| {
         sets.iter()
-            .map(|s| peak_risk(used(s), &plan.trajectory))
+            .map(|s| peak_risk(s.either(kept_shapes), &plan.trajectory))
             .collect()
     });
     if scenario.max_risk > 0.0 {
         relaxations.extend(risks_taken(&sets, &risks));
     }
-    let is_ellipsoid = |s: &&TargetSets| matches!(used(s), Obstacle::Ellipsoid(_));
+    let is_ellipsoid = |s: &&TargetSets| matches!(s.either(kept_shapes), Obstacle::Ellipsoid(_));
     let enclosed = sets.iter().filter(|s| forces && !is_ellipsoid(s));
     let enclosed = enclosed.map(|s| s.hard.name().to_owned()).collect();
     let evaluation = planned
@@ -311,6 +327,7 @@ pub fn run(scenario: Scenario) -> Run {
     Run {
         scenario,
         sets,
+        shaped: kept_shapes,
         obstacles,
         land,
         planned,

@@ -31,12 +31,13 @@ pub fn log_curves(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 }
 
 /// One curve of a plot.
-struct Series<'a> {
-    name: &'a str,
+pub struct Series {
+    /// As the legend has it.
+    pub name: String,
     color: rerun::Color,
     width: f32,
     /// One per time; where it is not a number, nothing is drawn.
-    values: Vec<f64>,
+    pub values: Vec<f64>,
 }
 
 /// All curves of a plot in one entity: a recording pays for entities, not for values.
@@ -48,7 +49,7 @@ fn log_plot(
     series: &[Series],
 ) -> RecordingStreamResult<()> {
     let look = SeriesLines::new()
-        .with_names(series.iter().map(|s| s.name))
+        .with_names(series.iter().map(|s| s.name.as_str()))
         .with_colors(series.iter().map(|s| s.color))
         .with_widths(series.iter().map(|s| s.width))
         .with_interpolation_mode(between)
@@ -73,14 +74,14 @@ fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
     let targets = scene.run.scenario.targets.iter().enumerate();
     let mut series: Vec<Series> = targets
         .map(|(index, target)| Series {
-            name: &target.name,
+            name: target.name.clone(),
             color: style::target(index),
             width: 2.0,
             values: clearances(scene, target),
         })
         .collect();
     series.push(Series {
-        name: "safety margin",
+        name: "safety margin".to_owned(),
         color: style::alarm(),
         width: 1.0,
         values: vec![scene.run.scenario.own_ship.safety_margin; scene.samples.len()],
@@ -114,32 +115,10 @@ pub fn clearances(scene: &Scene, target: &Target) -> Vec<f64> {
 }
 
 fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let sets = &scene.run.sets;
-    if sets.is_empty() {
+    if scene.run.sets.is_empty() {
         return Ok(());
     }
-    let hard: Vec<&Obstacle> = sets.iter().map(|s| &s.hard).collect();
-    let shaped: Vec<&Obstacle> = sets.iter().map(|s| &s.shaped).collect();
-    let mut series = vec![Series {
-        name: "hard sets",
-        color: style::own_ship(),
-        width: 2.0,
-        values: margins(scene, &hard),
-    }];
-    if hard != shaped {
-        series.push(Series {
-            name: "shaped sets",
-            color: style::Pace::Slow.color(),
-            width: 2.0,
-            values: margins(scene, &shaped),
-        });
-    }
-    series.push(Series {
-        name: "contact",
-        color: style::alarm(),
-        width: 1.0,
-        values: vec![0.0; scene.samples.len()],
-    });
+    let series = margin_curves(scene);
     log_plot(
         rec,
         MARGIN,
@@ -147,6 +126,44 @@ fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
         InterpolationMode::Linear,
         &series,
     )
+}
+
+/// Of the hard and the shaped sets, and of those that were kept out of where they are neither.
+pub fn margin_curves(scene: &Scene) -> Vec<Series> {
+    let sets = &scene.run.sets;
+    let hard: Vec<&Obstacle> = sets.iter().map(|s| &s.hard).collect();
+    let shaped: Vec<&Obstacle> = sets.iter().map(|s| &s.shaped).collect();
+    let mut series = vec![Series {
+        name: "hard sets".to_owned(),
+        color: style::own_ship(),
+        width: 2.0,
+        values: margins(scene, &hard),
+    }];
+    if hard != shaped {
+        series.push(Series {
+            name: "shaped sets".to_owned(),
+            color: style::Pace::Slow.color(),
+            width: 2.0,
+            values: margins(scene, &shaped),
+        });
+    }
+    // level sets of an accepted risk, or ellipsoids around the others
+    let kept_out_of: Vec<&Obstacle> = scene.run.obstacles.iter().collect();
+    if kept_out_of != hard && kept_out_of != shaped {
+        series.push(Series {
+            name: "sets kept out of".to_owned(),
+            color: style::Pace::Fast.color(),
+            width: 2.0,
+            values: margins(scene, &kept_out_of),
+        });
+    }
+    series.push(Series {
+        name: "contact".to_owned(),
+        color: style::alarm(),
+        width: 1.0,
+        values: vec![0.0; scene.samples.len()],
+    });
+    series
 }
 
 /// Metres from own ship's centre to the nearest of the sets at every sample; negative inside, no number after
@@ -162,38 +179,59 @@ pub fn margins(scene: &Scene, sets: &[&Obstacle]) -> Vec<f64> {
 }
 
 fn log_risks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let targets = scene.run.scenario.targets.iter().zip(&scene.run.sets);
-    let mut series: Vec<Series> = targets
-        .enumerate()
-        .map(|(index, (target, sets))| Series {
-            name: &target.name,
-            color: style::target(index),
-            width: 2.0,
-            values: risks(scene, &sets.hard),
-        })
-        .collect();
-    series.push(Series {
-        name: "accepted",
-        color: style::alarm(),
-        width: 1.0,
-        values: vec![scene.run.scenario.max_risk; scene.samples.len()],
-    });
-    log_plot(
-        rec,
-        RISK,
-        &scene.samples,
-        InterpolationMode::Linear,
-        &series,
-    )
+    let times = risk_times(scene);
+    let series = risk_curves(scene, &times);
+    log_plot(rec, RISK, &times, InterpolationMode::Linear, &series)
 }
 
-/// The risk of a set at own ship's centre at every sample; no number after arrival.
-pub fn risks(scene: &Scene, set: &Obstacle) -> Vec<f64> {
+/// The risks that the plan document reports, against the sets that were planned against; beside them those against the
+/// hard sets where these differ.
+pub fn risk_curves(scene: &Scene, times: &[f64]) -> Vec<Series> {
+    let both = scene.run.whole_sets().zip(&scene.run.sets).enumerate();
+    let mut series = Vec::new();
+    for (index, (kept_out_of, sets)) in both {
+        let name = sets.hard.name();
+        let curve = |name: String, width: f32, set: &Obstacle| Series {
+            name,
+            color: style::target(index),
+            width,
+            values: risks(scene, set, times),
+        };
+        if *kept_out_of == sets.hard {
+            series.push(curve(name.to_owned(), 2.0, kept_out_of));
+        } else {
+            series.push(curve(format!("{name}, shaped set"), 2.0, kept_out_of));
+            series.push(curve(format!("{name}, hard set"), 1.0, &sets.hard));
+        }
+    }
+    series.push(Series {
+        name: "accepted".to_owned(),
+        color: style::alarm(),
+        width: 1.0,
+        values: vec![scene.run.scenario.max_risk; times.len()],
+    });
+    series
+}
+
+/// The samples, and the instants of the largest risks, so that the curves reach what is reported.
+pub fn risk_times(scene: &Scene) -> Vec<f64> {
+    let mut times = scene.samples.clone();
+    times.extend(scene.run.risks.iter().map(|peak| peak.time));
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+/// The risk of a set at own ship's centre at every one of the times; no number after arrival. As in the report, a
+/// place that is not deeper than [`tolerance::DEPTH_M`] in the set is at none.
+fn risks(scene: &Scene, set: &Obstacle, times: &[f64]) -> Vec<f64> {
     let at = |&time: &f64| {
-        let risk = set.risk(scene.motion.pose_at(time).position, time);
+        let own = scene.motion.pose_at(time).position;
+        let clear = set.signed_distance(own, time).distance >= -tolerance::DEPTH_M;
+        let risk = if clear { 0.0 } else { set.risk(own, time) };
         scene.motion.until_arrival(time, risk)
     };
-    scene.samples.iter().map(at).collect()
+    times.iter().map(at).collect()
 }
 
 /// Speeds are steps: a row where one begins, and where one ends for good.
@@ -214,7 +252,7 @@ fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> 
     };
     let wanted = |&t: &f64| until(desired.duration(), t, desired_leg(desired, t).speed);
     let mut series = vec![Series {
-        name: "desired",
+        name: "desired".to_owned(),
         color: style::desired(),
         width: 1.0,
         values: times.iter().map(wanted).collect(),
@@ -222,7 +260,7 @@ fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> 
     if let Motion::Planned(trajectory) = scene.motion {
         let planned = |&t: &f64| until(trajectory.end_time(), t, trajectory.speed_at(t));
         series.push(Series {
-            name: "own ship",
+            name: "own ship".to_owned(),
             color: style::own_ship(),
             width: 2.0,
             values: times.iter().map(planned).collect(),
@@ -238,14 +276,14 @@ fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
         .iter()
         .map(|&t| heading_of(desired_leg(desired, t).direction));
     let mut series = vec![Series {
-        name: "desired",
+        name: "desired".to_owned(),
         color: style::desired(),
         width: 1.0,
         values: continuous_courses(start_course(scene), wanted),
     }];
     if scene.motion.is_planned() {
         series.push(Series {
-            name: "own ship",
+            name: "own ship".to_owned(),
             color: style::own_ship(),
             width: 2.0,
             values: courses(scene),

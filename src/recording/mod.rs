@@ -29,8 +29,8 @@
 //! | `space_time/now` | the plane of the cursor and the ships in it |
 //! | `space_time/explored/free`, `blocked` | edges that the search tested; the blocked ones hidden until asked for |
 //! | `curves/clearance_m` | per target: metres between own hull and the expected hull; the safety margin |
-//! | `curves/margin_m` | metres from own ship's centre to the nearest hard and shaped set, negative inside; zero |
-//! | `curves/risk` | per target: risk against the whole hard set at own ship's centre; the accepted risk |
+//! | `curves/margin_m` | metres from own ship's centre to the nearest hard and shaped set, and to the nearest set that was kept out of where that is neither (an accepted risk, ellipsoids around polygons), negative inside; zero |
+//! | `curves/risk` | per target: risk at own ship's centre against the whole set that was planned against, as the plan document reports it, with its largest value in it; where that is a shaped set also the risk against the hard one; the accepted risk |
 //! | `velocities/plane` | turns north up; everything below is east, north, m/s |
 //! | `velocities/plane/axes`, `own_ship` | the plane of velocities, m/s; own ship's velocity at the cursor |
 //! | `velocities/plane/obstacles/<target>` | velocities that, kept from the cursor on, meet the hard set within 300 s or by the end: outline, clipped to the view |

@@ -242,6 +242,33 @@ fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
     }
 }
 
+/// What the curves say of the risk is what the plan document says, and of the set that it speaks of.
+#[test]
+fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
+    let text = HEAD_ON.replace("[[targets]]", "[planner]\nmax_risk = 0.4\n[[targets]]");
+    let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
+    let [peak] = run.risks[..] else {
+        panic!("one target");
+    };
+    assert!(run.shaped && peak.risk > 0.1, "{peak:?}");
+    let scene = Scene::new(&run);
+    let curves = curves::risk_curves(&scene, &curves::risk_times(&scene));
+    let largest = |name: &str| {
+        let curve = curves.iter().find(|c| c.name == format!("{NAME}, {name}"));
+        let values = curve.expect("drawn").values.iter().copied();
+        values.fold(0.0, f64::max)
+    };
+    let reported = largest("shaped set");
+    assert!((reported - peak.risk).abs() < 1e-9, "{reported} {peak:?}");
+    // the hard set alone would have said something else
+    assert!(largest("hard set") < peak.risk - 1e-3);
+    let margins = curves::margin_curves(&scene);
+    let kept = margins.iter().find(|c| c.name == "sets kept out of");
+    let least = kept.expect("level sets are neither").values.iter().copied();
+    let least = least.fold(f64::INFINITY, f64::min);
+    assert!(least.abs() < 1.0, "the plan keeps close: {least}");
+}
+
 /// The diagram is there with a plan and without, and only for plans along paths.
 #[test]
 fn a_path_time_plan_has_its_diagram() {
