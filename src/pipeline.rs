@@ -306,6 +306,9 @@ pub fn run(scenario: Scenario) -> Run {
             (obstacles, planned, control) = (obstacles_left, again, report);
             relaxations = self::relaxations(&sets, |s| s.shape_reach);
             kept_shapes = false;
+        } else if matches!(again.outcome, Outcome::Deadline(_)) {
+            // there may be a way, which was not found in time
+            planned.outcome = again.outcome;
         }
     }
     let plan_time = begun.elapsed();

@@ -1,5 +1,6 @@
 //! A problem, a plan, an outcome: what every planner takes and gives.
 
+mod clock;
 mod control_settings;
 pub mod cost;
 mod explored;

@@ -32,6 +32,12 @@ pub trait Space {
     /// True when the edge into this state may be used. Called at most once per node, when it leaves
     /// the queue.
     fn admits(&mut self, state: &Self::State) -> bool;
+
+    /// True when the search is to stop where it is. Asked before every node; successors and bounds made since it
+    /// turned true are not used.
+    fn is_out_of_time(&self) -> bool {
+        false
+    }
 }
 
 /// What became of a node.
@@ -69,6 +75,8 @@ pub enum Stop {
     Exhausted,
     /// The budget of expansions is spent.
     Budget,
+    /// The space has no more time.
+    Time,
 }
 
 /// Counts of a search.
@@ -174,6 +182,9 @@ impl<S> Search<S> {
     pub fn next_goal<G: Space<State = S>>(&mut self, space: &mut G, max_expanded: usize) -> Stop {
         let mut successors = Vec::new();
         loop {
+            if space.is_out_of_time() {
+                return Stop::Time;
+            }
             let Some(Reverse(entry)) = self.queue.pop() else {
                 return Stop::Exhausted;
             };

@@ -3,6 +3,9 @@
 use super::TrajectoryError;
 use crate::frame::{Vector, cross};
 
+/// Relative: more than the rounding of a squared distance.
+const ROUNDING: f64 = 1e-12;
+
 /// One leg of the desired trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesiredLeg {
@@ -25,6 +28,18 @@ impl DesiredLeg {
     pub fn end_time(&self) -> f64 {
         self.start_time + self.length / self.speed
     }
+
+    /// The squared space-time distance, m², and the metres along the leg of the nearest point.
+    fn nearest(&self, position: Vector, time: f64, q: f64) -> (f64, f64) {
+        let offset = position - self.start;
+        let (along, across) = (self.direction.dot(&offset), cross(self.direction, offset));
+        let elapsed = time - self.start_time;
+        let slowness = 1.0 / self.speed;
+        let sigma = ((along + q * elapsed * slowness) / (1.0 + q * slowness * slowness))
+            .clamp(0.0, self.length);
+        let (behind, late) = (along - sigma, elapsed - sigma * slowness);
+        (across * across + behind * behind + q * late * late, sigma)
+    }
 }
 
 /// The point of the desired trajectory nearest in space-time.
@@ -36,6 +51,19 @@ pub struct Nearest {
     pub distance: f64,
     /// Index of the leg.
     pub leg: usize,
+}
+
+impl Nearest {
+    /// Takes what a leg offers, `(error, metres along it)`, where that is nearer, or as near on an earlier leg.
+    fn offer(&mut self, index: usize, leg: &DesiredLeg, (error, along): (f64, f64)) {
+        if error < self.error || error == self.error && index < self.leg {
+            *self = Self {
+                error,
+                distance: leg.start_distance + along,
+                leg: index,
+            };
+        }
+    }
 }
 
 /// Where own ship is meant to be, and when: starts at t = 0 at the first waypoint.
@@ -115,29 +143,30 @@ impl DesiredTrajectory {
     }
 
     /// The nearest point in space-time: `min over sigma of |x - x_d(sigma)|² + q (t - t_d(sigma))²`,
-    /// formulas section 7, in closed form per leg. `q` in m²/s². Of equal legs the earlier. O(legs).
+    /// formulas section 7, in closed form per leg. `q` in m²/s². Of equal legs the earlier. Looks from the leg of that
+    /// time on at later and earlier ones, until they are too far off in time alone: O(legs) at worst, and for `q = 0`.
     pub fn nearest(&self, position: Vector, time: f64, q: f64) -> Nearest {
+        let begun = self.legs.partition_point(|l| l.start_time <= time);
+        let now = begun.saturating_sub(1);
         let mut best = Nearest {
             error: f64::INFINITY,
             distance: 0.0,
             leg: 0,
         };
-        for (index, leg) in self.legs.iter().enumerate() {
-            let offset = position - leg.start;
-            let (along, across) = (leg.direction.dot(&offset), cross(leg.direction, offset));
-            let elapsed = time - leg.start_time;
-            let slowness = 1.0 / leg.speed;
-            let sigma = ((along + q * elapsed * slowness) / (1.0 + q * slowness * slowness))
-                .clamp(0.0, leg.length);
-            let (behind, late) = (along - sigma, elapsed - sigma * slowness);
-            let error = across * across + behind * behind + q * late * late;
-            if error < best.error {
-                best = Nearest {
-                    error,
-                    distance: leg.start_distance + sigma,
-                    leg: index,
-                };
+        let too_far = |seconds: f64, best: &Nearest| {
+            seconds > 0.0 && q * seconds * seconds > best.error * (1.0 + ROUNDING)
+        };
+        for (index, leg) in self.legs.iter().enumerate().skip(now) {
+            if too_far(leg.start_time - time, &best) {
+                break;
             }
+            best.offer(index, leg, leg.nearest(position, time, q));
+        }
+        for (index, leg) in self.legs[..now].iter().enumerate().rev() {
+            if too_far(time - leg.end_time(), &best) {
+                break;
+            }
+            best.offer(index, leg, leg.nearest(position, time, q));
         }
         best
     }
@@ -170,6 +199,32 @@ mod tests {
                 found <= scan + 1e-9 && scan - found < 1e-2 * (1.0 + scan.sqrt()),
                 "{found} {scan}"
             );
+        }
+    }
+
+    /// Looking from the time's own leg on finds what a look at every leg finds, the earlier of two that are as near too.
+    #[test]
+    fn no_leg_that_is_left_out_is_nearer() {
+        // to and fro on one line, so that legs tie
+        let points: Vec<Vector> = (0..40)
+            .map(|i| Vector::new(f64::from(i % 4 * 100), f64::from(i / 8 * 30)))
+            .collect();
+        let speeds: Vec<f64> = (0..39).map(|i| 1.0 + f64::from(i % 3)).collect();
+        let desired = DesiredTrajectory::new(&points, &speeds).expect("valid");
+        for (i, q) in (0..4000).zip([0.0, 0.01, 1.0, 25.0, 1e6].into_iter().cycle()) {
+            let k = f64::from(i);
+            let x = Vector::new((300.0 * (k * 0.7).sin()).round(), 150.0 * (k * 1.3).cos());
+            let t = desired.duration() * (0.5 + 0.7 * (k * 0.37).sin());
+            let found = desired.nearest(x, t, q);
+            let mut all = Nearest {
+                error: f64::INFINITY,
+                distance: 0.0,
+                leg: 0,
+            };
+            for (index, leg) in desired.legs().iter().enumerate() {
+                all.offer(index, leg, leg.nearest(x, t, q));
+            }
+            assert_eq!(found, all, "{x:?} {t} {q}");
         }
     }
 

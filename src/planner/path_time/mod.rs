@@ -106,7 +106,7 @@ pub fn plan(problem: &Problem) -> Planned {
                 timed_out = true;
                 break None;
             }
-            Stop::Budget => {}
+            Stop::Budget | Stop::Time => {}
         }
     };
     let counts = search.counts();

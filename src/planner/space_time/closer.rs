@@ -235,6 +235,7 @@ mod tests {
 
     use crate::obstacle::Coast;
     use crate::pipeline;
+    use crate::planner::clock::Clock;
     use crate::planner::cost::space_time_error;
     use crate::planner::space_time::graph::Graph;
     use crate::planner::space_time::hazard::Hazard;
@@ -274,7 +275,13 @@ mod tests {
         route.follow(0.0, 0.0, &mut undisturbed);
         let parts = parts(problem.obstacles, problem.horizon);
         let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
-        let mut graph = Graph::new(problem, &hazards, &route, &undisturbed);
+        let mut graph = Graph::new(
+            problem,
+            &hazards,
+            &route,
+            &undisturbed,
+            Clock::new(Duration::MAX),
+        );
         let mut search = Search::new(graph.root());
         let mut joints: Vec<(State, f64)> = Vec::new();
         for _ in 0..20 {

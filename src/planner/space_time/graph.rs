@@ -19,6 +19,7 @@ use super::template::Ending;
 use crate::frame::{Side, heading_of};
 use crate::geometry::outer_simplified;
 use crate::obstacle::{PolytopeObstacle, along_path};
+use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::planner::{NodeKind, Problem, SearchKind};
 use crate::search::Space;
@@ -60,15 +61,17 @@ pub(crate) struct Graph<'a> {
     contacts: Vec<f64>,
     aims: Vec<Aims>,
     heuristic: Option<Heuristic<'a>>,
+    clock: Clock,
 }
 
 impl<'a> Graph<'a> {
-    /// `undisturbed` is the route followed from t = 0.
+    /// `undisturbed` is the route followed from t = 0. Makes nothing more once the clock is up.
     pub(crate) fn new(
         problem: &'a Problem<'a>,
         hazards: &'a [Hazard<'a>],
         route: &'a Route,
         undisturbed: &'a [Segment],
+        clock: Clock,
     ) -> Self {
         let first = |h: &Hazard| undisturbed.iter().find_map(|s| h.first_contact(s));
         let mut contacts: Vec<f64> = by_obstacle(hazards)
@@ -118,6 +121,7 @@ impl<'a> Graph<'a> {
             contacts,
             aims,
             heuristic,
+            clock,
         }
     }
 
@@ -138,7 +142,8 @@ impl<'a> Graph<'a> {
         let (pose, time) = motion
             .last()
             .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
-        if time > self.problem.horizon {
+        // one node may have thousands of successors
+        if time > self.problem.horizon || self.clock.is_up() {
             return;
         }
         let cost = motion
@@ -210,6 +215,9 @@ impl<'a> Graph<'a> {
             })
             .flat_map(|h| desired.legs().iter().enumerate().map(move |l| (h, l)))
         {
+            if self.clock.is_up() {
+                return;
+            }
             let Some(stretch) = self.route.stretch(index, desired) else {
                 continue;
             };
@@ -300,6 +308,9 @@ impl<'a> Graph<'a> {
             let (clock, until) = aims.window();
             if time > clock + until {
                 continue;
+            }
+            if self.clock.is_up() {
+                return;
             }
             let by_its_clock;
             let chases = if clock == 0.0 {
@@ -449,5 +460,9 @@ impl Space for Graph<'_> {
         });
         state.met.set(met);
         met.is_none()
+    }
+
+    fn is_out_of_time(&self) -> bool {
+        self.clock.is_up()
     }
 }

@@ -36,8 +36,7 @@ mod selection;
 mod tail;
 mod template;
 
-use std::time::Instant;
-
+use super::clock::Clock;
 use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
 use crate::frame::Vector;
 use crate::obstacle::{LAND, SpaceTimeObstacle};
@@ -98,8 +97,7 @@ fn already_there(problem: &Problem) -> Planned {
 }
 
 fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
-    let started = Instant::now();
-    let out_of_time = || started.elapsed() >= problem.deadline;
+    let clock = Clock::new(problem.deadline);
     let refuse = |reason| Planned {
         outcome: Outcome::Infeasible(reason),
         stats: SearchStats::default(),
@@ -142,7 +140,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
             horizon: problem.horizon,
         });
     }
-    let mut graph = Graph::new(problem, hazards, &route, &undisturbed);
+    let mut graph = Graph::new(problem, hazards, &route, &undisturbed, clock);
     let mut search = Search::new(graph.root());
     let blocks = ashore::hazards(problem);
     let scene = Scene {
@@ -157,9 +155,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
     let mut timed_out = false;
     let mut optimum = None;
     while selection.signatures() < MAX_SIGNATURES {
-        // a slice at a time, so that the deadline is seen
-        let slice = (search.counts().expanded + 50).min(budget);
-        match search.next_goal(&mut graph, slice) {
+        match search.next_goal(&mut graph, budget) {
             Stop::Goal(goal) => {
                 optimum.get_or_insert(search.counts());
                 let way = node::way_to(&search, goal);
@@ -169,13 +165,11 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
                 }
                 budget = budget.min(search.counts().expanded + FURTHER_EXPANDED);
             }
-            Stop::Exhausted => break,
-            Stop::Budget if search.counts().expanded >= budget => break,
-            Stop::Budget => {}
-        }
-        if out_of_time() {
-            timed_out = true;
-            break;
+            Stop::Exhausted | Stop::Budget => break,
+            Stop::Time => {
+                timed_out = true;
+                break;
+            }
         }
     }
     let contact = first_contact(hazards, &undisturbed);
@@ -187,7 +181,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
             .collect();
         conflicts.extend(ashore::conflicts(problem.coast, &undisturbed));
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
-        timed_out |= selection.refine(&conflicts, &out_of_time);
+        timed_out |= selection.refine(&conflicts, clock);
     }
     let counts = optimum.unwrap_or(search.counts());
     let stats = SearchStats {

@@ -9,6 +9,7 @@ use super::node::State;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
 use super::seeds::{Canonical, Conflict, ahead, from_graph, waiting};
 use crate::frame::{Side, cross};
+use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
 
@@ -194,11 +195,7 @@ impl<'a> Selection<'a> {
     }
 
     /// Refines the graph's plans and the canonical ones; true when the time ran out.
-    pub(crate) fn refine(
-        &mut self,
-        conflicts: &[Conflict],
-        out_of_time: &dyn Fn() -> bool,
-    ) -> bool {
+    pub(crate) fn refine(&mut self, conflicts: &[Conflict], clock: Clock) -> bool {
         let mut scene = self.scene;
         scene.chord = COARSE_CHORD_RAD;
         let (problem, route) = (scene.problem, scene.route);
@@ -232,6 +229,7 @@ impl<'a> Selection<'a> {
         }
         let mut running: Vec<Refinement> = seeds
             .into_iter()
+            .take_while(|_| !clock.is_up())
             .filter_map(|s| Refinement::fitting(&scene, s))
             .collect();
         for round in 0..MAX_STEPS {
@@ -244,11 +242,13 @@ impl<'a> Selection<'a> {
             if round == FINE_FROM {
                 scene.chord = FINE_CHORD_RAD;
                 for refinement in running.iter_mut().filter(|r| !r.is_overtaken()) {
-                    refinement.look_again(&scene);
+                    if !clock.is_up() {
+                        refinement.look_again(&scene);
+                    }
                 }
             }
             for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
-                if out_of_time() {
+                if clock.is_up() {
                     self.collect(ranked(&running));
                     return true;
                 }
@@ -256,19 +256,24 @@ impl<'a> Selection<'a> {
             }
         }
         for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
-            refinement.settle(&scene);
+            if !clock.is_up() {
+                refinement.settle(&scene);
+            }
         }
-        let tidy = self.polish(&mut running);
+        let tidy = self.polish(&mut running, clock);
         self.collect(tidy.iter().chain(ranked(&running)));
-        false
+        clock.is_up()
     }
 
     /// Adds what the best of all lacks, and refines it anew; in the end without scraps, where that costs next to nothing.
-    fn polish(&self, running: &mut Vec<Refinement>) -> Option<Refinement> {
+    fn polish(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
         let mut best = best_of(running)?.best();
         for uncut in UNCUT_M {
+            if clock.is_up() {
+                return None;
+            }
             let seed = best.as_ref().and_then(|s| enriched(&self.scene, s, uncut));
-            let Some(again) = seed.and_then(|s| self.refined(s, STEPS_ENRICHED)) else {
+            let Some(again) = seed.and_then(|s| self.refined(s, STEPS_ENRICHED, clock)) else {
                 break;
             };
             let gained = 1.0 - again.rank() / best_of(running)?.rank();
@@ -281,15 +286,15 @@ impl<'a> Selection<'a> {
         }
         let least = best_of(running)?.rank();
         let seed = best.and_then(|s| tidied(&self.scene, &s));
-        let tidy = seed.and_then(|s| self.refined(s, STEPS_TIDY))?;
+        let tidy = seed.and_then(|s| self.refined(s, STEPS_TIDY, clock))?;
         (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
     }
 
-    /// A refinement from beginning to end, of so many steps at most.
-    fn refined(&self, seed: Seed, most: usize) -> Option<Refinement> {
+    /// A refinement from beginning to end, of so many steps at most, and fewer where the time is up.
+    fn refined(&self, seed: Seed, most: usize, clock: Clock) -> Option<Refinement> {
         let mut refinement = Refinement::fitting(&self.scene, seed)?;
         for _ in 0..most {
-            if refinement.is_finished() {
+            if refinement.is_finished() || clock.is_up() {
                 return Some(refinement);
             }
             refinement.step(&self.scene);
