@@ -2,6 +2,7 @@
 
 use super::TrajectoryError;
 use crate::frame::{Vector, cross};
+use crate::tolerance;
 
 /// Relative: more than the rounding of a squared distance.
 const ROUNDING: f64 = 1e-12;
@@ -27,6 +28,11 @@ impl DesiredLeg {
     /// Seconds at which the leg is to be finished.
     pub fn end_time(&self) -> f64 {
         self.start_time + self.length / self.speed
+    }
+
+    /// Second end, metres.
+    fn end(&self) -> Vector {
+        self.start + self.direction * self.length
     }
 
     /// The squared space-time distance, m², and the metres along the leg of the nearest point.
@@ -128,8 +134,7 @@ impl DesiredTrajectory {
 
     /// The last waypoint.
     pub fn end(&self) -> Vector {
-        let last = &self.legs[self.legs.len() - 1];
-        last.start + last.direction * last.length
+        self.legs[self.legs.len() - 1].end()
     }
 
     /// Desired position at `time`, standing at the ends before and after.
@@ -140,6 +145,38 @@ impl DesiredTrajectory {
             .min(self.legs.len() - 1);
         let leg = &self.legs[index];
         leg.start + leg.direction * ((time - leg.start_time) * leg.speed).clamp(0.0, leg.length)
+    }
+
+    /// The same motion with fewer legs: waypoints within [`tolerance::LENGTH_M`] of the line from one that is kept to the
+    /// next, met in order and at one speed, are left out. O(legs²) at worst.
+    pub fn straightened(&self) -> Self {
+        let mut waypoints = vec![self.legs[0].start];
+        let mut speeds = Vec::new();
+        let mut first = 0;
+        while first < self.legs.len() {
+            let mut last = first;
+            while self.is_one_leg(first, last + 1) {
+                last += 1;
+            }
+            waypoints.push(self.legs.get(last + 1).map_or(self.end(), |l| l.start));
+            speeds.push(self.legs[first].speed);
+            first = last + 1;
+        }
+        Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
+    }
+
+    /// True when the legs from `first` to `last` are one.
+    fn is_one_leg(&self, first: usize, last: usize) -> bool {
+        let Some(legs) = self.legs.get(first..=last) else {
+            return false;
+        };
+        let start = legs[0].start;
+        let chord = (legs[legs.len() - 1].end() - start).normalize();
+        legs.iter().all(|leg| {
+            leg.speed == legs[0].speed
+                && leg.direction.dot(&chord) > 0.0
+                && cross(chord, leg.start - start).abs() <= tolerance::LENGTH_M
+        })
     }
 
     /// The nearest point in space-time: `min over sigma of |x - x_d(sigma)|² + q (t - t_d(sigma))²`,
@@ -226,6 +263,40 @@ mod tests {
             }
             assert_eq!(found, all, "{x:?} {t} {q}");
         }
+    }
+
+    #[test]
+    fn waypoints_on_a_line_are_left_out_and_others_are_not() {
+        let points = |points: &[(f64, f64)]| -> Vec<Vector> {
+            points.iter().map(|&(x, y)| Vector::new(x, y)).collect()
+        };
+        let legs = |at: &[(f64, f64)], speeds: &[f64]| {
+            let desired = DesiredTrajectory::new(&points(at), speeds).expect("valid");
+            let straight = desired.straightened();
+            assert_eq!(straight.end(), desired.end());
+            assert!((straight.duration() - desired.duration()).abs() < 1e-9);
+            for i in 0..=100 {
+                let time = desired.duration() * f64::from(i) / 100.0;
+                let apart = straight.position_at(time) - desired.position_at(time);
+                assert!(apart.norm() < 1e-8, "{time} {apart:?}");
+            }
+            straight.legs().len()
+        };
+        let slanted: Vec<(f64, f64)> = (0..100)
+            .map(|i| (0.3 * f64::from(i) + 17.0, 0.7 * f64::from(i)))
+            .collect();
+        assert_eq!(legs(&slanted, &[4.0; 99]), 1);
+        let line = [(0.0, 0.0), (100.0, 0.0), (250.0, 0.0), (400.0, 0.0)];
+        assert_eq!(legs(&line, &[5.0, 5.0, 5.0]), 1);
+        assert_eq!(legs(&line, &[5.0, 4.0, 4.0]), 2);
+        // there and back, a bend of a micrometre, and a bend after a line
+        assert_eq!(legs(&[(0.0, 0.0), (100.0, 0.0), (50.0, 0.0)], &[5.0; 2]), 2);
+        assert_eq!(
+            legs(&[(0.0, 0.0), (100.0, 1e-6), (200.0, 0.0)], &[5.0; 2]),
+            2
+        );
+        let bent = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 5.0), (2.0, 9.0)];
+        assert_eq!(legs(&bent, &[5.0; 4]), 2);
     }
 
     #[test]

@@ -67,8 +67,13 @@ const FURTHER_EXPANDED: usize = 4;
 /// The plan is clear of every obstacle to rounding (deeper than 1e-7 m nowhere), keeps the turning
 /// radius, sails only at the given speeds, and ends at the last waypoint before the horizon. It is the
 /// cheapest of the candidates, not proven the cheapest of all: see the docs on its quality. The same
-/// problem gives the same plan unless the deadline strikes.
+/// problem gives the same plan unless the deadline strikes. Waypoints on a line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
+    let desired = problem.desired.straightened();
+    let problem = &Problem {
+        desired: &desired,
+        ..*problem
+    };
     let parts = parts(problem.obstacles, problem.horizon);
     let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
     plan_clear_of(problem, &hazards)
