@@ -10,7 +10,7 @@ use super::status::Status;
 /// One line for each good file, every fault of the others.
 pub fn check(args: &CheckArgs, output: &Output) -> Status {
     let mut status = Status::Good;
-    for found in files::find(&args.paths) {
+    for found in files::find(&args.paths, output) {
         let failed = match found {
             Ok(found) => match Scenario::read(&found.file) {
                 Ok(_) => {

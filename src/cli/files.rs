@@ -1,9 +1,12 @@
 //! Which scenario files the paths of a command mean, and what their outputs are called.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+
+use super::output::Output;
 
 /// A scenario file that was asked for.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,8 +19,26 @@ pub struct Found {
 }
 
 /// The scenario files that `paths` mean, in the order of the arguments and sorted within each
-/// folder; for a path that cannot be searched, the reason.
-pub fn find(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+/// folder; for a path that cannot be searched, the reason. A file that several of them mean is taken once, and
+/// that is said.
+pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+    let mut known = BTreeSet::new();
+    let mut all = Vec::new();
+    for found in meant(paths) {
+        // what cannot be found is reported when it is read
+        let place = found.as_ref().ok().and_then(|f| f.file.canonicalize().ok());
+        let again = place.is_some_and(|place| !known.insert(place));
+        if let (Ok(found), true) = (&found, again) {
+            let file = found.file.display();
+            output.note(&format_args!("{file}: given more than once, taken once"));
+        } else {
+            all.push(found);
+        }
+    }
+    all
+}
+
+fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {

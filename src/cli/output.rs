@@ -57,6 +57,11 @@ impl Output {
         let _ = writeln!(std::io::stderr(), "error: {error}");
     }
 
+    /// Says what may not have been expected.
+    pub fn note(&self, note: &impl Display) {
+        let _ = writeln!(std::io::stderr(), "note: {note}");
+    }
+
     /// A bar on standard error; hidden when that is no terminal.
     pub fn progress(&self, steps: usize) -> ProgressBar {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());

@@ -20,7 +20,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
         ));
         return Status::BadInput;
     }
-    let found: Vec<_> = files::find(std::slice::from_ref(file))
+    let found: Vec<_> = files::find(std::slice::from_ref(file), output)
         .into_iter()
         .flatten()
         .collect();

@@ -37,7 +37,8 @@ enum Place {
 }
 
 impl Products {
-    /// Makes the folders, before anything is planned. A path means a file when it ends as such files do and is no folder.
+    /// Makes the folders, before anything is planned. A path means a file when it ends as such files do and is no folder;
+    /// one with another ending is no new folder, unless it says so with a slash.
     pub fn prepare(found: &[Found], wanted: Wanted) -> anyhow::Result<Self> {
         let Wanted {
             recordings,
@@ -55,14 +56,18 @@ impl Products {
         }
         let is_recording = |path: &Path| path.extension().is_some_and(|e| e == "rrd");
         let is_figure = |path: &Path| FigureFormat::of(path).is_some();
+        if let Some(path) = recordings.filter(|path| !is_recording(path) && is_another_file(path)) {
+            let path = path.display();
+            bail!("--rrd: {path}: a recording ends in .rrd, a folder that is to be made in '/'");
+        }
+        if let Some(path) = plans.filter(|path| is_another_file(path)) {
+            let path = path.display();
+            bail!("--plans: {path}: a folder; one with an ending that is to be made ends in '/'");
+        }
         let recordings = recordings
             .map(|path| Place::prepare("--rrd", path, is_recording(path), found.len()))
             .transpose()?;
-        if let Some(path) = figures
-            && !is_figure(path)
-            && path.extension().is_some()
-            && !path.is_dir()
-        {
+        if let Some(path) = figures.filter(|path| !is_figure(path) && is_another_file(path)) {
             let file = path.to_owned();
             bail!("--figure: {}", FigureError::Format { file });
         }
@@ -134,6 +139,12 @@ impl Place {
             Self::Folder(folder) => folder.join(format!("{stem}.{ending}")),
         }
     }
+}
+
+/// A name with an ending that is no folder, nor asks for one with a slash.
+fn is_another_file(path: &Path) -> bool {
+    let asks = path.to_string_lossy().ends_with(std::path::is_separator);
+    path.extension().is_some() && !path.is_dir() && !asks
 }
 
 fn make(folder: &Path) -> anyhow::Result<()> {

@@ -49,7 +49,7 @@ impl Tally {
 
 /// Runs every scenario below the paths, one after another, so that each is timed alone.
 pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
-    let all = files::find(&args.paths);
+    let all = files::find(&args.paths, output);
     let found: Vec<Found> = all.iter().flatten().cloned().collect();
     let wanted = Wanted {
         plans: args.plans.as_deref(),

@@ -232,6 +232,11 @@ pub enum NoPlan {
         /// Seconds.
         time: f64,
     },
+    /// No candidate came of the search at all, though the undisturbed motion meets no set.
+    #[error(
+        "no trajectory of the graph or its refinement arrives clear of every set, though the desired trajectory meets none: the numbers leave no digits for it"
+    )]
+    NoTrajectory,
     /// No start of the optimal-control planner led out of every set.
     #[error(
         "of {starts} starts none leads to a plan clear of every set; the least deep of those solved is {depth:.3} m inside the set of '{target}' at {time:.1} s"
@@ -285,7 +290,8 @@ impl NoPlan {
             | Self::OffPath { .. }
             | Self::NoNetwork(_)
             | Self::Coarse { .. }
-            | Self::NoRoute => false,
+            | Self::NoRoute
+            | Self::NoTrajectory => false,
         }
     }
 }

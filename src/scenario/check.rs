@@ -1,5 +1,6 @@
 //! File → [`Scenario`], noting every fault.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use toml::de::DeTable;
@@ -14,6 +15,10 @@ use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip, VesselKind};
+
+/// What the reader of TOML says of brackets within too many brackets, and of those without an end.
+const TOO_DEEP: &str = "max recursion depth";
+const UNCLOSED: &str = "unclosed";
 
 /// Own ship's speeds where the file names none, as fractions of her own speed.
 const DEFAULT_SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
@@ -374,9 +379,17 @@ pub(super) fn text(source: &Source, text: &str, folder: &Path) -> Option<Scenari
         return Some(scenario);
     }
     // what could be recovered may be in the wrong table: only the grammar is judged
+    let mut said = BTreeSet::new();
+    let mut too_deep = false;
     for error in errors {
-        let offset = error.span().map(|span| span.start);
-        source.fault("", offset, error.message(), "TOML 1.0 without errors");
+        let (message, offset) = (error.message(), error.span().map(|span| span.start));
+        // of a value that is nested too deep the rest is not read, so nothing of it is closed
+        let follows = too_deep && message.starts_with(UNCLOSED);
+        // brackets within brackets are all unclosed at one place
+        if !follows && said.insert((offset, message.to_owned())) {
+            source.fault("", offset, message, "TOML 1.0 without errors");
+        }
+        too_deep |= message.contains(TOO_DEEP);
     }
     None
 }

@@ -63,14 +63,10 @@ pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
     let ccc = |cosine: f64| {
         (cosine.abs() <= 1.0 + ROUNDING).then(|| TAU - cosine.clamp(-1.0, 1.0).acos())
     };
-    let lsl = csc(2.0 + d * d - 2.0 * c + 2.0 * d * (sin_a - sin_b)).map(|p| {
-        let k = (cos_b - cos_a).atan2(d + sin_a - sin_b);
-        [k - a, p, b - k]
-    });
-    let rsr = csc(2.0 + d * d - 2.0 * c + 2.0 * d * (sin_b - sin_a)).map(|p| {
-        let k = (cos_a - cos_b).atan2(d - sin_a + sin_b);
-        [a - k, p, k - b]
-    });
+    // from centre to centre of the two circles: loses no digits where the way is short beside them
+    let same = |x: f64, y: f64| x.hypot(y).is_finite().then(|| (x.hypot(y), y.atan2(x)));
+    let lsl = same(d + (sin_a - sin_b), cos_b - cos_a).map(|(p, k)| [k - a, p, b - k]);
+    let rsr = same(d - (sin_a - sin_b), cos_a - cos_b).map(|(p, k)| [a - k, p, k - b]);
     let lsr = csc(-2.0 + d * d + 2.0 * c + 2.0 * d * (sin_a + sin_b)).map(|p| {
         let k = (-cos_a - cos_b).atan2(d + sin_a + sin_b) - (-2.0_f64).atan2(p);
         [k - a, p, k - b]
@@ -175,6 +171,18 @@ mod tests {
                 .expect("finite")
                 .length();
             assert!((best - reversed).abs() < 1e-6, "{best} {reversed}");
+        }
+    }
+
+    /// A way that is short beside the turning circle loses no digits.
+    #[test]
+    fn short_ways_of_wide_turns_reach_their_goal() {
+        let at = |x: f64, y: f64, h: f64| Pose::new(Vector::new(x, y), h);
+        for (length, radius) in [(1.0, 1e6), (1e-3, 1e6), (50.0, 1e6), (0.01, 100.0)] {
+            let (from, to) = (at(0.0, 0.0, 0.0), at(length, 0.0, 0.0));
+            let path = shortest(&from, &to, radius).expect("finite");
+            let missed = (end(from, &path, radius).position - to.position).norm();
+            assert!(missed < 1e-9, "{length} {radius}: {missed}");
         }
     }
 

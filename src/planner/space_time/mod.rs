@@ -229,6 +229,8 @@ fn no_candidate(
         .into_iter()
         .chain(land)
         .min_by(|a, b| a.1.total_cmp(&b.1));
-    let (target, time) = first.unwrap_or_default();
-    NoPlan::NoCandidate { target, time }
+    first.map_or(NoPlan::NoTrajectory, |(target, time)| NoPlan::NoCandidate {
+        target,
+        time,
+    })
 }

@@ -1,0 +1,199 @@
+//! What once went wrong with files and options that nobody means, run as a user runs it. Each test is named after what
+//! holds now.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::{contains, is_empty};
+use serde_json::Value;
+
+const HEAD_ON: &str = include_str!("../scenarios/colregs/head-on.toml");
+
+fn searoom(args: &[&str]) -> Assert {
+    Command::new(env!("CARGO_BIN_EXE_searoom"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(args)
+        .assert()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a path that is text")
+}
+
+fn write(folder: &Path, name: &str, contents: &str) -> String {
+    let file = folder.join(name);
+    fs::write(&file, contents).expect("written");
+    text(&file).to_owned()
+}
+
+fn stderr(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).expect("text")
+}
+
+fn document(assert: &Assert) -> Value {
+    serde_json::from_slice(&assert.get_output().stdout).expect("one JSON document")
+}
+
+/// Head-on with its route cut into so many legs of one line.
+fn in_legs(count: u32) -> String {
+    let east = |i: u32| 1500.0 * f64::from(i) / f64::from(count);
+    let places: Vec<String> = (0..=count)
+        .map(|i| format!("{{ east_m = {:?}, north_m = 0.0 }}", east(i)))
+        .collect();
+    let line = HEAD_ON
+        .lines()
+        .find(|l| l.starts_with("waypoints"))
+        .expect("a route");
+    HEAD_ON.replace(line, &format!("waypoints = [{}]", places.join(", ")))
+}
+
+#[test]
+fn waypoints_on_a_line_change_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut costs = Vec::new();
+    for count in [1, 2, 99] {
+        let file = write(folder.path(), "legs.toml", &in_legs(count));
+        let plan = document(&searoom(&["plan", &file, "--json"]).success());
+        assert_eq!(
+            plan["mission"]["waypoints"].as_array().map(Vec::len),
+            Some(count as usize + 1),
+            "the document has the route as it was given"
+        );
+        let cost = &plan["cost"];
+        let number = |key: &str| cost[key].as_f64().expect("a number");
+        costs.push((number("objective"), number("space_time_error_m2")));
+    }
+    for (found, judged) in &costs {
+        assert!((found - costs[0].0).abs() < 1e-6, "{costs:?}");
+        assert!((judged - costs[0].0).abs() < 1e-6, "{costs:?}");
+    }
+}
+
+/// Sixty targets, a hundred waypoints: one node of the search alone took half a minute.
+#[test]
+fn a_deadline_is_kept_among_many_targets_and_waypoints() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut scenario = String::from(
+        "title = \"many\"\nhorizon_s = 6400.0\n[own_ship]\nposition = { east_m = 0.0, north_m = 0.0 }\ncourse_deg = 90.0\n\
+         speed_mps = 5.0\nlength_m = 30.0\nbeam_m = 8.0\nturning_radius_m = 100.0\n[planner]\ndeadline_s = 0.4\n",
+    );
+    let zigzag: Vec<String> = (0..100)
+        .map(|i| {
+            format!(
+                "{{ east_m = {}.0, north_m = {}.0 }}",
+                200 * i,
+                i * 37 % 80 - 40
+            )
+        })
+        .collect();
+    scenario += &format!("[mission]\nwaypoints = [{}]\n", zigzag.join(", "));
+    for k in 0..60 {
+        // across the route from either side, so that she would be met there
+        let (time, speed) = (f64::from(k) * 60.0 + 200.0, f64::from(k % 5) + 3.0);
+        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        scenario += &format!(
+            "[[targets]]\nname = \"{k}\"\nposition = {{ east_m = {:?}, north_m = {:?} }}\ncourse_deg = {:?}\nspeed_mps = {speed:?}\n\
+             length_m = 60.0\nbeam_m = 12.0\nspeed_spread_mps = 0.1\n",
+            5.0 * time,
+            side * speed * time,
+            90.0 + 90.0 * side,
+        );
+    }
+    let file = write(folder.path(), "many.toml", &scenario);
+    let plan = document(&searoom(&["plan", &file, "--json"]).code(1));
+    assert_eq!(plan["outcome"], "deadline");
+    let took = plan["timing"]["plan_s"].as_f64().expect("seconds");
+    // far more than is left over, for a machine with other things to do
+    assert!((0.4..1.2).contains(&took), "{took}");
+}
+
+#[test]
+fn brackets_within_brackets_are_one_fault() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for value in ["[".repeat(2000), "{a=".repeat(2000), "[".repeat(50)] {
+        let file = write(
+            folder.path(),
+            "deep.toml",
+            &format!("title = \"x\"\na = {value}\n"),
+        );
+        let said = stderr(&searoom(&["check", &file]).code(2));
+        assert!(said.contains("1 fault\n"), "{said}");
+    }
+    // what else is wrong is still said
+    let file = write(
+        folder.path(),
+        "two.toml",
+        &format!("= 1\na = {}\n", "[".repeat(200)),
+    );
+    let said = stderr(&searoom(&["check", &file]).code(2));
+    assert!(said.contains("2 faults\n"), "{said}");
+}
+
+#[test]
+fn a_file_that_is_given_twice_is_planned_once_and_that_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "one.toml", HEAD_ON);
+    let plans = folder.path().join("plans");
+    searoom(&[
+        "suite",
+        &file,
+        &file,
+        text(folder.path()),
+        "--plans",
+        text(&plans),
+    ])
+    .success()
+    .stdout(contains("1 scenario: 1 solved"))
+    .stderr(contains("one.toml: given more than once, taken once"));
+    searoom(&["check", &file, &file])
+        .success()
+        .stdout(predicates::str::diff(format!("{file}: ok\n")));
+}
+
+#[test]
+fn no_folder_is_made_of_the_name_of_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "one.toml", HEAD_ON);
+    let options: &[(&str, &str)] = if cfg!(feature = "recording") {
+        &[("--rrd", "foo.txt"), ("--rrd", "foo.svg")]
+    } else {
+        &[]
+    };
+    for (option, name) in options
+        .iter()
+        .chain(&[("--figure", "foo.txt"), ("--plans", "foo.json")])
+    {
+        let path = folder.path().join(name);
+        searoom(&["suite", &file, option, text(&path)])
+            .code(2)
+            .stdout(is_empty())
+            .stderr(contains(*name).and(contains(*option)));
+        assert!(!path.exists(), "{option}");
+    }
+    // a slash asks for it
+    let named = format!("{}/v1.2/", text(folder.path()));
+    searoom(&["suite", &file, "--plans", &named]).success();
+    assert!(folder.path().join("v1.2/one.json").is_file());
+}
+
+/// One metre of way, a turning radius of 1,000 km: the plan ended 0.04 mm short and failed its own verification.
+#[test]
+fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(
+        folder.path(),
+        "short.toml",
+        &HEAD_ON
+            .replace("turning_radius_m = 100.0", "turning_radius_m = 1e6")
+            .replace(
+                "{ east_m = 1500.0, north_m = 0.0 }]",
+                "{ east_m = 1.0, north_m = 0.0 }]",
+            ),
+    );
+    searoom(&["plan", &file])
+        .success()
+        .stdout(contains("verified"));
+}
