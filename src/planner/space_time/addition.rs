@@ -185,7 +185,7 @@ fn multipliers(scene: &Scene, base: &Seed) -> Option<Vec<f64>> {
     let model = scene.model(&base.template, &base.lengths)?;
     let programme = Programme {
         size: free,
-        hessian: &model.regular_hessian(free),
+        hessian: &model.hessian,
         gradient: &model.gradient,
         low: &base.lengths.map(|l| (-PRICING_RADIUS_M).max(-l)),
         high: &[PRICING_RADIUS_M; MAX_VARIABLES],
@@ -197,8 +197,8 @@ fn multipliers(scene: &Scene, base: &Seed) -> Option<Vec<f64>> {
 /// What a change before each slot costs per metre, as a linear form of its motor about `origin`.
 struct Prices {
     origin: Vector,
-    forms: [Motor; MAX_VARIABLES],
-    moments: [Moment; MAX_VARIABLES],
+    forms: Vec<Motor>,
+    moments: Vec<Moment>,
 }
 
 impl Prices {
@@ -217,7 +217,7 @@ impl Prices {
         if let Some(tail) = &full.tail {
             add_tail(&mut common, tail.by_distance, tail.by_time);
         }
-        let mut forms = moments.map(|m| m.pull());
+        let mut forms: Vec<Motor> = moments.iter().map(Moment::pull).collect();
         let mut of_solved = [0.0; 2];
         for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
             *price = full.gradient[free + k];

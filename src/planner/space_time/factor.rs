@@ -1,99 +1,143 @@
-//! The factors of a dual active-set method: `J = L^-T Q` and the triangle `R`, kept by plane rotations.
+//! The factors of a dual active-set method: `J = L^-T Q` and the triangle `R`.
 //!
-//! `J` is held by columns: every operation on it then runs along memory.
+//! `J` is held by columns: every operation on it then runs along memory. Sizes are multiples of [`LANES`], known when
+//! compiled, and what is beyond a programme's own variables is zero: no loop has a remainder.
 
-use super::quadratic::{MAX_VARIABLES, Matrix, Row};
+/// Sums that do not wait for each other.
+pub(crate) const LANES: usize = 4;
 
-/// The scalar product of the first `n` numbers, in four sums that do not wait for each other.
-pub(crate) fn dot(a: &Row, b: &Row, n: usize) -> f64 {
-    let (a, b) = (a[..n].chunks_exact(4), b[..n].chunks_exact(4));
-    let rest = a.remainder().iter().zip(b.remainder());
-    let rest: f64 = rest.map(|(x, y)| x * y).sum();
-    let mut sums = [0.0; 4];
-    for (x, y) in a.zip(b) {
+/// Numbers, one per variable and zero beyond.
+pub(crate) type Padded<const N: usize> = [f64; N];
+
+/// So many of them.
+pub(crate) type Square<const N: usize> = [[f64; N]; N];
+
+/// The scalar product.
+pub(crate) fn dot<const N: usize>(a: &Padded<N>, b: &Padded<N>) -> f64 {
+    let mut sums = [0.0; LANES];
+    for (x, y) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
         for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
             *sum += x * y;
         }
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// `to += factor * from`, of the first `n` numbers.
-pub(crate) fn add_scaled(to: &mut Row, factor: f64, from: &Row, n: usize) {
-    for (t, f) in to[..n].iter_mut().zip(&from[..n]) {
+/// `to += factor * from`.
+pub(crate) fn add_scaled<const N: usize>(to: &mut Padded<N>, factor: f64, from: &Padded<N>) {
+    for (t, f) in to.iter_mut().zip(from) {
         *t += factor * f;
     }
 }
 
-/// The columns of `L^-T` for `H = L L'`, which are the rows of `L^-1`.
-pub(crate) fn inverse_transposed_factor(h: &Matrix, n: usize) -> Option<Matrix> {
-    let mut l: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    let mut inverse: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    for i in 0..n {
-        for k in 0..i {
-            l[i][k] = (h[i][k] - dot(&l[i], &l[k], k)) / l[k][k];
-        }
-        let square = h[i][i] - dot(&l[i], &l[i], i);
+/// The columns of `L^-T` for `H = L L'`, which are the rows of `L^-1`; `n` of them.
+///
+/// Eliminates below each diagonal in turn, in the matrix and beside it: rows do not wait for each other.
+pub(crate) fn inverse_transposed_factor<const N: usize>(
+    h: &Square<N>,
+    n: usize,
+) -> Option<Square<N>> {
+    let mut rest = *h;
+    let mut inverse = [[0.0; N]; N];
+    for (i, row) in inverse.iter_mut().enumerate().take(n) {
+        row[i] = 1.0;
+    }
+    for k in 0..n {
+        let (above, below) = rest.split_at_mut(k + 1);
+        let (known, later) = inverse.split_at_mut(k + 1);
+        let (pivots, known) = (&above[k], &mut known[k]);
         // negated on purpose: a NaN is not positive
-        if !(square > 0.0) {
+        if !(pivots[k] > 0.0) {
             return None;
         }
-        l[i][i] = square.sqrt();
-        let scale = 1.0 / l[i][i];
-        let (above, below) = inverse.split_at_mut(i);
-        let row = &mut below[0];
-        for (k, known) in above.iter().enumerate() {
-            add_scaled(row, -l[i][k] * scale, known, k + 1);
+        let reciprocal = 1.0 / pivots[k];
+        let rows = below.iter_mut().zip(later).take(n - k - 1);
+        for (row, inverse) in rows {
+            let factor = -row[k] * reciprocal;
+            add_scaled(row, factor, pivots);
+            add_scaled(inverse, factor, known);
         }
-        row[i] = scale;
+        let scale = reciprocal.sqrt();
+        known.iter_mut().for_each(|v| *v *= scale);
     }
     Some(inverse)
 }
 
-/// Turns two columns in their plane: `(c, s)` times the first, `(-s, c)` times the second.
-fn turn(columns: &mut Matrix, first: usize, c: f64, s: f64, n: usize) {
-    let (above, below) = columns.split_at_mut(first + 1);
-    let pairs = above[first][..n].iter_mut().zip(&mut below[0][..n]);
-    for (a, b) in pairs {
-        (*a, *b) = (c * *a + s * *b, c * *b - s * *a);
+/// The triangle `R`, by columns, with the reciprocals of its diagonal.
+#[derive(Debug, Clone)]
+pub(crate) struct Triangle<const N: usize> {
+    columns: Square<N>,
+    reciprocals: Padded<N>,
+}
+
+impl<const N: usize> Triangle<N> {
+    pub(crate) fn new() -> Self {
+        Self {
+            columns: [[0.0; N]; N],
+            reciprocals: [0.0; N],
+        }
+    }
+
+    /// `R^-1` times the first `q` of `d`.
+    pub(crate) fn solve(&self, d: &Padded<N>, q: usize) -> Padded<N> {
+        let mut found = [0.0; N];
+        let mut rest = *d;
+        for i in (0..q).rev() {
+            found[i] = rest[i] * self.reciprocals[i];
+            add_scaled(&mut rest, -found[i], &self.columns[i]);
+        }
+        found
     }
 }
 
-/// Rotates `d` below `q` to zero and appends it to `R`.
-pub(crate) fn add(j: &mut Matrix, r: &mut Matrix, d: &mut Row, q: usize, n: usize) {
-    for k in (q + 1..n).rev() {
-        if d[k] == 0.0 {
-            continue;
-        }
-        let h = (d[k - 1] * d[k - 1] + d[k] * d[k]).sqrt();
-        let (c, s) = (d[k - 1] / h, d[k] / h);
-        (d[k - 1], d[k]) = (h, 0.0);
-        turn(j, k - 1, c, s, n);
+/// Appends a constraint with `d = J' normal` to `q` active ones: a reflection turns `d` from `q` on, of this length, into
+/// its first component. `z` is the sum of the columns from `q` on, each times its `d`.
+pub(crate) fn add<const N: usize>(
+    (j, r): (&mut Square<N>, &mut Triangle<N>),
+    (d, z, length): (&Padded<N>, &Padded<N>, f64),
+    q: usize,
+    n: usize,
+) {
+    // away from cancellation
+    let turned = length.copysign(d[q]);
+    let first = d[q] + turned;
+    let scale = 1.0 / (turned * first);
+    let mut along = *z;
+    add_scaled(&mut along, turned, &j[q]);
+    add_scaled(&mut j[q], -scale * first, &along);
+    for (column, d) in j.iter_mut().zip(d).take(n).skip(q + 1) {
+        add_scaled(column, -scale * d, &along);
     }
-    for i in 0..=q {
-        r[i][q] = d[i];
-    }
+    r.columns[q] = [0.0; N];
+    r.columns[q][..q].copy_from_slice(&d[..q]);
+    r.columns[q][q] = -turned;
+    r.reciprocals[q] = -1.0 / turned;
 }
 
 /// Drops active constraint `i` of `q`.
-pub(crate) fn remove(j: &mut Matrix, r: &mut Matrix, u: &mut [f64], i: usize, q: usize, n: usize) {
+pub(crate) fn remove<const N: usize>(
+    (j, r): (&mut Square<N>, &mut Triangle<N>),
+    u: &mut Padded<N>,
+    i: usize,
+    q: usize,
+) {
+    u.copy_within(i + 1..q, i);
+    r.columns.copy_within(i + 1..q, i);
     for k in i..q - 1 {
-        u[k] = u[k + 1];
-        for row in r.iter_mut().take(q) {
-            row[k] = row[k + 1];
-        }
-    }
-    for k in i..q - 1 {
-        let h = (r[k][k] * r[k][k] + r[k + 1][k] * r[k + 1][k]).sqrt();
+        let (a, b) = (r.columns[k][k], r.columns[k][k + 1]);
+        let h = (a * a + b * b).sqrt();
+        r.reciprocals[k] = 1.0 / h;
         if h == 0.0 {
             continue;
         }
-        let (c, s) = (r[k][k] / h, r[k + 1][k] / h);
-        let (above, below) = r.split_at_mut(k + 1);
-        let pair = above[k][k..q - 1].iter_mut().zip(&mut below[0][k..q - 1]);
-        for (a, b) in pair {
+        let (c, s) = (a / h, b / h);
+        for column in &mut r.columns[k..q - 1] {
+            let (a, b) = (column[k], column[k + 1]);
+            (column[k], column[k + 1]) = (c * a + s * b, c * b - s * a);
+        }
+        let (above, below) = j.split_at_mut(k + 1);
+        for (a, b) in above[k].iter_mut().zip(&mut below[0]) {
             (*a, *b) = (c * *a + s * *b, c * *b - s * *a);
         }
-        turn(j, k, c, s, n);
     }
 }

@@ -5,7 +5,7 @@ use super::approach::{Approach, NEAR_M, approaches};
 use super::ashore;
 use super::hazard::Hazard;
 use super::moments::{Moments, Residuals, reduce, reduce_matrix};
-use super::quadratic::{Constraint, MAX_VARIABLES, Matrix, Row};
+use super::quadratic::{Constraint, MAX_VARIABLES, Row};
 use super::route::Route;
 use super::sailed::{Owner, Place, Sailed};
 use super::tail::Tail;
@@ -44,7 +44,8 @@ pub(crate) struct Scene<'a> {
 pub(crate) struct Model {
     pub cost: f64,
     pub gradient: Row,
-    pub hessian: Matrix,
+    /// Positive definite, a row per variable.
+    pub hessian: Vec<Row>,
     /// Contact rows and the signs of the solved slots, linearised: `row . step >= bound`.
     pub rows: Vec<Constraint>,
     /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
@@ -54,20 +55,10 @@ pub(crate) struct Model {
     pub least_slack: f64,
 }
 
-/// Share of the cost per square metre that is added to the Hessian's diagonal: Gauss-Newton leaves directions flat.
+/// Share of the cost per square metre that is added to the Hessian's diagonal, and the least cost it is taken of, m²: Gauss-Newton leaves
+/// directions flat.
 const REGULARISATION: f64 = 1e-5;
-
-impl Model {
-    /// The Hessian of the first `size` variables made positive definite.
-    pub(crate) fn regular_hessian(&self, size: usize) -> Matrix {
-        let mut hessian = self.hessian;
-        let floor = REGULARISATION * self.cost.max(20.0);
-        for (i, row) in hessian.iter_mut().enumerate().take(size) {
-            row[i] += floor;
-        }
-        hessian
-    }
-}
+const LEAST_REGULARISED: f64 = 20.0;
 
 /// One manoeuvre, evaluated in all its slots, the solved ones included.
 #[derive(Debug)]
@@ -76,7 +67,7 @@ pub(crate) struct Full {
     pub cost: f64,
     pub gradient: Row,
     /// The lower triangle.
-    hessian: Matrix,
+    hessian: Vec<Row>,
     pub moments: Moments,
     pub approaches: Vec<Approach>,
     /// Where there is one.
@@ -118,7 +109,10 @@ impl Scene<'_> {
             });
         }
         let gradient = reduce(&full.gradient, solved, free);
-        let hessian = reduce_matrix(&full.hessian, solved, free);
+        let mut hessian = reduce_matrix(full.hessian, solved, free);
+        for (i, row) in hessian.iter_mut().enumerate() {
+            row[i] += REGULARISATION * full.cost.max(LEAST_REGULARISED);
+        }
         Some(Model {
             cost: full.cost,
             gradient,
@@ -135,8 +129,8 @@ impl Scene<'_> {
         let mut sums = Sums {
             cost: 0.0,
             gradient: [0.0; MAX_VARIABLES],
-            hessian: [[0.0; MAX_VARIABLES]; MAX_VARIABLES],
-            moments: Moments::new(),
+            hessian: vec![[0.0; MAX_VARIABLES]; template.all()],
+            moments: Moments::new(template.all()),
         };
         for leg in 0..sailed.tail {
             self.add_leg(&sailed, leg, &mut sums);
@@ -287,7 +281,7 @@ impl Scene<'_> {
 struct Sums {
     cost: f64,
     gradient: Row,
-    hessian: Matrix,
+    hessian: Vec<Row>,
     moments: Moments,
 }
 

@@ -6,7 +6,7 @@
 //! after a slot contribute is one symmetric 4 x 4 matrix, summed once from the end: no sum over the points
 //! per pair of slots.
 
-use super::quadratic::{MAX_VARIABLES, Matrix, Row};
+use super::quadratic::{MAX_VARIABLES, Row};
 
 /// Columns of the upper triangle of a symmetric 3 x 3 matrix: ee, en, et, nn, nt, tt.
 type Weight = [f64; 6];
@@ -114,15 +114,16 @@ struct Own {
 /// The sums of one manoeuvre.
 #[derive(Debug)]
 pub(crate) struct Moments {
-    slots: [Moment; MAX_VARIABLES],
-    own: [Own; MAX_VARIABLES],
+    slots: Vec<Moment>,
+    own: Vec<Own>,
 }
 
 impl Moments {
-    pub(crate) fn new() -> Self {
+    /// Of no points, for so many slots.
+    pub(crate) fn new(slots: usize) -> Self {
         Self {
-            slots: [Moment::default(); MAX_VARIABLES],
-            own: [Own::default(); MAX_VARIABLES],
+            slots: vec![Moment::default(); slots],
+            own: vec![Own::default(); slots],
         }
     }
 
@@ -164,7 +165,7 @@ impl Moments {
         rates: &[[f64; 3]],
         residuals: &Residuals,
         gradient: &mut Row,
-        lower: &mut Matrix,
+        lower: &mut [Row],
     ) {
         for (k, rate) in rates.iter().enumerate() {
             let weighed = residuals.weigh(*rate);
@@ -176,9 +177,9 @@ impl Moments {
     }
 
     /// For every slot, the sum over its own points and those of all later ones.
-    pub(crate) fn sums_from_each(&self) -> [Moment; MAX_VARIABLES] {
-        let mut sums = self.slots;
-        for i in (1..MAX_VARIABLES).rev() {
+    pub(crate) fn sums_from_each(&self) -> Vec<Moment> {
+        let mut sums = self.slots.clone();
+        for i in (1..sums.len()).rev() {
             let later = sums[i];
             sums[i - 1].add(&later);
         }
@@ -186,7 +187,7 @@ impl Moments {
     }
 
     /// Adds everything to the gradient and to the lower triangle of the Hessian.
-    pub(crate) fn finish(&self, motors: &[Motor], gradient: &mut Row, lower: &mut Matrix) {
+    pub(crate) fn finish(&self, motors: &[Motor], gradient: &mut Row, lower: &mut [Row]) {
         let mut later = Moment::default();
         for (j, motor) in motors.iter().enumerate().rev() {
             let own = &self.own[j];
@@ -217,21 +218,17 @@ pub(crate) fn reduce(row: &Row, solved: &[Row], free: usize) -> Row {
 }
 
 /// A lower triangle in all slots as a symmetric matrix in the free ones.
-pub(crate) fn reduce_matrix(lower: &Matrix, solved: &[Row], free: usize) -> Matrix {
-    let mut reduced: Matrix = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-    for (to, from) in reduced.iter_mut().zip(lower).take(free) {
-        to[..free].copy_from_slice(&from[..free]);
-    }
+pub(crate) fn reduce_matrix(mut lower: Vec<Row>, solved: &[Row], free: usize) -> Vec<Row> {
+    let dependent = lower.split_off(free);
     for (d, rates) in solved.iter().enumerate() {
-        let mut half = [0.0; MAX_VARIABLES];
-        half[..free].copy_from_slice(&lower[free + d][..free]);
+        let mut half = dependent[d];
         for (e, others) in solved.iter().enumerate() {
-            let shared = 0.5 * lower[free + d.max(e)][free + d.min(e)];
+            let shared = 0.5 * dependent[d.max(e)][free + d.min(e)];
             for (h, o) in half[..free].iter_mut().zip(others) {
                 *h += shared * o;
             }
         }
-        for (i, row) in reduced.iter_mut().enumerate().take(free) {
+        for (i, row) in lower.iter_mut().enumerate() {
             let (rate, mine) = (rates[i], half[i]);
             let pairs = half[..=i].iter().zip(&rates[..=i]);
             for (to, (h, r)) in row[..=i].iter_mut().zip(pairs) {
@@ -240,12 +237,12 @@ pub(crate) fn reduce_matrix(lower: &Matrix, solved: &[Row], free: usize) -> Matr
         }
     }
     for i in 1..free {
-        let (above, below) = reduced.split_at_mut(i);
+        let (above, below) = lower.split_at_mut(i);
         for (row, mirrored) in above.iter_mut().zip(&below[0]) {
             row[i] = *mirrored;
         }
     }
-    reduced
+    lower
 }
 
 #[cfg(test)]
@@ -261,10 +258,10 @@ mod tests {
         let motors: Vec<Motor> = (0..n)
             .map(|_| [(); 4].map(|()| rng.random_range(-1.0..1.0)))
             .collect();
-        let mut moments = Moments::new();
+        let mut moments = Moments::new(n);
         let (mut gradient, mut lower) =
-            ([0.0; MAX_VARIABLES], [[0.0; MAX_VARIABLES]; MAX_VARIABLES]);
-        let (mut slow_gradient, mut slow) = (gradient, lower);
+            ([0.0; MAX_VARIABLES], vec![[0.0; MAX_VARIABLES]; n]);
+        let (mut slow_gradient, mut slow) = (gradient, lower.clone());
         for _ in 0..60 {
             let slot = rng.random_range(0..n);
             let place = [(); 2].map(|()| rng.random_range(-3.0..3.0));
@@ -302,7 +299,7 @@ mod tests {
     fn a_reduced_matrix_is_the_product_with_the_rates() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(8);
         let (free, all) = (6, 8);
-        let mut lower = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+        let mut lower = vec![[0.0; MAX_VARIABLES]; all];
         for (i, row) in lower.iter_mut().enumerate().take(all) {
             row[..=i]
                 .iter_mut()
@@ -314,7 +311,7 @@ mod tests {
                 .iter_mut()
                 .for_each(|r| *r = rng.random_range(-1.0..1.0));
         }
-        let reduced = reduce_matrix(&lower, &solved, free);
+        let reduced = reduce_matrix(lower.clone(), &solved, free);
         let rate = |slot: usize, i: usize| {
             if slot < free {
                 f64::from(u8::from(slot == i))

@@ -2,7 +2,7 @@
 
 use super::approach::FINE_CHORD_RAD;
 use super::model::{Model, Scene};
-use super::quadratic::{MAX_VARIABLES, Matrix, Programme, Row};
+use super::quadratic::{MAX_VARIABLES, Programme, Row};
 use super::template::{Ending, Slot, Template};
 use crate::frame::Side;
 use crate::planner::AGAINST_THE_RULES;
@@ -85,8 +85,6 @@ pub(crate) struct Refinement {
     penalty: f64,
     /// Sum of the multipliers of the last step, m²/m.
     price: f64,
-    /// Slots that stayed empty in the last step.
-    still: [bool; MAX_VARIABLES],
     radius: f64,
     stalled: usize,
     raised: usize,
@@ -149,7 +147,6 @@ impl Refinement {
             best: None,
             penalty,
             price: penalty,
-            still: [false; MAX_VARIABLES],
             radius: FIRST_RADIUS_M,
             stalled: 0,
             raised: 0,
@@ -310,14 +307,13 @@ impl Refinement {
         scene: &Scene,
         trial: &Row,
         model: &Model,
-        hessian: &Matrix,
     ) -> Option<(Row, Model)> {
         if model.violation <= CLEAR_ENOUGH_M {
             return None;
         }
         let programme = Programme {
             size: self.template.free(),
-            hessian,
+            hessian: &self.model.hessian,
             gradient: &[0.0; MAX_VARIABLES],
             low: &trial.map(|l| (-self.radius).max(-l)),
             high: &[self.radius; MAX_VARIABLES],
@@ -343,7 +339,6 @@ impl Refinement {
                 high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
             }
         }
-        let hessian = self.model.regular_hessian(n);
         // a row that the box cannot meet asks for what it can: otherwise it would be left out
         let mut rows = self.model.rows.clone();
         for row in &mut rows {
@@ -354,13 +349,13 @@ impl Refinement {
         }
         let programme = Programme {
             size: n,
-            hessian: &hessian,
+            hessian: &self.model.hessian,
             gradient: &self.model.gradient,
             low: &low,
             high: &high,
             rows: &rows,
         };
-        let Some(solution) = programme.solve_from(&mut self.still) else {
+        let Some(solution) = programme.solve() else {
             return false;
         };
         self.price = solution.multipliers.iter().sum::<f64>();
@@ -369,7 +364,7 @@ impl Refinement {
         let largest = step[..n].iter().fold(0.0_f64, |m, s| m.max(s.abs()));
         let linear: f64 = (0..n).map(|i| step[i] * self.model.gradient[i]).sum();
         let bent: f64 = (0..n)
-            .map(|i| step[i] * (0..n).map(|k| hessian[i][k] * step[k]).sum::<f64>())
+            .map(|i| step[i] * (0..n).map(|k| self.model.hessian[i][k] * step[k]).sum::<f64>())
             .sum();
         let merit = self.merit();
         let mut share = 1.0;
@@ -386,7 +381,7 @@ impl Refinement {
             if share == 1.0
                 && let Some(model) = &found
                 && !enough(gain(model))
-                && let Some(corrected) = self.corrected(scene, &trial, model, &hessian)
+                && let Some(corrected) = self.corrected(scene, &trial, model)
                 && enough(gain(&corrected.1))
             {
                 trial = corrected.0;
