@@ -162,8 +162,28 @@ fn approaches_of<S: Shape>(
         if first == 0.0 && from.slack.value < SLIDING_M {
             joints.push(joint(shape, leg, &from));
         }
-        for k in 1..=count as usize {
-            let fraction = first + (last - first) * (k as f64 / count);
+        let closing = (segment.speed + hazard.speed()) * segment.duration * (last - first) / count;
+        let mut k = 0.0;
+        loop {
+            // what is far from near is so for as long as closing takes
+            let far = ((from.slack.value - NEAR_M) / closing).floor();
+            if far >= 1.0 {
+                local_minima((shape, hazard, sailed), &mut chords, &mut found);
+                k += far;
+                if k >= count {
+                    break;
+                }
+                let fraction = first + (last - first) * (k / count);
+                let (position, ahead) = l.along(fraction);
+                arm = to_starboard(ahead) * segment.radius();
+                from = sample(fraction, position);
+                continue;
+            }
+            if k >= count {
+                break;
+            }
+            k += 1.0;
+            let fraction = first + (last - first) * (k / count);
             let position = if segment.is_arc() {
                 let turned = arm * cos + to_port(arm) * sin;
                 let moved = turned - arm;

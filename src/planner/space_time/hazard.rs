@@ -73,6 +73,11 @@ impl<'a> Hazard<'a> {
         }
     }
 
+    /// An upper bound of how fast any of it moves, m/s.
+    pub(crate) fn speed(&self) -> f64 {
+        self.drift.norm() + self.growth
+    }
+
     /// Seconds: when the clock of the part starts.
     pub(crate) fn start(&self) -> f64 {
         self.window.map_or(0.0, |w| w.start)
