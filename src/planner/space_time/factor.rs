@@ -117,11 +117,9 @@ pub(crate) fn add<const N: usize>(
 /// Drops active constraint `i` of `q`.
 pub(crate) fn remove<const N: usize>(
     (j, r): (&mut Square<N>, &mut Triangle<N>),
-    u: &mut Padded<N>,
     i: usize,
     q: usize,
 ) {
-    u.copy_within(i + 1..q, i);
     r.columns.copy_within(i + 1..q, i);
     for k in i..q - 1 {
         let (a, b) = (r.columns[k][k], r.columns[k][k + 1]);

@@ -259,8 +259,7 @@ mod tests {
             .map(|_| [(); 4].map(|()| rng.random_range(-1.0..1.0)))
             .collect();
         let mut moments = Moments::new(n);
-        let (mut gradient, mut lower) =
-            ([0.0; MAX_VARIABLES], vec![[0.0; MAX_VARIABLES]; n]);
+        let (mut gradient, mut lower) = ([0.0; MAX_VARIABLES], vec![[0.0; MAX_VARIABLES]; n]);
         let (mut slow_gradient, mut slow) = (gradient, lower.clone());
         for _ in 0..60 {
             let slot = rng.random_range(0..n);

@@ -40,7 +40,10 @@ pub(crate) struct Solution {
 }
 
 /// Steps before giving up; a programme of this size needs about as many as it has constraints.
-const MAX_STEPS: usize = 400;
+const MAX_STEPS: usize = 1000;
+
+/// Rate below which a multiplier does not fall.
+const FALLING: f64 = 1e-14;
 
 /// Relative violation that is none.
 const SATISFIED: f64 = 1e-9;
@@ -122,17 +125,169 @@ struct Sized<const N: usize> {
     rows: Vec<Scaled<N>>,
 }
 
-impl<const N: usize> Sized<N> {
-    fn solve(mut self) -> Option<Solution> {
+/// Where the dual method is: `x` is the minimum over the active constraints as equations.
+#[derive(Clone)]
+struct Point<const N: usize> {
+    x: Padded<N>,
+    j: Square<N>,
+    r: Triangle<N>,
+    /// The first `count` are active, with their multipliers.
+    active: [Kind; N],
+    multipliers: Padded<N>,
+    count: usize,
+}
+
+/// How a constraint is taken in.
+enum Entered {
+    Active,
+    /// It contradicts those that are active.
+    Contradicts,
+    /// Too many steps, or a number that is not finite.
+    Stopped,
+}
+
+impl<const N: usize> Point<N> {
+    /// The minimum over nothing; `None` when the Hessian is not positive definite.
+    fn free(of: &Sized<N>) -> Option<Self> {
+        let j = inverse_transposed_factor(&of.hessian, of.size)?;
+        let mut x = [0.0; N];
+        for column in j.iter().take(of.size) {
+            add_scaled(&mut x, -dot(column, &of.gradient), column);
+        }
+        Some(Self {
+            x,
+            j,
+            r: Triangle::new(),
+            active: [Kind::Low(0); N],
+            multipliers: [0.0; N],
+            count: 0,
+        })
+    }
+
+    fn active(&self) -> &[Kind] {
+        &self.active[..self.count]
+    }
+
+    fn is_finite(&self) -> bool {
+        dot(&self.x, &self.x).is_finite()
+    }
+
+    /// How a constraint bears on the active ones.
+    fn bearing(&self, of: &Sized<N>, constraint: Kind) -> Bearing<N> {
+        let (n, q) = (of.size, self.count);
+        let mut d = [0.0; N];
+        for (d, column) in d.iter_mut().zip(&self.j).take(n) {
+            *d = match constraint {
+                Kind::Low(i) => column[i],
+                Kind::High(i) => -column[i],
+                Kind::Row(row) => dot(column, &of.rows[row].normal),
+            };
+        }
+        let mut z = [0.0; N];
+        for (column, d) in self.j[q..n].iter().zip(&d[q..n]) {
+            add_scaled(&mut z, *d, column);
+        }
+        let back = self.r.solve(&d, q);
+        Bearing { d, z, back }
+    }
+
+    /// The step along which the first multiplier, each falling at `rates`, is zero, and whose it is.
+    fn first_zero(&self, rates: &Padded<N>) -> (f64, Option<usize>) {
+        let mut first = (f64::INFINITY, None);
+        for (i, (multiplier, rate)) in self
+            .multipliers
+            .iter()
+            .zip(rates)
+            .enumerate()
+            .take(self.count)
+        {
+            if *rate > FALLING && *multiplier < first.0 * rate {
+                first = (multiplier / rate, Some(i));
+            }
+        }
+        first
+    }
+
+    fn drop(&mut self, i: usize) {
+        let q = self.count;
+        remove((&mut self.j, &mut self.r), i, q);
+        self.multipliers.copy_within(i + 1..q, i);
+        self.active.copy_within(i + 1..q, i);
+        self.count -= 1;
+    }
+
+    /// Goes to the minimum over the active constraints and this one; those it pushes away leave. `steps` counts down.
+    fn enter(&mut self, of: &Sized<N>, entering: Kind, steps: &mut usize) -> Entered {
+        let mut multiplier = 0.0;
         loop {
-            match self.attempt() {
-                Ok(solution) => return Some(solution),
-                Err(Some(row)) => self.rows[row].scale = 0.0,
-                Err(None) => return None,
+            if *steps == 0 || !self.is_finite() {
+                return Entered::Stopped;
+            }
+            *steps -= 1;
+            let q = self.count;
+            let Bearing { d, z, back } = self.bearing(of, entering);
+            let (dual_step, leaving) = self.first_zero(&back);
+            let mut free = d;
+            free[..q].fill(0.0);
+            // z . normal
+            let slope = dot(&free, &free);
+            let primal_step = if slope > 1e-16 * dot(&d, &d) {
+                -of.value(entering, &self.x) / slope
+            } else {
+                f64::INFINITY
+            };
+            let step = dual_step.min(primal_step);
+            if step.is_infinite() {
+                return Entered::Contradicts;
+            }
+            add_scaled(&mut self.multipliers, -step, &back);
+            multiplier += step;
+            if primal_step.is_finite() {
+                add_scaled(&mut self.x, step, &z);
+            }
+            if primal_step <= dual_step {
+                let (factors, length) = ((&mut self.j, &mut self.r), slope.sqrt());
+                add(factors, (&d, &z, length), q, of.size);
+                self.multipliers[q] = multiplier;
+                self.active[q] = entering;
+                self.count += 1;
+                return Entered::Active;
+            }
+            if let Some(i) = leaving {
+                self.drop(i);
             }
         }
     }
 
+    /// Goes to the minimum without active constraint `i`: its multiplier falls to zero, and those that reach zero
+    /// before leave as well.
+    fn leave(&mut self, of: &Sized<N>, i: usize) {
+        let (leaving, mut multiplier) = (self.active[i], self.multipliers[i]);
+        self.drop(i);
+        loop {
+            let Bearing { z, back, .. } = self.bearing(of, leaving);
+            let (step, other) = self.first_zero(&back.map(|b| -b));
+            let step = step.min(multiplier);
+            add_scaled(&mut self.multipliers, step, &back);
+            add_scaled(&mut self.x, -step, &z);
+            multiplier -= step;
+            match other {
+                Some(i) if multiplier > 0.0 => self.drop(i),
+                _ => return,
+            }
+        }
+    }
+}
+
+/// A constraint's normal as the factors see it: `J' normal`, what `x` moves by and what the multipliers fall by per unit
+/// of its own.
+struct Bearing<const N: usize> {
+    d: Padded<N>,
+    z: Padded<N>,
+    back: Padded<N>,
+}
+
+impl<const N: usize> Sized<N> {
     fn value(&self, kind: Kind, x: &Padded<N>) -> f64 {
         match kind {
             Kind::Low(i) => x[i] - self.low[i],
@@ -142,14 +297,15 @@ impl<const N: usize> Sized<N> {
     }
 
     /// The most violated constraint that is not active, each relative to its scale.
-    fn violated(&self, x: &Padded<N>, active: &[Kind], boxes: &[Padded<N>; 2]) -> Option<Kind> {
+    fn violated(&self, at: &Point<N>, boxes: &[Padded<N>; 2]) -> Option<Kind> {
         let mut worst = (-SATISFIED, None);
         let mut look = |kind: Kind, v: f64| {
-            if v < worst.0 && !active.contains(&kind) {
+            if v < worst.0 && !at.active().contains(&kind) {
                 worst = (v, Some(kind));
             }
         };
         // what is beyond the variables is zero and violates nothing
+        let x = &at.x;
         let lanes: [Padded<N>; 2] = [
             std::array::from_fn(|i| (x[i] - self.low[i]) * boxes[0][i]),
             std::array::from_fn(|i| (self.high[i] - x[i]) * boxes[1][i]),
@@ -179,100 +335,45 @@ impl<const N: usize> Sized<N> {
         worst.1
     }
 
-    /// Once, or a row to leave out, or nothing where that would not help either.
     #[inline(never)]
-    fn attempt(&self) -> Result<Solution, Option<usize>> {
-        let n = self.size;
-        let mut j = inverse_transposed_factor(&self.hessian, n).ok_or(None)?;
-        let mut x = [0.0; N];
-        for column in j.iter().take(n) {
-            add_scaled(&mut x, -dot(column, &self.gradient), column);
-        }
-        let mut r = Triangle::new();
-        let mut active: Vec<Kind> = Vec::with_capacity(n);
-        let mut u = [0.0; N];
-        let mut steps = 0;
+    fn solve(mut self) -> Option<Solution> {
+        let mut at = Point::free(&self)?;
+        let mut steps = MAX_STEPS;
         let boxes = [self.low, self.high].map(|bounds| bounds.map(|b| 1.0 / (1.0 + b.abs())));
-        while let Some(entering) = self.violated(&x, &active, &boxes) {
-            let mut multiplier = 0.0;
-            loop {
-                steps += 1;
-                if steps > MAX_STEPS || !dot(&x, &x).is_finite() {
-                    return Err(None);
-                }
-                let q = active.len();
-                let mut d = [0.0; N];
-                for (d, column) in d.iter_mut().zip(&j).take(n) {
-                    *d = match entering {
-                        Kind::Low(i) => column[i],
-                        Kind::High(i) => -column[i],
-                        Kind::Row(row) => dot(column, &self.rows[row].normal),
-                    };
-                }
-                let mut z = [0.0; N];
-                for (column, d) in j[q..n].iter().zip(&d[q..n]) {
-                    add_scaled(&mut z, *d, column);
-                }
-                let back = r.solve(&d, q);
-                let (mut dual_step, mut leaving) = (f64::INFINITY, None);
-                for i in 0..q {
-                    if back[i] > 1e-14 && u[i] < dual_step * back[i] {
-                        dual_step = u[i] / back[i];
-                        leaving = Some(i);
-                    }
-                }
-                let mut free = d;
-                free[..q].fill(0.0);
-                // z . normal
-                let slope = dot(&free, &free);
-                let primal_step = if slope > 1e-16 * dot(&d, &d) {
-                    -self.value(entering, &x) / slope
-                } else {
-                    f64::INFINITY
-                };
-                let step = dual_step.min(primal_step);
-                if step.is_infinite() {
-                    return Err(match entering {
-                        Kind::Row(row) => Some(row),
-                        // a bound that contradicts active rows: leave out one of those
-                        _ => active.iter().rev().find_map(|k| match k {
-                            Kind::Row(row) => Some(*row),
-                            _ => None,
-                        }),
-                    });
-                }
-                add_scaled(&mut u, -step, &back);
-                multiplier += step;
-                if primal_step.is_finite() {
-                    add_scaled(&mut x, step, &z);
-                }
-                if primal_step <= dual_step {
-                    add((&mut j, &mut r), (&d, &z, slope.sqrt()), q, n);
-                    u[q] = multiplier;
-                    active.push(entering);
-                    break;
-                }
-                if let Some(i) = leaving {
-                    remove((&mut j, &mut r), &mut u, i, q);
-                    active.remove(i);
-                }
+        while let Some(entering) = self.violated(&at, &boxes) {
+            let before = at.clone();
+            match at.enter(&self, entering, &mut steps) {
+                Entered::Active => continue,
+                Entered::Contradicts => at = before,
+                Entered::Stopped => return None,
             }
+            if let Kind::Row(row) = entering {
+                self.rows[row].scale = 0.0;
+                continue;
+            }
+            // a bound that contradicts active rows: leave out one of those
+            let newest = at.active().iter().enumerate().rev();
+            let (i, row) = newest
+                .filter_map(|(i, k)| match k {
+                    Kind::Row(row) => Some((i, *row)),
+                    _ => None,
+                })
+                .next()?;
+            self.rows[row].scale = 0.0;
+            at.leave(&self, i);
         }
-        if !dot(&x, &x).is_finite() {
-            return Err(None);
+        if !at.is_finite() {
+            return None;
         }
         let mut multipliers = vec![0.0; self.rows.len()];
-        for (kind, u) in active.iter().zip(&u) {
+        for (kind, u) in at.active().iter().zip(&at.multipliers) {
             if let Kind::Row(row) = kind {
                 multipliers[*row] = *u;
             }
         }
-        let mut whole = [0.0; MAX_VARIABLES];
-        whole[..N].copy_from_slice(&x);
-        Ok(Solution {
-            x: whole,
-            multipliers,
-        })
+        let mut x = [0.0; MAX_VARIABLES];
+        x[..N].copy_from_slice(&at.x);
+        Some(Solution { x, multipliers })
     }
 }
 
@@ -349,6 +450,74 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// With rows that contradict one another and the box: what is left is the minimum over the rows that push and the
+    /// box, whichever were left out.
+    #[test]
+    fn what_contradicts_is_left_out_and_the_rest_is_a_minimum() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(43);
+        let mut pushing = 0;
+        for _ in 0..400 {
+            let n = rng.random_range(2..14);
+            let mut hessian = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+            let mut root = hessian;
+            let mut gradient = [0.0; MAX_VARIABLES];
+            for i in 0..n {
+                gradient[i] = rng.random_range(-5.0..5.0);
+                root[i][..n]
+                    .iter_mut()
+                    .for_each(|c| *c = rng.random_range(-1.0..1.0));
+            }
+            for i in 0..n {
+                for k in 0..n {
+                    hessian[i][k] = dot(&root[i], &root[k]) + if i == k { 0.05 } else { 0.0 };
+                }
+            }
+            let (low, high) = ([-1.0; MAX_VARIABLES], [2.0; MAX_VARIABLES]);
+            let rows: Vec<Constraint> = (0..rng.random_range(5..25))
+                .map(|_| {
+                    let mut coefficients = [0.0; MAX_VARIABLES];
+                    coefficients[..n]
+                        .iter_mut()
+                        .for_each(|c| *c = rng.random_range(-1.0..1.0));
+                    Constraint {
+                        coefficients,
+                        bound: rng.random_range(-1.0..2.0),
+                    }
+                })
+                .collect();
+            let programme = Programme {
+                size: n,
+                hessian: &hessian,
+                gradient: &gradient,
+                low: &low,
+                high: &high,
+                rows: &rows,
+            };
+            let Solution { x, multipliers } = programme.solve().expect("positive definite");
+            for (row, multiplier) in rows.iter().zip(&multipliers) {
+                assert!(*multiplier >= 0.0);
+                if *multiplier > 1e-9 {
+                    pushing += 1;
+                    let value = dot(&row.coefficients, &x) - row.bound;
+                    assert!(value.abs() < 1e-7, "{value}");
+                }
+            }
+            for i in 0..n {
+                assert!(x[i] >= -1.0 - 1e-7 && x[i] <= 2.0 + 1e-7, "{x:?}");
+                let pushed: f64 = rows
+                    .iter()
+                    .zip(&multipliers)
+                    .map(|(row, m)| row.coefficients[i] * m)
+                    .sum();
+                let rate = gradient[i] + dot(&hessian[i], &x) - pushed;
+                let tolerance = 1e-6 * (1.0 + multipliers.iter().sum::<f64>());
+                assert!(rate < tolerance || x[i] < -1.0 + 1e-7, "{i}: {rate} {x:?}");
+                assert!(rate > -tolerance || x[i] > 2.0 - 1e-7, "{i}: {rate} {x:?}");
+            }
+        }
+        assert!(pushing > 400, "{pushing}");
     }
 
     #[test]

@@ -302,12 +302,7 @@ impl Refinement {
 
     /// A second-order correction: the least change, by the Hessian, that brings a full step back outside the sets
     /// that it curves into. Without it steps along a face are cut to nothing.
-    fn corrected(
-        &self,
-        scene: &Scene,
-        trial: &Row,
-        model: &Model,
-    ) -> Option<(Row, Model)> {
+    fn corrected(&self, scene: &Scene, trial: &Row, model: &Model) -> Option<(Row, Model)> {
         if model.violation <= CLEAR_ENOUGH_M {
             return None;
         }
@@ -364,7 +359,12 @@ impl Refinement {
         let largest = step[..n].iter().fold(0.0_f64, |m, s| m.max(s.abs()));
         let linear: f64 = (0..n).map(|i| step[i] * self.model.gradient[i]).sum();
         let bent: f64 = (0..n)
-            .map(|i| step[i] * (0..n).map(|k| self.model.hessian[i][k] * step[k]).sum::<f64>())
+            .map(|i| {
+                step[i]
+                    * (0..n)
+                        .map(|k| self.model.hessian[i][k] * step[k])
+                        .sum::<f64>()
+            })
             .sum();
         let merit = self.merit();
         let mut share = 1.0;
