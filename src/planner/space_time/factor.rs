@@ -88,6 +88,16 @@ impl<const N: usize> Triangle<N> {
         }
         found
     }
+
+    /// `R^-T` times the first `q` of `b`.
+    pub(crate) fn solve_transposed(&self, b: &Padded<N>, q: usize) -> Padded<N> {
+        let mut found = [0.0; N];
+        for i in 0..q {
+            // what is not found yet is zero
+            found[i] = (b[i] - dot(&self.columns[i], &found)) * self.reciprocals[i];
+        }
+        found
+    }
 }
 
 /// Appends a constraint with `d = J' normal` to `q` active ones: a reflection turns `d` from `q` on, of this length, into
