@@ -106,10 +106,16 @@ impl Shape for EllipsoidObstacle {
 
 /// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`], and joints below [`SLIDING_M`]; arcs are cut into chords of `chord`
 /// radians at most.
-pub(crate) fn approaches(hazard: &Hazard, sailed: &Sailed, chord: f64) -> Vec<Approach> {
+/// `middles` are the places halfway along each leg.
+pub(crate) fn approaches(
+    hazard: &Hazard,
+    sailed: &Sailed,
+    middles: &[Vector],
+    chord: f64,
+) -> Vec<Approach> {
     match hazard.round {
-        Some(ellipsoid) => approaches_of(ellipsoid, hazard, sailed, chord),
-        None => approaches_of(hazard.body, hazard, sailed, chord),
+        Some(ellipsoid) => approaches_of(ellipsoid, hazard, sailed, middles, chord),
+        None => approaches_of(hazard.body, hazard, sailed, middles, chord),
     }
 }
 
@@ -117,18 +123,19 @@ fn approaches_of<S: Shape>(
     shape: &S,
     hazard: &Hazard,
     sailed: &Sailed,
+    middles: &[Vector],
     chord: f64,
 ) -> Vec<Approach> {
-    let mut chords: Vec<Chord<S::Face>> = Vec::with_capacity(64);
+    let mut chords: Vec<Chord<S::Face>> = Vec::new();
     let mut found: Vec<Approach> = Vec::new();
     let mut joints: Vec<Approach> = Vec::new();
     let clock = hazard.start();
-    for (leg, l) in sailed.legs.iter().enumerate() {
+    for (leg, (l, middle)) in sailed.legs.iter().zip(middles).enumerate() {
         let segment = &l.segment;
         if segment.duration <= 0.0 {
             continue;
         }
-        if hazard.clearance_bound(segment) > NEAR_M {
+        if hazard.clearance_bound_about(segment, *middle) > NEAR_M {
             local_minima((shape, hazard, sailed), &mut chords, &mut found);
             continue;
         }

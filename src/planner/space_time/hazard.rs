@@ -108,11 +108,24 @@ impl<'a> Hazard<'a> {
         }
     }
 
+    /// The same for one whose place halfway is known.
+    #[inline]
+    pub(crate) fn clearance_bound_about(&self, segment: &Segment, middle: Vector) -> f64 {
+        match &self.window {
+            None => self.bound_about(segment, middle),
+            Some(_) => self.clearance_bound(segment),
+        }
+    }
+
     #[inline]
     fn local_clearance_bound(&self, segment: &Segment) -> f64 {
+        self.bound_about(segment, segment.pose_after(0.5 * segment.duration).position)
+    }
+
+    #[inline]
+    fn bound_about(&self, segment: &Segment, middle: Vector) -> f64 {
         let half = 0.5 * segment.duration;
-        let middle = segment.start_time + half;
-        let apart = segment.pose_after(half).position - self.centre - self.drift * middle;
+        let apart = middle - self.centre - self.drift * (segment.start_time + half);
         let closing = (segment.speed + self.drift.norm()) * half;
         apart.norm() - closing - self.radius - self.growth * segment.end_time()
     }

@@ -10,7 +10,7 @@ use super::route::Route;
 use super::sailed::{Owner, Place, Sailed};
 use super::tail::Tail;
 use super::template::{Ending, Template};
-use crate::frame::to_port;
+use crate::frame::{Vector, to_port};
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4};
 
@@ -143,11 +143,12 @@ impl Scene<'_> {
             .then(|| self.add_tail(&sailed, &joining, template.all(), &mut sums));
         let sails = sailed.legs.iter().map(|l| &l.segment);
         let land = ashore::near(self.problem.coast, sails, NEAR_M);
+        let middles: Vec<Vector> = sailed.legs.iter().map(|l| l.along(0.5).0).collect();
         let approaches = self
             .hazards
             .iter()
             .chain(land.into_iter().map(|b| &self.blocks[b]))
-            .flat_map(|hazard| approaches(hazard, &sailed, self.chord))
+            .flat_map(|hazard| approaches(hazard, &sailed, &middles, self.chord))
             .collect();
         Some(Full {
             sailed,
@@ -289,7 +290,7 @@ struct Sums {
 pub(crate) mod tests {
     use super::super::approach::FINE_CHORD_RAD;
     use super::*;
-    use crate::frame::{Pose, Side, Vector};
+    use crate::frame::{Pose, Side};
     use crate::geometry::outer_disc;
     use crate::obstacle::{Coast, PolytopeObstacle};
     use crate::planner::SearchKind;

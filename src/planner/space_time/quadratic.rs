@@ -219,9 +219,11 @@ impl<const N: usize> Point<N> {
         self.count -= 1;
     }
 
-    /// Goes to the minimum over the active constraints and this one; those it pushes away leave. `steps` counts down.
+    /// Goes to the minimum over the active constraints and this one; those it pushes away leave. Where it contradicts,
+    /// nothing has changed. `steps` counts down.
     fn enter(&mut self, of: &Sized<N>, entering: Kind, steps: &mut usize) -> Entered {
         let mut multiplier = 0.0;
+        let mut before = None;
         loop {
             if *steps == 0 || !self.is_finite() {
                 return Entered::Stopped;
@@ -241,7 +243,13 @@ impl<const N: usize> Point<N> {
             };
             let step = dual_step.min(primal_step);
             if step.is_infinite() {
+                if let Some(before) = before {
+                    *self = before;
+                }
                 return Entered::Contradicts;
+            }
+            if primal_step > dual_step && before.is_none() {
+                before = Some(self.clone());
             }
             add_scaled(&mut self.multipliers, -step, &back);
             multiplier += step;
@@ -366,10 +374,9 @@ impl<const N: usize> Sized<N> {
         let mut steps = MAX_STEPS;
         let boxes = [self.low, self.high].map(|bounds| bounds.map(|b| 1.0 / (1.0 + b.abs())));
         while let Some(entering) = self.violated(&at, &boxes) {
-            let before = at.clone();
             match at.enter(&self, entering, &mut steps) {
                 Entered::Active => continue,
-                Entered::Contradicts => at = before,
+                Entered::Contradicts => {}
                 Entered::Stopped => return None,
             }
             if let Kind::Row(row) = entering {

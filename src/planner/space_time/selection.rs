@@ -99,16 +99,22 @@ const MAX_CONFLICTS: usize = 2;
 
 /// How many refinements go on after so many steps: those of the least expected
 /// cost. A winner is seen early.
-const PLACES: [(usize, usize); 4] = [(0, 12), (1, 6), (2, 4), (4, 3)];
+const PLACES: [(usize, usize); 5] = [(0, 12), (1, 6), (2, 4), (4, 3), (6, 2)];
 
 /// Steps of the race once a manoeuvre is clear: what the winner still lacks are slots, not steps.
-const ROUNDS: usize = 10;
+const ROUNDS: usize = 8;
 
-/// Metres of line above which the best manoeuvre is cut for additions, one entry per time it is enriched.
+/// Manoeuvres that are enriched at most, the share of the cost by which one may be behind the best, and below which two
+/// are the same.
+const LEADERS: usize = 2;
+const BEHIND: f64 = 0.05;
+const ALIKE: f64 = 1e-3;
+
+/// Metres of line above which the leaders are cut for additions, and the best of them once more.
 const UNCUT_M: [f64; 2] = [200.0, 80.0];
 
 /// Steps of a refinement after an enrichment, and of the last one, without scraps.
-const STEPS_ENRICHED: usize = 12;
+const STEPS_ENRICHED: usize = 8;
 const STEPS_TIDY: usize = 6;
 
 /// Share of the cost that an enrichment has to gain for another to be tried.
@@ -265,29 +271,44 @@ impl<'a> Selection<'a> {
         clock.is_up()
     }
 
-    /// Adds what the best of all lacks, and refines it anew; in the end without scraps, where that costs next to nothing.
+    /// Adds what the leaders lack and refines them anew, and again what the best of them lacks; in the end without scraps,
+    /// where that costs next to nothing.
     fn polish(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
-        let mut best = best_of(running)?.best();
-        for uncut in UNCUT_M {
-            if clock.is_up() {
-                return None;
+        let leaders = leaders(running);
+        let mut least = leaders.first()?.1;
+        let [first, then] = UNCUT_M;
+        let mut best = None;
+        let mut gained = 0.0;
+        for (seed, rank) in leaders {
+            let again = self.richer(&seed, first, clock);
+            let after = again
+                .as_ref()
+                .map_or(f64::INFINITY, Refinement::rank)
+                .min(rank);
+            if best.is_none() || after < least {
+                gained = 1.0 - after / rank;
+                best = again.as_ref().and_then(Refinement::best).or(Some(seed));
+                least = after;
             }
-            let seed = best.as_ref().and_then(|s| enriched(&self.scene, s, uncut));
-            let Some(again) = seed.and_then(|s| self.refined(s, STEPS_ENRICHED, clock)) else {
-                break;
-            };
-            let gained = 1.0 - again.rank() / best_of(running)?.rank();
-            best = again.best().or(best);
-            running.push(again);
-            // negated on purpose: a NaN has gained nothing
-            if !(gained > WORTH_ANOTHER) {
-                break;
-            }
+            running.extend(again);
+        }
+        if gained > WORTH_ANOTHER {
+            let again = best.as_ref().and_then(|s| self.richer(s, then, clock));
+            best = again.as_ref().and_then(Refinement::best).or(best);
+            running.extend(again);
         }
         let least = best_of(running)?.rank();
         let seed = best.and_then(|s| tidied(&self.scene, &s));
         let tidy = seed.and_then(|s| self.refined(s, STEPS_TIDY, clock))?;
         (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
+    }
+
+    /// With what a manoeuvre lacks, refined anew; `None` where it lacks nothing or the time is up.
+    fn richer(&self, seed: &Seed, uncut: f64, clock: Clock) -> Option<Refinement> {
+        if clock.is_up() {
+            return None;
+        }
+        self.refined(enriched(&self.scene, seed, uncut)?, STEPS_ENRICHED, clock)
     }
 
     /// A refinement from beginning to end, of so many steps at most, and fewer where the time is up.
@@ -344,6 +365,25 @@ impl<'a> Selection<'a> {
 fn best_of(running: &[Refinement]) -> Option<&Refinement> {
     let costs = |a: &&Refinement, b: &&Refinement| a.rank().total_cmp(&b.rank());
     running.iter().min_by(costs)
+}
+
+/// The cheapest of all and the next that is another, with their ranks: what a manoeuvre lacks can be worth more than the
+/// lead of one that lacks nothing.
+fn leaders(running: &[Refinement]) -> Vec<(Seed, f64)> {
+    let mut found: Vec<(Seed, f64)> = Vec::with_capacity(LEADERS);
+    for refinement in ranked(running) {
+        let rank = refinement.rank();
+        let least = found.first().map_or(rank, |f| f.1);
+        let alike = found.iter().any(|f| rank <= (1.0 + ALIKE) * f.1);
+        // negated on purpose: a NaN is behind
+        if found.len() == LEADERS || !(rank <= (1.0 + BEHIND) * least) {
+            break;
+        }
+        if !alike {
+            found.extend(refinement.best().map(|seed| (seed, rank)));
+        }
+    }
+    found
 }
 
 /// Cheapest first.
