@@ -21,6 +21,9 @@ const SAME_S: f64 = 0.2;
 pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;
 pub(crate) const FINE_CHORD_RAD: f64 = 0.05;
 
+/// Chords that room is made for at once.
+const MANY_CHORDS: usize = 64;
+
 /// Cuts of one minimum at most.
 const MAX_CUTS: usize = 30;
 
@@ -204,6 +207,9 @@ fn approaches_of<S: Shape>(
             if count > 1.0 && piece.least.is_mixed() {
                 let at = sample(piece.least.fraction, l.along(piece.least.fraction).0);
                 piece.least.slack = at.slack.value;
+            }
+            if chords.capacity() == 0 {
+                chords.reserve(MANY_CHORDS);
             }
             chords.push(piece);
             from = to;
