@@ -5,8 +5,9 @@
 //! at that place (column generation, with the multipliers of the last quadratic programme). Where no rate is
 //! negative, no template with more slots is cheaper, to first order.
 
-use super::model::{Full, Scene};
+use super::model::Full;
 use super::moments::{Moment, Motor, dot4};
+use super::outline::Scene;
 use super::quadratic::{MAX_VARIABLES, Programme, Row};
 use super::refinement::Seed;
 use super::sailed::Owner;
@@ -130,10 +131,11 @@ fn cut(scene: &Scene, seed: &Seed, uncut: f64) -> Option<Seed> {
 /// The most promising additions, or `None` where all together promise next to nothing.
 fn additions(scene: &Scene, base: &Seed) -> Option<Vec<Addition>> {
     let free = base.template.free();
-    let full = scene.full(&base.template, &base.lengths)?;
+    let outline = scene.outline(&base.template, &base.lengths)?;
+    let full = scene.full(&base.template, outline);
     let multipliers = multipliers(scene, base)?;
     let prices = Prices::new(scene, &base.template, &full, &multipliers);
-    let first = full.sailed.runs;
+    let first = full.outline.sailed.runs;
     let mut found = Vec::new();
     let turn = first_turn(&base.template);
     for gap in first..=free {
@@ -155,7 +157,7 @@ fn additions(scene: &Scene, base: &Seed) -> Option<Vec<Addition>> {
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     found.truncate(MOST_ADDED.min(MAX_VARIABLES - 2 - free));
     let promised: f64 = found.iter().map(|a| a.gain).sum();
-    (promised > WORTH_ADDING * full.cost).then_some(found)
+    (promised > WORTH_ADDING * full.outline.cost).then_some(found)
 }
 
 /// Where the first turn is, and to which side. Nothing turns to the other side before it: others have to see at once
@@ -204,7 +206,7 @@ struct Prices {
 impl Prices {
     fn new(scene: &Scene, template: &Template, full: &Full, multipliers: &[f64]) -> Self {
         let (free, all) = (template.free(), template.all());
-        let sailed = &full.sailed;
+        let sailed = &full.outline.sailed;
         let origin = scene.problem.own.pose.position;
         let moments = full.moments.sums_from_each();
         let joined_by = sailed.joined_by(origin);
@@ -214,7 +216,7 @@ impl Prices {
             add(form, &joined_by, by_distance);
             add(form, &[0.0, 0.0, 1.0, 0.0], by_time);
         };
-        if let Some(tail) = &full.tail {
+        if let Some(tail) = &full.outline.tail {
             add_tail(&mut common, tail.by_distance, tail.by_time);
         }
         let mut forms: Vec<Motor> = moments.iter().map(Moment::pull).collect();
@@ -222,7 +224,7 @@ impl Prices {
         for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
             *price = full.gradient[free + k];
         }
-        for (approach, multiplier) in full.approaches.iter().zip(multipliers) {
+        for (approach, multiplier) in full.outline.approaches.iter().zip(multipliers) {
             if *multiplier <= 0.0 {
                 continue;
             }
@@ -249,7 +251,7 @@ impl Prices {
                 (None, Owner::Slot { .. }) => continue,
             };
             if last >= free {
-                let row = scene.approach_row(full, approach);
+                let row = scene.approach_row(&full.outline, approach);
                 for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
                     *price -= multiplier * row[free + k];
                 }
@@ -258,7 +260,7 @@ impl Prices {
         // rows after those of the approaches keep the solved slots from running out
         for (price, multiplier) in of_solved
             .iter_mut()
-            .zip(&multipliers[full.approaches.len()..])
+            .zip(&multipliers[full.outline.approaches.len()..])
         {
             *price -= multiplier;
         }
@@ -278,7 +280,7 @@ impl Prices {
 
     /// The rate of the cost with the length of a slot put in before slot `gap`, m² per metre, and the second rate.
     fn rate(&self, scene: &Scene, full: &Full, gap: usize, slot: Slot) -> Option<(f64, f64)> {
-        let leg = full.sailed.legs.iter().find(
+        let leg = full.outline.sailed.legs.iter().find(
             |l| matches!(l.owner, Owner::Slot { index, from, .. } if index == gap && from == 0.0),
         )?;
         let at = leg.segment.start.position - self.origin;
@@ -309,7 +311,7 @@ impl Prices {
             return 0.0;
         };
         if rate < 0.0 {
-            0.5 * rate * rate / bend.max(1e-9 * full.cost.max(1.0))
+            0.5 * rate * rate / bend.max(1e-9 * full.outline.cost.max(1.0))
         } else {
             0.0
         }
@@ -331,11 +333,12 @@ mod tests {
     #[test]
     fn prices_are_the_rates_of_the_larger_template() {
         at_manoeuvres(|scene, seed| {
-            let full = scene.full(&seed.template, &seed.lengths).expect("fits");
+            let outline = scene.outline(&seed.template, &seed.lengths);
+            let full = scene.full(&seed.template, outline.expect("fits"));
             let multipliers = multipliers(scene, seed).expect("solvable");
             let prices = Prices::new(scene, &seed.template, &full, &multipliers);
             assert!(multipliers.iter().any(|m| *m > 0.0));
-            for gap in full.sailed.runs..=seed.template.free() {
+            for gap in full.outline.sailed.runs..=seed.template.free() {
                 for slot in kinds(scene) {
                     let mut larger = seed.clone();
                     larger.template.slots.insert(gap, slot);

@@ -1,43 +1,19 @@
 //! The refinement's view of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the
 //! contact rows, all in the free lengths.
 
-use super::approach::{Approach, NEAR_M, approaches};
-use super::ashore;
-use super::hazard::Hazard;
+use super::approach::Approach;
 use super::moments::{Moments, Residuals, reduce, reduce_matrix};
+use super::outline::{Outline, Scene, Weighed};
 use super::quadratic::{Constraint, MAX_VARIABLES, Row};
-use super::route::Route;
-use super::sailed::{Owner, Place, Sailed};
-use super::tail::Tail;
-use super::template::{Ending, Template};
-use crate::frame::{Vector, to_port};
-use crate::planner::Problem;
-use crate::planner::cost::{GAUSS_2, GAUSS_4};
+use super::sailed::{Owner, Place};
+use super::template::Template;
+use crate::frame::to_port;
 
 /// Metres that solved slots and the leg after the return keep, so that a step does not run out of them.
 const ROOM_M: f64 = 1.0;
 
 /// Metres kept from every set while refining, so that the exact test afterwards passes.
-const MARGIN_M: f64 = 0.02;
-
-/// Three Gauss-Legendre points on [0, 1], for short arcs.
-const GAUSS_3: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
-    (0.5, 0.444_444_444_444_444_4),
-    (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
-];
-
-/// What stays the same for every manoeuvre of a problem.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Scene<'a> {
-    pub problem: &'a Problem<'a>,
-    pub route: &'a Route,
-    pub hazards: &'a [Hazard<'a>],
-    /// The land, block by block.
-    pub blocks: &'a [Hazard<'a>],
-    /// Radians, see [`approaches`].
-    pub chord: f64,
-}
+pub(crate) const MARGIN_M: f64 = 0.02;
 
 /// One manoeuvre, evaluated.
 #[derive(Debug)]
@@ -60,38 +36,54 @@ pub(crate) struct Model {
 const REGULARISATION: f64 = 1e-5;
 const LEAST_REGULARISED: f64 = 20.0;
 
-/// One manoeuvre, evaluated in all its slots, the solved ones included.
+/// One manoeuvre with its rates in all its slots, the solved ones included.
 #[derive(Debug)]
 pub(crate) struct Full {
-    pub sailed: Sailed,
-    pub cost: f64,
+    pub outline: Outline,
     pub gradient: Row,
     /// The lower triangle.
     hessian: Vec<Row>,
     pub moments: Moments,
-    pub approaches: Vec<Approach>,
-    /// Where there is one.
-    pub tail: Option<Tail>,
-    joining: (Row, Row),
 }
 
 impl Scene<'_> {
     /// Sails and evaluates; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn model(&self, template: &Template, lengths: &Row) -> Option<Model> {
-        let full = self.full(template, lengths)?;
+        Some(self.completed(template, self.outline(template, lengths)?))
+    }
+
+    /// The rates of a manoeuvre that has been outlined.
+    pub(crate) fn completed(&self, template: &Template, outline: Outline) -> Model {
+        let full = self.full(template, outline);
+        let outline = &full.outline;
         let (all, free) = (template.all(), template.free());
-        let sailed = &full.sailed;
+        let solved = &outline.sailed.solved_rates[..all - free];
+        let gradient = reduce(&full.gradient, solved, free);
+        let mut hessian = reduce_matrix(full.hessian, solved, free);
+        for (i, row) in hessian.iter_mut().enumerate() {
+            row[i] += REGULARISATION * outline.cost.max(LEAST_REGULARISED);
+        }
+        Model {
+            cost: outline.cost,
+            gradient,
+            hessian,
+            rows: self.rows(template, outline),
+            violation: outline.violation,
+            least_slack: outline.least_slack,
+        }
+    }
+
+    /// Contact rows and the signs of the solved slots, linearised.
+    pub(crate) fn rows(&self, template: &Template, outline: &Outline) -> Vec<Constraint> {
+        let (all, free) = (template.all(), template.free());
+        let sailed = &outline.sailed;
         let solved = &sailed.solved_rates[..all - free];
-        let mut rows = Vec::with_capacity(full.approaches.len() + 3);
-        let (mut violation, mut least_slack) = (0.0_f64, f64::INFINITY);
-        for approach in &full.approaches {
-            let missing = MARGIN_M - approach.slack;
-            violation = missing.max(violation);
-            least_slack = least_slack.min(approach.slack);
-            let coefficients = self.approach_row(&full, approach);
+        let mut rows = Vec::with_capacity(outline.approaches.len() + 3);
+        for approach in &outline.approaches {
+            let coefficients = self.approach_row(outline, approach);
             rows.push(Constraint {
                 coefficients: reduce(&coefficients, solved, free),
-                bound: missing,
+                bound: MARGIN_M - approach.slack,
             });
         }
         for k in 0..all - free {
@@ -102,114 +94,72 @@ impl Scene<'_> {
             });
         }
         if let Some(room) = sailed.room {
-            let coefficients = reduce(&full.joining.0, solved, free).map(|c| -c);
+            let coefficients = reduce(&outline.joining.0, solved, free).map(|c| -c);
             rows.push(Constraint {
                 coefficients,
                 bound: ROOM_M.min(room) - room,
             });
         }
-        let gradient = reduce(&full.gradient, solved, free);
-        let mut hessian = reduce_matrix(full.hessian, solved, free);
-        for (i, row) in hessian.iter_mut().enumerate() {
-            row[i] += REGULARISATION * full.cost.max(LEAST_REGULARISED);
-        }
-        Some(Model {
-            cost: full.cost,
-            gradient,
-            hessian,
-            rows,
-            violation,
-            least_slack,
-        })
+        rows
     }
 
-    /// The same before the solved slots are eliminated.
-    pub(crate) fn full(&self, template: &Template, lengths: &Row) -> Option<Full> {
-        let sailed = template.sail(self.problem, self.route, lengths)?;
-        let mut sums = Sums {
-            cost: 0.0,
+    /// The rates before the solved slots are eliminated.
+    pub(crate) fn full(&self, template: &Template, outline: Outline) -> Full {
+        let all = template.all();
+        let mut full = Full {
             gradient: [0.0; MAX_VARIABLES],
-            hessian: vec![[0.0; MAX_VARIABLES]; template.all()],
-            moments: Moments::new(template.all()),
+            hessian: vec![[0.0; MAX_VARIABLES]; all],
+            moments: Moments::new(all),
+            outline,
         };
-        for leg in 0..sailed.tail {
-            self.add_leg(&sailed, leg, &mut sums);
-        }
-        let motors = sailed.motors(self.problem.own.pose.position);
-        sums.moments
-            .finish(&motors, &mut sums.gradient, &mut sums.hessian);
-        let joining = sailed.joining_rates();
-        let tail = (!matches!(template.ending, Ending::Goal { .. }))
-            .then(|| self.add_tail(&sailed, &joining, template.all(), &mut sums));
-        let sails = sailed.legs.iter().map(|l| &l.segment);
-        let land = ashore::near(self.problem.coast, sails, NEAR_M);
-        let middles: Vec<Vector> = sailed.legs.iter().map(|l| l.along(0.5).0).collect();
-        let approaches = self
-            .hazards
-            .iter()
-            .chain(land.into_iter().map(|b| &self.blocks[b]))
-            .flat_map(|hazard| approaches(hazard, &sailed, &middles, self.chord))
-            .collect();
-        Some(Full {
-            sailed,
-            cost: sums.cost,
-            gradient: sums.gradient,
-            hessian: sums.hessian,
-            moments: sums.moments,
-            approaches,
-            tail,
-            joining,
-        })
-    }
-
-    /// Adds a leg's cost: the squared residuals at Gauss points, their rates, and the rate of the
-    /// leg's own duration.
-    fn add_leg(&self, sailed: &Sailed, leg: usize, full: &mut Sums) {
-        let Owner::Slot { index, from, to } = sailed.legs[leg].owner else {
-            return;
-        };
-        let segment = sailed.legs[leg].segment;
-        let desired = self.problem.desired;
-        let q = self.problem.time_weight;
-        let per_time = 1.0 / desired.duration();
-        let turn = segment.turn_rate.abs() * segment.duration;
-        let nodes: &[(f64, f64)] = match turn {
-            t if t < 0.3 => &GAUSS_2,
-            t if t < 1.0 => &GAUSS_3,
-            _ => &GAUSS_4,
-        };
-        let growth = (to - from) / segment.speed * per_time;
-        if segment.duration <= 0.0 {
-            let point = desired.nearest(segment.start.position, segment.start_time, q);
-            full.gradient[index] += growth * point.error;
-            return;
-        }
-        for (fraction, share) in nodes {
-            let Some(place) = sailed.place(leg, *fraction) else {
+        let outline = &full.outline;
+        let sailed = &outline.sailed;
+        let origin = self.problem.own.pose.position;
+        for point in &outline.points {
+            full.gradient[point.slot] += point.growth;
+            let Some(weighed) = &point.weighed else {
                 continue;
             };
-            let nearest = desired.nearest(place.position, place.time, q);
-            let weight = segment.duration * per_time * share;
-            full.cost += weight * nearest.error;
-            full.gradient[index] += growth * share * nearest.error;
-            let residuals = self.residuals(&place, nearest.leg, nearest.distance, weight);
-            if index < sailed.runs {
+            let Weighed {
+                place,
+                nearest,
+                weight,
+            } = weighed;
+            let residuals = self.residuals(place, nearest.leg, nearest.distance, *weight);
+            if point.slot < sailed.runs {
                 let mut rates = [[0.0; 3]; MAX_VARIABLES];
-                for (i, rate) in rates.iter_mut().enumerate().take(index + 1) {
-                    *rate = sailed.own_rate(&place, i);
+                for (i, rate) in rates.iter_mut().enumerate().take(point.slot + 1) {
+                    *rate = sailed.own_rate(place, i);
                 }
                 Moments::add_directly(
-                    &rates[..=index],
+                    &rates[..=point.slot],
                     &residuals,
                     &mut full.gradient,
                     &mut full.hessian,
                 );
             } else {
-                let at = place.position - self.problem.own.pose.position;
-                let own = sailed.own_rate(&place, index);
-                full.moments.add(index, [at.x, at.y], own, &residuals);
+                let at = place.position - origin;
+                let own = sailed.own_rate(place, point.slot);
+                full.moments.add(point.slot, [at.x, at.y], own, &residuals);
             }
         }
+        let motors = sailed.motors(origin);
+        full.moments
+            .finish(&motors, &mut full.gradient, &mut full.hessian);
+        if let Some(tail) = &outline.tail {
+            let (distance, clock) = &outline.joining;
+            let mut lateness = [0.0; MAX_VARIABLES];
+            for i in 0..all {
+                full.gradient[i] += tail.by_time * clock[i] + tail.by_distance * distance[i];
+                lateness[i] = clock[i] - tail.slowness * distance[i];
+            }
+            for i in 0..all {
+                for k in 0..=i {
+                    full.hessian[i][k] += tail.bend * lateness[i] * lateness[k];
+                }
+            }
+        }
+        full
     }
 
     /// The residuals of a point whose nearest desired place is `distance` along the path, on `leg`.
@@ -237,28 +187,10 @@ impl Scene<'_> {
         residuals
     }
 
-    /// Adds the tail's cost.
-    fn add_tail(&self, sailed: &Sailed, joining: &(Row, Row), all: usize, full: &mut Sums) -> Tail {
-        let tail = self.tail(sailed.joined.0, sailed.joined.1);
-        full.cost += tail.cost;
-        let (distance, clock) = joining;
-        let mut lateness = [0.0; MAX_VARIABLES];
-        for i in 0..all {
-            full.gradient[i] += tail.by_time * clock[i] + tail.by_distance * distance[i];
-            lateness[i] = clock[i] - tail.slowness * distance[i];
-        }
-        for i in 0..all {
-            for k in 0..=i {
-                full.hessian[i][k] += tail.bend * lateness[i] * lateness[k];
-            }
-        }
-        tail
-    }
-
     /// Rates of the slack at an approach.
-    pub(crate) fn approach_row(&self, full: &Full, approach: &Approach) -> Row {
+    pub(crate) fn approach_row(&self, outline: &Outline, approach: &Approach) -> Row {
         let of = approach.rates;
-        let sailed = &full.sailed;
+        let sailed = &outline.sailed;
         match (
             sailed.place(approach.leg, approach.fraction),
             sailed.legs[approach.leg].owner,
@@ -267,7 +199,7 @@ impl Scene<'_> {
             (None, Owner::Tail { index }) => {
                 let (by_distance, by_time) = self.tail_rates(sailed, index, approach);
                 let mut row = [0.0; MAX_VARIABLES];
-                let (distances, clocks) = &full.joining;
+                let (distances, clocks) = &outline.joining;
                 for (to, (distance, clock)) in row.iter_mut().zip(distances.iter().zip(clocks)) {
                     *to = by_distance * distance + by_time * clock;
                 }
@@ -276,14 +208,6 @@ impl Scene<'_> {
             (None, Owner::Slot { .. }) => [0.0; MAX_VARIABLES],
         }
     }
-}
-
-/// Cost and rates in all slots; the lower triangle of the Hessian.
-struct Sums {
-    cost: f64,
-    gradient: Row,
-    hessian: Vec<Row>,
-    moments: Moments,
 }
 
 #[cfg(test)]

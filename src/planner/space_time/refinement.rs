@@ -1,7 +1,8 @@
 //! Finds the lengths of a manoeuvre: sequential quadratic programming with an L1 merit.
 
 use super::approach::FINE_CHORD_RAD;
-use super::model::{Model, Scene};
+use super::model::Model;
+use super::outline::{Outline, Scene};
 use super::quadratic::{MAX_VARIABLES, Programme, Row};
 use super::template::{Ending, Slot, Template};
 use crate::frame::Side;
@@ -302,8 +303,8 @@ impl Refinement {
 
     /// A second-order correction: the least change, by the Hessian, that brings a full step back outside the sets
     /// that it curves into. Without it steps along a face are cut to nothing.
-    fn corrected(&self, scene: &Scene, trial: &Row, model: &Model) -> Option<(Row, Model)> {
-        if model.violation <= CLEAR_ENOUGH_M {
+    fn corrected(&self, scene: &Scene, trial: &Row, outline: &Outline) -> Option<(Row, Outline)> {
+        if outline.violation <= CLEAR_ENOUGH_M {
             return None;
         }
         let programme = Programme {
@@ -312,15 +313,15 @@ impl Refinement {
             gradient: &[0.0; MAX_VARIABLES],
             low: &trial.map(|l| (-self.radius).max(-l)),
             high: &[self.radius; MAX_VARIABLES],
-            rows: &model.rows,
+            rows: &scene.rows(&self.template, outline),
         };
         let solution = programme.solve()?;
         let mut corrected = *trial;
         for (length, step) in corrected.iter_mut().zip(&solution.x) {
             *length = (*length + step).max(0.0);
         }
-        let model = scene.model(&self.template, &corrected)?;
-        Some((corrected, model))
+        let outline = scene.outline(&self.template, &corrected)?;
+        Some((corrected, outline))
     }
 
     fn advance(&mut self, scene: &Scene) -> bool {
@@ -375,22 +376,23 @@ impl Refinement {
             for i in 0..n {
                 trial[i] = (trial[i] + share * step[i]).max(0.0);
             }
-            let mut found = scene.model(&self.template, &trial);
-            let gain = |m: &Model| merit - m.cost - self.penalty * m.violation;
+            let mut found = scene.outline(&self.template, &trial);
+            let gain = |o: &Outline| merit - o.cost - self.penalty * o.violation;
             let enough = |gained: f64| gained > 0.0 && gained >= LEAST_GAIN * predicted;
             if share == 1.0
-                && let Some(model) = &found
-                && !enough(gain(model))
-                && let Some(corrected) = self.corrected(scene, &trial, model)
+                && let Some(outline) = &found
+                && !enough(gain(outline))
+                && let Some(corrected) = self.corrected(scene, &trial, outline)
                 && enough(gain(&corrected.1))
             {
                 trial = corrected.0;
                 found = Some(corrected.1);
             }
-            let found = found.map(|model| (gain(&model), model));
-            if let Some((gained, model)) = found
+            let found = found.map(|outline| (gain(&outline), outline));
+            if let Some((gained, outline)) = found
                 && enough(gained)
             {
+                let model = scene.completed(&self.template, outline);
                 let settled =
                     gained < STALLED * model.cost.max(1.0) && model.violation < CLEAR_ENOUGH_M;
                 self.stalled = if settled { self.stalled + 1 } else { 0 };

@@ -1,7 +1,7 @@
 //! The route followed after a manoeuvre: its cost, and its rates with the place and time of joining.
 
 use super::approach::Approach;
-use super::model::Scene;
+use super::outline::Scene;
 use super::sailed::Sailed;
 use crate::planner::cost::space_time_error;
 use crate::trajectory::Segment;
