@@ -9,6 +9,7 @@
 //! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
 //! plan is one of the candidates.
 
+mod active_set;
 mod addition;
 mod aims;
 mod approach;

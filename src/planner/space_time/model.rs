@@ -31,8 +31,8 @@ pub(crate) struct Model {
     pub least_slack: f64,
 }
 
-/// Share of the cost per square metre that is added to the Hessian's diagonal, and the least cost it is taken of, m²: Gauss-Newton leaves
-/// directions flat.
+/// Share of the cost per square metre that is added to the Hessian's diagonal, and the least cost it is taken of, m²:
+/// Gauss-Newton leaves directions flat.
 const REGULARISATION: f64 = 1e-5;
 const LEAST_REGULARISED: f64 = 20.0;
 
@@ -213,15 +213,18 @@ impl Scene<'_> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::super::approach::FINE_CHORD_RAD;
+    use super::super::hazard::Hazard;
+    use super::super::route::Route;
+    use super::super::template::Ending;
     use super::*;
-    use crate::frame::{Pose, Side};
+    use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
     use crate::obstacle::{Coast, PolytopeObstacle};
-    use crate::planner::SearchKind;
     use crate::planner::space_time::part::parts;
     use crate::planner::space_time::refinement::Seed;
     use crate::planner::space_time::seeds::{Canonical, Conflict};
     use crate::planner::space_time::template::Slot;
+    use crate::planner::{Problem, SearchKind};
     use crate::trajectory::DesiredTrajectory;
     use crate::vessel::{Hull, OwnShip};
 
