@@ -1,4 +1,5 @@
-//! Figure 2 of the paper: an ellipsoid, its two sets (20) and (21) and its sections over time.
+//! Figure 2 of the paper: an ellipsoid, its two sets (20) and (21) and its sections over time, from above, from the side and in
+//! the round.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure2 [FILE.svg|FILE.png]
@@ -6,7 +7,9 @@
 
 mod shared;
 
-use searoom::report::figure::{Figure, FigureError, extent_panel, sections_panel, set_panel};
+use searoom::report::figure::{
+    Figure, FigureError, extent_panel, sections_panel, set_panel, volume_panel,
+};
 
 fn main() -> Result<(), FigureError> {
     let target = shared::figure_2();
@@ -24,6 +27,7 @@ fn main() -> Result<(), FigureError> {
         ),
         sections_panel("Sections over time", std::slice::from_ref(&target), &times),
         extent_panel("Space-time obstacle from the side", &target, &times, 100.0),
+        volume_panel("Space-time obstacle", &target, &times, 100.0),
     ];
     shared::write(Figure::new(2, panels), "figure2.svg")
 }

@@ -11,6 +11,7 @@ mod cpa;
 mod ellipse_sum;
 mod ellipsoid;
 mod ellipsoid_contact;
+mod ellipsoid_velocities;
 mod meeting;
 mod polytope;
 mod projection;
@@ -25,6 +26,7 @@ pub(crate) use coast::window_of;
 pub use coast::{Coast, LAND};
 pub use cpa::ClosestApproach;
 pub use ellipsoid::EllipsoidObstacle;
+pub use ellipsoid_velocities::EllipsoidVelocityObstacle;
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
 pub use projection::{
     OUTER_EXCESS_M, PathTime, PathTimeFace, PathTimeObstacle, Track, along_path, outer_faces_along,

@@ -69,7 +69,7 @@ impl Obstacle {
     }
 
     /// The velocity obstacle as convex regions of half-planes, of which it is the union; `None` for ellipses,
-    /// whose velocity obstacle is one convex region without corners.
+    /// whose velocity obstacle is one convex region without corners: [`EllipsoidObstacle::velocity_obstacle`].
     pub fn velocity_obstacles(
         &self,
         position: Vector,

@@ -1,4 +1,4 @@
-//! The velocity obstacle of a polytope as a region of velocities: paper eq. (26), formulas section 5.3.
+//! The velocity obstacle of polytopes as a region of velocities: paper eq. (26), formulas section 5.3.
 
 use super::{HalfSpace, PolytopeObstacle, SlabObstacle};
 use crate::frame::{Vector, cross, to_port, to_starboard};
@@ -73,6 +73,11 @@ impl VelocityObstacle {
                 .filter(|f| f.normal.dot(&starboard) <= 0.0 && f.normal.dot(&port) <= 0.0)
                 .map(half_plane),
         );
+        Self { half_planes }
+    }
+
+    /// The velocities within some half-planes.
+    pub(super) fn of(half_planes: Vec<HalfPlane>) -> Self {
         Self { half_planes }
     }
 

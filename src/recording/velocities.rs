@@ -10,7 +10,7 @@ use super::scene::{Scene, flat};
 use super::{PLANE, path, style};
 use crate::frame::{Vector, direction};
 use crate::geometry::ConvexPolygon;
-use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 
 /// Seconds ahead that are looked at, at most.
 const LOOK_AHEAD_S: f64 = 300.0;
@@ -18,8 +18,8 @@ const LOOK_AHEAD_S: f64 = 300.0;
 /// Radians between two points of a circle: 72 of them.
 const CIRCLE_STEP: f64 = std::f64::consts::PI / 36.0;
 
-/// Sides of the polygon that stands for an ellipse of velocities.
-const VELOCITY_SIDES: usize = 32;
+/// Of the view: how far the outline of an ellipsoid's velocity obstacle may be from it.
+const FINENESS: f64 = 1e-3;
 
 /// Metres per second, east and north, that the view shows to each side: half as much again as own ship's greatest speed.
 pub fn limit(scene: &Scene) -> f64 {
@@ -90,31 +90,35 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     rec.log_static(path(&[PLANE, "axes"]), &parts)
 }
 
-/// The closed edge of the velocity obstacle as it is at a time, own ship being where she is then, clipped to the view. Of
-/// an ellipsoid that of the sum of its section and its velocities, of slabs that of all velocities still to come.
+/// The closed edge of the velocity obstacle as it is at a time, own ship being where she is then, clipped to the view: of
+/// a polytope exact, of an ellipsoid from outside to [`FINENESS`] of the view, of slabs that of all velocities still to
+/// come.
 fn region_outline(scene: &Scene, set: &Obstacle, time: f64) -> Strip {
     let own = scene.motion.pose_at(time).position;
     let ahead = LOOK_AHEAD_S.min((scene.end - time).max(1.0));
-    let local = set_from(set, time);
-    local
-        .velocity_obstacle(own, ahead)
-        .clipped(limit(scene))
+    let limit = limit(scene);
+    let region = match set {
+        Obstacle::Polytope(o) => {
+            from(set, time, o.velocity().clone()).velocity_obstacle(own, ahead)
+        }
+        // from any of its sections on it goes on as from its first
+        Obstacle::Ellipsoid(o) => EllipsoidObstacle::new("", o.outer_section(time), *o.velocity())
+            .velocity_obstacle(own, ahead)
+            .outer_half_planes(limit, FINENESS * limit),
+        Obstacle::Slabs(o) => {
+            let to_come = o.spells().iter().filter(|s| s.until > time);
+            let velocities = hull(to_come.flat_map(|s| s.velocities.vertices().iter().copied()));
+            from(set, time, velocities).velocity_obstacle(own, ahead)
+        }
+    };
+    region
+        .clipped(limit)
         .map_or_else(Vec::new, |region| outline(&region))
 }
 
-/// The set as it is at a time and may go on, with a clock that starts then.
-fn set_from(set: &Obstacle, time: f64) -> PolytopeObstacle {
-    let velocity = match set {
-        Obstacle::Polytope(o) => o.velocity().clone(),
-        Obstacle::Ellipsoid(o) => o.velocity().outer_polygon(VELOCITY_SIDES),
-        Obstacle::Slabs(o) => hull(
-            o.spells()
-                .iter()
-                .filter(|s| s.until > time)
-                .flat_map(|s| s.velocities.vertices().iter().copied()),
-        ),
-    };
-    PolytopeObstacle::new("", set.outer_section(time), velocity)
+/// A set as it is at a time with the velocities that it has from then on, with a clock that starts then.
+fn from(set: &Obstacle, time: f64, velocities: ConvexPolygon) -> PolytopeObstacle {
+    PolytopeObstacle::new("", set.outer_section(time), velocities)
 }
 
 fn hull(points: impl Iterator<Item = Vector>) -> ConvexPolygon {

@@ -6,7 +6,7 @@ use kuva::plot::{ColorMap, ContourPlot};
 use kuva::render::plots::Plot;
 
 use super::outline::{
-    Approaching, Stroke, area, curve, mark, sampled_boundary, sampled_velocities_within, square,
+    Approaching, Stroke, area, curve, mark, outer_velocities_within, sampled_boundary, square,
 };
 use super::sections::PLAN;
 use super::{Panel, Window};
@@ -115,7 +115,7 @@ fn bands(panel: &mut Panel, targets: &[Obstacle], approach: &Approaching) {
     for level in (0..count).rev() {
         for target in targets {
             let distance = step * level as f64;
-            for set in sampled_velocities_within(target, approach, distance, limit) {
+            for set in outer_velocities_within(target, approach, distance, limit) {
                 if level > 0 {
                     let colour = ColorMap::Viridis.map((level as f64 - 0.5) / count as f64);
                     panel.plots.extend(area(&set, &colour, 1.0));

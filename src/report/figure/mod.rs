@@ -12,6 +12,7 @@ mod path_time;
 mod plan;
 mod render;
 mod sections;
+mod volume;
 mod window;
 
 pub use assessment::assessment_figure;
@@ -23,4 +24,5 @@ pub use path_time::{ProfileLine, path_time_panel};
 pub use plan::{chart_panel, path_panel, plan_figure};
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
+pub use volume::volume_panel;
 pub use window::Window;

@@ -5,13 +5,13 @@ use kuva::render::plots::Plot;
 
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, Section};
+use crate::obstacle::{Obstacle, PolytopeObstacle, Section};
 
 /// Points of an ellipse's boundary.
 const ELLIPSE_POINTS: usize = 96;
 
-/// Sections of a velocity obstacle of ellipses, as far as it is drawn.
-const SWEEP: usize = 400;
+/// Of what is drawn: how far the outline of a velocity obstacle of ellipses may be from it, a fraction of a pixel.
+const FINENESS: f64 = 5e-4;
 
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,8 +96,8 @@ pub fn area(polygon: &ConvexPolygon, colour: &str, opacity: f64) -> Option<Plot>
 
 /// The velocities that come within `distance` metres of a target, as convex polygons, drawn as far as `limit` m/s east
 /// and north; at distance 0 the velocity obstacle. Exact for polygons at distance 0, otherwise a disc of 64 sides wide,
-/// 0.1 % more; of ellipses the hull of some of the velocities `(O_t - x) / t`, an inner set to the width of a line.
-pub fn sampled_velocities_within(
+/// 0.1 % more; of ellipses from outside, to [`FINENESS`] of `limit`.
+pub fn outer_velocities_within(
     target: &Obstacle,
     approach: &Approaching,
     distance: f64,
@@ -122,7 +122,8 @@ pub fn sampled_velocities_within(
             wide.velocity_obstacles(position, horizon)
         }
         Obstacle::Ellipsoid(obstacle) => {
-            return around_ellipses(obstacle, approach, distance, limit);
+            let region = obstacle.velocities_within(position, horizon, distance);
+            vec![region.outer_half_planes(limit, FINENESS * limit)]
         }
     };
     regions.iter().filter_map(|r| r.clipped(limit)).collect()
@@ -135,39 +136,6 @@ pub struct Approaching {
     pub position: Vector,
     /// Seconds.
     pub horizon: f64,
-}
-
-fn around_ellipses(
-    obstacle: &EllipsoidObstacle,
-    approach: &Approaching,
-    distance: f64,
-    limit: f64,
-) -> Vec<ConvexPolygon> {
-    let Approaching { position, horizon } = *approach;
-    let away = obstacle.initial().signed_distance(position).distance - distance;
-    // negated on purpose: from inside, or from nowhere, every velocity meets it
-    if !(away > 0.0) {
-        return vec![square(limit)];
-    }
-    // with u = 1/t: far beyond the limit all of them lie on two rays
-    let (least, most) = (1.0 / horizon, 8.0 * limit / away);
-    let mut velocities = Vec::new();
-    if least == 0.0 {
-        velocities.extend(obstacle.velocity().sampled_boundary(ELLIPSE_POINTS));
-    }
-    for i in 0..=SWEEP {
-        let share = (i as f64 / SWEEP as f64).powi(2);
-        let u = least + (most - least).max(0.0) * share;
-        if u > 0.0 {
-            let section = obstacle.outer_section(1.0 / u);
-            let boundary = section.sampled_boundary(ELLIPSE_POINTS);
-            velocities.extend(boundary.iter().map(|p| {
-                let outward = section.signed_distance(*p).normal;
-                (p + outward * distance - position) * u
-            }));
-        }
-    }
-    ConvexPolygon::hull(&velocities).into_iter().collect()
 }
 
 fn disc(radius: f64) -> ConvexPolygon {
@@ -184,8 +152,7 @@ pub fn square(limit: f64) -> ConvexPolygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::obstacle::SlabObstacle;
-    use crate::obstacle::SpaceTimeObstacle;
+    use crate::obstacle::{EllipsoidObstacle, SlabObstacle, SpaceTimeObstacle};
     use crate::target::VelocitySpell;
 
     fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
@@ -220,7 +187,7 @@ mod tests {
                 .iter()
                 .flat_map(|t| [0.0, 25.0, 120.0].map(|d| (t, d)))
             {
-                let drawn = sampled_velocities_within(target, &approach, distance, limit);
+                let drawn = outer_velocities_within(target, &approach, distance, limit);
                 for i in 0..61 * 61 {
                     let v = Vector::new(f64::from(i % 61) - 30.0, f64::from(i / 61) - 30.0) * 0.2;
                     let nearest = target.closest_approach(position, v, horizon);

@@ -31,6 +31,8 @@ pub struct Panel {
     axes: [String; 2],
     window: Window,
     equal: bool,
+    /// A frame without numbers: what is drawn has its own axes.
+    bare: bool,
     pub(super) plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
     notes: Vec<TextAnnotation>,
@@ -53,9 +55,18 @@ impl Panel {
             axes: axes.map(str::to_owned),
             window,
             equal: false,
+            bare: false,
             plots: Vec::new(),
             legend: Vec::new(),
             notes: Vec::new(),
+        }
+    }
+
+    /// A picture with equal scales in a frame without numbers.
+    pub(super) fn picture(title: String, window: Window) -> Self {
+        Self {
+            bare: true,
+            ..Self::plan(title, ["", ""], window)
         }
     }
 
@@ -122,6 +133,7 @@ impl Panel {
             .with_body_size(11)
             .with_force_margins(left, right)
             .with_force_margins_y(top, below);
+        (layout.suppress_x_ticks, layout.suppress_y_ticks) = (self.bare, self.bare);
         layout.show_colorbar = self.plots.iter().any(|p| p.colorbar_info(false).is_some());
         // the name of the axis belongs to it, above the legend
         layout = layout.with_x_label_offset(0.0, AXIS - below - LIFT);

@@ -10,14 +10,14 @@ use crate::obstacle::{Obstacle, Section};
 pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
 
 /// The first section.
-const INITIAL: Stroke = Stroke {
+pub(super) const INITIAL: Stroke = Stroke {
     colour: "#0072b2",
     width: 2.4,
     dashed: false,
 };
 
 /// Every later one.
-const LATER: Stroke = Stroke {
+pub(super) const LATER: Stroke = Stroke {
     colour: "#009e73",
     width: 1.4,
     dashed: false,
