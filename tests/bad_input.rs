@@ -197,3 +197,38 @@ fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
         .success()
         .stdout(contains("verified"));
 }
+
+#[test]
+fn what_was_found_is_said_in_few_words() {
+    searoom(&[
+        "assess",
+        "scenarios/colregs/head-on.toml",
+        "--velocity",
+        "1e308,0",
+    ])
+    .code(2)
+    .stderr(contains("found 1e308;"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let figure = include_str!("../scenarios/paper/figure_9.toml");
+    for (change, said) in [
+        (
+            "intervals = 1.5",
+            "found 1.5; allowed: a whole number from 1 to 2000",
+        ),
+        (
+            "intervals = 50\ncontrol_weights = [0, 1, 1]",
+            "found 0; allowed: a number from 1e-24 to",
+        ),
+        (
+            "intervals = 50\nstate_weights = [1]",
+            "found 1 number; allowed: 6 numbers",
+        ),
+    ] {
+        let file = write(
+            folder.path(),
+            "words.toml",
+            &figure.replace("intervals = 50", change),
+        );
+        searoom(&["check", &file]).code(2).stderr(contains(said));
+    }
+}

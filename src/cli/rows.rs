@@ -37,7 +37,8 @@ impl Column {
         }
         match text.parse::<f64>() {
             Ok(number) if number >= self.low && number <= self.high => Ok(number),
-            Ok(number) => Err(number.to_string()),
+            // as short as it can be: 1e308 has 309 figures
+            Ok(number) => Err(format!("{number:?}").trim_end_matches(".0").to_owned()),
             Err(_) => Err(format!("the text {}", quoted(text))),
         }
     }
@@ -59,14 +60,19 @@ pub const VELOCITY: [Column; 2] = [
 /// A time.
 pub const TIME: [Column; 1] = [Column::new("t_s", 0.0, 1e6)];
 
+fn values(count: usize) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} value{plural}")
+}
+
 /// The numbers of one option, with commas between them.
 pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64; N], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     if parts.len() != N {
         let names = header(columns);
         return Err(format!(
-            "found {} values; allowed: {N}: {names}",
-            parts.len()
+            "found {}; allowed: {N}: {names}",
+            values(parts.len())
         ));
     }
     let mut row = [0.0; N];
@@ -174,7 +180,7 @@ fn rows<const N: usize>(
             continue;
         };
         if record.len() > N {
-            let found = format!("{} values", record.len());
+            let found = values(record.len());
             faults.push(fault(Some(line), "", found, &format!("{N}: {names}")));
             continue;
         }
@@ -337,6 +343,8 @@ mod tests {
         assert_eq!(option("-1, 2,3e1", &POINT), Ok([-1.0, 2.0, 30.0]));
         for (text, found) in [
             ("1,2", "found 2 values"),
+            ("1", "found 1 value;"),
+            ("1e308,0,0", "east_m: found 1e308;"),
             ("1,2,-1", "t_s: found -1"),
             ("1,,1", "north_m: found nothing"),
             ("nan,0,0", "east_m: found NaN"),

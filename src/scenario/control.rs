@@ -53,7 +53,8 @@ fn intervals(entry: &Entry) -> Option<usize> {
     if number.fract() == 0.0 {
         Some(number as usize)
     } else {
-        entry.refuse(format_args!("a whole number {}", limits::INTERVALS))
+        let Range { low, high, .. } = limits::INTERVALS;
+        entry.refuse(format_args!("a whole number from {low} to {high}"))
     }
 }
 
@@ -71,7 +72,11 @@ fn weights<const N: usize>(
     match <[f64; N]>::try_from(numbers) {
         Ok(weights) => Some(Some(weights)),
         Err(_) => {
-            entry.fault(format_args!("{count} numbers"), format_args!("{N} numbers"));
+            let plural = if count == 1 { "" } else { "s" };
+            entry.fault(
+                format_args!("{count} number{plural}"),
+                format_args!("{N} numbers"),
+            );
             None
         }
     }

@@ -20,6 +20,9 @@ pub(super) const TEXT: &str = "a text of 1 to 200 characters on one line";
 /// Characters of a text.
 const TEXT_CHARS: usize = 200;
 
+/// Limits nearer to zero are written with a power of ten.
+const SHORT: f64 = 1e-9;
+
 /// Which numbers are allowed. A NaN never is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Range {
@@ -57,7 +60,14 @@ impl Range {
 impl Display for Range {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let zero = if self.or_zero { "0, or " } else { "" };
-        write!(f, "{zero}a number from {} to {}", self.low, self.high)
+        write!(f, "{zero}a number from ")?;
+        // a long row of zeros is no figure
+        if self.low != 0.0 && self.low.abs() < SHORT {
+            write!(f, "{:e}", self.low)?;
+        } else {
+            write!(f, "{}", self.low)?;
+        }
+        write!(f, " to {}", self.high)
     }
 }
 
