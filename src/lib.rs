@@ -67,6 +67,7 @@
 //! | [`verification`] | checks a plan document alone, without scenario and planner |
 //! | [`scenario`] | scenario files: every fault of a file at once |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
+//! | [`comparison`] | every planner that applies and two baselines, on the same scenario |
 //! | [`simulation`] | random encounters, and targets that do anything their sets allow |
 //! | [`report`] | tables, JSON documents and figures |
 //! | `recording` | Rerun recordings (feature `recording`, on by default) |
@@ -122,6 +123,7 @@
 
 pub mod assessment;
 pub mod colregs;
+pub mod comparison;
 pub mod evaluation;
 pub mod frame;
 pub mod geometry;

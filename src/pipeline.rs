@@ -102,6 +102,18 @@ impl Run {
     pub fn whole_sets(&self) -> impl Iterator<Item = &Obstacle> {
         self.sets.iter().map(|sets| sets.either(self.shaped))
     }
+
+    /// Why there is no plan, or none that was finished; `None` with a plan.
+    pub fn reason(&self) -> Option<String> {
+        match &self.planned.outcome {
+            Outcome::Infeasible(reason) => Some(reason.to_string()),
+            Outcome::Deadline(_) => Some(format!(
+                "the budget of {} s ran out",
+                self.scenario.deadline
+            )),
+            Outcome::Solved(_) => None,
+        }
+    }
 }
 
 /// The sets and the encounter of every target, in the scenario's order.
@@ -345,7 +357,7 @@ pub fn run(scenario: Scenario) -> Run {
 
 /// The largest risk along a trajectory. One that is nowhere deeper than [`tolerance::DEPTH_M`] in the set, which may
 /// touch it, is at none: a set without spread is at risk 1 on its very boundary.
-fn peak_risk(set: &Obstacle, trajectory: &Trajectory) -> PeakRisk {
+pub fn peak_risk(set: &Obstacle, trajectory: &Trajectory) -> PeakRisk {
     let enters = |s| set.first_contact(s, tolerance::DEPTH_M).is_some();
     // a motion under forces is looked at instant by instant, there the depth is asked for
     if trajectory.steered().is_some() || trajectory.segments().iter().any(enters) {
@@ -377,6 +389,31 @@ fn risks_taken(sets: &[TargetSets], risks: &[PeakRisk]) -> Vec<Relaxation> {
 
 /// The independent judgement of a trajectory against the obstacles that it was planned against.
 pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajectory) -> Evaluation {
+    let mut paths = vec![scenario.desired.waypoints()];
+    paths.extend_from_slice(&scenario.alternatives);
+    let freedom = match scenario.planner {
+        PlannerKind::SpaceTime | PlannerKind::OptimalControl => Freedom::Limits,
+        PlannerKind::PathTime => Freedom::Paths(&paths),
+    };
+    judged(scenario, obstacles, trajectory, freedom)
+}
+
+/// The same for what is no plan: its start, every set, every hull, the land and the figures, whatever own ship's limits are and
+/// whether it arrives or not.
+pub fn judge_free(
+    scenario: &Scenario,
+    obstacles: &[Obstacle],
+    trajectory: &Trajectory,
+) -> Evaluation {
+    judged(scenario, obstacles, trajectory, Freedom::Any)
+}
+
+fn judged(
+    scenario: &Scenario,
+    obstacles: &[Obstacle],
+    trajectory: &Trajectory,
+    freedom: Freedom,
+) -> Evaluation {
     let shape = |o: &Obstacle| match o {
         Obstacle::Polytope(o) => SetShape::Polygons {
             initial: o.initial().clone(),
@@ -401,13 +438,8 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
             shape: shape(o),
         })
         .collect();
-    let mut paths = vec![scenario.desired.waypoints()];
-    paths.extend_from_slice(&scenario.alternatives);
     let request = Request {
-        freedom: match scenario.planner {
-            PlannerKind::SpaceTime | PlannerKind::OptimalControl => Freedom::Limits,
-            PlannerKind::PathTime => Freedom::Paths(&paths),
-        },
+        freedom,
         segments: trajectory.segments(),
         own: &scenario.own_ship,
         desired: &scenario.desired,

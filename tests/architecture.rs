@@ -118,6 +118,23 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "comparison",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "trajectory",
+            "vessel",
+            "target",
+            "obstacle",
+            "assessment",
+            "planner",
+            "evaluation",
+            "scenario",
+            "pipeline",
+        ],
+    ),
+    (
         "simulation",
         &[
             "frame",
@@ -154,6 +171,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "verification",
             "scenario",
             "pipeline",
+            "comparison",
             "simulation",
         ],
     ),

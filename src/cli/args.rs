@@ -30,6 +30,8 @@ pub enum Command {
     Plan(PlanArgs),
     /// Runs every scenario below the paths: one row each, a summary, one exit status
     Suite(SuiteArgs),
+    /// Every planner that applies and two baselines on the same scenarios, side by side
+    Compare(CompareArgs),
     /// Checks plan documents again from themselves alone, with code that shares nothing with the planners
     Verify(VerifyArgs),
 }
@@ -91,6 +93,34 @@ pub struct SuiteArgs {
     /// Write one plan document per scenario into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// Scenario files, or folders of them
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub paths: Vec<PathBuf>,
+    /// Only this planner, beside the baselines: space-time, path-time, optimal-control
+    #[arg(long, value_name = "KIND", value_parser = planner)]
+    pub planner: Option<PlannerKind>,
+    /// Only this search: a-star, dijkstra
+    #[arg(long, value_name = "KIND", value_parser = search)]
+    pub search: Option<SearchKind>,
+    /// Compliance instead of the scenario's: none (hulls only), shape (domains)
+    #[arg(long, value_name = "C", value_parser = compliance)]
+    pub compliance: Option<Compliance>,
+    /// Risks that may be accepted instead of the scenario's, each 0 to below 1: several are a sweep
+    #[arg(long, value_name = "R,R,..", value_parser = max_risk, value_delimiter = ',')]
+    pub max_risk: Vec<f64>,
+    /// Write the rows as CSV
+    #[arg(long, value_name = "FILE.csv")]
+    pub csv: Option<PathBuf>,
+    /// Draw ways, distances, and in a sweep cost over risk: a file ending in .svg or .png
+    #[arg(long, value_name = "PATH")]
+    pub figure: Option<PathBuf>,
+    /// Print one JSON document instead of tables
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,7 @@
 mod args;
 mod assess;
 mod check;
+mod compare;
 mod figure;
 mod files;
 mod output;
@@ -35,6 +36,7 @@ pub fn main() -> ExitCode {
         Command::Assess(args) => assess::assess(args, &output),
         Command::Plan(args) => plan::plan(args, &output),
         Command::Suite(args) => suite::suite(args, &output),
+        Command::Compare(args) => compare::compare(args, &output),
         Command::Verify(args) => verify::verify(args, &output),
     };
     let status = runner::guarded(run).unwrap_or_else(|fault| {

@@ -103,6 +103,9 @@ pub enum Freedom<'a> {
     /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest, turning on the spot where she
     /// moves off along another leg.
     Paths(&'a [Vec<Vector>]),
+    /// Anywhere at any speed and radius, on any course from the start on, and nowhere in particular: what is no plan, to be compared
+    /// with plans.
+    Any,
 }
 
 /// What is to be judged, and by what.

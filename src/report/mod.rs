@@ -1,7 +1,9 @@
 //! What people and other programs read of a [`Run`](crate::pipeline::Run): tables, verdicts, JSON
 //! documents. Nautical at this border: degrees clockwise, starboard positive, every unit in its name.
 
+mod alteration;
 mod assessment;
+mod comparison;
 pub mod document;
 pub mod figure;
 mod summary;
@@ -11,6 +13,7 @@ mod words;
 mod write;
 
 pub use assessment::assessment_text;
+pub use comparison::{COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_table};
 pub use summary::{Meeting, Summary, Turn, Verdict};
 pub use table::{Row, plan_text, suite_table};
 pub use verification::verification_text;

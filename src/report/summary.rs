@@ -8,7 +8,7 @@ use crate::target::{ShipTrack, Target};
 use crate::trajectory::{Steered, Trajectory};
 
 /// Degrees. A smaller alteration is no turn: nobody would see it.
-const LEAST_TURN_DEG: f64 = 0.5;
+pub(super) const LEAST_TURN_DEG: f64 = 0.5;
 
 /// Seconds between the positions among which the crossing of a track is looked for.
 const CROSSING_STEP: f64 = 1.0;

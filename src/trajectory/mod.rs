@@ -53,6 +53,21 @@ pub struct Trajectory {
     steered: Option<Steered>,
 }
 
+impl From<Segment> for Trajectory {
+    /// One segment alone; a duration or a speed that is not a number, or negative, becomes 0.
+    fn from(segment: Segment) -> Self {
+        let segment = Segment {
+            duration: segment.duration.max(0.0),
+            speed: segment.speed.max(0.0),
+            ..segment
+        };
+        Self {
+            segments: vec![segment],
+            steered: None,
+        }
+    }
+}
+
 impl From<Steered> for Trajectory {
     fn from(motion: Steered) -> Self {
         Self {

@@ -172,9 +172,14 @@ fn profile(claim: &Claim) -> Option<Violation> {
         let way = |s: &Segment| s.speed * (time - s.start_time).clamp(0.0, s.duration);
         segments.iter().map(way).sum()
     };
-    let Some([begin, _]) = profile.first() else {
+    let Some([begin, at]) = profile.first() else {
         return Some(untrue("path_time.profile", "nothing", "that of a motion"));
     };
+    let start = segments.first().map_or(f64::NAN, |s| s.start_time);
+    if !near(*at, start) {
+        let said = format!("a start at {at} s");
+        return Some(untrue("path_time.profile", said, format!("{start} s")));
+    }
     let wrong = profile.iter().find(|[s, t]| !near(*s - begin, sailed(*t)));
     if let Some([s, t]) = wrong {
         let so = begin + sailed(*t);

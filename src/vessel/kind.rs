@@ -5,6 +5,9 @@ use super::{CyberShip2, ForceVector, FroudeScaled, Manoeuvring};
 /// Her length over that of the model she was named after.
 pub const FULL_SCALE: f64 = 70.0;
 
+/// Metres, of CyberShip II.
+const MODEL_LENGTH: f64 = 1.255;
+
 /// A ship that can be planned for by her forces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VesselKind {
@@ -23,6 +26,14 @@ impl VesselKind {
         match self {
             Self::CyberShip2 => "cybership2",
             Self::CyberShip2Full => "cybership2-full",
+        }
+    }
+
+    /// Metres.
+    pub fn length(self) -> f64 {
+        match self {
+            Self::CyberShip2 => MODEL_LENGTH,
+            Self::CyberShip2Full => MODEL_LENGTH * FULL_SCALE,
         }
     }
 

@@ -3,6 +3,7 @@
 //! A number that is not finite is written as null. Keys of what does not exist yet are absent.
 
 mod assessment;
+mod comparison;
 mod control;
 mod parts;
 mod path_time;
@@ -12,6 +13,10 @@ mod targets;
 mod verification;
 
 pub use assessment::*;
+pub use comparison::{
+    ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
+    TrackPointDocument,
+};
 pub use control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };

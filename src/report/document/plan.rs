@@ -11,11 +11,12 @@ use super::parts::{
 };
 use super::path_time::{PathTimeDocument, path_time_document};
 use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
+use crate::evaluation::Evaluation;
 use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run};
-use crate::planner::{Objective, Outcome, Plan};
+use crate::planner::{Objective, Plan};
 use crate::report::summary::Verdict;
 use crate::report::words;
 use crate::tolerance;
@@ -99,13 +100,7 @@ impl PlanDocument {
             mission: mission(run),
             land: run.land.iter().map(vertices).collect(),
             outcome: verdict.word().to_owned(),
-            reason: match &run.planned.outcome {
-                Outcome::Infeasible(reason) => Some(reason.to_string()),
-                Outcome::Deadline(_) => {
-                    Some(format!("the budget of {} s ran out", scenario.deadline))
-                }
-                Outcome::Solved(_) => None,
-            },
+            reason: run.reason(),
             relaxation: match verdict {
                 Verdict::Relaxed => relaxations.first().cloned(),
                 _ => None,
@@ -122,11 +117,7 @@ impl PlanDocument {
                 })
                 .collect(),
             cost: cost(run),
-            search_stats: SearchStatsDocument {
-                expanded: run.planned.stats.expanded,
-                generated: run.planned.stats.generated,
-                edges_checked: run.planned.stats.edges_checked,
-            },
+            search_stats: stats(run),
             timing: timing(run),
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
             targets: scenario.targets.iter().map(target).collect(),
@@ -156,7 +147,7 @@ pub(super) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value + 0.0)
 }
 
-fn position(p: Vector) -> PositionDocument {
+pub(super) fn position(p: Vector) -> PositionDocument {
     PositionDocument {
         east_m: p.x + 0.0,
         north_m: p.y + 0.0,
@@ -220,18 +211,41 @@ fn mission(run: &Run) -> MissionDocument {
 
 pub(super) fn cost(run: &Run) -> Option<CostDocument> {
     let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
-    Some(CostDocument {
-        objective: plan.cost,
+    Some(cost_of(
+        evaluation,
+        plan.cost,
+        run.control.is_none(),
+        &run.risks,
+    ))
+}
+
+/// Of any motion.
+pub(super) fn cost_of(
+    evaluation: &Evaluation,
+    objective: f64,
+    arrived: bool,
+    risks: &[PeakRisk],
+) -> CostDocument {
+    CostDocument {
+        objective,
         space_time_error_m2: evaluation.space_time_error,
         space_time_error_arc_length_m2: evaluation.arc_length_error,
-        arrived: run.control.is_none(),
+        arrived,
         duration_s: evaluation.duration,
         length_m: evaluation.length,
         delay_s: finite(evaluation.delay),
-        max_risk: run.risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
+        max_risk: risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
         min_land_distance_m: finite(evaluation.min_land_distance),
-    })
+    }
+}
+
+pub(super) fn stats(run: &Run) -> SearchStatsDocument {
+    SearchStatsDocument {
+        expanded: run.planned.stats.expanded,
+        generated: run.planned.stats.generated,
+        edges_checked: run.planned.stats.edges_checked,
+    }
 }
 
 fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {

@@ -4,6 +4,7 @@
 //! with the value, so it survives print in grey.
 
 mod assessment;
+mod comparison;
 mod field;
 mod motion;
 mod outline;
@@ -16,6 +17,7 @@ mod volume;
 mod window;
 
 pub use assessment::assessment_figure;
+pub use comparison::comparison_figure;
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};
 pub use motion::moments_figure;
 pub use outline::Stroke;

@@ -14,7 +14,7 @@ use crate::report::words;
 use crate::scenario::Land;
 
 /// The desired trajectory.
-const DESIRED: Stroke = Stroke {
+pub(super) const DESIRED: Stroke = Stroke {
     colour: "#777777",
     width: 1.4,
     dashed: true,
@@ -35,7 +35,7 @@ const ALTERNATIVE: Stroke = Stroke {
 };
 
 /// Of land.
-const LAND: &str = "#d9cba3";
+pub(super) const LAND: &str = "#d9cba3";
 
 /// Instants at which the sets are drawn, the start among them.
 const MOMENTS: usize = 4;
@@ -163,7 +163,7 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
 }
 
 /// The land within a window, filled, piece by piece.
-fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
+pub(super) fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
     let window = geometry::Window {
         low: shown.low,
         high: shown.high,

@@ -1,0 +1,252 @@
+//! `searoom compare`: every planner that applies and two baselines, side by side.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use rayon::prelude::*;
+use searoom::comparison::{Contender, Entry, Inapplicable, Method, Sailed, contenders, methods};
+use searoom::report::document::{ComparisonDocument, ScenarioComparisonDocument};
+use searoom::report::figure::comparison_figure;
+use searoom::report::{
+    COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_table, write_atomically,
+};
+use searoom::scenario::{Scenario, ScenarioError};
+
+use super::args::CompareArgs;
+use super::figure;
+use super::files;
+use super::output::Output;
+use super::runner::guarded;
+use super::status::Status;
+
+/// A scenario and who is to sail it, or why it is none.
+struct Asked {
+    file: String,
+    scenario: Result<Scenario, String>,
+    contenders: Vec<Contender>,
+    inapplicable: Vec<Inapplicable>,
+}
+
+/// A scenario with its entries, or with the faults of the program that came instead.
+struct Compared {
+    asked: Asked,
+    entries: Vec<Entry>,
+    faults: Vec<String>,
+}
+
+/// Compares every scenario. Contenders of all of them run at the same time, and are shown in a fixed order.
+pub fn compare(args: &CompareArgs, output: &Output) -> Status {
+    // before anything is computed
+    if let Some(path) = &args.figure
+        && let Err(error) = figure::prepare(path)
+    {
+        output.error(&format_args!("{error:#}"));
+        return Status::BadInput;
+    }
+    let asked: Vec<Asked> = files::find(&args.paths)
+        .into_iter()
+        .map(|found| match found {
+            Ok(found) => ask(&found.file, args),
+            Err((path, error)) => Asked::refused(path.display().to_string(), format!("{error:#}")),
+        })
+        .collect();
+    let compared = run(asked, output);
+    let mut status = Status::Good;
+    for c in &compared {
+        for error in c.asked.scenario.as_ref().err().into_iter().chain(&c.faults) {
+            output.error(error);
+        }
+        status = status.max(c.status());
+    }
+    let written = write(args, &compared).unwrap_or_else(|error| {
+        output.error(&format_args!("{error:#}"));
+        Status::BadInput
+    });
+    status.max(written).max(show(args, &compared, output))
+}
+
+impl Asked {
+    fn refused(file: String, error: String) -> Self {
+        Self {
+            file,
+            scenario: Err(error),
+            contenders: Vec::new(),
+            inapplicable: Vec::new(),
+        }
+    }
+}
+
+fn ask(file: &Path, args: &CompareArgs) -> Asked {
+    let name = file.display().to_string();
+    let read = guarded(|| Scenario::read(file));
+    let mut scenario = match read {
+        Ok(Ok(scenario)) => scenario,
+        Ok(Err(error)) => return Asked::refused(name, sentence(&error)),
+        Err(fault) => return Asked::refused(name.clone(), format!("{name}: {fault}")),
+    };
+    if let Some(compliance) = args.compliance {
+        scenario.compliance = compliance;
+    }
+    let risks = if args.max_risk.is_empty() {
+        vec![scenario.max_risk]
+    } else {
+        args.max_risk.clone()
+    };
+    let mut found = methods(&scenario);
+    found.methods.retain(|method| is_wanted(method, args));
+    found
+        .inapplicable
+        .retain(|other| is_wanted(&other.method, args));
+    Asked {
+        file: name,
+        contenders: contenders(&found.methods, &risks),
+        inapplicable: found.inapplicable,
+        scenario: Ok(scenario),
+    }
+}
+
+fn sentence(error: &ScenarioError) -> String {
+    error.to_string()
+}
+
+fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
+    match method {
+        Method::Planner { kind, search, .. } => {
+            args.planner.is_none_or(|k| k == *kind) && args.search.is_none_or(|s| s == *search)
+        }
+        Method::HoldCourse | Method::ConstantVelocity => true,
+    }
+}
+
+/// Runs all contenders of all scenarios at once.
+fn run(asked: Vec<Asked>, output: &Output) -> Vec<Compared> {
+    let jobs: Vec<(usize, &Scenario, Contender)> = asked
+        .iter()
+        .enumerate()
+        .filter_map(|(index, a)| Some((index, a.scenario.as_ref().ok()?, &a.contenders)))
+        .flat_map(|(index, scenario, all)| all.iter().map(move |c| (index, scenario, *c)))
+        .collect();
+    let bar = output.progress(jobs.len());
+    let results: Vec<(usize, Result<Entry, String>)> = jobs
+        .into_par_iter()
+        .map(|(index, scenario, contender)| {
+            let entry = guarded(|| contender.run(scenario))
+                .map_err(|fault| format!("{}, {}: {fault}", asked[index].file, contender.method));
+            bar.inc(1);
+            (index, entry)
+        })
+        .collect();
+    bar.finish_and_clear();
+    let mut compared: Vec<Compared> = asked
+        .into_iter()
+        .map(|asked| Compared {
+            asked,
+            entries: Vec::new(),
+            faults: Vec::new(),
+        })
+        .collect();
+    for (index, result) in results {
+        match result {
+            Ok(entry) => compared[index].entries.push(entry),
+            Err(fault) => compared[index].faults.push(fault),
+        }
+    }
+    compared
+}
+
+impl Compared {
+    fn rows(&self) -> Vec<ComparisonRow> {
+        let Ok(scenario) = &self.asked.scenario else {
+            return Vec::new();
+        };
+        let row = |entry| ComparisonRow::of(scenario, entry);
+        self.entries.iter().map(row).collect()
+    }
+
+    /// Good when some planner has a plan that is clear; a plan that fails its check is a fault of the program.
+    fn status(&self) -> Status {
+        if self.asked.scenario.is_err() {
+            return Status::BadInput;
+        }
+        if !self.faults.is_empty() {
+            return Status::InternalFault;
+        }
+        let of_planners: Vec<Status> = self
+            .entries
+            .iter()
+            .filter_map(|entry| match &entry.result {
+                Sailed::Planned(run) => Some(Status::of(run)),
+                Sailed::Baseline(_) | Sailed::Nothing(_) => None,
+            })
+            .collect();
+        if of_planners.contains(&Status::InternalFault) {
+            Status::InternalFault
+        } else {
+            of_planners.into_iter().min().unwrap_or(Status::NoPlan)
+        }
+    }
+}
+
+/// Writes what was asked for.
+fn write(args: &CompareArgs, compared: &[Compared]) -> anyhow::Result<Status> {
+    if let Some(file) = &args.csv {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(COMPARISON_COLUMNS)?;
+        for c in compared {
+            let title = c.asked.scenario.as_ref().map_or("", |s| s.title.as_str());
+            for row in c.rows() {
+                writer.write_record(comparison_csv(&c.asked.file, title, &row))?;
+            }
+        }
+        let bytes = writer.into_inner().context("the rows cannot be written")?;
+        // the message names its cause already
+        write_atomically(file, &bytes).map_err(|error| anyhow!("{error}"))?;
+    }
+    if let Some(file) = &args.figure {
+        let drawn: Vec<(&Scenario, &[Entry])> = compared
+            .iter()
+            .filter_map(|c| Some((c.asked.scenario.as_ref().ok()?, c.entries.as_slice())))
+            .collect();
+        if !drawn.is_empty() {
+            comparison_figure(&drawn)
+                .write(file)
+                .map_err(|error| anyhow!("{error}"))?;
+        }
+    }
+    Ok(Status::Good)
+}
+
+fn show(args: &CompareArgs, compared: &[Compared], output: &Output) -> Status {
+    if args.json {
+        let comparisons = compared.iter().map(|c| match &c.asked.scenario {
+            Ok(scenario) => ScenarioComparisonDocument::of(
+                c.asked.file.clone(),
+                &scenario.title,
+                &c.entries,
+                &c.rows(),
+                &c.asked.inapplicable,
+            ),
+            Err(error) => ScenarioComparisonDocument::failed(c.asked.file.clone(), error.clone()),
+        });
+        return output.document(&ComparisonDocument {
+            comparisons: comparisons.collect(),
+        });
+    }
+    let tables: Vec<String> = compared
+        .iter()
+        .filter_map(|c| {
+            let title = &c.asked.scenario.as_ref().ok()?.title;
+            let rows = c.rows();
+            Some(comparison_table(
+                title,
+                &rows,
+                &c.asked.inapplicable,
+                output.colour,
+            ))
+        })
+        .collect();
+    if tables.is_empty() {
+        return Status::Good;
+    }
+    output.result(&tables.join("\n\n"))
+}

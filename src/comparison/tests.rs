@@ -1,0 +1,171 @@
+//! Baselines against what can be said of them without a search; contenders against single runs.
+
+use std::path::Path;
+
+use super::*;
+use crate::frame::{Side, wrap};
+use crate::obstacle::SpaceTimeObstacle;
+use crate::planner::SearchKind;
+use crate::target::Representation;
+
+fn scenario(name: &str) -> Scenario {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/{name}.toml"));
+    Scenario::read(&file).expect(name)
+}
+
+#[test]
+fn holding_course_arrives_where_the_course_leads_and_meets_the_target() {
+    let scenario = scenario("colregs/head-on");
+    let held = hold_course(&scenario);
+    assert!(held.arrived);
+    assert!((held.evaluation.duration - 300.0).abs() < 1e-9);
+    assert!(held.evaluation.space_time_error < 1e-9);
+    assert!(!held.evaluation.verified());
+    assert_eq!(held.risks[0].risk, 1.0);
+    let mut aside = scenario;
+    aside.own_ship.pose.heading += 0.2;
+    let held = hold_course(&aside);
+    assert!(!held.arrived && held.evaluation.duration == 400.0);
+    assert!(held.evaluation.space_time_error > 1e3);
+}
+
+/// On the edge of the velocity obstacle: clear, and not a hair nearer to own course.
+#[test]
+fn the_constant_velocity_is_clear_and_any_less_alteration_is_not() {
+    for name in [
+        "colregs/head-on",
+        "colregs/overtaking",
+        "uncertainty/turning",
+    ] {
+        let scenario = scenario(name);
+        let found = constant_velocity(&scenario).expect("one");
+        assert!(
+            found.evaluation.verified(),
+            "{name}: {:?}",
+            found.evaluation.violations
+        );
+        let segment = found.trajectory.segments()[0];
+        let own = &scenario.own_ship;
+        let turn = wrap(segment.start.heading - own.pose.heading);
+        assert!(turn.abs() > 0.05, "{name}");
+        // no grid of velocities has a better one
+        let start = own.pose.position;
+        for k in 0..720 {
+            for &speed in &own.speeds {
+                let heading = own.pose.heading + f64::from(k) * std::f64::consts::TAU / 720.0;
+                let velocity = crate::frame::direction(heading) * speed;
+                let horizon = scenario.horizon;
+                let meets = (found.obstacles.iter())
+                    .any(|o| o.in_velocity_obstacle(start, velocity, horizon));
+                let sets = baseline::Sets::of(&scenario);
+                let cost = || {
+                    baseline::baseline(&scenario, &sets, heading, speed)
+                        .evaluation
+                        .space_time_error
+                };
+                assert!(
+                    meets || cost() >= found.evaluation.space_time_error - 1e-6,
+                    "{name} {heading} {speed}"
+                );
+            }
+        }
+        let less = Side::of_turn(turn).map_or(0.0, Side::turn_sign) * 1e-6;
+        let velocity = crate::frame::direction(segment.start.heading - less) * segment.speed;
+        assert!(
+            (found.obstacles.iter()).any(|o| o.in_velocity_obstacle(
+                start,
+                velocity,
+                scenario.horizon
+            )),
+            "{name}"
+        );
+    }
+    let mut inside = scenario("colregs/head-on");
+    let ship = inside.targets[0].clone();
+    let crate::target::Motion::Ship(mut track) = ship.motion.clone() else {
+        panic!("a ship");
+    };
+    track.pose.position = inside.own_ship.pose.position;
+    inside.targets[0].motion = crate::target::Motion::Ship(track);
+    assert!(constant_velocity(&inside).is_none());
+}
+
+#[test]
+fn what_applies_depends_on_targets_start_land_and_ship() {
+    let names = |s: &Scenario| -> Vec<String> {
+        methods(s).methods.iter().map(ToString::to_string).collect()
+    };
+    let ships = scenario("colregs/head-on");
+    assert_eq!(
+        names(&ships),
+        [
+            "space-time, A*",
+            "space-time, Dijkstra",
+            "space-time, A*, ellipsoids",
+            "space-time, Dijkstra, ellipsoids",
+            "path-time",
+            "path-time, ellipsoids",
+            "hold course",
+            "constant velocity"
+        ]
+    );
+    let reason = &methods(&ships).inapplicable[0].reason;
+    assert!(
+        reason.contains("30 m long") && reason.contains("1.255 m"),
+        "{reason}"
+    );
+    let mut off = ships.clone();
+    off.own_ship.pose.position.y = 3.0;
+    assert!(!names(&off).iter().any(|n| n.starts_with("path-time")));
+    // ellipses and several velocity sets leave no choice
+    assert_eq!(names(&scenario("uncertainty/spells")).len(), 5);
+    assert!(names(&scenario("paper/figure_9")).contains(&"optimal control".to_owned()));
+    let land = methods(&scenario("harbour/munkholmen"));
+    let other = land
+        .inapplicable
+        .iter()
+        .find(|o| o.method.to_string() == "optimal control");
+    assert!(other.is_some_and(|o| o.reason.starts_with("map:")));
+}
+
+#[test]
+fn a_contender_is_what_a_run_of_its_own_is() {
+    let scenario = scenario("colregs/give-way");
+    let risks = [0.0, 0.3];
+    let entries = compare(&scenario, &risks);
+    assert_eq!(entries.len(), 7 * 2 + 1);
+    let method = Method::Planner {
+        kind: PlannerKind::SpaceTime,
+        search: SearchKind::Dijkstra,
+        representation: Some(Representation::Ellipsoid),
+    };
+    let entry = entries
+        .iter()
+        .find(|e| {
+            e.contender
+                == Contender {
+                    method,
+                    max_risk: 0.3,
+                }
+        })
+        .expect("there");
+    let mut alone = scenario.clone();
+    alone.search = SearchKind::Dijkstra;
+    alone.targets[0].representation = Representation::Ellipsoid;
+    alone.max_risk = 0.3;
+    let alone = pipeline::run(alone);
+    assert_eq!(
+        entry.trajectory(),
+        alone.planned.outcome.plan().map(|p| &p.trajectory)
+    );
+    assert!(entry.arrived() && entry.evaluation().is_some_and(|e| e.verified()));
+    // an accepted risk is never dearer
+    for pair in entries.chunks(2).take(6) {
+        let cost = |e: &Entry| e.evaluation().map_or(f64::INFINITY, |e| e.space_time_error);
+        assert!(
+            cost(&pair[1]) <= cost(&pair[0]) * 1.001,
+            "{}",
+            pair[0].contender.method
+        );
+    }
+}

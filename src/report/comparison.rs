@@ -1,0 +1,245 @@
+//! Contenders side by side for the eye, and as rows of a CSV file.
+
+use comfy_table::{Cell, Color};
+
+use super::alteration::largest_alteration;
+use super::summary::{Turn, Verdict};
+use super::table::{figures, metres, signed, square_metres};
+use crate::comparison::{Entry, Inapplicable, Method, Sailed};
+use crate::frame::Side;
+use crate::scenario::Scenario;
+
+/// Units below the names, so that the table fits a terminal.
+const HEADER: [&str; 13] = [
+    "method",
+    "outcome",
+    "J\n[m²]",
+    "arc J\n[m²]",
+    "duration\n[s]",
+    "delay\n[s]",
+    "length\n[m]",
+    "clearance\n[m]",
+    "risk",
+    "largest\nturn",
+    "nodes\nexpanded",
+    "time\n[ms]",
+    "verified",
+];
+
+/// Between the outcome and the accepted risk in a sweep.
+const ACCEPTED: &str = "accepted\nrisk";
+
+/// One contender in a few figures. Figures of the motion are `None` without one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparisonRow {
+    /// Who.
+    pub method: Method,
+    /// The risk that was accepted.
+    pub max_risk: f64,
+    /// How it ended, in the contract's word; of a baseline `"clear"`, `"collides"` or `"infeasible"`.
+    pub outcome: &'static str,
+    /// Why there is no motion.
+    pub reason: Option<String>,
+    /// True when it ends at the last waypoint.
+    pub arrived: bool,
+    /// What the independent check found: of a baseline sets, hulls and land alone. `None` without a motion.
+    pub verified: Option<bool>,
+    /// Space-time error, m².
+    pub space_time_error: Option<f64>,
+    /// Eq. (30) read literally, m².
+    pub arc_length_error: Option<f64>,
+    /// Seconds.
+    pub duration: Option<f64>,
+    /// Arrival minus desired end, seconds; `None` also where it does not arrive.
+    pub delay: Option<f64>,
+    /// Metres.
+    pub length: Option<f64>,
+    /// Least distance to any hull that a target may have, metres; `None` also without targets.
+    pub clearance: Option<f64>,
+    /// The largest risk along the motion; `None` also without targets.
+    pub largest_risk: Option<f64>,
+    /// The largest alteration to one side; `None` also without any.
+    pub largest_turn: Option<Turn>,
+    /// Nodes expanded; `None` for a baseline.
+    pub expanded: Option<usize>,
+    /// Wall-clock milliseconds of planning, with others at the same time; `None` for a baseline.
+    pub milliseconds: Option<f64>,
+}
+
+impl ComparisonRow {
+    /// The figures of an entry.
+    pub fn of(scenario: &Scenario, entry: &Entry) -> Self {
+        let evaluation = entry.evaluation();
+        let finite = |value: f64| value.is_finite().then_some(value);
+        let verified = evaluation.map(|e| e.verified());
+        let run = match &entry.result {
+            Sailed::Planned(run) => Some(run),
+            Sailed::Baseline(_) | Sailed::Nothing(_) => None,
+        };
+        Self {
+            method: entry.contender.method,
+            max_risk: entry.contender.max_risk,
+            outcome: match &entry.result {
+                Sailed::Planned(run) => Verdict::of(run).word(),
+                Sailed::Baseline(_) if verified == Some(true) => "clear",
+                Sailed::Baseline(_) => "collides",
+                Sailed::Nothing(_) => Verdict::Infeasible.word(),
+            },
+            reason: match &entry.result {
+                Sailed::Planned(run) => run.reason(),
+                Sailed::Baseline(_) => None,
+                Sailed::Nothing(reason) => Some((*reason).to_owned()),
+            },
+            arrived: entry.arrived(),
+            verified,
+            space_time_error: evaluation.and_then(|e| finite(e.space_time_error)),
+            arc_length_error: evaluation.and_then(|e| finite(e.arc_length_error)),
+            duration: evaluation.and_then(|e| finite(e.duration)),
+            delay: (evaluation.filter(|_| entry.arrived())).and_then(|e| finite(e.delay)),
+            length: evaluation.and_then(|e| finite(e.length)),
+            clearance: evaluation.and_then(|e| finite(e.min_clearance)),
+            largest_risk: (entry.risks().iter())
+                .map(|peak| peak.risk)
+                .max_by(f64::total_cmp),
+            largest_turn: entry
+                .trajectory()
+                .and_then(|t| largest_alteration(t, scenario.own_ship.pose.heading)),
+            expanded: run.map(|run| run.planned.stats.expanded),
+            milliseconds: run.map(|run| run.plan_time.as_secs_f64() * 1e3),
+        }
+    }
+
+    fn is_planned(&self) -> bool {
+        self.expanded.is_some()
+    }
+}
+
+/// The table of one scenario, and what does not apply. Colour only when `colour`.
+pub fn comparison_table(
+    title: &str,
+    rows: &[ComparisonRow],
+    inapplicable: &[Inapplicable],
+    colour: bool,
+) -> String {
+    let sweep = rows.iter().any(|row| row.max_risk != rows[0].max_risk);
+    let mut header = HEADER.to_vec();
+    if sweep {
+        header.insert(2, ACCEPTED);
+    }
+    let last = header.len() - 1;
+    let mut table = figures(&header, 2..last, colour);
+    for row in rows {
+        let mut cells = cells(row);
+        if sweep {
+            cells.insert(2, Cell::new(row.max_risk));
+        }
+        table.add_row(cells);
+    }
+    let mut lines = vec![title.to_owned(), table.trim_fmt()];
+    let mut told: Vec<Method> = Vec::new();
+    for row in rows {
+        let Some(reason) = row.reason.as_ref().filter(|_| !told.contains(&row.method)) else {
+            continue;
+        };
+        told.push(row.method);
+        let alike = |r: &&ComparisonRow| r.method == row.method && r.reason.is_some();
+        let further = match rows.iter().filter(alike).count() - 1 {
+            0 => String::new(),
+            n => format!(" (at risk {}; none at {n} more)", row.max_risk),
+        };
+        lines.push(format!("{}{further}: {reason}", row.method));
+    }
+    for other in inapplicable {
+        lines.push(format!("{} does not apply: {}", other.method, other.reason));
+    }
+    lines.join("\n")
+}
+
+fn cells(row: &ComparisonRow) -> Vec<Cell> {
+    let text = |value: Option<String>| Cell::new(value.unwrap_or_else(|| "–".to_owned()));
+    let tenths = |value: f64| format!("{value:.1}");
+    let moved = row.verified.is_some();
+    vec![
+        Cell::new(row.method),
+        Cell::new(row.outcome).fg(match row.outcome {
+            "solved" | "clear" => Color::Green,
+            "relaxed" => Color::Yellow,
+            _ => Color::Red,
+        }),
+        text(row.space_time_error.map(square_metres)),
+        text(row.arc_length_error.map(square_metres)),
+        text(row.duration.map(tenths)),
+        text(row.delay.map(signed)),
+        text(row.length.map(|length| format!("{length:.0}"))),
+        text(row.clearance.map(metres)),
+        text(row.largest_risk.map(|risk| format!("{risk:.2}"))),
+        text(moved.then(|| row.largest_turn.map_or_else(|| "none".to_owned(), short))),
+        text(row.expanded.map(|n| n.to_string())),
+        text(row.milliseconds.map(|ms| format!("{ms:.2}"))),
+        match row.verified.filter(|_| row.is_planned()) {
+            Some(true) => Cell::new("yes").fg(Color::Green),
+            Some(false) => Cell::new("NO").fg(Color::Red),
+            None => Cell::new("–"),
+        },
+    ]
+}
+
+/// `S 39°` or `P 12°`.
+fn short(turn: Turn) -> String {
+    let side = match turn.side {
+        Side::Port => 'P',
+        Side::Starboard => 'S',
+    };
+    format!("{side} {:.0}°", turn.degrees)
+}
+
+/// The columns of [`comparison_csv`].
+pub const COMPARISON_COLUMNS: [&str; 19] = [
+    "file",
+    "scenario",
+    "method",
+    "max_risk",
+    "outcome",
+    "verified",
+    "arrived",
+    "space_time_error_m2",
+    "space_time_error_arc_length_m2",
+    "duration_s",
+    "delay_s",
+    "length_m",
+    "min_clearance_m",
+    "largest_risk",
+    "largest_turn_deg",
+    "largest_turn_side",
+    "expanded",
+    "plan_ms",
+    "reason",
+];
+
+/// A row of values in the order of [`COMPARISON_COLUMNS`]; empty where there is none.
+pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 19] {
+    let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+    let word = |value: Option<bool>| value.map_or_else(String::new, |v| v.to_string());
+    [
+        file.to_owned(),
+        title.to_owned(),
+        row.method.to_string(),
+        row.max_risk.to_string(),
+        row.outcome.to_owned(),
+        word(row.verified),
+        row.arrived.to_string(),
+        number(row.space_time_error),
+        number(row.arc_length_error),
+        number(row.duration),
+        number(row.delay),
+        number(row.length),
+        number(row.clearance),
+        number(row.largest_risk),
+        number(row.largest_turn.map(|t| t.degrees)),
+        row.largest_turn
+            .map_or_else(String::new, |t| t.side.to_string()),
+        row.expanded.map_or_else(String::new, |n| n.to_string()),
+        number(row.milliseconds),
+        row.reason.clone().unwrap_or_default(),
+    ]
+}

@@ -1,0 +1,272 @@
+//! Contenders side by side: where they go, how near they come, and in a sweep what a risk buys.
+
+use std::collections::BTreeMap;
+
+use super::outline::{Stroke, area, curve, mark, sampled_boundary};
+use super::plan::{DESIRED, LAND, land_areas};
+use super::sections::PLAN;
+use super::{Figure, Panel, Window};
+use crate::comparison::{Entry, Method};
+use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
+use crate::planner::{PlannerKind, SearchKind};
+use crate::scenario::Scenario;
+use crate::target::Representation;
+
+/// Of the targets' sets.
+const SETS: &str = "#888888";
+
+/// Instants at which the sets are drawn, the start among them.
+const MOMENTS: usize = 4;
+
+/// Seconds between two points of a curve.
+const STEP: f64 = 2.0;
+
+/// Of the largest least distance: how far up distances are shown.
+const SHOWN: f64 = 4.0;
+
+/// One row of panels per scenario: chart, distance from the nearest target over time, and where several risks were accepted cost
+/// over risk.
+pub fn comparison_figure(compared: &[(&Scenario, &[Entry])]) -> Figure {
+    let sweep = compared.iter().any(|(_, entries)| is_sweep(entries));
+    let mut panels = Vec::new();
+    for (scenario, entries) in compared {
+        panels.push(chart(scenario, entries));
+        panels.push(distances(scenario, entries));
+        if sweep {
+            panels.push(pareto(scenario, entries));
+        }
+    }
+    Figure::new(if sweep { 3 } else { 2 }, panels)
+}
+
+fn is_sweep(entries: &[Entry]) -> bool {
+    let risk = |e: &Entry| e.contender.max_risk;
+    entries.iter().any(|e| risk(e) != risk(&entries[0]))
+}
+
+/// One colour for each method, whatever others there are. What often lies under another line is wide and pale.
+fn stroke(method: Method) -> Stroke {
+    let (colour, width, dashed) = match method {
+        Method::Planner {
+            kind,
+            search,
+            representation,
+        } => {
+            let ellipsoid = representation == Some(Representation::Ellipsoid);
+            match (kind, search) {
+                (PlannerKind::SpaceTime, SearchKind::AStar) if ellipsoid => ("#00734d", 1.6, false),
+                (PlannerKind::SpaceTime, SearchKind::AStar) => ("#000000", 1.8, false),
+                (PlannerKind::SpaceTime, SearchKind::Dijkstra) if ellipsoid => {
+                    ("#a6dba0", 6.0, false)
+                }
+                (PlannerKind::SpaceTime, SearchKind::Dijkstra) => ("#bcbddc", 6.0, false),
+                (PlannerKind::PathTime, _) if ellipsoid => ("#e69f00", 1.6, false),
+                (PlannerKind::PathTime, _) => ("#d55e00", 1.6, false),
+                (PlannerKind::OptimalControl, _) => ("#cc79a7", 2.4, false),
+            }
+        }
+        Method::HoldCourse => ("#999999", 1.6, true),
+        Method::ConstantVelocity => ("#0072b2", 1.6, false),
+    };
+    Stroke {
+        colour,
+        width,
+        dashed,
+    }
+}
+
+fn times(entry: &Entry) -> Vec<f64> {
+    let end = entry.trajectory().map_or(0.0, |t| t.end_time());
+    let steps = (end / STEP).ceil().max(1.0) as usize;
+    (0..=steps).map(|k| (k as f64 * STEP).min(end)).collect()
+}
+
+fn keys(panel: &mut Panel, entries: &[Entry]) {
+    let mut last = None;
+    for entry in entries.iter().filter(|e| e.trajectory().is_some()) {
+        let method = entry.contender.method;
+        if last != Some(method) {
+            panel.line_key(&method.to_string(), stroke(method));
+            last = Some(method);
+        }
+    }
+}
+
+/// The ways, the desired one, and at some instants the sets of the first contender that sails.
+fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
+    let ways: Vec<(Stroke, Vec<Vector>)> = entries
+        .iter()
+        .map(|entry| {
+            let at = |time| entry.position_at(time);
+            let way = times(entry).into_iter().filter_map(at).collect();
+            (stroke(entry.contender.method), way)
+        })
+        .collect();
+    let waypoints = scenario.desired.waypoints();
+    let end = scenario.desired.duration();
+    // a motion that goes on to the horizon would make all others small
+    let reach = Window::around(waypoints.iter().copied(), 0.35);
+    let within = |p: &Vector| {
+        p.x > reach.low.x && p.x < reach.high.x && p.y > reach.low.y && p.y < reach.high.y
+    };
+    let mut shown: Vec<Vector> = waypoints.clone();
+    shown.extend(ways.iter().flat_map(|(_, way)| way).copied().filter(within));
+    let mut sets: Vec<Vec<Vector>> = Vec::new();
+    let first = entries.iter().find(|e| e.trajectory().is_some());
+    for obstacle in first.map_or(&[][..], Entry::obstacles) {
+        for k in 0..MOMENTS {
+            let time = end * k as f64 / (MOMENTS - 1) as f64;
+            let boundary = sampled_boundary(&obstacle.section(time.min(scenario.horizon)));
+            if boundary.iter().any(within) {
+                shown.extend(boundary.iter().copied().filter(within));
+                sets.push(boundary);
+            }
+        }
+    }
+    let title = format!("{}: ways", scenario.title);
+    let mut panel = Panel::plan(title, PLAN, Window::around(shown, 0.06));
+    let land = scenario.land.as_ref();
+    panel.plots.extend(land_areas(land, panel.window()));
+    for boundary in &sets {
+        let polygon = ConvexPolygon::hull(boundary).ok();
+        panel
+            .plots
+            .extend(polygon.and_then(|p| area(&p, SETS, 0.18)));
+    }
+    panel.plots.push(curve(&waypoints, false, DESIRED));
+    // the first row on top
+    for (stroke, way) in ways.iter().rev() {
+        panel.plots.push(curve(way, false, *stroke));
+    }
+    keys(&mut panel, entries);
+    panel.line_key("desired", DESIRED);
+    let wide = |colour| Stroke {
+        colour,
+        width: 3.0,
+        dashed: false,
+    };
+    let thirds: Vec<String> = (0..MOMENTS)
+        .map(|k| format!("{:.0}", end * k as f64 / (MOMENTS - 1) as f64))
+        .collect();
+    if !sets.is_empty() {
+        panel.line_key(&format!("sets at {} s", thirds.join(", ")), wide(SETS));
+    }
+    if land.is_some() {
+        panel.line_key("land", wide(LAND));
+    }
+    panel
+}
+
+/// To the nearest target that keeps course and speed: between the hulls, or from own position to the set.
+fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
+    let own = &scenario.own_ship.hull;
+    let lines: Vec<(Stroke, Vec<Vector>)> = entries
+        .iter()
+        .map(|entry| {
+            let line = times(entry).into_iter().filter_map(|time| {
+                let pose = entry.trajectory()?.pose_at(time);
+                let apart = scenario.targets.iter().map(|target| match target.ship() {
+                    Some(ship) => {
+                        (own.polygon(&pose)).separation(&ship.hull.polygon(&ship.pose_at(time)))
+                    }
+                    None => (target.outer_set_at(time))
+                        .map_or(f64::INFINITY, |set| set.signed_distance(pose.position)),
+                });
+                let nearest = apart.fold(f64::INFINITY, f64::min);
+                nearest.is_finite().then(|| Vector::new(time, nearest))
+            });
+            (stroke(entry.contender.method), line.collect())
+        })
+        .collect();
+    let least = |line: &[Vector]| line.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let farthest = lines.iter().map(|(_, line)| least(line));
+    let top = SHOWN * farthest.filter(|d| d.is_finite()).fold(0.0, f64::max);
+    let near = lines
+        .iter()
+        .flat_map(|(_, line)| line)
+        .filter(|p| p.y <= top);
+    let end = near.map(|p| p.x).fold(1.0, f64::max);
+    let window = Window {
+        low: Vector::new(0.0, 0.0),
+        high: Vector::new(end, if top > 0.0 { top } else { 1.0 }),
+    };
+    let title = format!("{}: distance from the nearest target", scenario.title);
+    let mut panel = Panel::free(title, ["Time [s]", "Distance [m]"], window);
+    for (stroke, line) in lines.iter().rev() {
+        for part in parts_below(line, window.high.y) {
+            panel.plots.push(curve(&part, false, *stroke));
+        }
+    }
+    panel
+}
+
+/// The stretches of a line that are below a height, cut where they cross it.
+fn parts_below(line: &[Vector], top: f64) -> Vec<Vec<Vector>> {
+    let mut parts: Vec<Vec<Vector>> = vec![Vec::new()];
+    let clamp = |p: &Vector| Vector::new(p.x, p.y.max(0.0));
+    for pair in line.windows(2) {
+        let (a, b) = (clamp(&pair[0]), clamp(&pair[1]));
+        let cut = || a + (b - a) * ((top - a.y) / (b.y - a.y));
+        match (a.y <= top, b.y <= top) {
+            (true, true) => parts.last_mut().into_iter().for_each(|p| p.extend([a, b])),
+            (true, false) => {
+                parts
+                    .last_mut()
+                    .into_iter()
+                    .for_each(|p| p.extend([a, cut()]));
+                parts.push(Vec::new());
+            }
+            (false, true) => parts.push(vec![cut(), b]),
+            (false, false) => {}
+        }
+    }
+    parts.retain(|part| part.len() > 1);
+    parts
+}
+
+/// Cost over accepted risk, a line per planner: the baselines, which do not follow the mission, would flatten them.
+fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
+    // keyed by the order of the methods
+    let mut lines: BTreeMap<usize, (Method, Vec<Vector>)> = BTreeMap::new();
+    let mut order: Vec<Method> = Vec::new();
+    let is_planned = |e: &&Entry| matches!(e.contender.method, Method::Planner { .. });
+    for entry in entries.iter().filter(is_planned) {
+        let method = entry.contender.method;
+        let index = order.iter().position(|m| *m == method).unwrap_or_else(|| {
+            order.push(method);
+            order.len() - 1
+        });
+        let verified = entry.evaluation().filter(|e| e.verified());
+        if let Some(cost) = verified
+            .map(|e| e.space_time_error)
+            .filter(|c| c.is_finite())
+        {
+            let line = lines.entry(index).or_insert((method, Vec::new()));
+            line.1.push(Vector::new(entry.contender.max_risk, cost));
+        }
+    }
+    let points = lines.values().flat_map(|(_, line)| line).copied();
+    let (mut right, mut top) = (0.0_f64, 0.0_f64);
+    for p in points {
+        right = right.max(p.x);
+        top = top.max(p.y);
+    }
+    let window = Window {
+        low: Vector::zeros(),
+        high: Vector::new(
+            if right > 0.0 { right * 1.05 } else { 1.0 },
+            if top > 0.0 { top * 1.08 } else { 1.0 },
+        ),
+    };
+    let title = format!("{}: cost of safety", scenario.title);
+    let mut panel = Panel::free(title, ["Accepted risk", "Space-time error J [m²]"], window);
+    for (method, line) in lines.values().rev() {
+        let stroke = stroke(*method);
+        panel.plots.push(curve(line, false, stroke));
+        for p in line {
+            panel.plots.push(mark(*p, stroke.colour));
+        }
+    }
+    panel
+}
