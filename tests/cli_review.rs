@@ -171,7 +171,10 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
         .code(1)
         .stdout(contains("path-time: no motion along the path is clear"));
     for (args, expected) in [
-        (["--max-risk", "0,1"], "allowed: a number from 0 to 0.999999"),
+        (
+            ["--max-risk", "0,1"],
+            "allowed: a number from 0 to 0.999999",
+        ),
         (["--figure", "x.pdf"], "ends neither in .svg nor in .png"),
         (["--csv", "/no/such/folder/x.csv"], "/no/such/folder/x.csv"),
     ] {
@@ -194,4 +197,158 @@ fn untimed(mut document: Value) -> Value {
     }
     strip(&mut document);
     document
+}
+
+/// Recordings are written and read by the default features alone.
+#[cfg(feature = "recording")]
+mod recordings {
+    use super::*;
+
+    const HEAD_ON: &str = "scenarios/colregs/head-on.toml";
+
+    fn recorded(folder: &Path, name: &str, scenario: &str) -> (String, String) {
+        let file = text(&folder.join(name)).to_owned();
+        let plan = searoom(&["plan", scenario, "--json", "--rrd", &file]).success();
+        (file, stdout(&plan))
+    }
+
+    #[test]
+    fn a_recording_gives_back_what_it_was_made_from() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for scenario in [
+            HEAD_ON,
+            "scenarios/harbour/ferry-crossing.toml",
+            "scenarios/paper/figure_9.toml",
+        ] {
+            let (file, plan) = recorded(folder.path(), "a.rrd", scenario);
+            let back = searoom(&["inspect", "--plan", &file])
+                .success()
+                .stderr(is_empty());
+            assert_eq!(stdout(&back), plan, "{scenario}");
+            searoom(&["verify", &file])
+                .success()
+                .stdout(contains(": verified"));
+        }
+        let (file, plan) = recorded(folder.path(), "head-on.rrd", HEAD_ON);
+        let said = stdout(&searoom(&["inspect", &file]).success());
+        for expected in [
+            "Head-on: solved, verified",
+            "space-time, a-star",
+            "nodes expanded",
+            "target (head-on)",
+            "sim_time 0 to 300 s",
+            "/curves/clearance_m",
+        ] {
+            assert!(said.contains(expected), "{expected}: {said}");
+        }
+        let found = document(&searoom(&["inspect", "--json", &file]).success());
+        let plan: Value = serde_json::from_str(&plan).expect("a plan");
+        assert_eq!(
+            (&found["scenario"], &found["cost"]),
+            (&plan["scenario"], &plan["cost"])
+        );
+        assert_eq!(found["timelines"][0]["last"], 300.0);
+    }
+
+    #[test]
+    fn curves_and_lines_come_out_as_columns() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (file, _) = recorded(folder.path(), "a.rrd", HEAD_ON);
+        let curve = stdout(&searoom(&["inspect", "--csv", "curves/clearance_m", &file]).success());
+        let mut lines = curve.lines();
+        assert_eq!(lines.next(), Some("sim_time_s,target,safety margin"));
+        let rows: Vec<Vec<f64>> = lines
+            .map(|line| {
+                line.split(',')
+                    .map(|c| c.parse().expect("a number"))
+                    .collect()
+            })
+            .collect();
+        assert!(rows.len() > 200 && rows.is_sorted_by(|a, b| a[0] <= b[0]));
+        assert!(rows.iter().all(|row| row.len() == 3 && row[2] == 20.0));
+        // own ship comes no nearer than the plan says
+        let least = rows.iter().map(|row| row[1]).fold(f64::INFINITY, f64::min);
+        assert!((least - 187.9).abs() < 0.5, "{least}");
+        let line = stdout(&searoom(&["inspect", "--csv", "/chart/map/planned", &file]).success());
+        assert!(line.starts_with("line,point,x,y\n0,0,0.0,0.0\n"), "{line}");
+        let found = document(
+            &searoom(&["inspect", "--csv", "/chart/map/own_ship", "--json", &file]).success(),
+        );
+        assert_eq!(found["timelines"][0], "sim_time_s");
+        searoom(&["inspect", "--csv", "curves/clearence", &file])
+            .code(2)
+            .stderr(contains(
+                "no entity /curves/clearence; the nearest names: /curves/clearance_m",
+            ));
+    }
+
+    #[test]
+    fn two_recordings_are_alike_or_differ_where_their_plans_do() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (first, _) = recorded(folder.path(), "1.rrd", HEAD_ON);
+        let (again, _) = recorded(folder.path(), "2.rrd", HEAD_ON);
+        let (other, _) = recorded(folder.path(), "3.rrd", "scenarios/uncertainty/turning.toml");
+        searoom(&["inspect", &first, &again])
+            .success()
+            .stdout(contains("the same"));
+        searoom(&["inspect", &first, &other]).code(1).stdout(
+            contains("scenario: \"Head-on\" | \"A target that may turn\"")
+                .and(contains("only in the second: /chart/map/hard_sets/turning")),
+        );
+        let found = document(&searoom(&["inspect", "--json", &first, &other]).code(1));
+        assert_eq!(found["equal"], false);
+        assert!(
+            found["changed"]
+                .as_array()
+                .is_some_and(|c| c.contains(&Value::from("/chart/map/planned")))
+        );
+    }
+
+    #[test]
+    fn what_is_no_whole_recording_is_said_to_be_so() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (file, _) = recorded(folder.path(), "a.rrd", HEAD_ON);
+        let bytes = fs::read(&file).expect("a recording");
+        let broken = text(&folder.path().join("b.rrd")).to_owned();
+        let refused = |contents: &[u8], expected: &str| {
+            fs::write(&broken, contents).expect("written");
+            for command in ["inspect", "verify"] {
+                searoom(&[command, &broken])
+                    .code(2)
+                    .stdout(is_empty())
+                    .stderr(contains(expected).and(contains("panicked").not()));
+            }
+        };
+        refused(b"", "an empty file");
+        refused(b"a text", "no Rerun recording");
+        refused(&bytes[..9], "cut off within the header");
+        refused(&bytes[..bytes.len() / 2], "cut off");
+        refused(&bytes[..bytes.len() - 1], "cut off");
+        // within the first payload that is compressed
+        let mut damaged = bytes.clone();
+        for byte in damaged[3000..3400].iter_mut() {
+            *byte ^= 0x55;
+        }
+        refused(&damaged, "damaged");
+        searoom(&["inspect", "no-such.rrd"])
+            .code(2)
+            .stderr(contains("no-such.rrd: cannot be read"));
+        // without its last message, in which the document is
+        let mut at = 12;
+        let mut last = at;
+        while at < bytes.len() {
+            last = at;
+            let length = u64::from_le_bytes(bytes[at + 8..at + 16].try_into().expect("eight"));
+            at += 16 + usize::try_from(length).expect("small");
+        }
+        fs::write(&broken, &bytes[..last]).expect("written");
+        searoom(&["inspect", &broken])
+            .success()
+            .stdout(contains("no plan document in it"));
+        for args in [["inspect", "--plan"], ["verify", "--json"]] {
+            searoom(&[args[0], args[1], &broken])
+                .code(2)
+                .stderr(contains("holds no plan document"));
+        }
+    }
 }

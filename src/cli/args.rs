@@ -32,6 +32,8 @@ pub enum Command {
     Suite(SuiteArgs),
     /// Every planner that applies and two baselines on the same scenarios, side by side
     Compare(CompareArgs),
+    /// What a recording holds, read offline, or what two differ in
+    Inspect(InspectArgs),
     /// Checks plan documents again from themselves alone, with code that shares nothing with the planners
     Verify(VerifyArgs),
 }
@@ -124,8 +126,27 @@ pub struct CompareArgs {
 }
 
 #[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// A recording
+    #[arg(value_name = "FILE.rrd")]
+    pub recording: PathBuf,
+    /// Another one: what differs is shown
+    #[arg(value_name = "OTHER.rrd", conflicts_with_all = ["plan", "csv"])]
+    pub other: Option<PathBuf>,
+    /// Print the plan document in it, as `plan --json` wrote it
+    #[arg(long, conflicts_with_all = ["csv", "json"])]
+    pub plan: bool,
+    /// Print the rows of an entity as CSV, of a line its points; with --json as JSON
+    #[arg(long, value_name = "ENTITY")]
+    pub csv: Option<String>,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
 pub struct VerifyArgs {
-    /// Plan documents, as `plan --json` and `suite --plans` write them
+    /// Plan documents, as `plan --json` and `suite --plans` write them, or recordings (.rrd)
     #[arg(required = true, value_name = "PLAN.json")]
     pub plans: Vec<PathBuf>,
     /// Print one JSON document instead of text

@@ -6,6 +6,8 @@ mod check;
 mod compare;
 mod figure;
 mod files;
+#[cfg(feature = "recording")]
+mod inspect;
 mod output;
 mod plan;
 mod products;
@@ -37,6 +39,13 @@ pub fn main() -> ExitCode {
         Command::Plan(args) => plan::plan(args, &output),
         Command::Suite(args) => suite::suite(args, &output),
         Command::Compare(args) => compare::compare(args, &output),
+        #[cfg(feature = "recording")]
+        Command::Inspect(args) => inspect::inspect(args, &output),
+        #[cfg(not(feature = "recording"))]
+        Command::Inspect(_) => {
+            output.error(&"inspect: this program was built without recordings; build it with its default features, `cargo build`");
+            Status::BadInput
+        }
         Command::Verify(args) => verify::verify(args, &output),
     };
     let status = runner::guarded(run).unwrap_or_else(|fault| {

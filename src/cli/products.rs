@@ -155,7 +155,8 @@ fn make(folder: &Path) -> anyhow::Result<()> {
 #[cfg(feature = "recording")]
 fn record(run: &Run, file: &Path) -> anyhow::Result<()> {
     // the message names its cause already
-    searoom::recording::write(run, file).map_err(|error| anyhow!("{error}"))
+    let document = json(&PlanDocument::of(run))?;
+    searoom::recording::write(run, Some(&document), file).map_err(|error| anyhow!("{error}"))
 }
 
 #[cfg(not(feature = "recording"))]

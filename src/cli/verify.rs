@@ -38,7 +38,12 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
                 })
             }
             Ok(Err(error)) => {
-                let error = format!("{name}: {error:#}");
+                let error = format!("{error:#}");
+                // a recording's reader names the file already
+                let error = match error.strip_prefix(&format!("{name}: ")) {
+                    Some(_) => error,
+                    None => format!("{name}: {error}"),
+                };
                 documents.push(VerifiedPlanDocument::unreadable(name, error.clone()));
                 output.error(&error);
                 Status::BadInput
@@ -57,9 +62,25 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
 }
 
 fn one(file: &Path) -> anyhow::Result<Verification> {
-    let text = document(file)?;
+    let text = if file.extension().is_some_and(|ending| ending == "rrd") {
+        recorded(file)?
+    } else {
+        document(file)?
+    };
     // the message names its field already
     check(&text).map_err(|error| anyhow!("{error}"))
+}
+
+#[cfg(feature = "recording")]
+fn recorded(file: &Path) -> anyhow::Result<String> {
+    super::inspect::plan_document(file)
+}
+
+#[cfg(not(feature = "recording"))]
+fn recorded(_: &Path) -> anyhow::Result<String> {
+    Err(anyhow!(
+        "a recording; this program was built without recordings"
+    ))
 }
 
 /// The text of a plan document.

@@ -7,6 +7,7 @@
 //! | entity | what it is |
 //! | --- | --- |
 //! | `summary` | verdict, manoeuvre, encounters, costs, claims, as markdown |
+//! | `plan_document` | the plan document as JSON, but for the time that planning took: that is in a store of its own |
 //! | `chart/map` | turns north up (views of Rerun are y-down); everything below is east, north |
 //! | `chart/map/grid`, `legend` | scale, north, line styles |
 //! | `chart/map/land` | outlines of the land, where there is a map |
@@ -50,17 +51,25 @@ mod blueprint;
 mod body;
 mod chart;
 mod curves;
+mod document;
 mod explored;
 mod file;
 mod forces;
+mod frames;
 mod land;
 mod movers;
 mod path_time;
+mod reading;
 mod scene;
 mod space_time;
 mod style;
 mod summary;
+mod table;
 mod velocities;
+
+pub use frames::is_recording;
+pub use reading::{EntityContents, ReadError, Recorded, TimelineContents};
+pub use table::{Columns, EntityRow, EntityTable};
 
 use std::path::{Path, PathBuf};
 
@@ -73,6 +82,8 @@ use scene::Scene;
 const APPLICATION: &str = "searoom";
 const TIMELINE: &str = "sim_time";
 const SUMMARY: &str = "summary";
+const DOCUMENT: &str = "plan_document";
+const TIMING: &str = "plan_s";
 const CHART: &str = "chart";
 const MAP: &str = "chart/map";
 const TRAILS: &str = "chart/map/trails";
@@ -107,9 +118,9 @@ pub enum RecordingError {
 /// Writes `run` as a recording with its blueprint to `path`, in full or not at all: to a temporary name
 /// in the same folder first, then renamed. Missing parent folders are made, an older file is replaced.
 /// One target makes about 250 kB, every
-/// further one about 60 kB more.
-pub fn write(run: &Run, path: &Path) -> Result<(), RecordingError> {
-    let bytes = encode(run).map_err(|source| RecordingError::Encode {
+/// further one about 60 kB more. `document`, the text of the plan document, is kept in it: [`Recorded::document`] gives it back.
+pub fn write(run: &Run, document: Option<&str>, path: &Path) -> Result<(), RecordingError> {
+    let bytes = encode(run, document).map_err(|source| RecordingError::Encode {
         path: path.to_owned(),
         source,
     })?;
@@ -119,7 +130,10 @@ pub fn write(run: &Run, path: &Path) -> Result<(), RecordingError> {
     })
 }
 
-fn encode(run: &Run) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
+fn encode(
+    run: &Run,
+    document: Option<&str>,
+) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
     let (rec, store) = RecordingStreamBuilder::new(APPLICATION)
         .recording_name(run.scenario.title.clone())
         // whatever the environment says of other programs' recordings
@@ -128,10 +142,17 @@ fn encode(run: &Run) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>
     rec.set_log_time_enabled(false);
     rec.set_log_tick_enabled(false);
     log_run(&rec, &Scene::new(run))?;
+    let mut timing = Vec::new();
+    if let Some(document) = document {
+        document::log_document(&rec, document)?;
+        timing = document::timing(document)?;
+    }
     // the footer is an index into files too large to be read whole; here it would be 40 % of the file
     let mut encoder = Encoder::local()?;
     encoder.do_not_emit_footer();
 
+    // the document stays last
+    encoder.extend(timing.into_iter().map(Ok))?;
     encoder.extend(store.take().into_iter().map(Ok))?;
     encoder.finish()?;
     Ok(encoder.into_inner()?)

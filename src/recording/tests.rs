@@ -95,7 +95,7 @@ fn read(path: &Path) -> BTreeMap<String, (u64, Vec<String>)> {
 fn a_recording_reads_back_with_every_entity_on_one_timeline() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("new/deep/head-on.rrd");
-    write(&run(), &path).expect("writes");
+    write(&run(), None, &path).expect("writes");
     let entities = read(&path);
     let name = EntityPathPart::new(NAME).escaped_string();
     for expected in [
@@ -138,8 +138,8 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
 fn the_same_run_twice_has_the_same_content() {
     let folder = tempfile::tempdir().expect("folder");
     let (first, second) = (folder.path().join("1.rrd"), folder.path().join("2.rrd"));
-    write(&run(), &first).expect("writes");
-    write(&run(), &second).expect("writes");
+    write(&run(), None, &first).expect("writes");
+    write(&run(), None, &second).expect("writes");
     assert_eq!(read(&first), read(&second));
 }
 
@@ -147,7 +147,7 @@ fn the_same_run_twice_has_the_same_content() {
 fn a_run_without_a_plan_is_recorded_too() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("none.rrd");
-    write(&run_without_plan(), &path).expect("writes");
+    write(&run_without_plan(), None, &path).expect("writes");
     let entities = read(&path);
     assert!(!entities.contains_key("/chart/map/planned"));
     assert!(entities.contains_key("/chart/map/conflict"));
@@ -160,7 +160,7 @@ fn a_failed_write_leaves_nothing_and_names_the_file() {
     // a folder of that name is in the way
     let path = folder.path().join("taken.rrd");
     std::fs::create_dir_all(path.join("inside")).expect("folder");
-    let error = write(&run(), &path).expect_err("a folder is in the way");
+    let error = write(&run(), None, &path).expect_err("a folder is in the way");
     assert!(error.to_string().contains("taken.rrd"), "{error}");
     let left: Vec<_> = std::fs::read_dir(folder.path()).expect("lists").collect();
     assert_eq!(left.len(), 1, "{left:?}");
@@ -177,7 +177,7 @@ fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
             time: 100.0,
         });
     }
-    write(&run, &path).expect("writes");
+    write(&run, None, &path).expect("writes");
     let entities = read(&path);
     for name in ["drifting", "round", "slabs"] {
         assert!(entities.contains_key(&format!("/chart/map/hard_sets/{name}")));
@@ -197,7 +197,7 @@ fn every_scenario_of_the_suite_stays_small() {
         let file = file.expect("entry").path();
         let run = pipeline::run(Scenario::read(&file).expect("valid"));
         let path = folder.path().join("one.rrd");
-        write(&run, &path).expect("writes");
+        write(&run, None, &path).expect("writes");
         let size = std::fs::metadata(&path).expect("exists").len();
         assert!(size < 300_000, "{}: {size} bytes", file.display());
     }
@@ -226,7 +226,7 @@ fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
     let path = folder.path().join("figure_9.rrd");
     let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper/figure_9.toml");
     let run = pipeline::run(Scenario::read(&scenario).expect("valid"));
-    write(&run, &path).expect("writes");
+    write(&run, None, &path).expect("writes");
     let entities = read(&path);
     let nodes = run.control.as_ref().expect("forces").intervals as u64 + 1;
     for entity in ["/curves/states", "/curves/forces"] {
@@ -287,7 +287,7 @@ fn a_path_time_plan_has_its_diagram() {
         );
         let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
         assert_eq!(run.planned.outcome.plan().is_some(), planned);
-        write(&run, &path).expect("writes");
+        write(&run, None, &path).expect("writes");
         let entities = read(&path);
         let name = EntityPathPart::new(NAME).escaped_string();
         for part in ["axes", "profile", "now", &format!("obstacles/{name}")] {
@@ -298,7 +298,7 @@ fn a_path_time_plan_has_its_diagram() {
         }
         assert_eq!(entities.contains_key("/path_time/plane/own_ship"), planned);
     }
-    write(&run(), &path).expect("writes");
+    write(&run(), None, &path).expect("writes");
     assert!(
         !read(&path)
             .keys()

@@ -1,0 +1,519 @@
+//! `searoom inspect`: what a recording holds, read offline.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use comfy_table::{ContentArrangement, Table, presets};
+use searoom::recording::{EntityTable, Recorded, TimelineContents};
+use serde::Serialize;
+use serde_json::Value;
+
+use super::args::InspectArgs;
+use super::output::Output;
+use super::runner::guarded;
+use super::status::Status;
+
+/// When a recording was made, and its title: no part of what it shows.
+const PROPERTIES: &str = "/__properties";
+
+/// Differences of two plan documents that are listed; the rest is counted.
+const LISTED: usize = 20;
+
+/// Entities of a similar name that are offered for one that is not there.
+const OFFERED: usize = 3;
+
+/// Shows one recording, what of it is asked for, or what two differ in.
+pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
+    let asked = || match &args.other {
+        None => one(args, output),
+        Some(other) => two(args, other, output),
+    };
+    match guarded(asked) {
+        Ok(Ok(status)) => status,
+        Ok(Err(error)) => {
+            output.error(&format_args!("{error:#}"));
+            Status::BadInput
+        }
+        Err(fault) => {
+            output.error(&fault);
+            Status::InternalFault
+        }
+    }
+}
+
+/// Reads a recording. Whatever goes wrong within the decoder is a fault of the file.
+pub fn read(path: &Path) -> anyhow::Result<Recorded> {
+    match guarded(|| Recorded::read(path)) {
+        Ok(read) => Ok(read?),
+        Err(fault) => bail!("{}: damaged: its decoder gave up ({fault})", path.display()),
+    }
+}
+
+/// The plan document of a recording.
+pub fn plan_document(path: &Path) -> anyhow::Result<String> {
+    document_of(&read(path)?, path)
+}
+
+fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
+    if !recorded.is_ours() {
+        bail!(
+            "{}: a recording of the program '{}', which holds no plan document",
+            path.display(),
+            recorded.application
+        );
+    }
+    recorded.document().with_context(|| {
+        format!(
+            "{}: holds no plan document: it was cut short, or written by a Searoom that kept none",
+            path.display()
+        )
+    })
+}
+
+fn one(args: &InspectArgs, output: &Output) -> anyhow::Result<Status> {
+    let recorded = read(&args.recording)?;
+    if args.plan {
+        let document = document_of(&recorded, &args.recording)?;
+        return Ok(output.result(document.trim_end()));
+    }
+    if let Some(entity) = &args.csv {
+        let table = table(&recorded, entity, &args.recording)?;
+        return Ok(if args.json {
+            output.document(&EntityDocument::of(entity, table))
+        } else {
+            output.result(csv(&table)?.trim_end())
+        });
+    }
+    let contents = Contents::of(&args.recording, &recorded);
+    Ok(if args.json {
+        output.document(&contents)
+    } else {
+        output.result(&contents.text())
+    })
+}
+
+fn table(recorded: &Recorded, entity: &str, file: &Path) -> anyhow::Result<EntityTable> {
+    if let Some(table) = recorded.table(entity) {
+        return Ok(table);
+    }
+    let wanted = format!("/{}", entity.trim_start_matches('/'));
+    let mut all: Vec<(f64, String)> = recorded
+        .entities()
+        .into_iter()
+        .map(|e| (strsim::jaro_winkler(&wanted, &e.path), e.path))
+        .collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let near: Vec<String> = all
+        .into_iter()
+        .take(OFFERED)
+        .map(|(_, path)| path)
+        .collect();
+    bail!(
+        "{}: no entity {wanted}; the nearest names: {}",
+        file.display(),
+        near.join(", ")
+    )
+}
+
+fn csv(table: &EntityTable) -> anyhow::Result<String> {
+    let columns = table.columns();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&columns.header)?;
+    for row in &columns.rows {
+        writer.write_record(row)?;
+    }
+    let bytes = writer.into_inner().context("the rows cannot be written")?;
+    Ok(String::from_utf8(bytes)?)
+}
+
+/// One entity, with its values as they are.
+#[derive(Debug, Serialize)]
+struct EntityDocument {
+    entity: String,
+    timelines: Vec<String>,
+    components: Vec<String>,
+    rows: Vec<RowDocument>,
+}
+
+/// Times by timeline, null where the row has none, and values by component.
+#[derive(Debug, Serialize)]
+struct RowDocument {
+    times: Vec<Option<f64>>,
+    values: Vec<Value>,
+}
+
+impl EntityDocument {
+    fn of(entity: &str, table: EntityTable) -> Self {
+        let rows = table.rows.into_iter();
+        Self {
+            entity: format!("/{}", entity.trim_start_matches('/')),
+            timelines: table.timelines,
+            components: table.components,
+            rows: rows
+                .map(|row| RowDocument {
+                    times: row.times,
+                    values: row.values,
+                })
+                .collect(),
+        }
+    }
+}
+
+/// What a recording holds.
+#[derive(Debug, Serialize)]
+struct Contents {
+    file: String,
+    bytes: u64,
+    application: String,
+    rerun_version: Option<String>,
+    /// Of the plan document; null without one.
+    scenario: Value,
+    planner: Value,
+    search: Value,
+    outcome: Value,
+    verified: Value,
+    cost: Value,
+    search_stats: Value,
+    targets: Vec<Value>,
+    timelines: Vec<TimelineDocument>,
+    entities: Vec<ContentsDocument>,
+}
+
+/// An entity in a list.
+#[derive(Debug, Serialize)]
+struct ContentsDocument {
+    entity: String,
+    rows: usize,
+    components: Vec<String>,
+    timelines: Vec<TimelineDocument>,
+}
+
+/// A timeline and its range.
+#[derive(Debug, Serialize)]
+struct TimelineDocument {
+    name: String,
+    unit: &'static str,
+    first: f64,
+    last: f64,
+}
+
+impl TimelineDocument {
+    fn all(timelines: Vec<TimelineContents>) -> Vec<Self> {
+        timelines
+            .into_iter()
+            .map(|t| Self {
+                name: t.name,
+                unit: t.unit,
+                first: t.first,
+                last: t.last,
+            })
+            .collect()
+    }
+
+    fn text(&self) -> String {
+        let Self {
+            name,
+            unit,
+            first,
+            last,
+        } = self;
+        format!("{name} {first} to {last} {unit}")
+            .trim_end()
+            .to_owned()
+    }
+}
+
+impl Contents {
+    fn of(file: &Path, recorded: &Recorded) -> Self {
+        let document: Value = recorded
+            .document()
+            .and_then(|text| serde_json::from_str(&text).ok())
+            .unwrap_or_default();
+        let field = |key: &str| document.get(key).cloned().unwrap_or_default();
+        let names = document["encounters"].as_array().into_iter().flatten();
+        Self {
+            file: file.display().to_string(),
+            bytes: recorded.bytes,
+            application: recorded.application.clone(),
+            rerun_version: recorded.version.clone(),
+            scenario: field("scenario"),
+            planner: field("planner"),
+            search: field("search"),
+            outcome: field("outcome"),
+            verified: field("verified"),
+            cost: field("cost"),
+            search_stats: field("search_stats"),
+            targets: names.cloned().collect(),
+            timelines: TimelineDocument::all(recorded.timelines()),
+            entities: recorded
+                .entities()
+                .into_iter()
+                .map(|e| ContentsDocument {
+                    entity: e.path,
+                    rows: e.rows,
+                    components: e.components,
+                    timelines: TimelineDocument::all(e.timelines),
+                })
+                .collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut lines = vec![format!(
+            "{}: {:.0} kB, recorded by {} with Rerun {}",
+            self.file,
+            self.bytes as f64 / 1e3,
+            self.application,
+            self.rerun_version
+                .as_deref()
+                .unwrap_or("of an unknown version")
+        )];
+        match self.scenario.as_str() {
+            Some(scenario) => lines.extend(self.plan(scenario)),
+            None => lines.push("no plan document in it".to_owned()),
+        }
+        lines.push(String::new());
+        let timelines: Vec<String> = self.timelines.iter().map(TimelineDocument::text).collect();
+        lines.push(format!("Timelines: {}", list(&timelines)));
+        lines.push(format!("Entities: {}", self.entities.len()));
+        let mut table = Table::new();
+        table
+            .load_style(presets::UTF8_HORIZONTAL_ONLY)
+            .set_content_arrangement(ContentArrangement::Disabled)
+            .set_header(["entity", "rows", "times", "components"])
+            .force_no_tty();
+        table.style_mut().row_separator = presets::NOTHING.row_separator;
+        for entity in &self.entities {
+            let times: Vec<String> = entity
+                .timelines
+                .iter()
+                .map(TimelineDocument::text)
+                .collect();
+            let short = |c: &String| c.rsplit(':').next().unwrap_or(c).to_owned();
+            let components: Vec<String> = entity.components.iter().map(short).collect();
+            table.add_row([
+                entity.entity.clone(),
+                entity.rows.to_string(),
+                if times.is_empty() {
+                    "always".to_owned()
+                } else {
+                    times.join(", ")
+                },
+                components.join(", "),
+            ]);
+        }
+        lines.push(table.trim_fmt());
+        lines.join("\n")
+    }
+
+    fn plan(&self, scenario: &str) -> Vec<String> {
+        let word = |value: &Value| value.as_str().unwrap_or("unknown").to_owned();
+        let verified = match self.verified.as_bool() {
+            Some(true) => ", verified",
+            Some(false) if !self.cost.is_null() => ", NOT VERIFIED",
+            _ => "",
+        };
+        let mut lines = vec![
+            format!("{scenario}: {}{verified}", word(&self.outcome)),
+            format!(
+                "  planner      {}, {}",
+                word(&self.planner),
+                word(&self.search)
+            ),
+        ];
+        let number = |key: &str| self.cost[key].as_f64();
+        let mut costs = Vec::new();
+        for (key, name, unit) in [
+            ("space_time_error_m2", "J", "m²"),
+            ("duration_s", "duration", "s"),
+            ("delay_s", "delay", "s"),
+            ("length_m", "length", "m"),
+            ("min_clearance_m", "clearance", "m"),
+            ("max_risk", "largest risk", ""),
+        ] {
+            if let Some(value) = number(key) {
+                costs.push(format!("{name} {value:.1} {unit}").trim_end().to_owned());
+            }
+        }
+        if !costs.is_empty() {
+            lines.push(format!("  costs        {}", costs.join(", ")));
+        }
+        if let Some(expanded) = self.search_stats["expanded"].as_u64() {
+            lines.push(format!("  search       {expanded} nodes expanded"));
+        }
+        for target in &self.targets {
+            let dcpa = target["dcpa_m"].as_f64().map_or(String::new(), |d| {
+                format!(
+                    ", passed at {d:.1} m after {:.1} s",
+                    target["tcpa_s"].as_f64().unwrap_or(0.0)
+                )
+            });
+            lines.push(format!(
+                "  target       {} ({}){dcpa}",
+                word(&target["target"]),
+                word(&target["role"])
+            ));
+        }
+        lines
+    }
+}
+
+fn list(texts: &[String]) -> String {
+    if texts.is_empty() {
+        "none".to_owned()
+    } else {
+        texts.join(", ")
+    }
+}
+
+/// What two recordings differ in.
+#[derive(Debug, Default, Serialize)]
+struct Difference {
+    files: Vec<String>,
+    equal: bool,
+    /// Of the plan documents, their times aside: where, and what stands there in each.
+    plan: Vec<PlanDifference>,
+    /// In the first alone.
+    only_first: Vec<String>,
+    /// In the second alone.
+    only_second: Vec<String>,
+    /// In both, with other rows.
+    changed: Vec<String>,
+    /// In both, alike.
+    same: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct PlanDifference {
+    field: String,
+    first: Value,
+    second: Value,
+}
+
+fn two(args: &InspectArgs, other: &PathBuf, output: &Output) -> anyhow::Result<Status> {
+    let (first, second) = (read(&args.recording)?, read(other)?);
+    let mut found = Difference {
+        files: [&args.recording, other]
+            .map(|f| f.display().to_string())
+            .to_vec(),
+        ..Difference::default()
+    };
+    let document = |r: &Recorded| -> Value {
+        let text = r.document();
+        let mut value: Value = text
+            .and_then(|t| serde_json::from_str(&t).ok())
+            .unwrap_or_default();
+        if let Some(fields) = value.as_object_mut() {
+            fields.remove("timing");
+        }
+        value
+    };
+    differences(&document(&first), &document(&second), "", &mut found.plan);
+    let paths = |r: &Recorded| -> Vec<String> {
+        let all = r.entities().into_iter().map(|e| e.path);
+        all.filter(|path| path != PROPERTIES).collect()
+    };
+    let (in_first, in_second) = (paths(&first), paths(&second));
+    for path in &in_first {
+        if !in_second.contains(path) {
+            found.only_first.push(path.clone());
+        } else if first.table(path) == second.table(path) {
+            found.same += 1;
+        } else {
+            found.changed.push(path.clone());
+        }
+    }
+    let is_new = |path: &&String| !in_first.contains(path);
+    found.only_second = in_second.iter().filter(is_new).cloned().collect();
+    let lists = [&found.only_first, &found.only_second, &found.changed];
+    found.equal = found.plan.is_empty() && lists.iter().all(|l| l.is_empty());
+    let shown = if args.json {
+        output.document(&found)
+    } else {
+        output.result(&found.text())
+    };
+    // as programs that compare do
+    let status = if found.equal {
+        Status::Good
+    } else {
+        Status::NoPlan
+    };
+    Ok(shown.max(status))
+}
+
+/// Where two documents differ, field by field; lists of different lengths at once.
+fn differences(first: &Value, second: &Value, at: &str, found: &mut Vec<PlanDifference>) {
+    match (first, second) {
+        (Value::Object(a), Value::Object(b)) => {
+            let more = b.keys().filter(|key| !a.contains_key(*key));
+            for key in a.keys().chain(more) {
+                let at = if at.is_empty() {
+                    key.clone()
+                } else {
+                    format!("{at}.{key}")
+                };
+                let of = |map: &serde_json::Map<String, Value>| {
+                    map.get(key).cloned().unwrap_or_default()
+                };
+                differences(&of(a), &of(b), &at, found);
+            }
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            for (i, (a, b)) in a.iter().zip(b).enumerate() {
+                differences(a, b, &format!("{at}[{i}]"), found);
+            }
+        }
+        (a, b) if a != b => found.push(PlanDifference {
+            field: at.to_owned(),
+            first: a.clone(),
+            second: b.clone(),
+        }),
+        _ => {}
+    }
+}
+
+impl Difference {
+    fn text(&self) -> String {
+        let mut lines = vec![self.files.join(" against ")];
+        if self.equal {
+            lines.push(format!(
+                "the same, but for the time that planning took: {} entities",
+                self.same
+            ));
+            return lines.join("\n");
+        }
+        if !self.plan.is_empty() {
+            lines.push(format!("Plan documents: {} fields differ", self.plan.len()));
+        }
+        for d in self.plan.iter().take(LISTED) {
+            lines.push(format!(
+                "  {}: {} | {}",
+                d.field,
+                brief(&d.first),
+                brief(&d.second)
+            ));
+        }
+        if self.plan.len() > LISTED {
+            lines.push(format!("  and {} more", self.plan.len() - LISTED));
+        }
+        for (name, paths) in [
+            ("only in the first", &self.only_first),
+            ("only in the second", &self.only_second),
+            ("with other contents", &self.changed),
+        ] {
+            if !paths.is_empty() {
+                lines.push(format!("Entities {name}: {}", paths.join(", ")));
+            }
+        }
+        lines.push(format!("Entities alike: {}", self.same));
+        lines.join("\n")
+    }
+}
+
+fn brief(value: &Value) -> String {
+    match value {
+        Value::Array(list) => format!("{} entries", list.len()),
+        Value::Object(fields) => format!("{} fields", fields.len()),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,224 @@
+//! `.rrd` → what it holds, read offline and whole.
+
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use rerun::external::re_log_encoding::DecoderApp;
+use rerun::external::re_log_types::{LogMsg, TimeType};
+use rerun::log::Chunk;
+
+use super::document::joined;
+use super::table::{EntityTable, text_of};
+use super::{APPLICATION, DOCUMENT, TIMING, frames};
+
+/// Bytes, 1 GiB: more is no plan of ours, and would have to fit into memory.
+const FILE_BYTES: u64 = 1 << 30;
+
+/// Nanoseconds of a second: what durations and moments are counted in.
+const NANOSECONDS: f64 = 1e9;
+
+/// Why a recording cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Read {
+        /// Which.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file is no recording, or not a whole one.
+    #[error("{}: {reason}", path.display())]
+    Broken {
+        /// Which.
+        path: PathBuf,
+        /// In words.
+        reason: String,
+    },
+}
+
+/// A recording that was read: its own store, not that of its layout.
+#[derive(Debug)]
+pub struct Recorded {
+    /// The program that made it.
+    pub application: String,
+    /// Of the Rerun that wrote it; `None` where it does not say.
+    pub version: Option<String>,
+    /// Of the file.
+    pub bytes: u64,
+    /// By their paths.
+    chunks: BTreeMap<String, Vec<Chunk>>,
+    /// As the plan document has it.
+    timing: Option<String>,
+}
+
+/// What one entity holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EntityContents {
+    /// With a leading slash.
+    pub path: String,
+    /// Of all its columns together.
+    pub rows: usize,
+    /// Names, sorted.
+    pub components: Vec<String>,
+    /// None for what holds at all times.
+    pub timelines: Vec<TimelineContents>,
+}
+
+/// A timeline and what of it is used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimelineContents {
+    /// Its name.
+    pub name: String,
+    /// `"s"` for durations and for moments since 1970, else empty.
+    pub unit: &'static str,
+    /// The first time.
+    pub first: f64,
+    /// The last time.
+    pub last: f64,
+}
+
+impl Recorded {
+    /// Reads a file. Anything that is no whole recording is an error that says what was found. O(bytes).
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let unread = |source| ReadError::Read {
+            path: path.to_owned(),
+            source,
+        };
+        let broken = |reason: String| ReadError::Broken {
+            path: path.to_owned(),
+            reason,
+        };
+        // a pipe would be waited for, a device read for ever
+        if !std::fs::metadata(path).map_err(unread)?.is_file() {
+            let kind = std::io::ErrorKind::InvalidInput;
+            return Err(unread(std::io::Error::new(kind, "not a regular file")));
+        }
+        let mut bytes = Vec::new();
+        let file = std::fs::File::open(path).map_err(unread)?;
+        file.take(FILE_BYTES + 1)
+            .read_to_end(&mut bytes)
+            .map_err(unread)?;
+        if bytes.len() as u64 > FILE_BYTES {
+            return Err(broken("more than 1 GiB".to_owned()));
+        }
+        if let Some(fault) = frames::fault(&bytes) {
+            return Err(broken(fault));
+        }
+        Self::decode(&bytes).map_err(|reason| broken(format!("damaged: {reason}")))
+    }
+
+    fn decode(bytes: &[u8]) -> Result<Self, String> {
+        let mut read = Self {
+            application: String::new(),
+            version: None,
+            bytes: bytes.len() as u64,
+            chunks: BTreeMap::new(),
+            timing: None,
+        };
+        for message in DecoderApp::decode_lazy(bytes) {
+            match message.map_err(|e| e.to_string())? {
+                LogMsg::SetStoreInfo(info) if info.info.store_id.is_recording() => {
+                    read.application = info.info.store_id.application_id().to_string();
+                    read.version = info.info.store_version.map(|v| v.to_string());
+                }
+                LogMsg::ArrowMsg(store, message) => {
+                    let chunk = Chunk::from_arrow_msg(&message).map_err(|e| e.to_string())?;
+                    let path = chunk.entity_path().to_string();
+                    if store.is_recording() {
+                        read.chunks.entry(path).or_default().push(chunk);
+                    } else if path == format!("/{TIMING}") {
+                        read.timing = text_of(&[chunk]);
+                    }
+                }
+                LogMsg::SetStoreInfo(_) | LogMsg::BlueprintActivationCommand(_) => {}
+            }
+        }
+        // the order of writing, which row ids keep, whatever the order in the file
+        for chunks in read.chunks.values_mut() {
+            chunks.sort_by_key(Chunk::row_id_range);
+        }
+        Ok(read)
+    }
+
+    /// True for one of Searoom's.
+    pub fn is_ours(&self) -> bool {
+        self.application == APPLICATION
+    }
+
+    /// The plan document as `plan --json` wrote it; `None` in another program's recording, and in one that was cut short.
+    pub fn document(&self) -> Option<String> {
+        if !self.is_ours() {
+            return None;
+        }
+        let text = text_of(self.chunks.get(&format!("/{DOCUMENT}"))?)?;
+        Some(joined(&text, self.timing.as_deref()))
+    }
+
+    /// Every entity, sorted by path.
+    pub fn entities(&self) -> Vec<EntityContents> {
+        let all = self.chunks.iter();
+        all.map(|(path, chunks)| contents(path, chunks)).collect()
+    }
+
+    /// Every timeline over all entities, sorted by name.
+    pub fn timelines(&self) -> Vec<TimelineContents> {
+        spans(self.chunks.values().flatten())
+    }
+
+    /// All rows of an entity, in order of time; `None` when there is no such entity. A leading slash may be left out.
+    pub fn table(&self, path: &str) -> Option<EntityTable> {
+        let path = path.trim_start_matches('/');
+        let chunks = self.chunks.get(&format!("/{path}"))?;
+        Some(EntityTable::of(chunks))
+    }
+}
+
+fn contents(path: &str, chunks: &[Chunk]) -> EntityContents {
+    let mut components: Vec<String> = chunks
+        .iter()
+        .flat_map(|chunk| chunk.components_identifiers())
+        .map(|component| component.to_string())
+        .collect();
+    components.sort();
+    components.dedup();
+    EntityContents {
+        path: path.to_owned(),
+        rows: chunks.iter().map(Chunk::num_rows).sum(),
+        components,
+        timelines: spans(chunks),
+    }
+}
+
+fn spans<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Vec<TimelineContents> {
+    let mut spans: BTreeMap<String, TimelineContents> = BTreeMap::new();
+    for column in chunks.into_iter().flat_map(|c| c.timelines().values()) {
+        let (unit, scale) = scale(column.timeline().typ());
+        let times = column.times_raw();
+        let (Some(first), Some(last)) = (times.iter().min(), times.iter().max()) else {
+            continue;
+        };
+        let (first, last) = (*first as f64 / scale, *last as f64 / scale);
+        let span = spans
+            .entry(column.name().to_owned())
+            .or_insert_with(|| TimelineContents {
+                name: column.name().to_owned(),
+                unit,
+                first,
+                last,
+            });
+        span.first = span.first.min(first);
+        span.last = span.last.max(last);
+    }
+    spans.into_values().collect()
+}
+
+/// The unit of a timeline in words, and how many of its counts are one.
+pub(super) fn scale(kind: TimeType) -> (&'static str, f64) {
+    match kind {
+        TimeType::Sequence => ("", 1.0),
+        TimeType::DurationNs | TimeType::TimestampNs => ("s", NANOSECONDS),
+    }
+}
