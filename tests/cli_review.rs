@@ -183,6 +183,34 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
     }
 }
 
+#[test]
+fn shells_and_manuals_know_every_command() {
+    let commands = [
+        "check", "assess", "plan", "suite", "compare", "inspect", "verify",
+    ];
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let text = stdout(
+            &searoom(&["completions", shell])
+                .success()
+                .stderr(is_empty()),
+        );
+        assert!(
+            commands.iter().all(|c| text.contains(c)) && text.contains("max-risk"),
+            "{shell}"
+        );
+    }
+    searoom(&["completions", "csh"]).code(2);
+    let page = stdout(&searoom(&["man"]).success().stderr(is_empty()));
+    assert!(page.contains(".TH searoom 1"));
+    for command in commands {
+        assert!(
+            page.contains(&format!(".SH {}\n", command.to_uppercase())),
+            "{command}"
+        );
+    }
+    assert!(page.contains("\\-\\-max\\-risk"));
+}
+
 /// The document without its wall-clock figures.
 fn untimed(mut document: Value) -> Value {
     fn strip(value: &mut Value) {

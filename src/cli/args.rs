@@ -36,6 +36,10 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Checks plan documents again from themselves alone, with code that shares nothing with the planners
     Verify(VerifyArgs),
+    /// Prints the completions of a shell, to be read by it
+    Completions(CompletionsArgs),
+    /// Prints the manual as roff: `searoom man > searoom.1`
+    Man,
 }
 
 #[derive(Debug, Args)]
@@ -152,6 +156,13 @@ pub struct VerifyArgs {
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// Which shell
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
 }
 
 /// What every planning command takes.

@@ -4,6 +4,8 @@ mod args;
 mod assess;
 mod check;
 mod compare;
+#[cfg(feature = "recording")]
+mod difference;
 mod figure;
 mod files;
 #[cfg(feature = "recording")]
@@ -13,6 +15,7 @@ mod plan;
 mod products;
 mod rows;
 mod runner;
+mod shell;
 mod status;
 mod suite;
 mod verify;
@@ -47,6 +50,8 @@ pub fn main() -> ExitCode {
             Status::BadInput
         }
         Command::Verify(args) => verify::verify(args, &output),
+        Command::Completions(args) => shell::completions(args, &output),
+        Command::Man => shell::man(&output),
     };
     let status = runner::guarded(run).unwrap_or_else(|fault| {
         output.error(&fault);

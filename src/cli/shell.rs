@@ -1,0 +1,51 @@
+//! `searoom completions` and `searoom man`: what shells and readers of manuals need, from the arguments themselves.
+
+use clap::CommandFactory;
+use clap_complete::generate;
+use clap_mangen::Man;
+
+use super::args::{Arguments, CompletionsArgs};
+use super::output::Output;
+use super::status::Status;
+
+/// Prints the completions of a shell.
+pub fn completions(args: &CompletionsArgs, output: &Output) -> Status {
+    let mut command = Arguments::command();
+    let name = command.get_name().to_owned();
+    let mut text = Vec::new();
+    generate(args.shell, &mut command, name, &mut text);
+    print(text, output)
+}
+
+/// Prints the manual: the program, then each of its commands.
+pub fn man(output: &Output) -> Status {
+    let mut command = Arguments::command();
+    command.build();
+    let mut text = Vec::new();
+    let is_shown = |c: &&clap::Command| !c.is_hide_set() && c.get_name() != "help";
+    let commands: Vec<clap::Command> = command
+        .get_subcommands()
+        .filter(is_shown)
+        .cloned()
+        .collect();
+    let written = Man::new(command).render(&mut text).and_then(|()| {
+        commands.into_iter().try_for_each(|command| {
+            text.extend(format!(".SH {}\n", command.get_name().to_uppercase()).bytes());
+            let page = Man::new(command);
+            page.render_synopsis_section(&mut text)?;
+            page.render_description_section(&mut text)?;
+            page.render_options_section(&mut text)
+        })
+    });
+    match written {
+        Ok(()) => print(text, output),
+        Err(error) => {
+            output.error(&format_args!("the manual cannot be written: {error}"));
+            Status::InternalFault
+        }
+    }
+}
+
+fn print(text: Vec<u8>, output: &Output) -> Status {
+    output.result(String::from_utf8_lossy(&text).trim_end())
+}
