@@ -162,6 +162,20 @@ fn scaled(set: &SpaceTimeSet, factor: f64) -> SpaceTimeSet {
     }
 }
 
+/// Metres along the profile at a time; `None` where it does not reach.
+fn profile_at(profile: &[[f64; 2]], time: f64) -> Option<f64> {
+    let piece = profile
+        .windows(2)
+        .find(|w| w[0][1] <= time && time <= w[1][1])?;
+    let [from, to] = [piece[0], piece[1]];
+    let share = (time - from[1]) / (to[1] - from[1]);
+    Some(if share.is_nan() {
+        to[0]
+    } else {
+        from[0] + share * (to[0] - from[0])
+    })
+}
+
 /// The profile is the way sailed over time.
 fn profile(claim: &Claim) -> Option<Violation> {
     let profile = &claim.file.path_time.as_ref()?.profile;
@@ -180,8 +194,13 @@ fn profile(claim: &Claim) -> Option<Violation> {
         let said = format!("a start at {at} s");
         return Some(untrue("path_time.profile", said, format!("{start} s")));
     }
-    let wrong = profile.iter().find(|[s, t]| !near(*s - begin, sailed(*t)));
-    if let Some([s, t]) = wrong {
+    // between its own points the profile is straight, between the joints of the motion what is sailed is: they are the
+    // same where they are so at both
+    let joints = segments.iter().map(Segment::end_time);
+    let at_joints = joints.filter_map(|t| Some([profile_at(profile, t)?, t]));
+    let mut points = profile.iter().copied().chain(at_joints);
+    let wrong = points.find(|[s, t]| !near(*s - begin, sailed(*t)));
+    if let Some([s, t]) = &wrong {
         let so = begin + sailed(*t);
         return Some(Violation {
             time: *t,
