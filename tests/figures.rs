@@ -4,7 +4,7 @@ use searoom::assessment::Situation;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle};
-use searoom::report::figure::{Figure, assessment_figure};
+use searoom::report::figure::{Figure, assessment_figure, volume_panel};
 use searoom::target::VelocitySpell;
 
 fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
@@ -80,6 +80,31 @@ fn the_same_figure_is_the_same_bytes() {
         !svg.contains("NaN") && !svg.contains("inf"),
         "a number that is none"
     );
+}
+
+/// In the round: its own axes with their units, and a line for every section and edge that the key names.
+#[test]
+fn a_body_in_the_round_has_axes_and_units() {
+    for target in targets() {
+        let drawn = || {
+            let panel = volume_panel("Body", &target, &[0.0, 50.0, 100.0], 100.0);
+            Figure::new(1, vec![panel]).svg()
+        };
+        let svg = drawn();
+        assert_eq!(svg, drawn());
+        for text in [
+            "East [m]",
+            "North [m]",
+            "Time [s]",
+            ">100<",
+            "section at 0 s",
+            "sections at 50, 100 s",
+            "edges of the body",
+        ] {
+            assert!(svg.contains(text), "{text}");
+        }
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
 }
 
 /// From one to many panels, and situations at the edge of what there is.
