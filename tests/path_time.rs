@@ -255,7 +255,7 @@ fn the_least_time_is_that_of_a_fine_grid() {
 #[test]
 fn the_least_space_time_error_is_about_that_of_a_fine_grid() {
     let count = scenes(300) / 3;
-    let mut ratios = Vec::new();
+    let (mut ratios, mut expanded) = (Vec::new(), [0, 0]);
     for seed in 0..count {
         let drawn = draw(seed, Kinds::Exact);
         let planned = plan(&drawn, SearchKind::AStar, Objective::SpaceTimeError);
@@ -276,6 +276,15 @@ fn the_least_space_time_error_is_about_that_of_a_fine_grid() {
             continue;
         };
         assert_sound(&drawn, found.trajectory.segments(), seed);
+        let dijkstra = plan(&drawn, SearchKind::Dijkstra, Objective::SpaceTimeError);
+        let other = dijkstra.outcome.plan().expect("a plan too").cost;
+        assert!(
+            (other - found.cost).abs() <= 1e-8 * (1.0 + other),
+            "{seed}: {}, Dijkstra {other}",
+            found.cost
+        );
+        expanded[0] += planned.stats.expanded;
+        expanded[1] += dijkstra.stats.expanded;
         if let Some(grid) = grid {
             // a grid cannot follow the schedule: what a piece of lag costs is no merit of the plan
             let piece = path.length() / 400.0;
@@ -296,6 +305,11 @@ fn the_least_space_time_error_is_about_that_of_a_fine_grid() {
         at(0.95),
         &ratios[ratios.len() - 3..]
     );
+    println!(
+        "expanded: {} by A*, {} by Dijkstra",
+        expanded[0], expanded[1]
+    );
+    assert!(expanded[0] < expanded[1], "{expanded:?}");
     // on one leg the graph has the best profile; over corners of the path the nearest leg changes and it may not
     assert!(
         at(0.5) < 1.0 && at(0.95) < 1.001 && at(1.0) < 1.1,

@@ -12,6 +12,7 @@ mod quadrature;
 mod shore;
 mod space_time_set;
 mod steered;
+mod turn;
 
 pub use space_time_set::{SetShape, SpaceTimeSet};
 pub use steered::{Steering, evaluate_steered};
@@ -23,6 +24,7 @@ use moving_slabs::MovingSlabs;
 use piece::Piece;
 use shore::least_land_distance;
 use space_time_set::MovingSet;
+use turn::{Turn, least_while_turning, turns};
 
 use crate::frame::{Side, Vector, relative_bearing};
 use crate::geometry::{ConvexPolygon, Polygon, outer_disc, outer_enclosing_ellipse};
@@ -147,8 +149,9 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let mut violations = motion::check(request);
     let judged = !segments.is_empty() && segments.iter().all(Segment::is_valid);
     let segments = if judged { segments } else { &[] };
-    let passages = meetings(request, segments, judged, &mut violations);
-    let shore = shore(request, segments, judged, &mut violations);
+    let turns = turns(segments);
+    let passages = meetings(request, segments, &turns, judged, &mut violations);
+    let shore = shore(request, segments, &turns, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
     Evaluation {
@@ -197,6 +200,7 @@ pub fn least_margins(request: &Request) -> Vec<f64> {
 fn meetings<P: Piece>(
     request: &Request,
     pieces: &[P],
+    turns: &[Turn],
     judged: bool,
     violations: &mut Vec<Violation>,
 ) -> Vec<Passage> {
@@ -220,7 +224,7 @@ fn meetings<P: Piece>(
                 margin.see(least.value, least.time);
             }
         }
-        let (passage, clearance) = passage(request, pieces, target, &margin);
+        let (passage, clearance) = passage(request, pieces, turns, target, &margin);
         // explicit sets are judged above, as sets
         if judged && target.ship().is_some() {
             let label = format!("hull of '{}'", target.name);
@@ -235,11 +239,19 @@ fn meetings<P: Piece>(
 fn shore<P: Piece>(
     request: &Request,
     pieces: &[P],
+    turns: &[Turn],
     judged: bool,
     violations: &mut Vec<Violation>,
 ) -> Least {
     let own = &request.own.hull;
-    let least = least_land_distance(pieces, Body::hull(own), own.half_diagonal(), request.land);
+    let (body, reach) = (Body::hull(own), own.half_diagonal());
+    let mut least = least_land_distance(pieces, body, reach, request.land);
+    for turn in turns {
+        let sweep = std::slice::from_ref(&turn.sweep);
+        let here = least_land_distance(sweep, body, reach, request.land);
+        least.see(here.value, turn.time);
+        least.certified &= here.certified;
+    }
     if judged {
         violations.extend(grounding(&least, request.land_margin));
     }
@@ -315,6 +327,7 @@ fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<Velocity
 fn passage<P: Piece>(
     request: &Request,
     pieces: &[P],
+    turns: &[Turn],
     target: &Target,
     margin: &Least,
 ) -> (Passage, Least) {
@@ -322,18 +335,29 @@ fn passage<P: Piece>(
         Motion::Ship(ship) => {
             let body = Body::hull(&request.own.hull);
             let hull = ship.hull.polygon(&ship.pose);
-            let nominal = MovingSet::new(&hull, &ConvexPolygon::point(ship.velocity()));
+            let along = |slabs: &MovingSlabs| {
+                let mut least = slabs.least_distance(pieces, body);
+                let turning = least_while_turning(turns, body, slabs);
+                least.see(turning.value, turning.time);
+                least.certified &= turning.certified;
+                least
+            };
+            let held = VelocitySpell {
+                until: f64::INFINITY,
+                velocities: ConvexPolygon::point(ship.velocity()),
+            };
+            let nominal = MovingSlabs::new(&hull, &[held]);
             let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
             let initial = hull.minkowski_sum(&unknown);
             let spells = ship.outer_velocity_spells(ship.turn_rate, request.horizon);
-            let worst = MovingSlabs::new(&initial, &spells).least_distance(pieces, body);
+            let worst = along(&MovingSlabs::new(&initial, &spells));
             let kept = if request.max_risk > 0.0 {
                 let spells = at_risk(&spells, target, request.max_risk);
-                MovingSlabs::new(&initial, &spells).least_distance(pieces, body)
+                along(&MovingSlabs::new(&initial, &spells))
             } else {
                 worst
             };
-            (least_distance(pieces, body, &nominal), worst, kept)
+            (along(&nominal), worst, kept)
         }
         Motion::Sets { initial, velocity } => {
             let set = MovingSet::new(initial, velocity);

@@ -44,6 +44,13 @@ impl MovingSlabs {
         self.slabs.iter().all(|s| s.set.has_interior())
     }
 
+    /// The section at a time, standing still.
+    pub fn section_at(&self, time: f64) -> MovingSet {
+        let index = self.slabs.partition_point(|slab| slab.end < time);
+        let slab = &self.slabs[index.min(self.slabs.len() - 1)];
+        slab.set.still_at(time - slab.start)
+    }
+
     /// [`least_distance`] over the slabs, each within its time.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
         let mut least = Least::new();

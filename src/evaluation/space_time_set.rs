@@ -165,6 +165,12 @@ impl MovingSet {
         }
     }
 
+    /// The section at a time as a set that does not move.
+    pub fn still_at(&self, time: f64) -> Self {
+        let section = self.initial.minkowski_sum(&self.velocity.scaled(time));
+        Self::new(&section, &ConvexPolygon::point(Vector::zeros()))
+    }
+
     /// The supporting line in any unit direction.
     pub fn face(&self, normal: Vector) -> Face {
         Face {

@@ -37,8 +37,8 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     let mut violations = Vec::new();
     check(request, steering, &mut violations);
     let pieces: Vec<Cubic> = steering.motion.pieces().collect();
-    let passages = meetings(request, &pieces, true, &mut violations);
-    let shore = shore(request, &pieces, true, &mut violations);
+    let passages = meetings(request, &pieces, &[], true, &mut violations);
+    let shore = shore(request, &pieces, &[], true, &mut violations);
     let length = steering.motion.length();
     let nodes = steering.motion.nodes();
     Evaluation {

@@ -1,6 +1,9 @@
 //! What each planner asks of a scenario beyond what the fields say.
 
-use super::{Fault, Scenario};
+use std::f64::consts::PI;
+
+use super::{Fault, Land, Scenario};
+use crate::frame::{Vector, heading_of, wrap};
 use crate::planner::{Objective, PlannerKind};
 use crate::tolerance;
 use crate::trajectory::{NetworkError, PathNetwork};
@@ -88,7 +91,11 @@ fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
     }
     let alternative = |index: usize| format!("mission.alternatives[{index}]");
     match PathNetwork::new(&scenario.desired.waypoints(), &scenario.alternatives) {
-        Ok(_) => {}
+        Ok(network) => {
+            if let Some(land) = &scenario.land {
+                faults.extend(turns_aground(scenario, land, &network));
+            }
+        }
         Err(NetworkError::NoSharedPoint { alternative: index }) => faults.push(fault(
             &alternative(index),
             "a path that shares no point with another one".to_owned(),
@@ -109,4 +116,77 @@ fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
         )),
     }
     faults
+}
+
+/// Every place where own hull, turning on the spot from one leg to the next, would come too near to land. A turn about may be
+/// to either side: both have to be free.
+fn turns_aground(scenario: &Scenario, land: &Land, network: &PathNetwork) -> Vec<Fault> {
+    let own = &scenario.own_ship;
+    let legs = network.legs();
+    let mut faults = Vec::new();
+    for point in 0..network.points() {
+        let same = network.same_place(point);
+        if same.iter().any(|p| *p < point) {
+            continue;
+        }
+        let place = network.place(point);
+        let arriving = legs.iter().filter(|leg| same.contains(&leg.ends[1]));
+        let mut before: Vec<f64> = arriving.map(|leg| heading_of(leg.direction)).collect();
+        if same.contains(&network.start()) {
+            before.push(own.pose.heading);
+        }
+        let mut least = f64::INFINITY;
+        for from in before {
+            for leg in network.onward(point) {
+                let turn = wrap(heading_of(legs[*leg].direction) - from);
+                let turn = if turn.abs() >= PI - tolerance::JOINT_RAD {
+                    2.0 * PI
+                } else {
+                    turn
+                };
+                if turn.abs() > tolerance::JOINT_RAD {
+                    least = least.min(land.room_to_turn(&own.hull, place, from, turn));
+                }
+            }
+        }
+        // negated on purpose: a NaN is aground
+        if !(least >= land.margin - tolerance::DEPTH_M) {
+            let field = field_at(scenario, place);
+            let found = if least < 0.0 {
+                format!(
+                    "a turn on the spot that takes own hull {:.1} m onto land",
+                    -least
+                )
+            } else {
+                format!("a turn on the spot that takes own hull to {least:.1} m from land")
+            };
+            let allowed = format!(
+                "at least {} m of water around own hull on every heading between the legs that meet here, or the \
+                 space-time planner",
+                land.margin
+            );
+            faults.push(fault(&field, found, &allowed));
+        }
+    }
+    faults
+}
+
+/// The field of the waypoint at a place; of the paths where they only cross there.
+fn field_at(scenario: &Scenario, place: Vector) -> String {
+    let at = |points: &[Vector]| {
+        let near = |p: &Vector| (p - place).norm() <= tolerance::JOINT_M;
+        points.iter().position(near)
+    };
+    if let Some(index) = at(&scenario.desired.waypoints()) {
+        return format!("mission.waypoints[{index}]");
+    }
+    let others = scenario.alternatives.iter().enumerate();
+    let mut found = others.filter_map(|(path, points)| Some((path, at(points)?)));
+    match found.next() {
+        Some((path, index)) => format!("mission.alternatives[{path}][{index}]"),
+        None => format!(
+            "mission.alternatives (crossing at east {:.1} m, north {:.1} m)",
+            place.x, place.y
+        ),
+    }
 }

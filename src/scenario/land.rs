@@ -12,6 +12,9 @@ use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
 
+/// Metres. What is missing for a turn on the spot is found to this, never less than it is.
+const TURN_SETTLED_M: f64 = 1e-3;
+
 /// Faults of a map or a path that are listed: a map of another place has one in every feature.
 const MAX_LISTED: usize = 20;
 
@@ -33,6 +36,35 @@ impl Land {
     /// Every stretch of a path that own hull cannot sail: nearer to land than half of the beam and the margin.
     pub fn crossings(&self, hull: &Hull, path: &[Vector]) -> Vec<LandCrossing> {
         self.map.crossings(path, self.clearance_along(hull))
+    }
+
+    /// Metres between own hull and land while she turns on the spot from a heading by `turn` radians: the least over all
+    /// headings between, at most a millimetre too small. By halving: in a turn no point of the hull moves farther than the angle
+    /// times its half-diagonal. Infinite where land is farther than the margin from all of them.
+    pub fn room_to_turn(&self, hull: &Hull, place: Vector, from: f64, turn: f64) -> f64 {
+        let reach = hull.half_diagonal();
+        if self.map.signed_distance(place) > reach + self.margin {
+            return f64::INFINITY;
+        }
+        let apart = |heading: f64| {
+            let lying = hull.polygon(&Pose::new(place, heading));
+            self.map.separation(&lying, self.margin + 2.0 * reach)
+        };
+        let mut least = apart(from).min(apart(from + turn));
+        let mut open = vec![(from, from + turn)];
+        while let Some((first, last)) = open.pop() {
+            let (middle, half) = (0.5 * (first + last), 0.5 * (last - first).abs());
+            let here = apart(middle);
+            // negated on purpose: a NaN is taken over
+            if !(here >= least) {
+                least = here;
+            }
+            if here - reach * half < least - TURN_SETTLED_M {
+                open.push((first, middle));
+                open.push((middle, last));
+            }
+        }
+        least - TURN_SETTLED_M
     }
 }
 

@@ -173,6 +173,14 @@ impl<'a> Graph<'a> {
             leg,
             distance: 0.0,
         });
+        // an integral takes longer than a test
+        if let (false, Some(leg)) = (self.measure.waits_are_free(), leg)
+            && line
+                .windows(2)
+                .any(|p| self.scene.barrier(leg, p[0], p[1]).is_some())
+        {
+            return;
+        }
         let on_schedule = line.len() == 2 && self.nodes[from].due && self.nodes[to].due;
         let step = if on_schedule && leg.is_some() {
             self.measure.on_schedule(line[0], line[1])
@@ -270,7 +278,7 @@ impl Space for Graph<'_> {
         if !(earliest <= self.scene.horizon + tolerance::TIME_S) {
             f64::INFINITY
         } else if self.informed {
-            self.measure.bound(self.scene, to_go)
+            self.measure.bound(self.scene, to_go, node.time)
         } else {
             0.0
         }

@@ -1,11 +1,12 @@
 //! What is minimised over the graph.
 
 use super::nodes::{Mark, Node, Place};
+use super::recovery::Recovery;
 use super::scene::Scene;
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::PathTime;
 use crate::planner::cost::space_time_error;
-use crate::planner::{Objective, Problem};
+use crate::planner::{Objective, Problem, SearchKind};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -13,14 +14,20 @@ use crate::trajectory::Segment;
 const METRES_PER_SECOND: f64 = 1e-6;
 
 /// See the head of the file.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Measure<'a> {
     problem: &'a Problem<'a>,
+    recovery: Option<Recovery<'a>>,
 }
 
 impl<'a> Measure<'a> {
     pub(crate) fn new(problem: &'a Problem<'a>) -> Self {
-        Self { problem }
+        let informed =
+            problem.search == SearchKind::AStar && problem.objective == Objective::SpaceTimeError;
+        Self {
+            problem,
+            recovery: informed.then(|| Recovery::new(problem)).flatten(),
+        }
     }
 
     /// The cost of a line: seconds, metres or m².
@@ -59,13 +66,16 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// At most the cost of the way to the end, of which so many metres are left.
-    pub(crate) fn bound(&self, scene: &Scene, to_go: f64) -> f64 {
+    /// At most the cost of the way to the end, of which so many metres are left at a time.
+    pub(crate) fn bound(&self, scene: &Scene, to_go: f64, now: f64) -> f64 {
         let time = to_go / scene.max_speed;
         match self.problem.objective {
             Objective::Time => time,
             Objective::Length | Objective::LengthRisk { .. } => to_go + METRES_PER_SECOND * time,
-            Objective::SpaceTimeError => 0.0,
+            Objective::SpaceTimeError => {
+                let recovery = self.recovery.as_ref();
+                recovery.map_or(0.0, |recovery| recovery.bound(to_go, now))
+            }
         }
     }
 

@@ -14,6 +14,7 @@ mod measure;
 mod nodes;
 mod profile;
 mod rays;
+mod recovery;
 mod scene;
 mod weighing;
 
@@ -95,6 +96,7 @@ pub fn plan(problem: &Problem) -> Planned {
     if problem.objective == Objective::SpaceTimeError {
         rays::add_rays(&scene, &mut known);
     }
+    let waits_are_free = measure.waits_are_free();
     let mut graph = Graph::new(&scene, known, measure, problem.search);
     let mut search = Search::new(graph.root());
     let mut timed_out = false;
@@ -133,7 +135,7 @@ pub fn plan(problem: &Problem) -> Planned {
                 None => profile.wait(to.time),
             }
         }
-        if measure.waits_are_free() {
+        if waits_are_free {
             profile.pull_taut(&scene);
         } else {
             profile.tidy(&scene);

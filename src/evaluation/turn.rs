@@ -1,0 +1,118 @@
+//! A turn on the spot: own hull sweeps over every heading between two courses while time stands still.
+
+use super::clearance::{Body, least_distance};
+use super::least::Least;
+use super::moving_slabs::MovingSlabs;
+use crate::frame::wrap;
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+use std::f64::consts::PI;
+
+/// Where the heading changes at once between two segments.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    /// The turn as a motion that takes a second per radian: every heading between the two, on the side of the smaller turn.
+    pub sweep: Segment,
+    /// Seconds at which it happens.
+    pub time: f64,
+}
+
+/// Every turn on the spot of a chain of segments. Of a turn about both sides are looked at: nobody says which one it is.
+pub(super) fn turns(segments: &[Segment]) -> Vec<Turn> {
+    let joints = segments.windows(2);
+    joints
+        .filter_map(|pair| {
+            let (before, after) = (pair[0].end(), pair[1].start);
+            let turn = wrap(after.heading - before.heading);
+            // negated on purpose: a NaN is a turn
+            if turn.abs() <= tolerance::JOINT_RAD {
+                return None;
+            }
+            let about = !(turn.abs() <= PI - tolerance::JOINT_RAD);
+            let angle = if about { 2.0 * PI } else { turn.abs() };
+            let mut start = after;
+            start.heading = before.heading;
+            Some(Turn {
+                sweep: Segment {
+                    start,
+                    start_time: 0.0,
+                    duration: angle,
+                    speed: 0.0,
+                    turn_rate: turn.signum(),
+                },
+                time: pair[1].start_time,
+            })
+        })
+        .collect()
+}
+
+/// The least distance between own hull and a set that stands still as it is at the time of each turn; the times are those of
+/// the turns.
+pub(super) fn least_while_turning(turns: &[Turn], own: Body, slabs: &MovingSlabs) -> Least {
+    let mut least = Least::new();
+    for turn in turns {
+        let section = slabs.section_at(turn.time);
+        let here = least_distance(std::slice::from_ref(&turn.sweep), own, &section);
+        least.see(here.value, turn.time);
+        least.certified &= here.certified;
+        least.probes += here.probes;
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Vector, direction};
+    use crate::geometry::ConvexPolygon;
+    use crate::target::VelocitySpell;
+    use crate::vessel::Hull;
+
+    fn straight(heading: f64, from: f64) -> Segment {
+        Segment {
+            start: Pose::new(Vector::zeros(), heading),
+            start_time: from,
+            duration: 10.0,
+            speed: 0.0,
+            turn_rate: 0.0,
+        }
+    }
+
+    /// The bow, 10 m ahead of the middle, passes a buoy that neither course comes near: 3 m short of it, at any time.
+    #[test]
+    fn a_turn_sweeps_over_the_headings_between() {
+        let body = Body::hull(&Hull {
+            length: 20.0,
+            beam: 0.2,
+        });
+        let velocity = direction(0.7) * 0.5;
+        let buoy = |bearing: f64| {
+            let at_turn = direction(bearing) * 13.0;
+            let initial = ConvexPolygon::point(at_turn - velocity * 10.0);
+            MovingSlabs::new(
+                &initial,
+                &[VelocitySpell {
+                    until: f64::INFINITY,
+                    velocities: ConvexPolygon::point(velocity),
+                }],
+            )
+        };
+        let least = |to: f64, bearing: f64| {
+            let turns = turns(&[straight(0.0, 0.0), straight(to, 10.0)]);
+            let least = least_while_turning(&turns, body, &buoy(bearing));
+            assert!(least.certified && least.time == 10.0);
+            least.value
+        };
+        let bow = 10.0_f64.hypot(0.1);
+        assert!(
+            (least(1.4, 0.7) - (13.0 - bow)).abs() < 2e-3,
+            "{}",
+            least(1.4, 0.7)
+        );
+        assert!(least(1.4, -0.7) > 7.0 && least(1.4, 2.1) > 7.0);
+        // a turn about may be either way
+        assert!(least(PI, 0.7) < 3.01 && least(PI, -0.7) < 3.01);
+        assert!(turns(&[straight(0.3, 0.0), straight(0.3, 10.0)]).is_empty());
+    }
+}
