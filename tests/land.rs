@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use searoom::frame::{Geographic, Georeference, Vector};
+use searoom::pipeline;
+use searoom::planner::PlannerKind;
 use searoom::scenario::{Scenario, ScenarioError};
 
 /// South-west of Munkholmen, in the middle of the fjord, in metres and on the map.
@@ -152,14 +154,83 @@ fn a_bad_map_is_named_with_its_file_its_feature_and_what_is_allowed() {
             .iter()
             .any(|f| f.contains("features[0]") && f.contains("km from the origin"))
     );
-    assert!(
-        found.iter().any(|f| f.contains("7 more faults")),
-        "{found:?}"
-    );
+    assert!(found[0].contains("and so in 26 more polygons"), "{found:?}");
     // positions are far too: all at once
     assert!(
         found.iter().any(|f| f.contains("own_ship.position")),
         "{found:?}"
+    );
+}
+
+/// Own hull lies free on both legs, and her bow would sweep to within a metre of an islet on the way from one course to the
+/// other.
+#[test]
+fn a_turn_on_the_spot_beside_an_islet_is_refused_and_judged() {
+    let folder = folder();
+    let origin = Geographic {
+        lat_deg: 63.44,
+        lon_deg: 10.399,
+    };
+    let earth = Georeference::new(origin).expect("valid");
+    let corners = [
+        (-1.0, -1.0),
+        (1.0, -1.0),
+        (1.0, 1.0),
+        (-1.0, 1.0),
+        (-1.0, -1.0),
+    ];
+    let ring: Vec<String> = corners
+        .iter()
+        .map(|(x, y)| {
+            let place = earth.to_geographic(Vector::new(212.5 + x, 12.5 + y));
+            format!("[{:.9}, {:.9}]", place.lon_deg, place.lat_deg)
+        })
+        .collect();
+    let islet = format!(
+        r#"{{ "type": "Polygon", "coordinates": [[{}]] }}"#,
+        ring.join(", ")
+    );
+    std::fs::write(folder.path().join("islet.geojson"), islet).expect("written");
+    let text = |kind: &str, course: f64, turn: &str| {
+        format!(
+            r#"
+title = "round the corner"
+horizon_s = 600
+origin = {{ lat_deg = 63.44, lon_deg = 10.399 }}
+map = "islet.geojson"
+planner = {{ kind = "{kind}", objective = "space-time-error" }}
+own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = {course}, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 40, land_margin_m = 2 }}
+mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 200, north_m = 0 }}, {turn}] }}
+"#
+        )
+    };
+    let north = "{ east_m = 200, north_m = 300 }";
+    let found = faults(folder.path(), &text("path-time", 90.0, north));
+    assert_eq!(found.len(), 1, "{found:?}");
+    let expected = "mission.waypoints[1]: found a turn on the spot that takes own hull to 0.7 m from land; allowed: at least 2 m";
+    assert!(found[0].contains(expected), "{found:?}");
+    // to the other side the bow sweeps over water; the stern does, too
+    let south = "{ east_m = 200, north_m = -300 }";
+    read(folder.path(), &text("path-time", 90.0, south)).expect("valid");
+    // back along the same leg: nobody says to which side she turns about
+    let back = "{ east_m = 100, north_m = 0 }";
+    let found = faults(folder.path(), &text("path-time", 90.0, back));
+    assert!(
+        found[0].contains("waypoints[1]: found a turn on the spot"),
+        "{found:?}"
+    );
+    // who is planned around the corner turns on an arc
+    let mut scenario = read(folder.path(), &text("space-time", 90.0, north)).expect("valid");
+    // a planner that is not told: the judge finds it
+    scenario.planner = PlannerKind::PathTime;
+    let wrong = pipeline::run(scenario)
+        .evaluation
+        .expect("judged")
+        .violations;
+    assert_eq!(wrong.len(), 1, "{wrong:?}");
+    assert!(
+        wrong[0].what.contains("land: own hull at 7.39") && (wrong[0].time - 40.0).abs() < 1e-6,
+        "{wrong:?}"
     );
 }
 

@@ -99,6 +99,45 @@ fn ship(y: f64, speed: f64) -> Target {
     }
 }
 
+/// Own ship turns on the spot beside a ship at anchor that she lies clear of before and after: her bow sweeps over the other's.
+#[test]
+fn a_hull_is_met_in_a_turn_on_the_spot() {
+    let mut segments = Vec::new();
+    follow(&mut segments, 200.0, 5.0, 0.0);
+    let mut onward = segments[0];
+    onward.start = Pose::new(segments[0].end().position, 1.5);
+    onward.start_time = segments[0].end_time();
+    let mut other = ship(0.0, 0.0);
+    if let Motion::Ship(track) = &mut other.motion {
+        track.pose = Pose::new(
+            segments[0].end().position + crate::frame::direction(0.75) * 14.0,
+            2.3,
+        );
+        (track.position_std, track.speed_spread) = (0.0, 0.0);
+        track.hull = Hull {
+            length: 6.0,
+            beam: 1.0,
+        };
+    }
+    let along = judge(&segments, &[], std::slice::from_ref(&other));
+    assert!(along.min_clearance > 1.0, "{}", along.min_clearance);
+    segments.push(onward);
+    let turned = judge(&segments, &[], std::slice::from_ref(&other));
+    let anchored = other.ship().expect("a ship");
+    let anchored = anchored.hull.polygon(&anchored.pose);
+    let scan = (0..=1500)
+        .map(|k| Pose::new(onward.start.position, 1.5 * f64::from(k) / 1500.0))
+        .map(|pose| own().hull.polygon(&pose).separation(&anchored))
+        .fold(f64::INFINITY, f64::min);
+    let found = turned.min_clearance;
+    assert!(scan < -1.0 && (found - scan).abs() < 0.01, "{found} {scan}");
+    let met = turned
+        .violations
+        .iter()
+        .find(|v| v.what.contains("hull of 'other'"));
+    assert!((met.expect("met").time - 40.0).abs() < 1e-9);
+}
+
 fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Evaluation {
     evaluate(&Request {
         freedom: Freedom::Limits,

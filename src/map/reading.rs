@@ -19,6 +19,10 @@ const POLYGON: &str = "a Polygon or a MultiPolygon";
 const POSITION: &str =
     "[longitude, latitude] in degrees, WGS84: longitude from -180 to 180, latitude from -90 to 90";
 
+/// What is wrong with a position of a map in the wrong order, and with one of another place: as a rule with all of them.
+const EXCHANGED: &str = ", which looks like [latitude, longitude]";
+const FAR: &str = " from the origin";
+
 impl Map {
     /// Reads a GeoJSON file: a feature collection, a feature or a geometry of polygons, holes included, on the
     /// plane of a georeference. Every fault of the file is in the error, one for each polygon at most.
@@ -66,7 +70,9 @@ impl Map {
         };
         reading.document(text);
         if !reading.faults.is_empty() {
-            return Err(reading.faults);
+            let none = reading.polygons.is_empty();
+            let faults = reading.faults;
+            return Err(if none { together(faults) } else { faults });
         }
         if reading.polygons.is_empty() {
             reading.fault(
@@ -84,6 +90,19 @@ impl Map {
             }]
         })
     }
+}
+
+/// The faults of a map without a good polygon, but one if all are of positions that are exchanged, or all of far ones.
+fn together(mut faults: Vec<MapFault>) -> Vec<MapFault> {
+    let all = |sign: &str| faults.iter().all(|fault| fault.found.contains(sign));
+    if faults.len() > 1 && (all(EXCHANGED) || all(FAR)) {
+        let more = faults.len() - 1;
+        faults.truncate(1);
+        faults[0]
+            .found
+            .push_str(&format!(", and so in {more} more polygons"));
+    }
+    faults
 }
 
 struct Reading<'a> {
@@ -196,19 +215,24 @@ impl Reading<'_> {
     }
 
     fn point(&self, position: &Position) -> Result<Vector, (String, String)> {
-        let (lon_deg, lat_deg) = (position[0], position[1]);
+        let &[lon_deg, lat_deg, ..] = position.as_slice() else {
+            let numbers = position.as_slice().len();
+            let found = format!("{numbers} numbers where a place is meant");
+            return Err((found, POSITION.to_owned()));
+        };
         let place = Geographic { lat_deg, lon_deg };
         if let Some(point) = self.earth.to_near_plane(place) {
             return Ok(point);
         }
-        let written = format!("[{lon_deg}, {lat_deg}]");
+        let written = format!("[{lon_deg:?}, {lat_deg:?}]");
         let exchanged = Geographic {
             lat_deg: lon_deg,
             lon_deg: lat_deg,
         };
         if self.earth.to_near_plane(exchanged).is_some() {
-            let found = format!("{written}, which looks like [latitude, longitude],");
-            return Err((found, POSITION.to_owned()));
+            let found = format!("{written}{EXCHANGED},");
+            let allowed = format!("{POSITION}; or an origin that is not exchanged itself");
+            return Err((found, allowed));
         }
         if !place.is_on_earth() {
             return Err((written, POSITION.to_owned()));
@@ -216,7 +240,7 @@ impl Reading<'_> {
         let far = self.earth.to_plane(place).norm() / 1000.0;
         let (reach, origin) = (GEOREFERENCE_REACH_M / 1000.0, self.earth.origin());
         Err((
-            format!("{written}, {far:.0} km from the origin,"),
+            format!("{written}, {far:.0} km{FAR},"),
             format!("land within {reach:.0} km of the origin ({origin})"),
         ))
     }
@@ -317,6 +341,16 @@ mod tests {
                 POSITION,
             ),
             (
+                polygon("[[10.4,63.44],[10.41],[10.41,63.45],[10.4,63.44]]"),
+                "in ring 0 1 numbers where a place is meant at position 1",
+                POSITION,
+            ),
+            (
+                polygon("[[10.4,63.44],[1e308,63.44],[10.41,63.45],[10.4,63.44]]"),
+                "in ring 0 [1e308, 63.44] at position 1",
+                POSITION,
+            ),
+            (
                 polygon("[[10.4,63.44],[10.41,93.44],[10.41,63.45],[10.4,63.44]]"),
                 "in ring 0 [10.41, 93.44] at position 1",
                 POSITION,
@@ -361,6 +395,35 @@ mod tests {
         let all: Vec<&str> = cases.iter().map(|(g, _, _)| g.as_str()).collect();
         let together = Map::parse(&collection(&all), &earth()).expect_err("faulty");
         assert_eq!(together.len(), cases.len(), "all at once");
+    }
+
+    /// Not a line for every one of a thousand islands.
+    #[test]
+    fn a_map_that_is_wrong_as_a_whole_is_one_fault() {
+        let island = |places: [(f64, f64); 3]| {
+            let [a, b, c] = places.map(|(x, y)| format!("[{x},{y}]"));
+            polygon(&format!("[{a},{b},{c},{a}]"))
+        };
+        let swapped = island([(63.44, 10.4), (63.44, 10.41), (63.45, 10.41)]);
+        let fault = only_fault(&collection(&[&swapped, &swapped, &swapped]));
+        assert_eq!(fault.feature, Some(0));
+        assert!(fault.found.contains("[latitude, longitude]"), "{fault}");
+        assert!(
+            fault.found.ends_with("and so in 2 more polygons"),
+            "{fault}"
+        );
+        assert!(
+            fault.allowed.contains("an origin that is not exchanged"),
+            "{fault}"
+        );
+        let far = island([(5.4, 60.44), (5.41, 60.44), (5.41, 60.45)]);
+        let fault = only_fault(&collection(&[&far, &far]));
+        assert!(
+            fault.found.contains("km from the origin") && fault.found.ends_with("1 more polygons")
+        );
+        // one right island: each of the others is named
+        let mixed = collection(&[&swapped, &polygon(ISLAND), &swapped]);
+        assert_eq!(Map::parse(&mixed, &earth()).expect_err("faulty").len(), 2);
     }
 
     #[test]

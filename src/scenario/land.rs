@@ -155,7 +155,7 @@ fn check_path(entries: &[Entry], path: &[Vector], land: &Land, plane: &Plane, hu
         });
         entry.fault(
             format_args!(
-                "a leg that {how} from {from:.1} m to {to:.1} m behind its start; {:.1} m are missing at \
+                "a leg that {how} from {from:.1} m to {to:.1} m after its start; {:.1} m are missing at \
                  east {:.1} m, north {:.1} m{place}",
                 crossing.missing, at.x, at.y
             ),
