@@ -212,7 +212,7 @@ mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 200, north_
     // to the other side the bow sweeps over water; the stern does, too
     let south = "{ east_m = 200, north_m = -300 }";
     read(folder.path(), &text("path-time", 90.0, south)).expect("valid");
-    // back along the same leg: nobody says to which side she turns about
+    // back along the same leg: half a turn, to whichever side
     let back = "{ east_m = 100, north_m = 0 }";
     let found = faults(folder.path(), &text("path-time", 90.0, back));
     assert!(

@@ -7,8 +7,6 @@ use crate::frame::wrap;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-use std::f64::consts::PI;
-
 /// Where the heading changes at once between two segments.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turn {
@@ -18,26 +16,23 @@ pub(super) struct Turn {
     pub time: f64,
 }
 
-/// Every turn on the spot of a chain of segments. Of a turn about both sides are looked at: nobody says which one it is.
+/// Every turn on the spot of a chain of segments. About a hull's middle half a turn covers the same to either side.
 pub(super) fn turns(segments: &[Segment]) -> Vec<Turn> {
     let joints = segments.windows(2);
     joints
         .filter_map(|pair| {
             let (before, after) = (pair[0].end(), pair[1].start);
             let turn = wrap(after.heading - before.heading);
-            // negated on purpose: a NaN is a turn
             if turn.abs() <= tolerance::JOINT_RAD {
                 return None;
             }
-            let about = !(turn.abs() <= PI - tolerance::JOINT_RAD);
-            let angle = if about { 2.0 * PI } else { turn.abs() };
             let mut start = after;
             start.heading = before.heading;
             Some(Turn {
                 sweep: Segment {
                     start,
                     start_time: 0.0,
-                    duration: angle,
+                    duration: turn.abs(),
                     speed: 0.0,
                     turn_rate: turn.signum(),
                 },
@@ -68,6 +63,7 @@ mod tests {
     use crate::geometry::ConvexPolygon;
     use crate::target::VelocitySpell;
     use crate::vessel::Hull;
+    use std::f64::consts::PI;
 
     fn straight(heading: f64, from: f64) -> Segment {
         Segment {

@@ -1,7 +1,5 @@
 //! What each planner asks of a scenario beyond what the fields say.
 
-use std::f64::consts::PI;
-
 use super::{Fault, Land, Scenario};
 use crate::frame::{Vector, heading_of, wrap};
 use crate::planner::{Objective, PlannerKind};
@@ -118,8 +116,8 @@ fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
     faults
 }
 
-/// Every place where own hull, turning on the spot from one leg to the next, would come too near to land. A turn about may be
-/// to either side: both have to be free.
+/// Every place where own hull, turning on the spot from one leg to the next, would come too near to land. About a hull's middle
+/// half a turn covers the same to either side.
 fn turns_aground(scenario: &Scenario, land: &Land, network: &PathNetwork) -> Vec<Fault> {
     let own = &scenario.own_ship;
     let legs = network.legs();
@@ -139,11 +137,6 @@ fn turns_aground(scenario: &Scenario, land: &Land, network: &PathNetwork) -> Vec
         for from in before {
             for leg in network.onward(point) {
                 let turn = wrap(heading_of(legs[*leg].direction) - from);
-                let turn = if turn.abs() >= PI - tolerance::JOINT_RAD {
-                    2.0 * PI
-                } else {
-                    turn
-                };
                 if turn.abs() > tolerance::JOINT_RAD {
                     least = least.min(land.room_to_turn(&own.hull, place, from, turn));
                 }
