@@ -83,7 +83,7 @@ fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
     if !(away <= tolerance::JOINT_M) {
         faults.push(fault(
             "own_ship.position",
-            format!("a start {away:.6} m from the first waypoint"),
+            format!("a start {away} m from the first waypoint"),
             "the first waypoint: the path-time planner keeps to the path",
         ));
     }

@@ -8,6 +8,7 @@ use std::cell::Cell;
 use super::aims::Aims;
 use super::ashore;
 use super::chain::Chain;
+use super::departure::{leave_for, until};
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::heuristic::Heuristic;
 use super::interception::{Chase, Limits};
@@ -15,6 +16,7 @@ use super::keep_out::KeepOut;
 use super::node::State;
 use super::returning::return_to_line;
 use super::route::Route;
+use super::stages::{TOGETHER_S, soon};
 use super::template::Ending;
 use crate::frame::{Side, heading_of};
 use crate::geometry::outer_simplified;
@@ -62,6 +64,8 @@ pub(crate) struct Graph<'a> {
     aims: Vec<Aims>,
     heuristic: Option<Heuristic<'a>>,
     clock: Clock,
+    /// The time up to which a way to the end has to be clear, where only one conflict is asked about.
+    stage: Option<f64>,
 }
 
 impl<'a> Graph<'a> {
@@ -122,12 +126,36 @@ impl<'a> Graph<'a> {
             aims,
             heuristic,
             clock,
+            stage: None,
         }
+    }
+
+    /// The graph around the conflict at `contact` alone, from where the rest of a motion begins: `near` is what of it is around the conflict.
+    /// Ways to the end have to be clear of what comes soon, not of all.
+    pub(crate) fn for_conflict(
+        problem: &'a Problem<'a>,
+        hazards: &'a [Hazard<'a>],
+        route: &'a Route,
+        [near, rest]: [&'a [Segment]; 2],
+        contact: f64,
+        clock: Clock,
+    ) -> Self {
+        let mut graph = Self::new(problem, hazards, route, near, clock);
+        graph.contacts.retain(|c| *c <= contact + TOGETHER_S);
+        graph.undisturbed = rest;
+        graph.stage = Some(contact + TOGETHER_S);
+        graph
     }
 
     /// Own ship at t = 0.
     pub(crate) fn root(&self) -> State {
-        State::start(self.problem.own.pose)
+        match (self.stage, self.undisturbed.first()) {
+            (Some(_), Some(first)) => State {
+                time: first.start_time,
+                ..State::start(first.start)
+            },
+            _ => State::start(self.problem.own.pose),
+        }
     }
 
     fn push(
@@ -190,14 +218,16 @@ impl<'a> Graph<'a> {
             .contacts
             .iter()
             .flat_map(|c| LEADS_S.iter().map(move |lead| c - lead).chain([c * 0.5]))
-            .filter(|t| *t > 0.0)
+            .filter(|t| *t > from.time)
             .collect();
-        times.push(0.0);
+        times.push(from.time);
         times.sort_by(f64::total_cmp);
         times.dedup_by(|a, b| *a - *b < 2.0);
-        self.paced(from, out);
+        if self.stage.is_none() {
+            self.paced(from, out);
+        }
         for &time in &times {
-            self.interceptions(from, &self.until(time), out);
+            self.interceptions(from, &until(self.undisturbed, time), out);
         }
     }
 
@@ -225,22 +255,23 @@ impl<'a> Graph<'a> {
             let length = stretch.to - stretch.from;
             // by the clock of the part
             let clock = hazard.start();
-            let until = hazard.window.map_or(f64::INFINITY, |w| w.end);
+            let end = hazard.window.map_or(f64::INFINITY, |w| w.end);
             let corners = along_path(
                 hazard.body,
                 start,
                 leg.direction,
                 length,
-                until.min(self.problem.horizon) - clock,
+                end.min(self.problem.horizon) - clock,
             );
             for mut corner in corners {
                 corner.time += clock;
                 let goal = stretch.distance + corner.distance;
                 for speed in [own.min_speed(), own.max_speed()] {
-                    let Some(departure) = self.leave_schedule(goal, corner.time, speed) else {
+                    let Some(departure) = leave_for(self.undisturbed, goal, corner.time, speed)
+                    else {
                         continue;
                     };
-                    let mut motion = self.until(departure);
+                    let mut motion = until(self.undisturbed, departure);
                     let at: f64 = motion.iter().map(Segment::length).sum();
                     let (pose, _) = self.route.pose_at(at);
                     if speed > 0.0 {
@@ -263,31 +294,6 @@ impl<'a> Graph<'a> {
                 }
             }
         }
-    }
-
-    /// The time at which the undisturbed motion is to be left for a constant speed, to be at a distance
-    /// along the route at a time.
-    fn leave_schedule(&self, distance: f64, time: f64, speed: f64) -> Option<f64> {
-        let mut at = 0.0;
-        for s in self.undisturbed {
-            // at + s.speed (t - s.start_time) + speed (time - t) = distance
-            let gap = distance - at + s.speed * s.start_time - speed * time;
-            let t = gap / (s.speed - speed);
-            if t.is_finite() && t >= s.start_time && t <= s.end_time() && t < time {
-                return Some(t);
-            }
-            at += s.length();
-        }
-        None
-    }
-
-    /// The undisturbed motion up to a time.
-    fn until(&self, time: f64) -> Vec<Segment> {
-        self.undisturbed
-            .iter()
-            .filter(|s| s.start_time < time)
-            .map(|s| s.between(s.start_time, time))
-            .collect()
     }
 
     /// Ways to the vertices at which a line only just touches, from a node or from where a motion `before`
@@ -382,6 +388,10 @@ impl<'a> Graph<'a> {
                 }
             }
         }
+        // the way between is another conflict's
+        if self.stage.is_some() && near + 2 < desired.legs().len() {
+            return;
+        }
         for side in Side::BOTH {
             let chase = Chase::new(&from.pose, from.time, speed, radius, side);
             if let Some((turn, line)) = chase.way_to(desired.end())
@@ -454,6 +464,12 @@ impl Space for Graph<'_> {
     }
 
     fn admits(&mut self, state: &State) -> bool {
+        if let (Some(until), NodeKind::End) = (self.stage, state.kind) {
+            let soon = soon(&state.motion, until);
+            let met = first_met(self.hazards, &soon);
+            state.met.set(met);
+            return met.is_none() && !ashore::meets(self.problem.coast, &soon);
+        }
         let met = first_met(self.hazards, &state.motion).or_else(|| {
             let ashore = ashore::meets(self.problem.coast, &state.motion);
             ashore.then_some(self.problem.obstacles.len())

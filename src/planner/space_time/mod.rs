@@ -16,6 +16,7 @@ mod approach;
 mod ashore;
 mod chain;
 mod closer;
+mod departure;
 mod factor;
 mod graph;
 mod hazard;
@@ -35,6 +36,7 @@ mod route;
 mod sailed;
 mod seeds;
 mod selection;
+mod stages;
 mod tail;
 mod template;
 
@@ -181,14 +183,24 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
     }
     let contact = first_contact(hazards, &undisturbed);
     let grounding = ashore::first_contact(problem.coast, &undisturbed);
+    let mut conflicts: Vec<Conflict> = Vec::new();
     if contact.is_some() || grounding.is_some() {
-        let mut conflicts: Vec<Conflict> = by_obstacle(hazards)
+        conflicts = by_obstacle(hazards)
             .filter_map(|h| Conflict::of(h, &undisturbed))
             .map(|conflict| ashore::beyond_land(problem.coast, conflict, &undisturbed))
             .collect();
         conflicts.extend(ashore::conflicts(problem.coast, &undisturbed));
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, clock);
+    }
+    // one manoeuvre around conflicts that are far apart is long and dear, if there is one
+    if !timed_out
+        && (!selection.has_plan() || stages::are_several(&conflicts))
+        && let Some(motion) =
+            stages::one_after_another(problem, hazards, &route, &undisturbed, clock)
+    {
+        selection.consider(motion);
+        timed_out = clock.is_up();
     }
     let counts = optimum.unwrap_or(search.counts());
     let stats = SearchStats {

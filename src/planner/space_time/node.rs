@@ -55,6 +55,12 @@ impl State {
     }
 }
 
+/// The whole motion to a node.
+pub(crate) fn motion_to(search: &Search<State>, node: usize) -> impl Iterator<Item = Segment> + '_ {
+    let way = search.way_to(node).into_iter().skip(1);
+    way.flat_map(|index| search.nodes()[index].state.motion.iter().copied())
+}
+
 /// A way to a goal for the refinement: the departure, the vertices, each with all of the line that leads
 /// to it and beyond, the end.
 pub(crate) fn way_to(search: &Search<State>, goal: usize) -> Vec<State> {

@@ -336,8 +336,13 @@ impl<'a> Selection<'a> {
         }
     }
 
+    /// True once a motion was clear.
+    pub(crate) fn has_plan(&self) -> bool {
+        self.best.is_some()
+    }
+
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
-    fn consider(&mut self, motion: Vec<Segment>) -> bool {
+    pub(crate) fn consider(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.scene.problem;
         let cost: f64 = motion
             .iter()

@@ -1,0 +1,67 @@
+//! Conflicts far apart along a route of many legs.
+
+use searoom::pipeline;
+use searoom::planner::Outcome;
+use searoom::scenario::Scenario;
+
+/// Metres of a leg.
+const LEG: f64 = 500.0;
+
+/// A zigzag of `legs` legs at 5 m/s, and a ship across every fourth leg, when own ship is due there.
+fn scenario(legs: usize) -> Scenario {
+    let mut points = vec![(0.0, 0.0)];
+    for leg in 0..legs {
+        let heading: f64 = if leg % 2 == 0 { 0.3 } else { -0.2 };
+        let (east, north): (f64, f64) = points[leg];
+        points.push((east + LEG * heading.cos(), north + LEG * heading.sin()));
+    }
+    let waypoints: Vec<String> = points
+        .iter()
+        .map(|(x, y)| format!("{{ east_m = {x:.3}, north_m = {y:.3} }}"))
+        .collect();
+    let first = 90.0 - 0.3_f64.to_degrees();
+    let mut text = format!(
+        "title = \"zigzag\"\nhorizon_s = {}\nmission = {{ waypoints = [{}] }}\n[own_ship]\nposition = {{ east_m = 0, north_m = 0 }}\n\
+         course_deg = {first:.6}\nspeed_mps = 5\nlength_m = 30\nbeam_m = 8\nturning_radius_m = 80\nspeeds_mps = [2.5, 5, 6]\n",
+        legs as f64 * LEG / 5.0 * 1.5,
+        waypoints.join(", ")
+    );
+    for leg in (2..legs).step_by(4) {
+        let (a, b) = (points[leg], points[leg + 1]);
+        let (east, north) = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
+        let time = (leg as f64 + 0.5) * LEG / 5.0;
+        // from the north, from the south
+        let (course, side) = if leg % 8 == 2 { (180, 1.0) } else { (0, -1.0) };
+        text += &format!(
+            "[[targets]]\nname = \"ship {leg}\"\nposition = {{ east_m = {east:.3}, north_m = {:.3} }}\ncourse_deg = {course}\nspeed_mps = 4\n\
+             length_m = 40\nbeam_m = 10\nspeed_spread_mps = 0.01\ncourse_spread_deg = 0.05\n",
+            north + side * 4.0 * time
+        );
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("zigzag.toml");
+    std::fs::write(&file, text).expect("written");
+    Scenario::read(&file).expect("valid")
+}
+
+/// One manoeuvre around all of them would be hundreds of times as dear, or none would be found.
+#[test]
+fn conflicts_that_are_far_apart_are_left_and_met_one_after_another() {
+    for legs in [8, 20, 40] {
+        let run = pipeline::run(scenario(legs));
+        assert!(
+            matches!(run.planned.outcome, Outcome::Solved(_)),
+            "{legs}: {:?}",
+            run.planned.outcome
+        );
+        let evaluation = run.evaluation.expect("judged");
+        assert!(evaluation.verified(), "{:?}", evaluation.violations);
+        let error = evaluation.space_time_error;
+        println!(
+            "{legs} legs: {error:.0} m², {:.0} ms",
+            run.plan_time.as_secs_f64() * 1e3
+        );
+        assert!(error < 6_000.0, "{legs}: {error}");
+        assert!(evaluation.delay.abs() < 60.0);
+    }
+}
