@@ -146,7 +146,12 @@ fn every_number_of_the_motion_and_its_figures_is_held() {
                     .any(|k| pointer.ends_with(k));
             // the barge is touched for a while: any time of that while is one of the closest approach
             let lasting = name == "canal" && pointer == "/encounters/0/tcpa_s";
-            !(is_said_only(pointer) || one_sided || loose || lasting)
+            // who waits is where she is at any time of the while
+            let waiting = pointer.strip_suffix("/t_s").is_some_and(|sample| {
+                sample.starts_with("/trajectory/samples/")
+                    && document.pointer(&format!("{sample}/speed_mps")) == Some(&json!(0.0))
+            });
+            !(is_said_only(pointer) || one_sided || loose || lasting || waiting)
         };
         let mut pointers = Vec::new();
         numbers(&document, "", &mut pointers);

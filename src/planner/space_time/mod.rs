@@ -194,8 +194,9 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
         timed_out |= selection.refine(&conflicts, clock);
     }
     // one manoeuvre around conflicts that are far apart is long and dear, if there is one
+    let is_bent = problem.desired.legs().len() > 1;
     if !timed_out
-        && (!selection.has_plan() || stages::are_several(&conflicts))
+        && (stages::are_several(&conflicts) || is_bent && !selection.has_plan())
         && let Some(motion) =
             stages::one_after_another(problem, hazards, &route, &undisturbed, clock)
     {
