@@ -124,6 +124,44 @@ fn is_said_only(pointer: &str) -> bool {
         || pointer.contains("max_risk")
 }
 
+/// The hull is nearest in the midst of a turn on the spot, on a heading between two legs.
+#[test]
+fn a_closest_approach_in_a_turn_on_the_spot_passes() {
+    let text = r#"
+        title = "corner"
+        horizon_s = 600.0
+        [own_ship]
+        position = { east_m = 0.0, north_m = 0.0 }
+        course_deg = 90.0
+        speed_mps = 5.0
+        length_m = 30.0
+        beam_m = 8.0
+        turning_radius_m = 100.0
+        [mission]
+        waypoints = [
+            { east_m = 0.0, north_m = 0.0 },
+            { east_m = 1000.0, north_m = 0.0 },
+            { east_m = 1000.0, north_m = 1000.0 },
+        ]
+        [planner]
+        kind = "path-time"
+        [[targets]]
+        name = "moored"
+        position = { east_m = 1700.0, north_m = -100.0 }
+        course_deg = 0.0
+        speed_mps = 0.0
+        length_m = 60.0
+        beam_m = 12.0
+    "#;
+    let mut document = document(Scenario::parse(text).expect("sound"));
+    assert!(!is_caught(&document));
+    let dcpa = document["encounters"][0]["dcpa_m"]
+        .as_f64()
+        .expect("a distance");
+    *at(&mut document, "/encounters/0/dcpa_m") = json!(dcpa + 0.1);
+    assert!(is_caught(&document));
+}
+
 /// Numbers altered per document; all of them where `SEAROOM_MUTATIONS` is set.
 const ALTERED: usize = 120;
 

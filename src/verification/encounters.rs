@@ -4,7 +4,7 @@ use super::claim::{Claim, ClaimedMotion};
 use super::figures::near;
 use super::untrue;
 use crate::evaluation::{Evaluation, Violation};
-use crate::frame::{Pose, relative_bearing};
+use crate::frame::{Pose, relative_bearing, wrap};
 use crate::geometry::Ellipse;
 use crate::target::{Motion, Target};
 use nalgebra::Matrix2;
@@ -47,6 +47,10 @@ pub(super) fn check(
         let poses = motion.poses_at(tcpa);
         let then = poses.iter().map(|pose| distance(claim, target, pose, tcpa));
         let then = then.fold(f64::INFINITY, f64::min);
+        let then = match &poses[..] {
+            [before, .., after] => then.min(while_turning(claim, target, (before, after), tcpa)),
+            _ => then,
+        };
         if !(then.is_finite() && near(then, dcpa)) {
             found.push(untrue(
                 &label("tcpa_s"),
@@ -92,6 +96,35 @@ fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -> f64 {
                 .map_or(f64::NAN, |set| set.signed_distance(pose.position)),
         },
     }
+}
+
+/// Headings looked at in a turn on the spot, and halvings about the nearest of them.
+const HEADINGS: u32 = 180;
+const HALVINGS: usize = 60;
+
+/// The least distance while own ship turns on the spot from one heading to another, the shorter way.
+fn while_turning(claim: &Claim, target: &Target, turn: (&Pose, &Pose), time: f64) -> f64 {
+    let (before, after) = turn;
+    let angle = wrap(after.heading - before.heading);
+    let at = |share: f64| {
+        let pose = Pose::new(before.position, before.heading + share * angle);
+        distance(claim, target, &pose, time)
+    };
+    let mut step = 1.0 / f64::from(HEADINGS);
+    let all = (0..=HEADINGS).map(|k| f64::from(k) * step);
+    let nearest = all.map(|share| (at(share), share));
+    let (mut least, mut share) =
+        nearest.fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a });
+    for _ in 0..HALVINGS {
+        step *= 0.5;
+        for beside in [share - step, share + step] {
+            let found = at(beside.clamp(0.0, 1.0));
+            if found < least {
+                (least, share) = (found, beside.clamp(0.0, 1.0));
+            }
+        }
+    }
+    least
 }
 
 /// The ellipse of least trace around `initial + t velocity`, formulas section 3.
