@@ -183,13 +183,17 @@ impl DesiredTrajectory {
     /// formulas section 7, in closed form per leg. `q` in m²/s². Of equal legs the earlier. Looks from the leg of that
     /// time on at later and earlier ones, until they are too far off in time alone: O(legs) at worst, and for `q = 0`.
     pub fn nearest(&self, position: Vector, time: f64, q: f64) -> Nearest {
-        let begun = self.legs.partition_point(|l| l.start_time <= time);
-        let now = begun.saturating_sub(1);
         let mut best = Nearest {
             error: f64::INFINITY,
             distance: 0.0,
             leg: 0,
         };
+        if let [leg] = &self.legs[..] {
+            best.offer(0, leg, leg.nearest(position, time, q));
+            return best;
+        }
+        let begun = self.legs.partition_point(|l| l.start_time <= time);
+        let now = begun.saturating_sub(1);
         let too_far = |seconds: f64, best: &Nearest| {
             seconds > 0.0 && q * seconds * seconds > best.error * (1.0 + ROUNDING)
         };
