@@ -3,7 +3,7 @@
 use super::approach::FINE_CHORD_RAD;
 use super::model::Model;
 use super::outline::{Outline, Scene};
-use super::quadratic::{MAX_VARIABLES, Programme, Row};
+use super::quadratic::{Constraint, MAX_VARIABLES, Programme, Row};
 use super::template::{Ending, Slot, Template};
 use crate::frame::Side;
 use crate::planner::AGAINST_THE_RULES;
@@ -335,13 +335,22 @@ impl Refinement {
                 high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
             }
         }
-        // a row that the box cannot meet asks for what it can: otherwise it would be left out
-        let mut rows = self.model.rows.clone();
-        for row in &mut rows {
-            let reach: f64 = (0..n)
-                .map(|i| (row.coefficients[i] * low[i]).max(row.coefficients[i] * high[i]))
-                .sum();
-            row.bound = row.bound.min(REACHABLE * reach);
+        let mut rows = Vec::with_capacity(self.model.rows.len());
+        for row in &self.model.rows {
+            let (mut reach, mut least) = (0.0, 0.0);
+            for i in 0..n {
+                let ends = (row.coefficients[i] * low[i], row.coefficients[i] * high[i]);
+                reach += ends.0.max(ends.1);
+                least += ends.0.min(ends.1);
+            }
+            // negated on purpose: a NaN stays. What is met all over the box needs no row
+            if !(least >= row.bound) {
+                // a row that the box cannot meet asks for what it can: otherwise it would be left out
+                rows.push(Constraint {
+                    bound: row.bound.min(REACHABLE * reach),
+                    ..*row
+                });
+            }
         }
         let programme = Programme {
             size: n,
