@@ -871,6 +871,11 @@ fn what_only_some_plans_have_is_held_too() {
                     "path_time.profile",
                 ),
                 (
+                    "a corner of the profile moved in time while she waits",
+                    |d| add(&mut at(d, "/path_time/profile")[8][1], -0.4),
+                    "path_time.profile",
+                ),
+                (
                     "a profile cut off",
                     |d| drop(list(d, "/path_time/profile").pop()),
                     "path_time.profile",

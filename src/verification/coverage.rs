@@ -12,6 +12,10 @@ use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{Motion, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
 
+/// What a set may be too small for.
+const INITIAL: &str = "the initial set, m";
+const VELOCITY: &str = "the velocity set, m/s";
+
 /// Standard deviations of the position that a set covers.
 const POSITION_SIGMAS: f64 = 3.0;
 
@@ -59,9 +63,9 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
     let velocities_known = level == 1.0 || !enclosed;
     let whole = Whole::of(&set.shape, level);
     let mut lacks = Vec::new();
-    let mut need = |what: &str, short: f64, allowed: f64, time: f64| {
+    let mut need = |what: &str, short: f64, time: f64| {
         // negated on purpose: a NaN is too small
-        if !(short <= allowed) {
+        if !(short <= tolerance::DEPTH_M) {
             lacks.push((format!("too small for {what}: by {short:.3e}"), time));
         }
     };
@@ -78,7 +82,6 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
             need(
                 "the hull, the margin and the uncertainty, m",
                 largest(outside),
-                tolerance::DEPTH_M,
                 0.0,
             );
             if velocities_known {
@@ -86,67 +89,36 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
                     let short = spell
                         .set
                         .beyond(&Sector::of(ship, spell.until.min(claim.file.horizon_s)));
-                    need(
-                        "her velocities, m/s",
-                        short,
-                        tolerance::DEPTH_M,
-                        spell.start,
-                    );
+                    need("her velocities, m/s", short, spell.start);
                 }
             }
         }
         Motion::Sets { initial, velocity } => {
-            need(
-                "the initial set, m",
-                whole.initial.beyond_polygon(initial),
-                tolerance::DEPTH_M,
-                0.0,
-            );
+            need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
             if velocities_known {
                 for spell in &whole.spells {
-                    need(
-                        "the velocity set, m/s",
-                        spell.set.beyond_polygon(velocity),
-                        tolerance::DEPTH_M,
-                        spell.start,
-                    );
+                    need(VELOCITY, spell.set.beyond_polygon(velocity), spell.start);
                 }
             }
         }
         Motion::Ellipses { initial, velocity } => {
-            need(
-                "the initial set, m",
-                whole.initial.beyond_ellipse(initial),
-                tolerance::DEPTH_M,
-                0.0,
-            );
+            need(INITIAL, whole.initial.beyond_ellipse(initial), 0.0);
             if velocities_known {
                 for spell in &whole.spells {
-                    need(
-                        "the velocity set, m/s",
-                        spell.set.beyond_ellipse(velocity),
-                        tolerance::DEPTH_M,
-                        spell.start,
-                    );
+                    need(VELOCITY, spell.set.beyond_ellipse(velocity), spell.start);
                 }
             }
         }
         Motion::Spells { initial, spells } => {
-            need(
-                "the initial set, m",
-                whole.initial.beyond_polygon(initial),
-                tolerance::DEPTH_M,
-                0.0,
-            );
+            need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
             if velocities_known {
                 for spell in &whole.spells {
                     for known in
                         overlapping(spells, spell.start, spell.until.min(claim.file.horizon_s))
                     {
                         need(
-                            "the velocity set, m/s",
+                            VELOCITY,
                             spell.set.beyond_polygon(&known.velocities),
-                            tolerance::DEPTH_M,
                             spell.start,
                         );
                     }

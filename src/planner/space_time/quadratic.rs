@@ -59,50 +59,86 @@ mod tests {
     use super::super::factor::dot;
     use super::*;
     use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use std::ops::Range;
+
+    /// The box of the random programmes.
+    const LOW: Row = [-1.0; MAX_VARIABLES];
+    const HIGH: Row = [2.0; MAX_VARIABLES];
+
+    /// A strictly convex cost in up to 13 variables, with rows at bounds from the given range.
+    struct Random {
+        size: usize,
+        hessian: [Row; MAX_VARIABLES],
+        gradient: Row,
+        rows: Vec<Constraint>,
+    }
+
+    impl Random {
+        fn new(rng: &mut ChaCha8Rng, rows: Range<usize>, bounds: Range<f64>) -> Self {
+            let size = rng.random_range(2..14);
+            let mut hessian = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+            let mut root = hessian;
+            let mut gradient = [0.0; MAX_VARIABLES];
+            let some = |rng: &mut ChaCha8Rng, row: &mut Row| {
+                let unit = |c: &mut f64| *c = rng.random_range(-1.0..1.0);
+                row[..size].iter_mut().for_each(unit);
+            };
+            for i in 0..size {
+                gradient[i] = rng.random_range(-5.0..5.0);
+                some(rng, &mut root[i]);
+            }
+            for i in 0..size {
+                for k in 0..size {
+                    hessian[i][k] = dot(&root[i], &root[k]) + if i == k { 0.05 } else { 0.0 };
+                }
+            }
+            let count = rng.random_range(rows);
+            let rows = (0..count)
+                .map(|_| {
+                    let mut coefficients = [0.0; MAX_VARIABLES];
+                    some(rng, &mut coefficients);
+                    Constraint {
+                        coefficients,
+                        bound: rng.random_range(bounds.clone()),
+                    }
+                })
+                .collect();
+            Self {
+                size,
+                hessian,
+                gradient,
+                rows,
+            }
+        }
+
+        fn programme(&self) -> Programme<'_> {
+            Programme {
+                size: self.size,
+                hessian: &self.hessian,
+                gradient: &self.gradient,
+                low: &LOW,
+                high: &HIGH,
+                rows: &self.rows,
+            }
+        }
+    }
 
     /// Projected gradient on the exact penalty is slow; the optimality conditions are the definition.
     #[test]
     fn solutions_are_feasible_and_no_feasible_direction_descends() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(41);
+        let mut rng = ChaCha8Rng::seed_from_u64(41);
         for _ in 0..400 {
-            let n = rng.random_range(2..14);
-            let mut root = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-            let mut hessian = root;
-            let mut gradient = [0.0; MAX_VARIABLES];
-            for i in 0..n {
-                gradient[i] = rng.random_range(-5.0..5.0);
-                root[i][..n]
-                    .iter_mut()
-                    .for_each(|c| *c = rng.random_range(-1.0..1.0));
-            }
-            for i in 0..n {
-                for k in 0..n {
-                    hessian[i][k] = dot(&root[i], &root[k]) + if i == k { 0.05 } else { 0.0 };
-                }
-            }
-            let (low, high) = ([-1.0; MAX_VARIABLES], [2.0; MAX_VARIABLES]);
-            let rows: Vec<Constraint> = (0..rng.random_range(0..6))
-                .map(|_| {
-                    let mut coefficients = [0.0; MAX_VARIABLES];
-                    coefficients[..n]
-                        .iter_mut()
-                        .for_each(|c| *c = rng.random_range(-1.0..1.0));
-                    // the origin satisfies every row: the programme is feasible
-                    Constraint {
-                        coefficients,
-                        bound: rng.random_range(-1.0..0.0),
-                    }
-                })
-                .collect();
-            let programme = Programme {
+            // the origin satisfies every row: the programme is feasible
+            let random = Random::new(&mut rng, 0..6, -1.0..0.0);
+            let Random {
                 size: n,
-                hessian: &hessian,
-                gradient: &gradient,
-                low: &low,
-                high: &high,
-                rows: &rows,
-            };
-            let x = programme.solve().expect("positive definite").x;
+                hessian,
+                gradient,
+                rows,
+            } = &random;
+            let n = *n;
+            let x = random.programme().solve().expect("positive definite").x;
             let feasible = |p: &Row| {
                 (0..n).all(|i| p[i] >= -1.0 - 1e-7 && p[i] <= 2.0 + 1e-7)
                     && rows
@@ -134,46 +170,18 @@ mod tests {
     /// box, whichever were left out.
     #[test]
     fn what_contradicts_is_left_out_and_the_rest_is_a_minimum() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(43);
+        let mut rng = ChaCha8Rng::seed_from_u64(43);
         let mut pushing = 0;
         for _ in 0..400 {
-            let n = rng.random_range(2..14);
-            let mut hessian = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-            let mut root = hessian;
-            let mut gradient = [0.0; MAX_VARIABLES];
-            for i in 0..n {
-                gradient[i] = rng.random_range(-5.0..5.0);
-                root[i][..n]
-                    .iter_mut()
-                    .for_each(|c| *c = rng.random_range(-1.0..1.0));
-            }
-            for i in 0..n {
-                for k in 0..n {
-                    hessian[i][k] = dot(&root[i], &root[k]) + if i == k { 0.05 } else { 0.0 };
-                }
-            }
-            let (low, high) = ([-1.0; MAX_VARIABLES], [2.0; MAX_VARIABLES]);
-            let rows: Vec<Constraint> = (0..rng.random_range(5..25))
-                .map(|_| {
-                    let mut coefficients = [0.0; MAX_VARIABLES];
-                    coefficients[..n]
-                        .iter_mut()
-                        .for_each(|c| *c = rng.random_range(-1.0..1.0));
-                    Constraint {
-                        coefficients,
-                        bound: rng.random_range(-1.0..2.0),
-                    }
-                })
-                .collect();
-            let programme = Programme {
+            let random = Random::new(&mut rng, 5..25, -1.0..2.0);
+            let Random {
                 size: n,
-                hessian: &hessian,
-                gradient: &gradient,
-                low: &low,
-                high: &high,
-                rows: &rows,
-            };
-            let Solution { x, multipliers } = programme.solve().expect("positive definite");
+                hessian,
+                gradient,
+                rows,
+            } = &random;
+            let solution = random.programme().solve().expect("positive definite");
+            let Solution { x, multipliers } = solution;
             for (row, multiplier) in rows.iter().zip(&multipliers) {
                 assert!(*multiplier >= 0.0);
                 if *multiplier > 1e-9 {
@@ -182,7 +190,7 @@ mod tests {
                     assert!(value.abs() < 1e-7, "{value}");
                 }
             }
-            for i in 0..n {
+            for i in 0..*n {
                 assert!(x[i] >= -1.0 - 1e-7 && x[i] <= 2.0 + 1e-7, "{x:?}");
                 let pushed: f64 = rows
                     .iter()

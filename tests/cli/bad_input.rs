@@ -1,41 +1,9 @@
 //! What once went wrong with files and options that nobody means, run as a user runs it. Each test is named after what
 //! holds now.
 
-use std::fs;
-use std::path::Path;
-
-use assert_cmd::Command;
-use assert_cmd::assert::Assert;
+use super::program::{HEAD_ON, document, searoom, stderr, text, write};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
-use serde_json::Value;
-
-const HEAD_ON: &str = include_str!("../scenarios/colregs/head-on.toml");
-
-fn searoom(args: &[&str]) -> Assert {
-    Command::new(env!("CARGO_BIN_EXE_searoom"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .assert()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("a path that is text")
-}
-
-fn write(folder: &Path, name: &str, contents: &str) -> String {
-    let file = folder.join(name);
-    fs::write(&file, contents).expect("written");
-    text(&file).to_owned()
-}
-
-fn stderr(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stderr.clone()).expect("text")
-}
-
-fn document(assert: &Assert) -> Value {
-    serde_json::from_slice(&assert.get_output().stdout).expect("one JSON document")
-}
 
 /// Head-on with its route cut into so many legs of one line.
 fn in_legs(count: u32) -> String {
@@ -55,7 +23,7 @@ fn waypoints_on_a_line_change_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut costs = Vec::new();
     for count in [1, 2, 99] {
-        let file = write(folder.path(), "legs.toml", &in_legs(count));
+        let file = write(folder.path(), "legs.toml", in_legs(count));
         let plan = document(&searoom(&["plan", &file, "--json"]).success());
         assert_eq!(
             plan["mission"]["waypoints"].as_array().map(Vec::len),
@@ -117,7 +85,7 @@ fn brackets_within_brackets_are_one_fault() {
         let file = write(
             folder.path(),
             "deep.toml",
-            &format!("title = \"x\"\na = {value}\n"),
+            format!("title = \"x\"\na = {value}\n"),
         );
         let said = stderr(&searoom(&["check", &file]).code(2));
         assert!(said.contains("1 fault\n"), "{said}");
@@ -126,7 +94,7 @@ fn brackets_within_brackets_are_one_fault() {
     let file = write(
         folder.path(),
         "two.toml",
-        &format!("= 1\na = {}\n", "[".repeat(200)),
+        format!("= 1\na = {}\n", "[".repeat(200)),
     );
     let said = stderr(&searoom(&["check", &file]).code(2));
     assert!(said.contains("2 faults\n"), "{said}");
@@ -186,7 +154,7 @@ fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
     let file = write(
         folder.path(),
         "short.toml",
-        &HEAD_ON
+        HEAD_ON
             .replace("turning_radius_m = 100.0", "turning_radius_m = 1e6")
             .replace(
                 "{ east_m = 1500.0, north_m = 0.0 }]",
@@ -209,7 +177,7 @@ fn what_was_found_is_said_in_few_words() {
     .code(2)
     .stderr(contains("found 1e308;"));
     let folder = tempfile::tempdir().expect("a folder");
-    let figure = include_str!("../scenarios/paper/figure_9.toml");
+    let figure = include_str!("../../scenarios/paper/figure_9.toml");
     for (change, said) in [
         (
             "intervals = 1.5",
@@ -227,7 +195,7 @@ fn what_was_found_is_said_in_few_words() {
         let file = write(
             folder.path(),
             "words.toml",
-            &figure.replace("intervals = 50", change),
+            figure.replace("intervals = 50", change),
         );
         searoom(&["check", &file]).code(2).stderr(contains(said));
     }

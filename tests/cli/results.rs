@@ -1,32 +1,11 @@
-//! What a user does with results, run as a user runs it.
+//! What a user does with results.
 
 use std::fs;
-use std::path::Path;
 
+use super::program::{document, searoom, stdout, text, untimed};
 use assert_cmd::Command;
-use assert_cmd::assert::Assert;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
-use serde_json::Value;
-
-fn searoom(args: &[&str]) -> Assert {
-    Command::new(env!("CARGO_BIN_EXE_searoom"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .assert()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("a path that is text")
-}
-
-fn stdout(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stdout.clone()).expect("text")
-}
-
-fn document(assert: &Assert) -> Value {
-    serde_json::from_str(&stdout(assert)).expect("one JSON document")
-}
 
 #[test]
 fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
@@ -211,25 +190,13 @@ fn shells_and_manuals_know_every_command() {
     assert!(page.contains("\\-\\-max\\-risk"));
 }
 
-/// The document without its wall-clock figures.
-fn untimed(mut document: Value) -> Value {
-    fn strip(value: &mut Value) {
-        match value {
-            Value::Object(map) => {
-                map.remove("timing");
-                map.values_mut().for_each(strip);
-            }
-            Value::Array(list) => list.iter_mut().for_each(strip),
-            _ => {}
-        }
-    }
-    strip(&mut document);
-    document
-}
-
 /// Recordings are written and read by the default features alone.
 #[cfg(feature = "recording")]
 mod recordings {
+    use std::path::Path;
+
+    use serde_json::Value;
+
     use super::*;
 
     const HEAD_ON: &str = "scenarios/colregs/head-on.toml";

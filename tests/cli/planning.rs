@@ -1,57 +1,13 @@
-//! The program, run as a user runs it.
+//! Commands that check and plan.
 
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use super::program::{HEAD_ON, document, searoom, stdout, text, untimed, write};
 use assert_cmd::assert::Assert;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
 use serde_json::Value;
-
-const HEAD_ON: &str = include_str!("../scenarios/colregs/head-on.toml");
-
-fn searoom(args: &[&str]) -> Assert {
-    Command::new(env!("CARGO_BIN_EXE_searoom"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .assert()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("a path that is text")
-}
-
-fn write(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> String {
-    let file = folder.join(name);
-    fs::create_dir_all(file.parent().expect("a folder")).expect("made");
-    fs::write(&file, contents).expect("written");
-    text(&file).to_owned()
-}
-
-fn stdout(assert: &Assert) -> String {
-    String::from_utf8(assert.get_output().stdout.clone()).expect("text")
-}
-
-fn document(assert: &Assert) -> Value {
-    serde_json::from_str(&stdout(assert)).expect("one JSON document")
-}
-
-/// The document without its only wall-clock figures.
-fn untimed(mut document: Value) -> Value {
-    fn strip(value: &mut Value) {
-        match value {
-            Value::Object(map) => {
-                map.remove("timing");
-                map.values_mut().for_each(strip);
-            }
-            Value::Array(list) => list.iter_mut().for_each(strip),
-            _ => {}
-        }
-    }
-    strip(&mut document);
-    document
-}
 
 #[test]
 fn the_scenarios_of_the_project_are_good() {

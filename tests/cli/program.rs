@@ -1,0 +1,56 @@
+//! The program as a user runs it, and what it says.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+use serde_json::Value;
+
+pub const HEAD_ON: &str = include_str!("../../scenarios/colregs/head-on.toml");
+
+pub fn searoom(args: &[&str]) -> Assert {
+    Command::new(env!("CARGO_BIN_EXE_searoom"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(args)
+        .assert()
+}
+
+pub fn text(path: &Path) -> &str {
+    path.to_str().expect("a path that is text")
+}
+
+pub fn write(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> String {
+    let file = folder.join(name);
+    fs::create_dir_all(file.parent().expect("a folder")).expect("made");
+    fs::write(&file, contents).expect("written");
+    text(&file).to_owned()
+}
+
+pub fn stdout(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stdout.clone()).expect("text")
+}
+
+pub fn stderr(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).expect("text")
+}
+
+pub fn document(assert: &Assert) -> Value {
+    serde_json::from_str(&stdout(assert)).expect("one JSON document")
+}
+
+/// The document without its only wall-clock figures.
+pub fn untimed(mut document: Value) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                map.remove("timing");
+                map.values_mut().for_each(strip);
+            }
+            Value::Array(list) => list.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    strip(&mut document);
+    document
+}
