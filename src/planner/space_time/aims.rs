@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 use super::hazard::Hazard;
 use super::interception::{Chase, Interception, Limits};
 use super::part::Window;
-use crate::frame::{Side, Vector, direction, heading_of, to_port, wrap};
+use crate::frame::{Side, Vector, direction, heading_of, to_port};
 use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
 
@@ -49,6 +49,8 @@ struct Level {
     ahead: Vector,
     heading: f64,
     plane: HalfSpace,
+    /// Of the normal, to port of the direction.
+    across: f64,
 }
 
 /// Directions between two [`Level`]s, in which a corner is touched.
@@ -56,6 +58,9 @@ struct Level {
 struct Gap {
     corner: usize,
     levels: [usize; 2],
+    /// m/s. The moment of the corner's position about the relative velocity is so many times the distance
+    /// from the plane of each level, along which that velocity points.
+    moments: [f64; 2],
 }
 
 /// What does not depend on where own ship is, for one speed.
@@ -169,24 +174,29 @@ impl Aims {
                 };
                 signed.clear();
                 signed.extend(pace.levels.iter().map(|level| {
-                    let turn = wrap(level.heading - chase.heading()) * side.turn_sign();
-                    let (position, time) = chase.turned(level.ahead, turn);
-                    (turn, level.plane.slack(position, time))
+                    let turn = nearer(level.heading - chase.heading()) * side.turn_sign();
+                    (turn, chase.slack(&level.plane, level.across, turn))
                 }));
                 for gap in &pace.gaps {
                     let [(a, from), (b, to)] = gap.levels.map(|l| signed[l]);
-                    let corner = &self.corners[gap.corner];
-                    let touches = from.min(to) <= NO_SIGN_M && from.max(to) >= -NO_SIGN_M;
-                    if (a - b).abs() > PI {
+                    let wraps = (a - b).abs() > PI;
+                    let touches = (from <= NO_SIGN_M) | (to <= NO_SIGN_M);
+                    let touches = touches & ((from >= -NO_SIGN_M) | (to >= -NO_SIGN_M));
+                    let ahead = ((a >= -TURN_RAD) | (b >= -TURN_RAD))
+                        & ((a <= limits.turn) | (b <= limits.turn));
+                    // one jump that is nearly always taken
+                    if !(wraps | (touches & ahead)) {
+                        continue;
+                    }
+                    if wraps {
                         if a.max(b) <= limits.turn {
                             self.seek(gap.corner, &chase, limits, &mut offer);
                         }
                         continue;
                     }
-                    if !touches || a.max(b) < -TURN_RAD || a.min(b) > limits.turn {
-                        continue;
-                    }
-                    let meeting = chase.touch(&corner.vertex, [a, b], limits);
+                    let corner = &self.corners[gap.corner];
+                    let moments = [gap.moments[0] * from, gap.moments[1] * to];
+                    let meeting = chase.touch(&corner.vertex, [a, b], moments, limits);
                     if let Some(meeting) = meeting
                         && corner.grazed(chase.after(meeting.turn), pace.speed)
                     {
@@ -251,8 +261,8 @@ impl Pace {
                 _ if all(1.0) || all(-1.0) => {}
                 [a, b] => match (first[a], first[b]) {
                     (Some(a), Some(b)) => {
-                        pace.gap(index, [a, b]);
-                        pace.gap(index, [a + 1, b + 1]);
+                        pace.gap(index, corner, [a, b]);
+                        pace.gap(index, corner, [a + 1, b + 1]);
                     }
                     (Some(first), None) => pace.fan(index, corner, first, &faces[b]),
                     (None, Some(first)) => pace.fan(index, corner, first, &faces[a]),
@@ -269,11 +279,21 @@ impl Pace {
             ahead,
             heading: heading_of(ahead),
             plane,
+            across: plane.normal.dot(&to_port(ahead)),
         });
     }
 
-    fn gap(&mut self, corner: usize, levels: [usize; 2]) {
-        self.gaps.push(Gap { corner, levels });
+    fn gap(&mut self, index: usize, corner: &Corner, levels: [usize; 2]) {
+        let moments = levels.map(|l| {
+            let level = &self.levels[l];
+            let velocity = level.ahead * self.speed - corner.vertex.velocity;
+            -velocity.dot(&to_port(level.plane.normal))
+        });
+        self.gaps.push(Gap {
+            corner: index,
+            levels,
+            moments,
+        });
     }
 
     /// Gaps from one level of a face to its other one: about its normal where the other face is always
@@ -300,11 +320,17 @@ impl Pace {
             };
             let next = self.levels.len();
             self.level(ahead, plane);
-            self.gap(index, [before, next]);
+            self.gap(index, corner, [before, next]);
             before = next;
         }
-        self.gap(index, [before, first + 1]);
+        self.gap(index, corner, [before, first + 1]);
     }
+}
+
+/// The difference of two angles in `(-pi, pi]`, in that range too. Without a jump, unlike [`crate::frame::wrap`].
+fn nearer(apart: f64) -> f64 {
+    let turns = f64::from(u8::from(apart > PI)) - f64::from(u8::from(apart <= -PI));
+    apart - TAU * turns
 }
 
 #[cfg(test)]
