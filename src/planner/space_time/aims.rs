@@ -82,6 +82,16 @@ pub(crate) struct Aims {
     paces: Vec<Pace>,
 }
 
+/// A [`Level`] from where own ship is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bearing {
+    /// Radians to it, to port positive.
+    turn: f64,
+    /// Metres from its plane now, and how many more after a turn to it to port, fewer after one to starboard.
+    straight: f64,
+    turned: f64,
+}
+
 /// A way to a corner.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Aim {
@@ -158,28 +168,36 @@ impl Aims {
         &self,
         chases: &[Chase; 2],
         limits: Limits,
-        signed: &mut Vec<(f64, f64)>,
+        bearings: &mut Vec<Bearing>,
         mut found: impl FnMut(Aim),
     ) {
         for pace in &self.paces {
-            for (side, chase) in Side::BOTH.into_iter().zip(chases) {
-                let chase = chase.at_speed(pace.speed);
-                let mut offer = |corner: usize, meeting: Interception| {
-                    found(Aim {
-                        kind: self.kind(corner),
-                        side,
-                        speed: pace.speed,
-                        meeting,
-                    });
-                };
-                signed.clear();
-                signed.extend(pace.levels.iter().map(|level| {
-                    let turn = nearer(level.heading - chase.heading()) * side.turn_sign();
-                    (turn, chase.slack(&level.plane, level.across, turn))
-                }));
-                for gap in &pace.gaps {
-                    let [(a, from), (b, to)] = gap.levels.map(|l| signed[l]);
-                    let wraps = (a - b).abs() > PI;
+            let chases = chases.map(|c| c.at_speed(pace.speed));
+            bearings.clear();
+            bearings.extend(pace.levels.iter().map(|level| {
+                let turn = nearer(level.heading - chases[0].heading());
+                let [straight, turned] = chases[0].slacks(&level.plane, level.across, turn);
+                Bearing {
+                    turn,
+                    straight,
+                    turned,
+                }
+            }));
+            let mut offer = |corner: usize, side: Side, meeting: Interception| {
+                found(Aim {
+                    kind: self.kind(corner),
+                    side,
+                    speed: pace.speed,
+                    meeting,
+                });
+            };
+            for gap in &pace.gaps {
+                let ends = gap.levels.map(|l| &bearings[l]);
+                let wraps = (ends[0].turn - ends[1].turn).abs() > PI;
+                for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
+                    let sign = side.turn_sign();
+                    let [a, b] = ends.map(|e| sign * e.turn);
+                    let [from, to] = ends.map(|e| e.straight + sign * e.turned);
                     let touches = (from <= NO_SIGN_M) | (to <= NO_SIGN_M);
                     let touches = touches & ((from >= -NO_SIGN_M) | (to >= -NO_SIGN_M));
                     let ahead = ((a >= -TURN_RAD) | (b >= -TURN_RAD))
@@ -190,7 +208,7 @@ impl Aims {
                     }
                     if wraps {
                         if a.max(b) <= limits.turn {
-                            self.seek(gap.corner, &chase, limits, &mut offer);
+                            self.seek(gap.corner, chase, limits, |m| offer(gap.corner, side, m));
                         }
                         continue;
                     }
@@ -200,29 +218,25 @@ impl Aims {
                     if let Some(meeting) = meeting
                         && corner.grazed(chase.after(meeting.turn), pace.speed)
                     {
-                        offer(gap.corner, meeting);
+                        offer(gap.corner, side, meeting);
                     }
                 }
-                for &corner in &pace.others {
-                    self.seek(corner, &chase, limits, &mut offer);
+            }
+            for &corner in &pace.others {
+                for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
+                    self.seek(corner, chase, limits, |m| offer(corner, side, m));
                 }
             }
         }
     }
 
-    fn seek(
-        &self,
-        corner: usize,
-        chase: &Chase,
-        limits: Limits,
-        offer: &mut impl FnMut(usize, Interception),
-    ) {
+    fn seek(&self, corner: usize, chase: &Chase, limits: Limits, offer: impl FnOnce(Interception)) {
         let c = &self.corners[corner];
         let meeting = chase.intercept(c.vertex.origin, c.vertex.velocity, limits);
         if let Some(meeting) = meeting
             && c.grazed(chase.after(meeting.turn), chase.speed())
         {
-            offer(corner, meeting);
+            offer(meeting);
         }
     }
 }
@@ -329,8 +343,9 @@ impl Pace {
 
 /// The difference of two angles in `(-pi, pi]`, in that range too. Without a jump, unlike [`crate::frame::wrap`].
 fn nearer(apart: f64) -> f64 {
-    let turns = f64::from(u8::from(apart > PI)) - f64::from(u8::from(apart <= -PI));
-    apart - TAU * turns
+    let over = if apart > PI { TAU } else { 0.0 };
+    let under = if apart <= -PI { TAU } else { 0.0 };
+    apart - over + under
 }
 
 #[cfg(test)]
@@ -401,7 +416,7 @@ mod tests {
                 for speed in speeds {
                     for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
                         let chase = chase.at_speed(speed);
-                        aims.seek(k, &chase, limits, &mut |_, meeting: Interception| {
+                        aims.seek(k, &chase, limits, |meeting| {
                             let same = touched.iter().any(|a| {
                                 a.kind == aims.kind(k)
                                     && a.side == side

@@ -102,10 +102,12 @@ impl Chase {
         (position, self.time + self.pace * turn)
     }
 
-    /// The distance of own ship from a plane after a turn of this many radians, metres; positive outside. `across` is
-    /// the plane's normal to port of where she then heads.
-    pub(crate) fn slack(&self, plane: &HalfSpace, across: f64, turn: f64) -> f64 {
-        plane.slack(self.centre, self.time + self.pace * turn) - self.sigma * self.radius * across
+    /// The distance of own ship from a plane, metres, positive outside; and how much greater it is after a turn of this
+    /// many radians to port, smaller after one to starboard. `across` is the plane's normal to port of where she then heads.
+    pub(crate) fn slacks(&self, plane: &HalfSpace, across: f64, turn: f64) -> [f64; 2] {
+        let before = plane.normal.dot(&to_port(self.ahead));
+        let moved = self.radius * (before - across) - plane.velocity_support * self.pace * turn;
+        [plane.slack(self.position, self.time), moved]
     }
 
     /// The meeting with a moving vertex by a turn between two, where own ship's motion relative to the
