@@ -2,17 +2,19 @@
 //!
 //! Inside: east and north in metres, headings counter-clockwise from east in radians, time in
 //! seconds, speeds in m/s. At the border: courses clockwise from true north in degrees, knots, and
-//! latitudes and longitudes, which a [`Georeference`] lays on the plane.
-//! This is the only file that knows a degree or a knot. Port and starboard are named here, so that
-//! no other file needs a sign for them.
+//! latitudes and longitudes, which a [`Georeference`] lays on the plane. This is the only file that
+//! knows a degree or a knot. Port and starboard are named here: no other file needs a sign for them.
 
 use std::f64::consts::{PI, TAU};
 
 /// A point or a displacement in the plane: `(east, north)`, metres (or m/s for a velocity).
 pub type Vector = nalgebra::Vector2<f64>;
 
+/// One nautical mile in metres (exact by definition).
+pub const NAUTICAL_MILE_M: f64 = 1852.0;
+
 /// One international knot in m/s (exact by definition).
-pub const KNOT_MPS: f64 = 1852.0 / 3600.0;
+pub const KNOT_MPS: f64 = NAUTICAL_MILE_M / 3600.0;
 
 /// Where a ship is and where she points.
 #[derive(Debug, Clone, Copy, PartialEq)]

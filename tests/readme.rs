@@ -146,6 +146,7 @@ fn every_file_that_the_documents_link_to_is_there() {
     for name in [
         "README.md",
         "docs/scenario.md",
+        "docs/formats.md",
         "docs/sets.md",
         "docs/assess.md",
         "docs/space-time-planner.md",

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use searoom::planner::{PlannerKind, SearchKind};
+use searoom::scenario::formats::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
 
 use super::products::Wanted;
@@ -44,9 +45,11 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scenario files, or folders of them
+    /// Scenario files, files of foreign formats, or folders of them
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]
@@ -82,20 +85,24 @@ pub struct AssessArgs {
 
 #[derive(Debug, Args)]
 pub struct PlanArgs {
-    /// A scenario file
+    /// A scenario file, or a foreign one with one situation in it
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     #[command(flatten)]
     pub shared: Shared,
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]
 pub struct SuiteArgs {
-    /// Scenario files, or folders that are searched for .toml files (hidden ones are left out)
+    /// Scenario files, files of foreign formats, or folders that are searched for .toml, .json and .xml files (hidden ones are left out)
     #[arg(value_name = "PATH", default_value = "scenarios")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
     pub shared: Shared,
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
     /// Write one plan document per scenario into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
@@ -189,6 +196,77 @@ pub struct Shared {
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
+}
+
+/// What foreign files do not say. Of no effect on scenario files.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Foreign files (of no effect on scenario files)")]
+pub struct AssumedArgs {
+    /// Half-width of every target's speed, m/s [default: 0.5]
+    #[arg(long, value_name = "MPS", value_parser = speed_spread)]
+    pub speed_spread_mps: Option<f64>,
+    /// Half-width of every target's course, degrees [default: 5]
+    #[arg(long, value_name = "DEG", value_parser = course_spread)]
+    pub course_spread_deg: Option<f64>,
+    /// Kept between the hulls, metres [default: own length]
+    #[arg(long, value_name = "M", visible_alias = "margin-m", value_parser = safety_margin)]
+    pub safety_margin_m: Option<f64>,
+    /// Length of ships without one, metres [default: 100 where the format has no place for it, otherwise a fault]
+    #[arg(long, value_name = "M", value_parser = length)]
+    pub length_m: Option<f64>,
+    /// Beam of ships without one, metres [default: 20 where the format has no place for it, otherwise a fault]
+    #[arg(long, value_name = "M", value_parser = beam)]
+    pub beam_m: Option<f64>,
+    /// Imazu's cases also as others have coded them
+    #[arg(long)]
+    pub variants: bool,
+}
+
+impl AssumedArgs {
+    /// What is assumed.
+    pub fn assumed(&self) -> Assumed {
+        let given = [
+            (Assumption::SpeedSpread, self.speed_spread_mps),
+            (Assumption::CourseSpread, self.course_spread_deg),
+            (Assumption::SafetyMargin, self.safety_margin_m),
+            (Assumption::Length, self.length_m),
+            (Assumption::Beam, self.beam_m),
+        ];
+        let mut assumed = Assumed::default().with_variants(self.variants);
+        for (what, value) in given {
+            if let Some(value) = value {
+                assumed = assumed.with(what, value);
+            }
+        }
+        assumed
+    }
+}
+
+fn assumption(what: Assumption, word: &str) -> Result<f64, String> {
+    match word.parse() {
+        Ok(value) if what.allows(value) => Ok(value + 0.0),
+        _ => Err(format!("allowed: {}", what.allowed())),
+    }
+}
+
+fn speed_spread(word: &str) -> Result<f64, String> {
+    assumption(Assumption::SpeedSpread, word)
+}
+
+fn course_spread(word: &str) -> Result<f64, String> {
+    assumption(Assumption::CourseSpread, word)
+}
+
+fn safety_margin(word: &str) -> Result<f64, String> {
+    assumption(Assumption::SafetyMargin, word)
+}
+
+fn length(word: &str) -> Result<f64, String> {
+    assumption(Assumption::Length, word)
+}
+
+fn beam(word: &str) -> Result<f64, String> {
+    assumption(Assumption::Beam, word)
 }
 
 impl Shared {

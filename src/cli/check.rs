@@ -1,25 +1,28 @@
 //! `searoom check`: reads and checks, plans nothing.
 
-use searoom::scenario::Scenario;
-
 use super::args::CheckArgs;
-use super::files;
 use super::output::Output;
 use super::status::Status;
+use super::{files, scenes};
 
-/// One line for each good file, every fault of the others.
+/// One line for each good scenario, with what was assumed; every fault of the others.
 pub fn check(args: &CheckArgs, output: &Output) -> Status {
     let mut status = Status::Good;
-    for found in files::find(&args.paths, output) {
-        let failed = match found {
-            Ok(found) => match Scenario::read(&found.file) {
-                Ok(_) => {
-                    status = status.max(output.result(&format!("{}: ok", found.file.display())));
+    let assumed = args.assumed.assumed();
+    let files = files::find(&args.paths, &files::ANY_FORMAT, output);
+    for scene in scenes::open(files, &assumed, output) {
+        let failed = match scene {
+            Ok(scene) => match scene.scenario(&assumed) {
+                Ok(made) => {
+                    status = status.max(output.result(&format!("{}: ok", scene.label())));
+                    for note in made.notes {
+                        output.note(&format_args!("{}: {note}", scene.label()));
+                    }
                     continue;
                 }
                 Err(error) => error.to_string(),
             },
-            Err((_, error)) => format!("{error:#}"),
+            Err(unread) => unread.error,
         };
         output.error(&failed);
         status = status.max(Status::BadInput);

@@ -43,7 +43,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
         output.error(&format_args!("{error:#}"));
         return Status::BadInput;
     }
-    let asked: Vec<Asked> = files::find(&args.paths, output)
+    let asked: Vec<Asked> = files::find(&args.paths, &files::SCENARIOS, output)
         .into_iter()
         .map(|found| match found {
             Ok(found) => ask(&found.file, args),

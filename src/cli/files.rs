@@ -16,15 +16,47 @@ pub struct Found {
     /// Name of what is written for it, without an ending: its path relative to the argument with
     /// "/" as "__".
     pub stem: String,
+    /// True when a folder was asked for, not this file.
+    pub in_folder: bool,
+}
+
+/// Which files of a folder are meant, by their endings.
+#[derive(Debug)]
+pub struct Kinds {
+    endings: &'static [&'static str],
+    said: &'static str,
+}
+
+/// Scenario files.
+pub const SCENARIOS: Kinds = Kinds {
+    endings: &["toml"],
+    said: ".toml",
+};
+
+/// Scenario files and foreign ones.
+pub const ANY_FORMAT: Kinds = Kinds {
+    endings: &["toml", "json", "xml"],
+    said: ".toml, .json or .xml",
+};
+
+impl Kinds {
+    fn hold(&self, file: &Path) -> bool {
+        let ending = file.extension().and_then(|ending| ending.to_str());
+        ending.is_some_and(|ending| self.endings.contains(&ending))
+    }
 }
 
 /// The scenario files that `paths` mean, in the order of the arguments and sorted within each
 /// folder; for a path that cannot be searched, the reason. A file that several of them mean is taken once, and
 /// that is said.
-pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+pub fn find(
+    paths: &[PathBuf],
+    kinds: &Kinds,
+    output: &Output,
+) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
     let mut known = BTreeSet::new();
     let mut all = Vec::new();
-    for found in meant(paths) {
+    for found in meant(paths, kinds) {
         // what cannot be found is reported when it is read
         let place = found.as_ref().ok().and_then(|f| f.file.canonicalize().ok());
         let again = place.is_some_and(|place| !known.insert(place));
@@ -38,7 +70,7 @@ pub fn find(paths: &[PathBuf], output: &Output) -> Vec<Result<Found, (PathBuf, a
     all
 }
 
-fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -46,16 +78,18 @@ fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
             all.push(Ok(Found {
                 file: path.clone(),
                 stem: stem(path.file_name().map(Path::new).unwrap_or(path)),
+                in_folder: false,
             }));
             continue;
         }
         let mut files = Vec::new();
-        match walk(path, &mut files) {
+        match walk(path, kinds, &mut files) {
             Ok(()) if files.is_empty() => all.push(Err((
                 path.clone(),
                 anyhow::anyhow!(
-                    "{}: a folder without scenarios (.toml files)",
-                    path.display()
+                    "{}: a folder without scenarios ({} files)",
+                    path.display(),
+                    kinds.said
                 ),
             ))),
             Ok(()) => all.extend(files.into_iter().map(|file| {
@@ -63,6 +97,7 @@ fn meant(paths: &[PathBuf]) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
                 Ok(Found {
                     stem: stem(relative),
                     file,
+                    in_folder: true,
                 })
             })),
             Err(error) => all.push(Err((path.clone(), error))),
@@ -80,9 +115,9 @@ fn stem(relative: &Path) -> String {
     parts.join("__")
 }
 
-/// Files ending in .toml, depth first in order of names. Hidden entries are left out; links to
+/// Files of these kinds, depth first in order of names. Hidden entries are left out; links to
 /// folders are not followed, so that a loop ends.
-fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+fn walk(folder: &Path, kinds: &Kinds, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     let unread = || format!("{}: cannot be read", folder.display());
     let mut entries = fs::read_dir(folder)
         .and_then(|entries| entries.collect::<Result<Vec<_>, _>>())
@@ -94,8 +129,8 @@ fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
             continue;
         }
         if entry.file_type().with_context(unread)?.is_dir() {
-            walk(&path, files)?;
-        } else if path.extension().is_some_and(|ending| ending == "toml") && !path.is_dir() {
+            walk(&path, kinds, files)?;
+        } else if kinds.hold(&path) && !path.is_dir() {
             files.push(path);
         }
     }

@@ -15,6 +15,7 @@ mod plan;
 mod products;
 mod rows;
 mod runner;
+mod scenes;
 mod shell;
 mod status;
 mod suite;

@@ -4,11 +4,11 @@ use searoom::report::document::PlanDocument;
 use searoom::report::plan_text;
 
 use super::args::PlanArgs;
-use super::files;
 use super::output::Output;
 use super::products::Products;
 use super::runner::{Attempt, attempt};
 use super::status::Status;
+use super::{files, scenes};
 
 /// Plans one file and prints the verdict.
 pub fn plan(args: &PlanArgs, output: &Output) -> Status {
@@ -20,10 +20,26 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
         ));
         return Status::BadInput;
     }
-    let found: Vec<_> = files::find(std::slice::from_ref(file), output)
-        .into_iter()
-        .flatten()
-        .collect();
+    let assumed = args.assumed.assumed();
+    let files = files::find(std::slice::from_ref(file), &files::ANY_FORMAT, output);
+    let mut scenes = Vec::new();
+    for scene in scenes::open(files, &assumed, output) {
+        match scene {
+            Ok(scene) => scenes.push(scene),
+            Err(unread) => {
+                output.error(&unread.error);
+                return Status::BadInput;
+            }
+        }
+    }
+    if scenes.len() > 1 {
+        let (file, count) = (file.display(), scenes.len());
+        output.error(&format_args!(
+            "{file}: {count} situations; `searoom suite` runs them"
+        ));
+        return Status::BadInput;
+    }
+    let found: Vec<_> = scenes.iter().map(|scene| scene.found.clone()).collect();
     let products = match Products::prepare(&found, args.shared.wanted()) {
         Ok(products) => products,
         Err(error) => {
@@ -32,15 +48,18 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
         }
     };
     let mut status = Status::Good;
-    for found in found {
-        let reached = match attempt(&found.file, &args.shared) {
-            Attempt::Run(run) => {
+    for scene in scenes {
+        let reached = match attempt(&scene, &args.shared, &assumed) {
+            Attempt::Run(run, notes) => {
+                for note in notes {
+                    output.note(&note);
+                }
                 let shown = if args.shared.json {
                     output.document(&PlanDocument::of(&run))
                 } else {
                     output.result(&plan_text(&run))
                 };
-                let written = match products.write(&found.stem, &run) {
+                let written = match products.write(&scene.found.stem, &run) {
                     Ok(()) => Status::Good,
                     Err((status, error)) => {
                         output.error(&error);

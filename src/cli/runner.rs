@@ -3,12 +3,13 @@
 use std::any::Any;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 
 use searoom::pipeline::{self, Run};
-use searoom::scenario::{Scenario, ScenarioError};
+use searoom::scenario::ScenarioError;
+use searoom::scenario::formats::Assumed;
 
 use super::args::Shared;
+use super::scenes::{Made, Scene};
 
 thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
@@ -20,8 +21,8 @@ thread_local! {
     reason = "one per file, and nearly always the large one"
 )]
 pub enum Attempt {
-    /// A run, with or without a plan.
-    Run(Run),
+    /// A run, with or without a plan, and what was assumed or not used of its file.
+    Run(Run, Vec<String>),
     /// No scenario in it.
     Unreadable(ScenarioError),
     /// The program failed; says where.
@@ -55,13 +56,17 @@ fn message(payload: &(dyn Any + Send)) -> &str {
     }
 }
 
-/// Reads, plans and judges one file.
-pub fn attempt(file: &Path, shared: &Shared) -> Attempt {
-    let work = || match Scenario::read(file) {
-        Ok(mut scenario) => match shared.apply(&mut scenario) {
-            Ok(()) => Attempt::Run(pipeline::run(scenario)),
+/// Reads, plans and judges one scene.
+pub fn attempt(scene: &Scene, shared: &Shared, assumed: &Assumed) -> Attempt {
+    let file = &scene.found.file;
+    let work = || match scene.scenario(assumed) {
+        Ok(Made {
+            mut scenario,
+            notes,
+        }) => match shared.apply(&mut scenario) {
+            Ok(()) => Attempt::Run(pipeline::run(scenario), notes),
             Err(faults) => Attempt::Unreadable(ScenarioError::Faults {
-                file: file.to_owned(),
+                file: file.clone(),
                 faults,
             }),
         },

@@ -3,12 +3,14 @@
 use searoom::pipeline::Run;
 use searoom::report::document::{INTERNAL_FAULT, SuiteDocument, SuiteRunDocument, UNREADABLE};
 use searoom::report::{Row, Summary, suite_table};
+use searoom::scenario::formats::Assumed;
 
 use super::args::SuiteArgs;
 use super::files::{self, Found};
 use super::output::Output;
 use super::products::{Products, Wanted};
 use super::runner::{Attempt, attempt};
+use super::scenes::{self, Scene};
 use super::status::Status;
 
 /// Rows, entries of the document and the messages so far, in the order of the files.
@@ -17,6 +19,8 @@ struct Tally {
     rows: Vec<Row>,
     runs: Vec<SuiteRunDocument>,
     errors: Vec<String>,
+    /// Runs of which something was assumed or not used.
+    noted: usize,
     status: Option<Status>,
 }
 
@@ -25,10 +29,11 @@ impl Tally {
         self.status = self.status.max(Some(status));
     }
 
-    fn run(&mut self, file: String, run: &Run) {
+    fn run(&mut self, file: String, run: &Run, notes: Vec<String>) {
         self.reach(Status::of(run));
         self.rows.push(Row::Run(Summary::of(run)));
-        self.runs.push(SuiteRunDocument::of(file, run));
+        self.noted += usize::from(!notes.is_empty());
+        self.runs.push(SuiteRunDocument::of(file, run, notes));
     }
 
     fn failed(&mut self, file: String, outcome: &'static str, error: String) {
@@ -49,8 +54,10 @@ impl Tally {
 
 /// Runs every scenario below the paths, one after another, so that each is timed alone.
 pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
-    let all = files::find(&args.paths, output);
-    let found: Vec<Found> = all.iter().flatten().cloned().collect();
+    let assumed = args.assumed.assumed();
+    let files = files::find(&args.paths, &files::ANY_FORMAT, output);
+    let all = scenes::open(files, &assumed, output);
+    let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
     let wanted = Wanted {
         plans: args.plans.as_deref(),
         ..args.shared.wanted()
@@ -66,12 +73,12 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     let mut tally = Tally::default();
     for entry in all {
         match entry {
-            Ok(found) => {
-                bar.set_message(found.file.display().to_string());
-                one(&found, args, &products, &mut tally);
+            Ok(scene) => {
+                bar.set_message(scene.label());
+                one(&scene, args, &assumed, &products, &mut tally);
             }
-            Err((path, error)) => {
-                tally.failed(path.display().to_string(), UNREADABLE, format!("{error:#}"));
+            Err(unread) => {
+                tally.failed(unread.file.display().to_string(), UNREADABLE, unread.error);
             }
         }
         bar.inc(1);
@@ -79,6 +86,12 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     bar.finish_and_clear();
     for error in &tally.errors {
         output.error(error);
+    }
+    if tally.noted > 0 {
+        let (noted, plural) = (tally.noted, if tally.noted == 1 { "" } else { "s" });
+        output.note(&format_args!(
+            "{noted} scenario{plural} with assumptions: `searoom check`, and \"notes\" with --json, say which"
+        ));
     }
     let document = SuiteDocument::of(tally.runs);
     let shown = if args.shared.json {
@@ -90,12 +103,12 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     tally.status.unwrap_or(Status::Good).max(shown)
 }
 
-fn one(found: &Found, args: &SuiteArgs, products: &Products, tally: &mut Tally) {
-    let file = found.file.display().to_string();
-    match attempt(&found.file, &args.shared) {
-        Attempt::Run(run) => {
-            tally.run(file, &run);
-            if let Err((status, error)) = products.write(&found.stem, &run) {
+fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, tally: &mut Tally) {
+    let file = scene.found.file.display().to_string();
+    match attempt(scene, &args.shared, assumed) {
+        Attempt::Run(run, notes) => {
+            tally.run(file, &run, notes);
+            if let Err((status, error)) = products.write(&scene.found.stem, &run) {
                 tally.reach(status);
                 tally.errors.push(error);
             }

@@ -162,13 +162,7 @@ impl<'a, 'i> Entry<'a, 'i> {
     /// Text that is not blank, without control characters, not longer than a line.
     pub(super) fn text(&self) -> Option<String> {
         match self.value.get_ref().as_str() {
-            Some(text)
-                if !text.trim().is_empty()
-                    && !text.chars().any(unprintable)
-                    && text.chars().count() <= TEXT_CHARS =>
-            {
-                Some(text.to_owned())
-            }
+            Some(text) if is_text(text) => Some(text.to_owned()),
             _ => self.refuse(TEXT),
         }
     }
@@ -284,6 +278,11 @@ fn describe(value: &DeValue) -> String {
         DeValue::Array(values) => format!("a list of {}", values.len()),
         DeValue::Table(_) => "a table".to_owned(),
     }
+}
+
+/// True for what [`Entry::text`] takes: not blank, without control characters, not longer than a line.
+pub(super) fn is_text(text: &str) -> bool {
+    !text.trim().is_empty() && !text.chars().any(unprintable) && text.chars().count() <= TEXT_CHARS
 }
 
 /// Control characters, and those that break a line or turn its direction.

@@ -8,6 +8,11 @@ use crate::frame::{LARGEST_ORIGIN_LAT_DEG, mps_from_knots};
 /// Bytes of a scenario file.
 pub(super) const FILE_BYTES: u64 = 16 * 1024 * 1024;
 
+/// Points of one foreign route or recorded track.
+pub(super) const TRACK_POINTS: usize = 20_000;
+/// Ships of one foreign situation.
+pub(super) const SHIPS: usize = 1000;
+
 /// Waypoints of a mission: the cost of a plan grows with their square.
 pub(super) const WAYPOINTS: usize = 100;
 /// Alternatives of a mission: the points that paths share are found pair by pair.
@@ -27,6 +32,12 @@ pub(super) const LONGITUDE: Range = Range::within(180.0);
 pub(super) const LENGTH: Range = Range::between(1e-3, 1e6);
 /// Metres: margins, domains, standard deviations.
 pub(super) const DISTANCE: Range = Range::between(0.0, 1e6);
+/// Metres, of a ship in a foreign file: no ship is longer than half a kilometre, no tow than two.
+pub(super) const SHIP_LENGTH: Range = Range::between(0.1, 2000.0);
+/// m/s of a ship in a foreign file: nearly 100 knots, beyond every ship.
+pub(super) const SHIP_SPEED: Range = Range::between(0.0, 50.0);
+/// The same where she has to make way.
+pub(super) const SHIP_WAY: Range = Range::between(1e-3, 50.0);
 /// Seconds: horizon, deadline.
 pub(super) const DURATION: Range = Range::between(1e-3, 1e6);
 /// m/s at which a leg is run.

@@ -6,16 +6,17 @@ mod explicit_sets;
 mod fault;
 mod file;
 mod fitness;
+pub mod formats;
 mod land;
 mod limits;
 mod plane;
+mod reading;
 mod section;
 mod targets;
 
 pub use fault::{Fault, ScenarioError};
 pub use land::Land;
 
-use std::io::Read;
 use std::path::Path;
 
 use crate::frame::{Georeference, Vector};
@@ -74,42 +75,9 @@ impl Scenario {
     /// Reads and checks a scenario file (`contract.md` section 1). Every fault of the file is in the
     /// error, not only the first.
     pub fn read(file: &Path) -> Result<Self, ScenarioError> {
-        let unread = |source| ScenarioError::Read {
-            file: file.to_owned(),
-            source,
-        };
-        let whole = |found: String, allowed: &str| ScenarioError::Faults {
-            file: file.to_owned(),
-            faults: vec![Fault {
-                path: String::new(),
-                found,
-                allowed: allowed.to_owned(),
-                line: None,
-            }],
-        };
-        // a pipe would be waited for, a device read for ever
-        if !std::fs::metadata(file).map_err(unread)?.is_file() {
-            let kind = std::io::ErrorKind::InvalidInput;
-            return Err(unread(std::io::Error::new(kind, "not a regular file")));
-        }
-        let handle = std::fs::File::open(file).map_err(unread)?;
-        let mut bytes = Vec::new();
-        handle
-            .take(limits::FILE_BYTES + 1)
-            .read_to_end(&mut bytes)
-            .map_err(unread)?;
-        if bytes.len() as u64 > limits::FILE_BYTES {
-            return Err(whole(
-                "more than 16 MiB".to_owned(),
-                "a scenario file of at most 16 MiB",
-            ));
-        }
-        let text = std::str::from_utf8(&bytes).map_err(|error| {
-            let at = error.valid_up_to();
-            whole(format!("bytes that are no text at byte {at}"), "UTF-8 text")
-        })?;
+        let text = reading::text_of(file, limits::FILE_BYTES)?;
         let folder = file.parent().unwrap_or(Path::new(""));
-        Self::parse_beside(text, folder).map_err(|faults| ScenarioError::Faults {
+        Self::parse_beside(&text, folder).map_err(|faults| ScenarioError::Faults {
             file: file.to_owned(),
             faults,
         })

@@ -37,11 +37,15 @@ pub struct SuiteRunDocument {
     pub planner: Option<String>,
     pub outcome: String,
     pub error: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
     pub verified: bool,
     pub cost: Option<CostDocument>,
     pub encounters: Vec<EncounterDocument>,
     pub targets: Option<usize>,
     pub timing: Option<TimingDocument>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
 }
 
 /// How many of which.
@@ -107,19 +111,21 @@ impl std::fmt::Display for SuiteSummaryDocument {
 }
 
 impl SuiteRunDocument {
-    /// The entry of a run.
-    pub fn of(file: String, run: &Run) -> Self {
+    /// The entry of a run; the notes say what was assumed or not used of a foreign file.
+    pub fn of(file: String, run: &Run, notes: Vec<String>) -> Self {
         Self {
             file,
             scenario: Some(run.scenario.title.clone()),
             planner: Some(run.scenario.planner.word().to_owned()),
             outcome: Verdict::of(run).word().to_owned(),
             error: None,
+            reason: run.reason(),
             verified: verified(run),
             cost: cost(run),
             encounters: encounters(run),
             targets: Some(run.scenario.targets.len()),
             timing: Some(timing(run)),
+            notes,
         }
     }
 
@@ -131,11 +137,13 @@ impl SuiteRunDocument {
             planner: None,
             outcome: outcome.to_owned(),
             error: Some(error),
+            reason: None,
             verified: false,
             cost: None,
             encounters: Vec::new(),
             targets: None,
             timing: None,
+            notes: Vec::new(),
         }
     }
 }

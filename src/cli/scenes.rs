@@ -1,0 +1,168 @@
+//! The scenarios in the files that were found: one in a scenario file, one or many in a foreign one.
+
+use std::path::PathBuf;
+
+use searoom::scenario::formats::{Assumed, Contents, Imported, Situation};
+use searoom::scenario::{Scenario, ScenarioError};
+
+use super::files::Found;
+use super::output::Output;
+
+/// A scenario that was asked for, not made yet.
+#[derive(Debug)]
+pub struct Scene {
+    /// Its file, and what is written for it is called.
+    pub found: Found,
+    source: Source,
+}
+
+#[derive(Debug)]
+enum Source {
+    /// A scenario file.
+    File,
+    /// One of the situations of a foreign file.
+    Situation(Box<Situation>),
+}
+
+/// A file, or a part of it, in which there is no scenario.
+#[derive(Debug)]
+pub struct Unread {
+    /// The file.
+    pub file: PathBuf,
+    /// Why, the file named.
+    pub error: String,
+}
+
+/// What a scene gave.
+#[derive(Debug)]
+pub struct Made {
+    pub scenario: Scenario,
+    /// What was assumed or not used.
+    pub notes: Vec<String>,
+}
+
+impl Scene {
+    /// The scenario, with what a foreign file does not say assumed.
+    pub fn scenario(&self, assumed: &Assumed) -> Result<Made, ScenarioError> {
+        match self.imported(assumed) {
+            Some(imported) => imported.map(|imported| Made {
+                scenario: imported.scenario,
+                notes: imported.notes,
+            }),
+            None => Scenario::read(&self.found.file).map(|scenario| Made {
+                scenario,
+                notes: Vec::new(),
+            }),
+        }
+    }
+
+    /// The same of a foreign file, with its text; `None` where it is a scenario file.
+    pub fn imported(&self, assumed: &Assumed) -> Option<Result<Imported, ScenarioError>> {
+        match &self.source {
+            Source::File => None,
+            Source::Situation(situation) => {
+                let file = self.found.file.clone();
+                let imported = situation.scenario(assumed);
+                Some(imported.map_err(|faults| ScenarioError::Faults { file, faults }))
+            }
+        }
+    }
+
+    /// The file, and the situation where there may be several in it.
+    pub fn label(&self) -> String {
+        let file = self.found.file.display();
+        match &self.source {
+            Source::Situation(situation) if situation.id().is_some() => {
+                format!("{file}: {}", situation.name())
+            }
+            _ => file.to_string(),
+        }
+    }
+}
+
+/// Opens what was found: every scene in the order of the files. What is no scenario but a document of the program or a map
+/// is left out of a folder, and that is said.
+pub fn open(
+    found: Vec<Result<Found, (PathBuf, anyhow::Error)>>,
+    assumed: &Assumed,
+    output: &Output,
+) -> Vec<Result<Scene, Unread>> {
+    let mut scenes = Vec::new();
+    for entry in found {
+        match entry {
+            Ok(found) => of_file(&found, assumed, output, &mut scenes),
+            Err((file, error)) => scenes.push(Err(Unread {
+                file,
+                error: format!("{error:#}"),
+            })),
+        }
+    }
+    scenes
+}
+
+fn of_file(
+    found: &Found,
+    assumed: &Assumed,
+    output: &Output,
+    scenes: &mut Vec<Result<Scene, Unread>>,
+) {
+    let file = &found.file;
+    let unread = |error: String| Unread {
+        file: file.clone(),
+        error,
+    };
+    match Contents::read(file, assumed) {
+        Ok(Contents::Scenario) => scenes.push(Ok(Scene {
+            found: found.clone(),
+            source: Source::File,
+        })),
+        Ok(Contents::Situations { situations, .. }) => {
+            for situation in situations {
+                scenes.push(match situation {
+                    Ok(situation) => Ok(Scene {
+                        found: named(found, &situation),
+                        source: Source::Situation(Box::new(situation)),
+                    }),
+                    Err(faults) => {
+                        let file = file.clone();
+                        Err(unread(ScenarioError::Faults { file, faults }.to_string()))
+                    }
+                });
+            }
+        }
+        Ok(Contents::Other(what)) if found.in_folder => {
+            output.note(&format_args!("{}: {what}, left out", file.display()));
+        }
+        Ok(Contents::Other(what)) => {
+            let said = format!("{}: {what}; no scenario in it", file.display());
+            scenes.push(Err(unread(said)));
+        }
+        Err(error) => scenes.push(Err(unread(error.to_string()))),
+    }
+}
+
+/// Outputs of one of several situations are called after it, in the folder of its file.
+fn named(found: &Found, situation: &Situation) -> Found {
+    let Some(id) = situation.id() else {
+        return found.clone();
+    };
+    let safe = |c: char| {
+        if c.is_alphanumeric() || "-_.".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    };
+    let id: String = id.chars().map(safe).collect();
+    let stem = match found.stem.rsplit_once(SEPARATOR) {
+        Some((folder, _)) => format!("{folder}{SEPARATOR}{id}"),
+        None => id,
+    };
+    Found {
+        stem,
+        ..found.clone()
+    }
+}
+
+/// What stands for "/" in the names of outputs.
+const SEPARATOR: &str = "__";

@@ -1,0 +1,82 @@
+//! A traffic situation as every foreign format has it: own ship, her route, and the tracks of the others.
+
+use crate::frame::{Georeference, Pose, Vector};
+use crate::vessel::Hull;
+
+use super::track::Track;
+
+/// A situation read from a foreign file, checked, SI and east-north. [`Situation::scenario`](super::Situation::scenario)
+/// makes a scenario of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Situation {
+    pub(super) name: String,
+    /// What outputs are called where a file has several.
+    pub(super) id: Option<String>,
+    pub(super) own: Own,
+    pub(super) others: Vec<Other>,
+    pub(super) earth: Option<Georeference>,
+    /// What was assumed or not used, in sentences.
+    pub(super) notes: Vec<String>,
+}
+
+/// Own ship.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Own {
+    pub(super) pose: Pose,
+    /// m/s.
+    pub(super) speed: f64,
+    pub(super) hull: HullSaid,
+    /// At least two points, metres.
+    pub(super) route: Vec<Vector>,
+    /// m/s, one per leg, positive.
+    pub(super) leg_speeds: Vec<f64>,
+    /// Seconds by which she has to be there, where the format says.
+    pub(super) horizon: Option<f64>,
+}
+
+/// What a file says of a hull.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum HullSaid {
+    /// This.
+    Is(Hull),
+    /// The format has no place for it.
+    Unsaid,
+    /// The format has a place, which is empty: the field.
+    Missing(String),
+}
+
+/// Another ship.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Other {
+    /// A ship.
+    Ship {
+        name: String,
+        hull: HullSaid,
+        track: Track,
+    },
+}
+
+impl Own {
+    /// Seconds that her route takes.
+    pub(super) fn duration(&self) -> f64 {
+        let lengths = self.route.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        lengths.zip(&self.leg_speeds).map(|(l, v)| l / v).sum()
+    }
+}
+
+impl Situation {
+    /// Its title.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What outputs are called where a file has several situations.
+    pub fn id(&self) -> Option<&str> {
+        self.id.as_deref()
+    }
+
+    /// The others, ships and things, as the file has them.
+    pub fn others(&self) -> usize {
+        self.others.len()
+    }
+}

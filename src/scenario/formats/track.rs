@@ -1,0 +1,357 @@
+//! The declared track of a target: stretches one after another, and the velocities that she may have on them.
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::frame::{Pose, Vector, heading_of, wrap};
+use crate::geometry::ConvexPolygon;
+use crate::target::{DomainKind, ShipTrack, VelocitySpell};
+use crate::vessel::Hull;
+
+/// Half-widths up to which stretches one after another are taken as one: radians (1°) and m/s.
+const ONE_COURSE: f64 = std::f64::consts::PI / 180.0;
+const ONE_SPEED: f64 = 0.1;
+
+/// Seconds. Changes nearer to one another than this are one.
+const LEAST_SPELL: f64 = 0.01;
+
+/// Metres that a straight of no length still has, so that two turns never share a point.
+const NO_LENGTH: f64 = 1e-3;
+
+/// A point of a route.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RoutePoint {
+    /// Metres.
+    pub(super) position: Vector,
+    /// Radius of the turn here, metres; `None` where nobody says.
+    pub(super) turn_radius: Option<f64>,
+}
+
+/// A leg of a route: between which speeds she runs it, m/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RouteLeg {
+    pub(super) slow: f64,
+    pub(super) fast: f64,
+}
+
+/// A piece of a track: how long it is, which courses and which speeds it has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Stretch {
+    /// Metres, by the shortest and by the longest way.
+    shortest: f64,
+    longest: f64,
+    /// Radians, counter-clockwise from east, and half the width.
+    course: f64,
+    half: f64,
+    /// m/s.
+    slow: f64,
+    fast: f64,
+}
+
+impl Stretch {
+    /// Both, one after the other; `None` where they are too different to be one.
+    fn joined(&self, next: &Self) -> Option<Self> {
+        let turn = wrap(next.course - self.course);
+        let low = f64::min(-self.half, turn - next.half);
+        let high = f64::max(self.half, turn + next.half);
+        let one = Self {
+            shortest: self.shortest + next.shortest,
+            longest: self.longest + next.longest,
+            course: wrap(self.course + 0.5 * (low + high)),
+            half: 0.5 * (high - low),
+            slow: self.slow.min(next.slow),
+            fast: self.fast.max(next.fast),
+        };
+        let same = one.half <= ONE_COURSE && 0.5 * (one.fast - one.slow) <= ONE_SPEED;
+        same.then_some(one)
+    }
+
+    /// The ship with every velocity of this stretch, spreads added; only her velocities are of use.
+    fn ship(&self, spread: &Spread) -> ShipTrack {
+        ShipTrack {
+            pose: Pose::new(Vector::zeros(), self.course),
+            speed: 0.5 * (self.slow + self.fast),
+            hull: Hull {
+                length: 0.0,
+                beam: 0.0,
+            },
+            position_std: 0.0,
+            speed_spread: 0.5 * (self.fast - self.slow) + spread.speed,
+            course_spread: self.half + spread.course,
+            turn_rate: 0.0,
+            domain: DomainKind::Colregs,
+        }
+    }
+}
+
+/// By how much she may differ from what is declared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Spread {
+    /// Half-width, m/s.
+    pub(super) speed: f64,
+    /// Half-width, radians.
+    pub(super) course: f64,
+}
+
+/// One course and one speed for ever.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Steady {
+    /// Where she is at t = 0, and her course.
+    pub(super) pose: Pose,
+    /// m/s.
+    pub(super) speed: f64,
+    /// The spreads, widened by what the track itself varies.
+    pub(super) spread: Spread,
+}
+
+/// Why a route is no track.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum TrackError {
+    /// The turn at a point does not fit into the legs beside it.
+    Turn {
+        /// Which point, from 0.
+        point: usize,
+        /// Metres from the point at which the turn would begin.
+        begins: f64,
+    },
+}
+
+/// A declared track: she appears at `appears` at its start, where she is taken to have stood still before, follows it, and
+/// goes on as at its end.
+///
+/// *Following it within a spread* means: on the stretch that she has come to, her course differs from the track's by at
+/// most `spread.course`, her speed from the declared one by at most `spread.speed`; she comes to the next stretch when the
+/// way that she has made along the track is as long as the stretch. At a point without a radius she turns on the
+/// spot, or on an arc of any radius up to the one assumed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Track {
+    start: Vector,
+    appears: f64,
+    stretches: Vec<Stretch>,
+}
+
+impl Track {
+    /// Straight on for ever, or at rest: `course` radians, `speed` m/s.
+    pub(super) fn straight(start: Vector, course: f64, speed: f64) -> Self {
+        let only = Stretch {
+            shortest: f64::INFINITY,
+            longest: f64::INFINITY,
+            course,
+            half: 0.0,
+            slow: speed,
+            fast: speed,
+        };
+        Self {
+            start,
+            appears: 0.0,
+            stretches: vec![only],
+        }
+    }
+
+    /// Along a route of at least two points; `legs` has one entry less. The points are apart. Where a point names no
+    /// radius, arcs up to `usual_radius` are allowed for, as far as they fit. `heading`: where she points at the start, if
+    /// that is another course than the first leg's.
+    pub(super) fn along(
+        points: &[RoutePoint],
+        legs: &[RouteLeg],
+        usual_radius: f64,
+        heading: Option<f64>,
+    ) -> Result<Self, TrackError> {
+        let ways: Vec<Vector> = points
+            .windows(2)
+            .map(|pair| pair[1].position - pair[0].position)
+            .collect();
+        let mut stretches = Vec::with_capacity(2 * legs.len());
+        let mut begun = 0.0;
+        if let (Some(heading), Some(way), Some(leg)) = (heading, ways.first(), legs.first()) {
+            let turn = wrap(heading_of(*way) - heading);
+            stretches.push(Stretch {
+                shortest: 0.0,
+                longest: usual_radius * turn.abs(),
+                course: wrap(heading + 0.5 * turn),
+                half: 0.5 * turn.abs(),
+                slow: leg.slow,
+                fast: leg.fast,
+            });
+        }
+        for (index, (way, leg)) in ways.iter().zip(legs).enumerate() {
+            let (course, length) = (heading_of(*way), way.norm());
+            let next = ways.get(index + 1).zip(legs.get(index + 1));
+            let turn = next.map(|(next, _)| wrap(heading_of(*next) - course));
+            // metres before the next point at which its turn begins
+            let mut ends = 0.0;
+            if let (Some(turn), Some((next_way, _))) = (turn, next) {
+                let half = 0.5 * turn.abs();
+                let room = 0.5 * (length.min(next_way.norm()));
+                let asked = points[index + 1].turn_radius;
+                let wanted = asked.unwrap_or(usual_radius) * half.min(FRAC_PI_2).tan();
+                if asked.is_some() && !(wanted <= length - begun && wanted <= next_way.norm()) {
+                    return Err(TrackError::Turn {
+                        point: index + 1,
+                        begins: wanted,
+                    });
+                }
+                ends = if asked.is_some() {
+                    wanted
+                } else {
+                    wanted.min(room)
+                };
+            }
+            stretches.push(Stretch {
+                shortest: (length - begun - ends).max(0.0),
+                longest: (length - begun - ends).max(NO_LENGTH),
+                course,
+                half: 0.0,
+                slow: leg.slow,
+                fast: leg.fast,
+            });
+            if let (Some(turn), Some((_, next_leg))) = (turn, next) {
+                let half = 0.5 * turn.abs();
+                // an arc that begins `ends` before the point; never longer than the two sides
+                let arc = if half > 0.0 {
+                    ends / half.min(FRAC_PI_2).tan() * turn.abs()
+                } else {
+                    2.0 * ends
+                };
+                stretches.push(Stretch {
+                    shortest: arc.min(2.0 * ends),
+                    longest: 2.0 * ends,
+                    course: wrap(course + 0.5 * turn),
+                    half,
+                    slow: leg.slow.min(next_leg.slow),
+                    fast: leg.fast.max(next_leg.fast),
+                });
+            }
+            begun = ends;
+        }
+        Ok(Self {
+            start: points.first().map_or(Vector::zeros(), |p| p.position),
+            appears: 0.0,
+            stretches: one_by_one(stretches),
+        })
+    }
+
+    /// The same, but she is not there before `time` seconds.
+    pub(super) fn appearing(self, time: f64) -> Self {
+        Self {
+            appears: time,
+            ..self
+        }
+    }
+
+    /// Where she is when she appears, metres.
+    pub(super) fn start(&self) -> Vector {
+        self.start
+    }
+
+    /// When she is at the end of her track if she runs every stretch at the middle of its speeds, seconds; infinite where
+    /// the track has no end.
+    pub(super) fn end(&self) -> f64 {
+        let took = |s: &Stretch| 0.5 * (s.shortest + s.longest) / (0.5 * (s.slow + s.fast));
+        self.appears + self.stretches.iter().map(took).sum::<f64>()
+    }
+
+    /// One course and one speed, where the track has no more than that and begins at t = 0. The velocities within the
+    /// widened spreads hold those of every stretch.
+    pub(super) fn steady(&self, spread: &Spread) -> Option<Steady> {
+        let [only] = self.stretches.as_slice() else {
+            return None;
+        };
+        if self.appears > 0.0 {
+            return None;
+        }
+        let ship = only.ship(spread);
+        Some(Steady {
+            pose: Pose::new(self.start, only.course),
+            speed: ship.speed,
+            spread: Spread {
+                speed: ship.speed_spread,
+                course: ship.course_spread,
+            },
+        })
+    }
+
+    /// Velocity sets one after another that hold, at every instant, the velocity of every ship that follows the track within
+    /// the spread: so her place is in the start ⊕ their sum. At most `most` of them.
+    ///
+    /// A stretch is entered at the earliest when all before it were run by the shortest way at the greatest speed,
+    /// and left at the latest when all up to it were run by the longest way at the least speed made good; each set is the hull of
+    /// the sets of the stretches that she may then be on. Changes that are too many are left out: what a longer spell
+    /// holds is the hull of more stretches, which errs outward. O(stretches²).
+    pub(super) fn outer_spells(
+        &self,
+        spread: &Spread,
+        horizon: f64,
+        most: usize,
+    ) -> Vec<VelocitySpell> {
+        let times = self.times(spread);
+        let mut changes: Vec<f64> = times
+            .iter()
+            .flat_map(|&(enters, leaves)| [enters, leaves])
+            .filter(|time| *time > LEAST_SPELL && *time < horizon)
+            .collect();
+        changes.sort_by(f64::total_cmp);
+        changes.dedup_by(|later, earlier| *later - *earlier < LEAST_SPELL);
+        while changes.len() + 1 > most.max(1) {
+            // the one that ends the shortest spell
+            let length = |k: usize| changes[k] - if k == 0 { 0.0 } else { changes[k - 1] };
+            let shortest = (0..changes.len()).min_by(|a, b| length(*a).total_cmp(&length(*b)));
+            let Some(shortest) = shortest else { break };
+            changes.remove(shortest);
+        }
+        changes.push(f64::INFINITY);
+        let mut from = 0.0;
+        let mut spells = Vec::with_capacity(changes.len());
+        for until in changes {
+            let mut vertices = Vec::new();
+            if from < self.appears {
+                vertices.push(Vector::zeros());
+            }
+            for (stretch, (enters, leaves)) in self.stretches.iter().zip(&times) {
+                if *enters <= until && *leaves >= from {
+                    let velocities = stretch.ship(spread).outer_velocity_set();
+                    vertices.extend_from_slice(velocities.vertices());
+                }
+            }
+            // never empty: of the stretches in a row one is left after the next is entered
+            let velocities = ConvexPolygon::hull(&vertices)
+                .unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()));
+            spells.push(VelocitySpell { until, velocities });
+            from = until;
+        }
+        spells
+    }
+
+    /// The earliest and the latest second on every stretch.
+    fn times(&self, spread: &Spread) -> Vec<(f64, f64)> {
+        let (mut enters, mut leaves) = (self.appears, self.appears);
+        let last = self.stretches.len().saturating_sub(1);
+        let time = |(index, stretch): (usize, &Stretch)| {
+            let entered = enters;
+            enters += stretch.shortest / (stretch.fast + spread.speed);
+            let good = (stretch.slow - spread.speed) * spread.course.min(FRAC_PI_2).cos();
+            leaves = if index == last || !(good > 0.0) {
+                f64::INFINITY
+            } else {
+                leaves + stretch.longest / good
+            };
+            (entered, leaves)
+        };
+        self.stretches.iter().enumerate().map(time).collect()
+    }
+}
+
+/// Stretches one after another that hardly differ become one.
+fn one_by_one(stretches: Vec<Stretch>) -> Vec<Stretch> {
+    let mut joined: Vec<Stretch> = Vec::new();
+    for stretch in stretches {
+        match joined.last_mut().and_then(|last| last.joined(&stretch)) {
+            Some(both) => {
+                if let Some(last) = joined.last_mut() {
+                    *last = both;
+                }
+            }
+            None => joined.push(stretch),
+        }
+    }
+    joined
+}
