@@ -212,6 +212,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("geojson", &["map/"]),
     ("spade", &["geometry/decomposition.rs"]),
     ("robust", &["geometry/"]),
+    ("roxmltree", &["scenario/formats/"]),
     ("kuva", &["report/figure/"]),
     ("clap", &["cli/", "main.rs"]),
     ("to_degrees", &["frame.rs"]),

@@ -3,12 +3,14 @@
 
 mod ais_words;
 mod assumed;
+mod commonocean;
 mod dnv;
 mod imazu;
 mod json;
 mod situation;
 mod text;
 mod track;
+mod xml;
 
 pub use assumed::{Assumed, Assumption};
 pub use situation::Situation;
@@ -31,6 +33,8 @@ pub enum Format {
     Dnv,
     /// Imazu's cases.
     Imazu,
+    /// A CommonOcean scenario.
+    CommonOcean,
 }
 
 /// What is in a file.
@@ -65,9 +69,27 @@ impl Contents {
         let text = text.trim_start_matches('\u{feff}').trim_start();
         match text.chars().next() {
             Some('{') => in_json(text, assumed),
+            Some('<') => in_xml(text),
             _ => Ok(Self::Scenario),
         }
     }
+}
+
+fn in_xml(text: &str) -> Result<Contents, Vec<Fault>> {
+    let document = xml::parse(text).map_err(|fault| vec![fault])?;
+    let root = document.root_element().tag_name().name();
+    if root != "commonOcean" {
+        return Err(vec![Fault {
+            path: root.to_owned(),
+            found: format!("XML that begins with {root}"),
+            allowed: "a CommonOcean scenario (commonOcean)".to_owned(),
+            line: None,
+        }]);
+    }
+    Ok(Contents::Situations {
+        format: Format::CommonOcean,
+        situations: commonocean::situations(&document)?,
+    })
 }
 
 fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {

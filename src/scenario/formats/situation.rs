@@ -1,6 +1,7 @@
 //! A traffic situation as every foreign format has it: own ship, her route, and the tracks of the others.
 
 use crate::frame::{Georeference, Pose, Vector};
+use crate::geometry::ConvexPolygon;
 use crate::vessel::Hull;
 
 use super::track::Track;
@@ -45,7 +46,7 @@ pub(super) enum HullSaid {
     Missing(String),
 }
 
-/// Another ship.
+/// Another ship, or a thing that stands still.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Other {
     /// A ship.
@@ -54,6 +55,35 @@ pub(super) enum Other {
         hull: HullSaid,
         track: Track,
     },
+    /// A thing that stands still: a convex part of it, metres.
+    Fixed {
+        name: String,
+        shape: ConvexPolygon,
+        /// True for land and shallow water, to which no safety margin is kept.
+        ground: bool,
+    },
+}
+
+impl Other {
+    /// The same elsewhere, metres.
+    pub(super) fn translated(&self, shift: Vector) -> Self {
+        match self.clone() {
+            Self::Ship { name, hull, track } => Self::Ship {
+                name,
+                hull,
+                track: track.translated(shift),
+            },
+            Self::Fixed {
+                name,
+                shape,
+                ground,
+            } => Self::Fixed {
+                name,
+                shape: shape.translated(shift),
+                ground,
+            },
+        }
+    }
 }
 
 impl Own {

@@ -115,6 +115,23 @@ impl<'a> Writing<'a> {
                         );
                     }
                 }
+                Other::Fixed {
+                    name,
+                    shape,
+                    ground,
+                } => {
+                    let own = hull_of(own, self.assumed);
+                    let margin = if *ground {
+                        0.0
+                    } else {
+                        self.assumed.safety_margin(own.length)
+                    };
+                    let disc = outer_disc(own.half_diagonal() + margin, 0.0);
+                    self.line(format_args!("\n[[targets]]\nname = {}", quoted(name)));
+                    let set = vertices(&shape.minkowski_sum(&disc));
+                    self.line(format_args!("initial_set = {{ vertices_m = {set} }}"));
+                    self.line("velocity_set = { vertices_mps = [[0.0, 0.0]] }");
+                }
             }
         }
     }

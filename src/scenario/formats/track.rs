@@ -14,6 +14,9 @@ const ONE_SPEED: f64 = 0.1;
 /// Seconds. Changes nearer to one another than this are one.
 const LEAST_SPELL: f64 = 0.01;
 
+/// Changes of a long track that are weighed against one another; of more every second or third is looked at.
+const MOST_CHANGES: usize = 1000;
+
 /// Metres that a straight of no length still has, so that two turns never share a point.
 const NO_LENGTH: f64 = 1e-3;
 
@@ -230,6 +233,14 @@ impl Track {
         })
     }
 
+    /// The same elsewhere, metres.
+    pub(super) fn translated(self, shift: Vector) -> Self {
+        Self {
+            start: self.start + shift,
+            ..self
+        }
+    }
+
     /// The same, but she is not there before `time` seconds.
     pub(super) fn appearing(self, time: f64) -> Self {
         Self {
@@ -291,6 +302,10 @@ impl Track {
             .collect();
         changes.sort_by(f64::total_cmp);
         changes.dedup_by(|later, earlier| *later - *earlier < LEAST_SPELL);
+        if changes.len() > MOST_CHANGES {
+            let every = changes.len().div_ceil(MOST_CHANGES);
+            changes = changes.into_iter().step_by(every).collect();
+        }
         while changes.len() + 1 > most.max(1) {
             // the one that ends the shortest spell
             let length = |k: usize| changes[k] - if k == 0 { 0.0 } else { changes[k - 1] };
