@@ -65,9 +65,10 @@
 //! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
 //! | [`evaluation`] | judges any trajectory, sharing no collision code with the planner |
 //! | [`verification`] | checks a plan document alone, without scenario and planner |
-//! | [`scenario`] | scenario files: every fault of a file at once |
+//! | [`scenario`] | scenario files: every fault of a file at once; [`scenario::formats`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
 //! | [`comparison`] | every planner that applies and two baselines, on the same scenario |
+//! | [`lint`] | what is odd about a scenario, without planning |
 //! | [`simulation`] | random encounters, and targets that do anything their sets allow |
 //! | [`report`] | tables, JSON documents and figures |
 //! | `recording` | Rerun recordings (feature `recording`, on by default) |
@@ -127,6 +128,7 @@ pub mod comparison;
 pub mod evaluation;
 pub mod frame;
 pub mod geometry;
+pub mod lint;
 pub mod map;
 pub mod obstacle;
 pub mod pipeline;

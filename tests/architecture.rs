@@ -135,6 +135,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "lint",
+        &[
+            "frame", "geometry", "colregs", "target", "obstacle", "scenario", "pipeline",
+        ],
+    ),
+    (
         "simulation",
         &[
             "frame",
@@ -172,6 +178,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "scenario",
             "pipeline",
             "comparison",
+            "lint",
             "simulation",
         ],
     ),

@@ -31,6 +31,8 @@ pub enum Command {
     Plan(PlanArgs),
     /// Runs every scenario below the paths: one row each, a summary, one exit status
     Suite(SuiteArgs),
+    /// Turns files of foreign formats into scenario files
+    Import(ImportArgs),
     /// Every planner that applies and two baselines on the same scenarios, side by side
     Compare(CompareArgs),
     /// What a recording holds, read offline, or what two differ in
@@ -106,6 +108,21 @@ pub struct SuiteArgs {
     /// Write one plan document per scenario into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
+    /// Plan nothing: say where ships would meet, and what is odd about the scenarios
+    #[arg(long, conflicts_with_all = ["plans", "rrd", "figure", "planner", "search", "compliance", "max_risk"])]
+    pub lint: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ImportArgs {
+    /// Files of foreign formats, or folders of them
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Where the scenario files go; the folder is made
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]

@@ -8,8 +8,10 @@ mod compare;
 mod difference;
 mod figure;
 mod files;
+mod import;
 #[cfg(feature = "recording")]
 mod inspect;
+mod lint;
 mod output;
 mod plan;
 mod products;
@@ -42,6 +44,7 @@ pub fn main() -> ExitCode {
         Command::Assess(args) => assess::assess(args, &output),
         Command::Plan(args) => plan::plan(args, &output),
         Command::Suite(args) => suite::suite(args, &output),
+        Command::Import(args) => import::import(args, &output),
         Command::Compare(args) => compare::compare(args, &output),
         #[cfg(feature = "recording")]
         Command::Inspect(args) => inspect::inspect(args, &output),

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use searoom::scenario::formats::{Assumed, Contents, Imported, Situation};
+use searoom::scenario::formats::{Assumed, Contents, Declared, Imported, Situation};
 use searoom::scenario::{Scenario, ScenarioError};
 
 use super::files::Found;
@@ -65,6 +65,14 @@ impl Scene {
                 let imported = situation.scenario(assumed);
                 Some(imported.map_err(|faults| ScenarioError::Faults { file, faults }))
             }
+        }
+    }
+
+    /// What a foreign file says of its situation besides.
+    pub fn declared(&self) -> Declared {
+        match &self.source {
+            Source::File => Declared::default(),
+            Source::Situation(situation) => situation.declared().clone(),
         }
     }
 

@@ -7,6 +7,7 @@ use searoom::scenario::formats::Assumed;
 
 use super::args::SuiteArgs;
 use super::files::{self, Found};
+use super::lint;
 use super::output::Output;
 use super::products::{Products, Wanted};
 use super::runner::{Attempt, attempt};
@@ -57,6 +58,9 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     let assumed = args.assumed.assumed();
     let files = files::find(&args.paths, &files::ANY_FORMAT, output);
     let all = scenes::open(files, &assumed, output);
+    if args.lint {
+        return lint::suite(all, args, &assumed, output);
+    }
     let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
     let wanted = Wanted {
         plans: args.plans.as_deref(),

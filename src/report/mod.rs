@@ -6,6 +6,7 @@ mod assessment;
 mod comparison;
 pub mod document;
 pub mod figure;
+mod lint;
 mod summary;
 mod table;
 mod verification;
@@ -14,6 +15,7 @@ mod write;
 
 pub use assessment::assessment_text;
 pub use comparison::{COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_table};
+pub use lint::lint_text;
 pub use summary::{Meeting, Summary, Turn, Verdict};
 pub use table::{Row, plan_text, suite_table};
 pub use verification::verification_text;

@@ -3,8 +3,9 @@
 use std::fs::{self, File};
 use std::time::Instant;
 
-use super::program::{HEAD_ON, document, searoom, stderr, text, write};
+use super::program::{HEAD_ON, document, searoom, stderr, text, untimed, write};
 use predicates::str::contains;
+use serde_json::Value;
 
 const IMAZU: &str = include_str!("../../benchmarks/imazu/imazu.json");
 const DNV: &str = include_str!("../../benchmarks/dnv/traffic_situation_01.json");
@@ -127,4 +128,146 @@ fn a_format_is_told_by_what_is_in_the_file() {
     let dnv = write(folder.path(), "named.toml", DNV);
     let toml = write(folder.path(), "named.json", HEAD_ON);
     searoom(&["check", &dnv, &toml]).success();
+}
+
+/// What is imported is what is run: the same documents, but for the file, the clock and what was noted.
+#[test]
+fn imported_files_run_as_their_originals() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("scenarios");
+    let sources = ["benchmarks/imazu/imazu.json", "benchmarks/commonocean"];
+    let options = ["--safety-margin-m", "300", "--course-spread-deg", "3"];
+    let assert = searoom(&[&["import"], &sources[..], &options, &["--out", text(&out)]].concat());
+    assert.success().stdout(contains("imazu-22.toml"));
+    let head = fs::read_to_string(out.join("imazu-05.toml")).expect("there");
+    assert!(
+        head.starts_with("# own ship, target 1, target 2: no size in the file"),
+        "{head}"
+    );
+    let bare = |args: &[&str]| {
+        let mut suite = untimed(document(&searoom(args)));
+        let mut runs: Vec<Value> = suite["runs"].as_array_mut().expect("runs").clone();
+        for run in &mut runs {
+            let run = run.as_object_mut().expect("an object");
+            run.remove("file");
+            run.remove("notes");
+        }
+        runs.sort_by_key(|run| run["scenario"].to_string());
+        runs
+    };
+    let original = bare(&[&["suite", "--json"], &sources[..], &options].concat());
+    let again = bare(&["suite", "--json", text(&out)]);
+    assert_eq!(original.len(), 24);
+    assert_eq!(original, again);
+    // a scenario file is one already, and what cannot be read is said
+    searoom(&[
+        "import",
+        text(&out),
+        "no.json",
+        "--out",
+        text(folder.path()),
+    ])
+    .code(2)
+    .stderr(contains("imazu-01.toml: a scenario file already, left out"))
+    .stderr(contains("no.json: cannot be read"));
+}
+
+fn lint(path: &str) -> Value {
+    document(&searoom(&["suite", "--lint", "--json", path]).success())
+}
+
+fn findings(document: &Value, scenario: &str) -> Vec<String> {
+    let all = document["scenarios"].as_array().expect("scenarios");
+    let one = all
+        .iter()
+        .find(|s| s["scenario"] == scenario)
+        .expect("there");
+    let list = one["findings"].as_array().expect("a list");
+    list.iter()
+        .map(|f| f.as_str().expect("a text").to_owned())
+        .collect()
+}
+
+#[test]
+fn a_lint_says_what_is_odd_about_the_published_cases() {
+    let imazu = lint("benchmarks/imazu/imazu.json");
+    assert_eq!(imazu["summary"]["scenarios"], 22);
+    assert_eq!(imazu["summary"]["targets"], 50);
+    assert_eq!(
+        findings(&imazu, "imazu-12")[0],
+        "ships are missing: 3 said, 2 found"
+    );
+    assert!(findings(&imazu, "imazu-12")[1].starts_with("the same encounter as imazu-06 "));
+    assert!(findings(&imazu, "imazu-08")[0].starts_with("the same encounter as imazu-05 "));
+    assert!(findings(&imazu, "imazu-22")[0].starts_with("the same encounter as imazu-15 "));
+    assert_eq!(imazu["summary"]["findings"], 4);
+    for scenario in imazu["scenarios"].as_array().expect("scenarios") {
+        for target in scenario["targets"].as_array().expect("targets") {
+            let [dcpa, tcpa] =
+                ["undisturbed_dcpa_m", "undisturbed_tcpa_s"].map(|k| target[k].as_f64().expect(k));
+            assert!(dcpa <= 0.0 && (1700.0..1900.0).contains(&tcpa), "{target}");
+            assert_eq!(target["matters"], "meets");
+        }
+    }
+    let dnv = lint("benchmarks/dnv");
+    assert_eq!(dnv["summary"]["targets"], 71);
+    for scenario in dnv["scenarios"].as_array().expect("scenarios") {
+        for finding in scenario["findings"].as_array().expect("a list") {
+            let finding = finding.as_str().expect("a text");
+            assert!(
+                !finding.contains("missing") && !finding.contains("mirrored?"),
+                "{finding}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let crossing = include_str!("../../benchmarks/dnv/traffic_situation_03.json");
+    write(folder.path(), "a.json", crossing);
+    // port and starboard exchanged about own ship's meridian
+    let mut mirror: Value = serde_json::from_str(crossing).expect("JSON");
+    for place in mirror["targetShips"][0]["waypoints"]
+        .as_array_mut()
+        .expect("a list")
+    {
+        let lon = place["position"]["lon"].as_f64().expect("degrees");
+        place["position"]["lon"] = (2.0 * 10.490654 - lon).into();
+    }
+    let heading = mirror["targetShips"][0]["initial"]["heading"]
+        .as_f64()
+        .expect("degrees");
+    mirror["targetShips"][0]["initial"]["heading"] = (360.0 - heading).into();
+    mirror["title"] = "CR-SO, HO".into();
+    write(folder.path(), "b.json", mirror.to_string());
+    let far = HEAD_ON.replace(
+        "east_m = 1500.0, north_m = 0.0 }\ncourse",
+        "east_m = 90000.0, north_m = 0.0 }\ncourse",
+    );
+    assert_ne!(far, HEAD_ON);
+    write(folder.path(), "c.toml", far);
+    write(folder.path(), "d.json", "{\"ownShip\": {}}");
+    let assert = searoom(&["suite", "--lint", "--json", text(folder.path())]).code(2);
+    let found = document(&assert);
+    let said = findings(&found, "CR-SO, HO");
+    assert_eq!(said[0], "ships are missing: 2 said, 1 found");
+    assert!(
+        said[1].ends_with("said to port, found to starboard: mirrored?"),
+        "{said:?}"
+    );
+    assert!(
+        said[2].starts_with("the mirror image of CR-SO ("),
+        "{said:?}"
+    );
+    assert!(
+        findings(&found, "Head-on")[0].ends_with("never matters, out of reach within the horizon")
+    );
+    assert_eq!(found["summary"]["unreadable"], 1);
+    searoom(&["suite", "--lint", text(folder.path())])
+        .code(2)
+        .stdout(contains("CR-SO, HO: ships are missing: 2 said, 1 found"))
+        .stdout(contains("4 scenarios, 3 targets"));
+    searoom(&["suite", "--lint", "--plans", "x", "scenarios"]).code(2);
 }

@@ -5,6 +5,7 @@
 mod assessment;
 mod comparison;
 mod control;
+mod lint;
 mod parts;
 mod path_time;
 mod plan;
@@ -20,6 +21,7 @@ pub use comparison::{
 pub use control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };
+pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use parts::*;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
 pub use plan::{PLAN_FORMAT, PlanDocument};

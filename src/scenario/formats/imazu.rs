@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use super::super::fault::Fault;
 use super::super::limits;
 use super::json::Json;
-use super::situation::{HullSaid, Other, Own, Situation};
+use super::situation::{Declared, HullSaid, Other, Own, Situation};
 use super::track::Track;
-use crate::frame::{Pose, Vector, heading_from_course_deg};
+use crate::frame::{Pose, Side, Vector, heading_from_course_deg, wrap};
 
 /// Cases of one file.
 const CASES: usize = 10_000;
@@ -88,8 +88,30 @@ fn case(entry: &Json, own: &Own) -> Result<Situation, Vec<Fault>> {
         own: own.clone(),
         others,
         earth: None,
+        declared: declared(&entry, own),
         notes: Vec::new(),
     })
+}
+
+/// How many ships the case has in Imazu's table, and the sides that the bearings give.
+fn declared(entry: &Json, own: &Own) -> Declared {
+    let said = |entry: &Json, key: &str| entry.take(key).and_then(|value| value.quiet());
+    let ships = said(entry, "case").and_then(|case| match case as u32 {
+        1..=4 => Some(1),
+        5..=11 => Some(2),
+        12..=22 => Some(3),
+        _ => None,
+    });
+    let list = entry.take("targets");
+    let targets = list.and_then(|list| list.list(0, limits::SHIPS, "ships"));
+    let side = |ship: &Json| {
+        let bearing = heading_from_course_deg(said(ship, "bearing_deg")?);
+        Side::of_turn(wrap(bearing - own.pose.heading))
+    };
+    Declared {
+        ships,
+        sides: targets.iter().flatten().map(side).collect(),
+    }
 }
 
 fn ship(index: usize, entry: &Json) -> Option<Other> {

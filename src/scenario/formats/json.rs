@@ -203,6 +203,11 @@ impl<'a> Json<'a> {
         }
     }
 
+    /// The number here, if it is one; no fault where it is none.
+    pub(super) fn quiet(&self) -> Option<f64> {
+        self.value.as_f64()
+    }
+
     /// The number at a key that must be there.
     pub(super) fn required_number(&self, key: &str, range: Range, unit: &str) -> Option<f64> {
         self.require(key, format_args!("{range} {unit}"))?

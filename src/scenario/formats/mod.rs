@@ -13,7 +13,7 @@ mod track;
 mod xml;
 
 pub use assumed::{Assumed, Assumption};
-pub use situation::Situation;
+pub use situation::{Declared, Situation};
 pub use text::Imported;
 
 use std::cell::RefCell;

@@ -1,6 +1,6 @@
 //! A traffic situation as every foreign format has it: own ship, her route, and the tracks of the others.
 
-use crate::frame::{Georeference, Pose, Vector};
+use crate::frame::{Georeference, Pose, Side, Vector};
 use crate::geometry::ConvexPolygon;
 use crate::vessel::Hull;
 
@@ -16,8 +16,18 @@ pub struct Situation {
     pub(super) own: Own,
     pub(super) others: Vec<Other>,
     pub(super) earth: Option<Georeference>,
+    pub(super) declared: Declared,
     /// What was assumed or not used, in sentences.
     pub(super) notes: Vec<String>,
+}
+
+/// What a file says of its situation beside the ships: to be compared with them, never planned with.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Declared {
+    /// How many others there ought to be.
+    pub ships: Option<usize>,
+    /// On which side of own ship each of them ought to be at the start; shorter where nothing is said.
+    pub sides: Vec<Option<Side>>,
 }
 
 /// Own ship.
@@ -103,6 +113,11 @@ impl Situation {
     /// What outputs are called where a file has several situations.
     pub fn id(&self) -> Option<&str> {
         self.id.as_deref()
+    }
+
+    /// What the file says of the situation besides.
+    pub fn declared(&self) -> &Declared {
+        &self.declared
     }
 
     /// The others, ships and things, as the file has them.

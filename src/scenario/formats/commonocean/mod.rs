@@ -12,7 +12,7 @@ use roxmltree::Document;
 use super::super::fault::Fault;
 use super::super::file::{Range, is_text};
 use super::super::limits;
-use super::situation::{HullSaid, Other, Own, Situation};
+use super::situation::{Declared, HullSaid, Other, Own, Situation};
 use super::track::{RouteLeg, RoutePoint, Track};
 use super::xml::{Xml, shown};
 use crate::frame::{Vector, wrap};
@@ -139,6 +139,7 @@ fn about(
             .map(|other| other.translated(-origin))
             .collect(),
         earth: None,
+        declared: Declared::default(),
         notes: notes.to_vec(),
     }
 }

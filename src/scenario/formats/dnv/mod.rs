@@ -12,10 +12,10 @@ use super::super::file::Range;
 use super::super::limits;
 use super::assumed::{TURNING_LENGTHS, USUAL_HULL};
 use super::json::Json;
-use super::situation::{HullSaid, Other, Own, Situation};
+use super::situation::{Declared, HullSaid, Other, Own, Situation};
 use super::track::{RouteLeg, Track, TrackError};
 use crate::frame::{
-    GEOREFERENCE_REACH_M, Geographic, Georeference, Pose, Vector, heading_of, mps_from_knots,
+    GEOREFERENCE_REACH_M, Geographic, Georeference, Pose, Side, Vector, heading_of, mps_from_knots,
     radians_from_deg, wrap,
 };
 use route::{Route, route};
@@ -79,8 +79,29 @@ pub(super) fn situation(
         own,
         others,
         earth,
+        declared: declared(name),
         notes,
     })
+}
+
+/// What a title like "HO, CR-GW" says: a kind of encounter per target, in their order.
+fn declared(title: &str) -> Declared {
+    let sides: Option<Vec<Option<Side>>> = title
+        .split(',')
+        .map(|kind| match kind.trim() {
+            "HO" | "OT-GW" | "OT-SO" => Some(None),
+            "CR-GW" => Some(Some(Side::Starboard)),
+            "CR-SO" => Some(Some(Side::Port)),
+            _ => None,
+        })
+        .collect();
+    match sides {
+        Some(sides) => Declared {
+            ships: Some(sides.len()),
+            sides,
+        },
+        None => Declared::default(),
+    }
 }
 
 /// Notes every key that is not read and may mean something.

@@ -1,0 +1,71 @@
+//! `searoom import`: foreign files into scenario files.
+
+use std::fs;
+
+use anyhow::Context;
+use searoom::report::write_atomically;
+use searoom::scenario::formats::Assumed;
+
+use super::args::ImportArgs;
+use super::files::refuse_clashes;
+use super::output::Output;
+use super::scenes::Scene;
+use super::status::Status;
+use super::{files, scenes};
+
+/// Writes one scenario file per situation; every fault of the others. A scenario file is left as it is.
+pub fn import(args: &ImportArgs, output: &Output) -> Status {
+    let assumed = args.assumed.assumed();
+    let found = files::find(&args.files, &files::ANY_FORMAT, output);
+    let scenes = scenes::open(found, &assumed, output);
+    let wanted: Vec<_> = scenes
+        .iter()
+        .flatten()
+        .map(|scene| scene.found.clone())
+        .collect();
+    let made = refuse_clashes(&wanted).and_then(|()| {
+        fs::create_dir_all(&args.out)
+            .with_context(|| format!("{}: the folder cannot be made", args.out.display()))
+    });
+    if let Err(error) = made {
+        output.error(&format_args!("{error:#}"));
+        return Status::BadInput;
+    }
+    let mut status = Status::Good;
+    for scene in scenes {
+        let reached = match scene {
+            Ok(scene) => one(&scene, args, &assumed, output),
+            Err(unread) => {
+                output.error(&unread.error);
+                Status::BadInput
+            }
+        };
+        status = status.max(reached);
+    }
+    status
+}
+
+fn one(scene: &Scene, args: &ImportArgs, assumed: &Assumed, output: &Output) -> Status {
+    let imported = match scene.imported(assumed) {
+        None => {
+            output.note(&format_args!(
+                "{}: a scenario file already, left out",
+                scene.label()
+            ));
+            return Status::Good;
+        }
+        Some(Ok(imported)) => imported,
+        Some(Err(error)) => {
+            output.error(&error);
+            return Status::BadInput;
+        }
+    };
+    let file = args.out.join(format!("{}.toml", scene.found.stem));
+    match write_atomically(&file, imported.text.as_bytes()) {
+        Ok(()) => output.result(&format!("{}: {}", scene.label(), file.display())),
+        Err(error) => {
+            output.error(&error);
+            Status::BadInput
+        }
+    }
+}
