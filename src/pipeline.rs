@@ -321,6 +321,10 @@ pub fn run(scenario: Scenario) -> Run {
         } else if matches!(again.outcome, Outcome::Deadline(_)) {
             // there may be a way, which was not found in time
             planned.outcome = again.outcome;
+            // starts and sets are those of the pass that ended so
+            if forces {
+                (obstacles, control, kept_shapes) = (obstacles_left, report, false);
+            }
         }
     }
     let plan_time = begun.elapsed();

@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::evaluation::{Evaluation, Steering};
 use searoom::frame::Vector;
-use searoom::obstacle::SpaceTimeObstacle;
+use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
 use searoom::pipeline::{self, Run};
 use searoom::planner::optimal_control::attempt::{Attempt, attempt};
 use searoom::planner::optimal_control::guess::family;
@@ -19,13 +19,14 @@ use searoom::planner::optimal_control::solver::{
 };
 use searoom::planner::optimal_control::task::{Controls, Task};
 use searoom::planner::optimal_control::transcription::{Transcription, Weights};
-use searoom::planner::optimal_control::{Measured, RecedingHorizon};
-use searoom::planner::{NoPlan, Outcome};
+use searoom::planner::optimal_control::{KeepOut, Measured, RecedingHorizon, plan};
+use searoom::planner::{ControlSettings, NoPlan, Outcome};
 use searoom::report::document::PlanDocument;
+use searoom::report::figure::plan_figure;
 use searoom::report::plan_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::{Node, Steered, Trajectory};
-use searoom::vessel::{CyberShip2, ForceVector, StateVector};
+use searoom::vessel::{CyberShip2, ForceVector, Manoeuvring, StateVector, VesselKind};
 
 const FIGURE_9: &str = include_str!("../scenarios/paper/figure_9.toml");
 
@@ -180,39 +181,125 @@ fn best(task: &Task<CyberShip2>) -> Option<Attempt> {
         .min_by(|a, b| a.objective.total_cmp(&b.objective))
 }
 
-#[test]
-fn random_scenes_have_plans_that_are_clear_between_the_nodes() {
-    let desired = scenes::desired();
-    for count in [3, 6] {
-        for (scene, keep_outs) in scenes::random_scenes(6, count).into_iter().enumerate() {
-            let task = scenes::task(&desired, &keep_outs, 50);
-            let found = best(&task).unwrap_or_else(|| panic!("{count} ellipsoids, scene {scene}"));
-            let nodes = task.nodes(&found.profile.states, &found.profile.forces);
-            let motion = Steered::new(nodes).expect("in order");
-            for k in 0..=20_000 {
-                let time = scenes::DURATION * f64::from(k) / 20_000.0;
-                let position = motion.piece_at(time).pose_at(time).position;
-                for keep in &keep_outs {
-                    let distance = keep.set().signed_distance(position, time).distance;
-                    assert!(distance > -1e-7, "{count} {scene} at {time}: {distance:e}");
-                }
+/// How many of something, where the variable does not say it.
+fn asked(variable: &str, default: usize) -> usize {
+    std::env::var(variable).map_or(default, |text| text.parse().expect("a number"))
+}
+
+/// The least `g - 1` of any set along the cubics, looked at so often per interval.
+fn least_margin(motion: &Steered, keep_outs: &[KeepOut]) -> f64 {
+    const LOOKS: usize = 300;
+    let mut least = f64::INFINITY;
+    for piece in motion.pieces() {
+        for look in 0..=LOOKS {
+            let part = look as f64 / LOOKS as f64;
+            let (time, place) = (
+                piece.start_time + part * piece.duration,
+                piece.position(part),
+            );
+            for keep in keep_outs {
+                least = least.min(keep.at(time).level(place) - 1.0);
             }
         }
     }
+    least
 }
 
+/// By how much the ship, from every node on with its forces, is off the next one: the most of any component, metres,
+/// radians, m/s and rad/s. Runge and Kutta's method with 500 steps.
+fn largest_defect(motion: &Steered) -> f64 {
+    const STEPS: usize = 500;
+    let ship = CyberShip2::EXACT;
+    let state = |n: &Node| {
+        let place = n.pose.position;
+        let velocity = n.velocity;
+        StateVector::new(
+            place.x,
+            place.y,
+            n.pose.heading,
+            velocity.x,
+            velocity.y,
+            n.yaw_rate,
+        )
+    };
+    let mut largest = 0.0_f64;
+    for pair in motion.nodes().windows(2) {
+        let force = ForceVector::new(pair[0].force.x, pair[0].force.y, pair[0].moment);
+        let h = (pair[1].time - pair[0].time) / STEPS as f64;
+        let mut x = state(&pair[0]);
+        for _ in 0..STEPS {
+            let a = ship.rates(&x, &force);
+            let b = ship.rates(&(x + 0.5 * h * a), &force);
+            let c = ship.rates(&(x + 0.5 * h * b), &force);
+            let d = ship.rates(&(x + h * c), &force);
+            x += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+        }
+        largest = largest.max((x - state(&pair[1])).amax());
+    }
+    largest
+}
+
+/// `SEAROOM_CONTROL` scenes with three ellipsoids and as many with six, every one aimed at own ship, through the whole planner.
+#[test]
+fn random_scenes_have_plans_that_are_the_ships_and_clear_between_the_nodes() {
+    let desired = scenes::desired();
+    let own = scenes::own_ship();
+    let count = asked("SEAROOM_CONTROL", 5);
+    for ellipsoids in [3, 6] {
+        let (mut clear, mut defect, mut margin) = (0, 0.0_f64, f64::INFINITY);
+        let (mut most_intervals, mut times) = (0, Vec::new());
+        for keep_outs in scenes::random_scenes(count, ellipsoids) {
+            let obstacles: Vec<Obstacle> =
+                keep_outs.iter().map(|k| k.set().clone().into()).collect();
+            let problem = scenes::problem(&own, &desired, &obstacles);
+            let begun = std::time::Instant::now();
+            let found = plan(&problem, &ControlSettings::of(VesselKind::CyberShip2));
+            times.push(begun.elapsed().as_secs_f64() * 1e3);
+            let Outcome::Solved(plan) = &found.planned.outcome else {
+                panic!("{ellipsoids} ellipsoids: {:?}", found.planned.outcome);
+            };
+            clear += 1;
+            let motion = plan.trajectory.steered().expect("forces");
+            defect = defect.max(largest_defect(motion));
+            margin = margin.min(least_margin(motion, &keep_outs));
+            most_intervals = most_intervals.max(found.report.intervals);
+        }
+        times.sort_by(f64::total_cmp);
+        println!(
+            "{ellipsoids} ellipsoids: {clear} of {count} scenes have a plan; off at the end of an interval by \
+             {defect:.1e} at most (m, rad, m/s, rad/s); g - 1 is {margin:.1e} at least between the nodes; up to \
+             {most_intervals} intervals; ms for a plan: median {:.0}, most {:.0}",
+            times[times.len() / 2],
+            times[times.len() - 1],
+        );
+        assert!(defect <= 1e-4, "{defect:e}");
+        assert!(margin >= -1e-4, "{margin:e}");
+    }
+}
+
+/// From `SEAROOM_STARTS` wandering starts on the plan's own grid.
 #[test]
 fn no_random_start_finds_a_cheaper_plan_of_figure_9() {
-    let desired = scenes::desired();
-    let keep_outs = scenes::figure_9();
-    let task = scenes::task(&desired, &keep_outs, 50);
-    let plan = best(&task).expect("a plan").objective;
+    let run = run(FIGURE_9);
+    let plan = run.planned.outcome.plan().expect("a plan").cost;
+    let intervals = run.control.as_ref().expect("forces").intervals;
+    let (desired, keep_outs) = (scenes::desired(), scenes::figure_9());
+    let task = scenes::task(&desired, &keep_outs, intervals);
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    for _ in 0..10 {
-        let guess = scenes::wandering(&task, &mut rng);
-        let found = attempt(&task, &guess, &Settings::default(), &|| true);
-        assert!(!found.is_feasible() || found.objective >= plan * (1.0 - 1e-3));
-    }
+    let starts = asked("SEAROOM_STARTS", 10);
+    let found: Vec<f64> = (0..starts)
+        .map(|_| scenes::wandering(&task, &mut rng))
+        .map(|guess| attempt(&task, &guess, &Settings::default(), &|| true))
+        .filter(Attempt::is_feasible)
+        .map(|found| found.objective)
+        .collect();
+    let best = found.iter().copied().fold(f64::INFINITY, f64::min);
+    println!(
+        "figure 9: stage cost {plan:.6}; {} of {starts} wandering starts lead to a plan, the best of them to {best:.6}",
+        found.len()
+    );
+    assert!(found.len() * 2 > starts);
+    assert!(plan <= best * (1.0 + 1e-3));
 }
 
 /// A problem whose last state is drawn to a goal besides.
@@ -407,17 +494,88 @@ fn a_budget_is_kept() {
     assert!(begun.elapsed() < Duration::from_secs(20));
 }
 
+/// A grid of 2,000 intervals takes some milliseconds for a step: the clock is read more often than the starts are made.
+#[test]
+fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
+    let fine = FIGURE_9.replace("intervals = 50", "intervals = 2000");
+    let text = fine.replace("[planner]", "[planner]\ndeadline_s = 0.1");
+    let found = run(&text);
+    assert!(matches!(found.planned.outcome, Outcome::Deadline(_)));
+    assert!(
+        found.plan_time < Duration::from_secs(2),
+        "{:?}",
+        found.plan_time
+    );
+    // doubled until some starts end in time and others do not, whatever the machine
+    let mut budget = 0.1;
+    let best = loop {
+        let text = fine.replace("[planner]", &format!("[planner]\ndeadline_s = {budget}"));
+        let found = run(&text);
+        if found.planned.outcome.plan().is_some() {
+            break found;
+        }
+        budget *= 1.3;
+        assert!(budget < 300.0);
+    };
+    assert!(best.evaluation.as_ref().is_some_and(Evaluation::verified));
+}
+
+/// Gauss–Newton steps get nowhere where hardly anything but the forces costs.
+#[test]
+fn weights_of_any_sizes_are_solved() {
+    for weights in [
+        "state_weights = [1e-9, 0, 0, 0, 0, 0]",
+        "state_weights = [1e9, 1e9, 0, 0, 0, 0]",
+        "control_weights = [1e6, 1e6, 1e6]",
+        "control_weights = [1e-24, 1e-24, 1e-24]",
+    ] {
+        let found = run(&FIGURE_9.replace("intervals = 50", &format!("intervals = 50\n{weights}")));
+        let verified = found.evaluation.as_ref().is_some_and(Evaluation::verified);
+        assert!(verified, "{weights}: {}", plan_text(&found));
+    }
+}
+
+#[test]
+fn what_is_not_solved_comes_with_what_may_help() {
+    // no step of half a million seconds is solved, nor the ship found that makes 20 m/s
+    let long = run(&FIGURE_9.replace("horizon_s = 100.0", "horizon_s = 1000000.0"));
+    let NoPlan::Unsolved { starts, .. } = reason(&long) else {
+        panic!("{:?}", reason(&long));
+    };
+    assert_eq!(*starts, long.control.as_ref().expect("forces").starts.len());
+    let said = plan_text(&long);
+    assert!(
+        said.contains("what may help: ") && said.contains("a shorter horizon"),
+        "{said}"
+    );
+    let fast = run(&FIGURE_9.replace("speed_mps = 0.2\n", "speed_mps = 20.0\n"));
+    let said = plan_text(&fast);
+    match reason(&fast) {
+        NoPlan::Lost {
+            coarse, intervals, ..
+        } => assert!(*coarse == 50 && *intervals > 50),
+        NoPlan::Coarse { .. } | NoPlan::Unsolved { .. } => {}
+        other => panic!("{other:?}"),
+    }
+    assert!(said.contains("what may help: "), "{said}");
+}
+
 #[test]
 fn free_water_one_interval_and_full_scale_are_planned() {
     let free = run(&with_targets(""));
     assert!(free.evaluation.as_ref().is_some_and(Evaluation::verified));
     let coarse = run(&with_targets("").replace("intervals = 50", "intervals = 1"));
     match &coarse.planned.outcome {
-        Outcome::Solved(_) => assert!(coarse.evaluation.is_some_and(|e| e.verified())),
-        Outcome::Infeasible(NoPlan::Coarse { intervals, .. }) => assert!(*intervals > 5),
+        Outcome::Solved(_) => {
+            assert!(coarse.evaluation.as_ref().is_some_and(Evaluation::verified));
+        }
         other => panic!("{other:?}"),
     }
-    // 88 m, 8.37 times as slow: the same figure at 70 times its size
+    let report = coarse.control.as_ref().expect("forces");
+    assert!(report.start_intervals == 1 && report.intervals > 5);
+    let said = plan_text(&coarse);
+    assert!(said.contains("intervals, 1 were too coarse") && said.contains("on 1 intervals: "));
+    // 88 m, 8.37 times as slow: the same figure at 70 times its size, with the weights of the ship
     let full = r#"
 title = "full scale"
 horizon_s = 836.66
@@ -427,8 +585,6 @@ mission = { waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1400.0, nor
 kind = "optimal-control"
 [planner.optimal_control]
 vessel = "cybership2-full"
-state_weights = [1e-5, 1e-5, 0.0, 0.014, 0.014, 70.0]
-control_weights = [8.5e-13, 8.5e-13, 1.7e-16]
 [[targets]]
 name = "slow"
 initial_set = { center_m = [910.0, 455.0], shape_m2 = [[3136.0, 0.0], [0.0, 3136.0]] }
@@ -437,6 +593,27 @@ velocity_set = { center_mps = [0.25, 0.17], shape_m2_per_s2 = [[0.016, 0.0], [0.
     let full = run(full);
     let evaluation = full.evaluation.as_ref().expect("a plan");
     assert!(evaluation.verified(), "{:?}", evaluation.violations);
+    let plan = full.planned.outcome.plan().expect("a plan");
+    let motion = plan.trajectory.steered().expect("forces");
+    let largest = |part: fn(&Node) -> f64| motion.nodes().iter().map(part).fold(0.0, f64::max);
+    // she is driven by what drives her: some tenths of her limits of 686 kN and 514 kN
+    assert!(largest(|n| n.force.x) > 5e4, "{}", largest(|n| n.force.x));
+    assert!(largest(|n| n.force.y.abs()) > 2e4);
+    let axes = |run: &Run| plan_figure(run).svg();
+    for (svg, names) in [
+        (
+            axes(&full),
+            ["Force [kN]", "Moment [kNm]", "Rate of turn [°/s]"],
+        ),
+        (
+            axes(&free),
+            ["Force [N]", "Moment [Nm]", "Speed through water [m/s]"],
+        ),
+    ] {
+        for name in names {
+            assert!(svg.contains(name), "{name}");
+        }
+    }
 }
 
 #[test]

@@ -105,7 +105,12 @@ fn is_said_only(pointer: &str) -> bool {
         "/search_stats",
         "/timing",
         "/relaxation",
-        "/optimal_control",
+        "/optimal_control/intervals",
+        "/optimal_control/start_intervals",
+        "/optimal_control/defect",
+        "/optimal_control/force_limits",
+        "/optimal_control/starts",
+        "/optimal_control/homotopy_classes",
         "/path_time/legs",
         "/path_time/obstacles",
         "/path_time/corners",
@@ -176,7 +181,7 @@ fn every_number_of_the_motion_and_its_figures_is_held() {
         let is_held = |pointer: &String| {
             // a cost may be more than what the motion has to cost, and nearer land may lie beyond the document
             let one_sided = pointer == "/cost/min_land_distance_m"
-                || (pointer == "/cost/objective" && (forces || along_paths));
+                || (pointer == "/cost/objective" && along_paths);
             // forces are held to what the dynamics forgive
             let loose = forces
                 && ["surge_n", "sway_n", "yaw_nm"]
@@ -817,6 +822,16 @@ fn what_only_some_plans_have_is_held_too() {
                     "a weaker rudder",
                     |d| scale(at(d, "/optimal_control/force_limits/yaw_nm"), 0.01),
                     "yaw moment",
+                ),
+                (
+                    "a cheaper plan",
+                    |d| scale(at(d, "/cost/objective"), 0.9999),
+                    "cost.objective",
+                ),
+                (
+                    "other weights",
+                    |d| scale(at(d, "/optimal_control/control_weights/1"), 1.001),
+                    "cost.objective",
                 ),
                 (
                     "another ship",

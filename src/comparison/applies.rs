@@ -5,9 +5,6 @@ use crate::planner::{PlannerKind, SearchKind};
 use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, Target};
 
-/// Own length over that of the ship whose forces are known, or the other way round, at most.
-const ALIKE: f64 = 1.5;
-
 /// A method that a scenario has no use for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inapplicable {
@@ -27,8 +24,7 @@ pub struct Methods {
 }
 
 /// Every method, as it applies to a scenario. Polytopes and ellipsoids are two methods where a target can be given as either;
-/// optimal control applies where the scenario asks for it, or where own ship is as long as the ship whose forces
-/// it would plan.
+/// a planner applies where it would plan the scenario.
 pub fn methods(scenario: &Scenario) -> Methods {
     let representations: &[Option<Representation>] = if scenario.targets.iter().any(has_choice) {
         &[
@@ -86,27 +82,13 @@ fn has_choice(target: &Target) -> bool {
 }
 
 fn reason_against(method: Method, scenario: &Scenario) -> Option<String> {
-    let Method::Planner { kind, .. } = method else {
+    let Method::Planner { .. } = method else {
         return None;
     };
     let faults = method.asked(scenario).unfit();
-    if !faults.is_empty() {
-        let faults: Vec<String> = faults
-            .iter()
-            .map(|fault| format!("{}: {}", fault.path, fault.found))
-            .collect();
-        return Some(faults.join("; "));
-    }
-    let vessel = scenario.control.vessel;
-    let ratio = scenario.own_ship.hull.length / vessel.length();
-    let alike = (ALIKE.recip()..=ALIKE).contains(&ratio);
-    let forced = kind == PlannerKind::OptimalControl && scenario.planner != kind;
-    (forced && !alike).then(|| {
-        format!(
-            "own ship is {} m long, {}, whose forces are known, {:.3} m (planner.optimal_control.vessel)",
-            scenario.own_ship.hull.length,
-            vessel.word(),
-            vessel.length()
-        )
-    })
+    let faults: Vec<String> = faults
+        .iter()
+        .map(|fault| format!("{}: {}", fault.path, fault.found))
+        .collect();
+    (!faults.is_empty()).then(|| faults.join("; "))
 }

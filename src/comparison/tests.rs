@@ -111,7 +111,7 @@ fn what_applies_depends_on_targets_start_land_and_ship() {
     );
     let reason = &methods(&ships).inapplicable[0].reason;
     assert!(
-        reason.contains("30 m long") && reason.contains("1.255 m"),
+        reason.contains("own_ship.length_m: 30 m") && reason.contains("1.255 m long"),
         "{reason}"
     );
     let mut off = ships.clone();

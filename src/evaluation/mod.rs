@@ -11,10 +11,12 @@ mod piece;
 mod quadrature;
 mod shore;
 mod space_time_set;
+mod stage_cost;
 mod steered;
 mod turn;
 
 pub use space_time_set::{SetShape, SpaceTimeSet};
+pub use stage_cost::{StageWeights, stage_cost};
 pub use steered::{Steering, evaluate_steered};
 
 use clearance::{Body, least_distance};

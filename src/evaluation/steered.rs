@@ -106,7 +106,7 @@ fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
     let scales = steering.vessel.scales();
     for (index, pair) in nodes.windows(2).enumerate() {
         let (from, to) = (&pair[0], &pair[1]);
-        let force = ForceVector::new(from.force.x, from.force.y, from.moment);
+        let force = force(from);
         for (axis, name) in ["surge force, N", "sway force, N", "yaw moment, Nm"]
             .into_iter()
             .enumerate()
@@ -137,7 +137,12 @@ fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
     }
 }
 
-fn state(node: &Node) -> StateVector {
+/// The forces held from a node on.
+pub(super) fn force(node: &Node) -> ForceVector {
+    ForceVector::new(node.force.x, node.force.y, node.moment)
+}
+
+pub(super) fn state(node: &Node) -> StateVector {
     let place = node.pose.position;
     StateVector::new(
         place.x,

@@ -24,8 +24,8 @@ impl ControlSettings {
             vessel,
             force_limits: vessel.force_limits(),
             intervals: 50,
-            state_weights: StateVector::new(0.05, 0.05, 0.0, 1.0, 1.0, 1.0),
-            force_weights: ForceVector::repeat(0.1),
+            state_weights: vessel.state_weights(),
+            force_weights: vessel.force_weights(),
         }
     }
 }

@@ -259,9 +259,21 @@ pub enum NoPlan {
         /// How the first one ended.
         why: String,
     },
+    /// Plans of a coarse grid, but none on the finer one that the ship's motion needs.
+    #[error(
+        "there are plans on {coarse} intervals, but they are too coarse for the ship, and on {intervals} the cheapest is lost: {why}"
+    )]
+    Lost {
+        /// Of the horizon, as asked for.
+        coarse: usize,
+        /// Of the horizon, in the end.
+        intervals: usize,
+        /// How the solve on the finer grid ended.
+        why: String,
+    },
     /// The motion between the nodes is not the ship's.
     #[error(
-        "with {intervals} intervals, the most that were tried, the ship would be off the plan by {off:.1e} of her units at the end of an interval, {allowed:.0e} allowed"
+        "with {intervals} intervals, the most that were tried, the ship would be off the plan by {off:.1e} of her units at the end of an interval, {allowed:.0e} allowed; what may help: more intervals (planner.optimal_control), a shorter horizon"
     )]
     Coarse {
         /// Of the horizon.
@@ -281,6 +293,7 @@ impl NoPlan {
             | Self::Barred { .. }
             | Self::OutOfTime { .. }
             | Self::Locked { .. }
+            | Self::Lost { .. }
             | Self::Unsolved { .. } => true,
             Self::StartInside { .. }
             | Self::StartAshore { .. }

@@ -1,14 +1,12 @@
 //! A run in the few figures that a navigator asks for first.
 
+use super::alteration::first_alteration;
 use crate::colregs::Role;
-use crate::frame::{Side, deg_from_radians};
+use crate::frame::Side;
 use crate::pipeline::Run;
 use crate::planner::Outcome;
 use crate::target::{ShipTrack, Target};
-use crate::trajectory::{Steered, Trajectory};
-
-/// Degrees. A smaller alteration is no turn: nobody would see it.
-pub(super) const LEAST_TURN_DEG: f64 = 0.5;
+use crate::trajectory::Trajectory;
 
 /// Seconds between the positions among which the crossing of a track is looked for.
 const CROSSING_STEP: f64 = 1.0;
@@ -55,57 +53,6 @@ pub struct Turn {
     pub side: Side,
     /// By how much, degrees, positive.
     pub degrees: f64,
-}
-
-impl Turn {
-    /// The first alteration of a trajectory: arcs that follow each other to one side are one turn.
-    pub fn first_of(trajectory: &Trajectory) -> Option<Self> {
-        if let Some(motion) = trajectory.steered() {
-            return Self::first_under_forces(motion);
-        }
-        let mut turn: Option<Self> = None;
-        for segment in trajectory.segments() {
-            let side = Side::of_turn(segment.turn_rate).filter(|_| segment.duration > 0.0);
-            if let Some(done) = turn
-                && side != Some(done.side)
-            {
-                if done.degrees >= LEAST_TURN_DEG {
-                    return turn;
-                }
-                turn = None;
-            }
-            if let Some(side) = side {
-                let before = turn.map_or(0.0, |turn| turn.degrees);
-                let more = deg_from_radians((segment.turn_rate * segment.duration).abs());
-                turn = Some(Self {
-                    side,
-                    degrees: before + more,
-                });
-            }
-        }
-        turn.filter(|turn| turn.degrees >= LEAST_TURN_DEG)
-    }
-
-    /// Of a motion under forces: from node to node, until the heading goes back.
-    fn first_under_forces(motion: &Steered) -> Option<Self> {
-        let mut turned = 0.0_f64;
-        for pair in motion.nodes().windows(2) {
-            let more = deg_from_radians(pair[1].pose.heading - pair[0].pose.heading);
-            if turned.abs() >= LEAST_TURN_DEG && more * turned < 0.0 {
-                break;
-            }
-            turned = if more * turned < 0.0 {
-                more
-            } else {
-                turned + more
-            };
-        }
-        let side = Side::of_turn(turned)?;
-        (turned.abs() >= LEAST_TURN_DEG).then_some(Self {
-            side,
-            degrees: turned.abs(),
-        })
-    }
 }
 
 /// How one target was met.
@@ -197,7 +144,7 @@ impl Summary {
             verified: evaluation.map(|e| e.verified()),
             meetings,
             targets: run.scenario.targets.len(),
-            turn: trajectory.and_then(Turn::first_of),
+            turn: trajectory.and_then(first_alteration),
             space_time_error: evaluation.map(|e| e.space_time_error),
             delay: evaluation.map(|e| e.delay).filter(|delay| !delay.is_nan()),
             clearance: evaluation
@@ -237,46 +184,4 @@ fn cuts_astern(trajectory: &Trajectory, target: &Target, tcpa: f64) -> Option<bo
         }
     }
     nearest.map(|(_, astern)| astern)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::frame::{Pose, Vector};
-    use crate::trajectory::Segment;
-
-    /// Degrees to starboard per segment of ten seconds.
-    fn trajectory(turns: &[f64]) -> Trajectory {
-        let mut start = Pose::new(Vector::zeros(), 0.3);
-        let mut segments = Vec::new();
-        for (index, degrees) in turns.iter().enumerate() {
-            let segment = Segment {
-                start,
-                start_time: 10.0 * index as f64,
-                duration: 10.0,
-                speed: 5.0,
-                turn_rate: -degrees.to_radians() / 10.0,
-            };
-            start = segment.end();
-            segments.push(segment);
-        }
-        Trajectory::new(segments).expect("continuous")
-    }
-
-    #[test]
-    fn the_first_turn_is_the_first_that_can_be_seen() {
-        use Side::{Port, Starboard};
-        for (turns, expected) in [
-            (vec![0.0], None),
-            (vec![0.2, 0.0, -0.3], None),
-            (vec![0.0, 30.0, -60.0], Some((Starboard, 30.0))),
-            (vec![-30.0, -15.0, 0.0, -5.0], Some((Port, 45.0))),
-            (vec![0.1, -20.0], Some((Port, 20.0))),
-            (vec![0.0, 40.0], Some((Starboard, 40.0))),
-        ] {
-            let found = Turn::first_of(&trajectory(&turns));
-            let found = found.map(|turn| (turn.side, (turn.degrees * 1e6).round() / 1e6));
-            assert_eq!(found, expected, "{turns:?}");
-        }
-    }
 }

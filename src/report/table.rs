@@ -9,6 +9,7 @@ use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::Outcome;
 use crate::planner::optimal_control::ControlReport;
+use crate::scenario::Compliance;
 
 /// Targets of one scenario that a row names; the rest is counted.
 const NAMED: usize = 3;
@@ -203,35 +204,71 @@ fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
             format!("of '{names}' by the smallest ellipse around each"),
         ));
     }
+    let [first, last] = [report.start_intervals, report.intervals];
     if let Some(plan) = run.planned.outcome.plan() {
-        said.push(("stage cost", format!("{:.4}", plan.cost)));
+        said.push(("stage cost", stage_cost(plan.cost)));
+        let coarse = if last == first {
+            String::new()
+        } else {
+            format!(", {first} were too coarse")
+        };
         said.push((
             "grid",
             format!(
-                "{} intervals; at their ends the ship is within {:.1e} of her units",
-                report.intervals, report.defect
+                "{last} intervals{coarse}; at their ends the ship is within {:.1e} of her units",
+                report.defect
             ),
         ));
     }
+    if report.starts.is_empty() {
+        return said;
+    }
     let feasible = report.starts.iter().filter(|start| start.feasible).count();
     let steps: usize = report.starts.iter().map(|start| start.iterations).sum();
+    // of two passes, with the domains and without, one is told of
+    let pass = if run.scenario.compliance == Compliance::Shape && !run.shaped {
+        "without the domains, "
+    } else {
+        ""
+    };
     said.push((
         "starts",
         format!(
-            "{feasible} of {} led to a plan, {} ways to pass the targets, {steps} steps of the solver",
+            "{pass}on {first} intervals: {feasible} of {} led to a plan, in {steps} steps of the solver",
             report.starts.len(),
-            report.classes.len()
         ),
     ));
-    for class in report.classes.iter().take(NAMED) {
-        let sides: Vec<&str> = class
-            .sides
-            .iter()
-            .map(|side| side.map_or("far", words::side))
-            .collect();
-        said.push(("", format!("{:.4}: {}", class.objective, sides.join(", "))));
+    let ways = report.classes.len();
+    if ways > 0 && !run.obstacles.is_empty() {
+        let names: Vec<&str> = run.obstacles.iter().map(SpaceTimeObstacle::name).collect();
+        let more = if ways > NAMED { ", the cheapest" } else { "" };
+        said.push((
+            "ways to pass",
+            format!(
+                "'{}': {ways} on {first} intervals{more}",
+                names.join("', '")
+            ),
+        ));
+        for class in report.classes.iter().take(NAMED) {
+            let sides: Vec<&str> = class
+                .sides
+                .iter()
+                .map(|side| side.map_or("far", words::side))
+                .collect();
+            let cost = stage_cost(class.objective);
+            said.push(("", format!("{cost}: {}", sides.join(", "))));
+        }
     }
     said
+}
+
+/// With four decimals, where these say something and are not all noise.
+fn stage_cost(value: f64) -> String {
+    if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
+        format!("{value:.4}")
+    } else {
+        format!("{value:.4e}")
+    }
 }
 
 /// The verdict and the costs of one run, aligned.

@@ -26,8 +26,16 @@ pub(super) fn control_settings(planner: &mut Section) -> Option<ControlSettings>
         Some(entry) => intervals(&entry).map(Some),
         None => Some(None),
     };
-    let state = weights::<6>(&mut section, "state_weights", limits::STATE_WEIGHT);
-    let force = weights::<3>(&mut section, "control_weights", limits::FORCE_WEIGHT);
+    let state = match section.take("state_weights") {
+        Some(entry) => weights::<6>(&entry, limits::STATE_WEIGHT)
+            .and_then(|weights| some_weight(&entry, weights))
+            .map(Some),
+        None => Some(None),
+    };
+    let force = match section.take("control_weights") {
+        Some(entry) => weights::<3>(&entry, limits::FORCE_WEIGHT).map(Some),
+        None => Some(None),
+    };
     section.finish();
     let default = ControlSettings::of(vessel?);
     Some(ControlSettings {
@@ -58,28 +66,31 @@ fn intervals(entry: &Entry) -> Option<usize> {
     }
 }
 
-/// A list of exactly `N` weights; `Some(None)` where there is none.
-fn weights<const N: usize>(
-    section: &mut Section,
-    key: &str,
-    range: Range,
-) -> Option<Option<[f64; N]>> {
-    let Some(entry) = section.take(key) else {
-        return Some(None);
-    };
+/// A list of exactly `N` weights.
+fn weights<const N: usize>(entry: &Entry, range: Range) -> Option<[f64; N]> {
     let numbers = entry.numbers(range)?;
     let count = numbers.len();
-    match <[f64; N]>::try_from(numbers) {
-        Ok(weights) => Some(Some(weights)),
-        Err(_) => {
-            let plural = if count == 1 { "" } else { "s" };
-            entry.fault(
-                format_args!("{count} number{plural}"),
-                format_args!("{N} numbers"),
-            );
-            None
-        }
+    let weights = <[f64; N]>::try_from(numbers).ok();
+    if weights.is_none() {
+        let plural = if count == 1 { "" } else { "s" };
+        entry.fault(
+            format_args!("{count} number{plural}"),
+            format_args!("{N} numbers"),
+        );
     }
+    weights
+}
+
+/// Without any weight on the states the mission counts for nothing.
+fn some_weight(entry: &Entry, weights: [f64; 6]) -> Option<[f64; 6]> {
+    if weights.iter().any(|weight| *weight > 0.0) {
+        return Some(weights);
+    }
+    entry.fault(
+        "only zeros, with which the mission counts for nothing",
+        "at least one number above 0",
+    );
+    None
 }
 
 #[cfg(test)]
@@ -102,12 +113,55 @@ kind = "optimal-control"
         Scenario::parse(&text).map(|s| s.control).map_err(faults)
     }
 
+    fn settings_of_full(table: &str) -> Result<ControlSettings, Vec<String>> {
+        let text = format!(
+            "{}[planner.optimal_control]\nvessel = \"cybership2-full\"\n{table}",
+            LEAST.replace("1.255", "88")
+        );
+        let faults = |faults: Vec<Fault>| faults.into_iter().map(|f| f.path).collect();
+        Scenario::parse(&text).map(|s| s.control).map_err(faults)
+    }
+
+    /// The forces of one ship move no other: 1.5 times is the most.
+    #[test]
+    fn a_ship_is_as_long_as_the_vessel_whose_forces_are_planned() {
+        let faults = |length: &str| {
+            let text = LEAST.replace("1.255", length);
+            Scenario::parse(&text).err().map_or_else(Vec::new, |f| f)
+        };
+        for length in ["1.255", "0.84", "1.88"] {
+            assert_eq!(faults(length), [], "{length}");
+        }
+        for length in ["30", "0.83", "1.89"] {
+            let found = faults(length);
+            assert_eq!(found.len(), 1, "{length}");
+            assert_eq!(found[0].path, "own_ship.length_m");
+            assert!(found[0].line.is_some());
+            assert!(
+                found[0].found.contains(&format!("{length} m")),
+                "{}",
+                found[0].found
+            );
+            assert!(
+                found[0].allowed.contains("0.84 to 1.88 m"),
+                "{}",
+                found[0].allowed
+            );
+        }
+        // other planners know no forces
+        let other = LEAST
+            .replace("1.255", "30")
+            .replace("optimal-control", "space-time");
+        assert!(Scenario::parse(&other).is_ok());
+    }
+
     #[test]
     fn what_is_left_out_is_that_of_the_ship() {
         let default = ControlSettings::of(VesselKind::CyberShip2);
         assert_eq!(settings(""), Ok(default));
         assert_eq!(default.force_limits, ForceVector::new(2.0, 1.5, 1.5));
-        let full = settings("vessel = \"cybership2-full\"").expect("valid");
+        let full = settings_of_full("").expect("valid");
+        assert_eq!(full, ControlSettings::of(VesselKind::CyberShip2Full));
         assert!((full.force_limits[0] - 2.0 * 343e3).abs() < 1e-6);
         assert!((full.force_limits[2] - 1.5 * 343e3 * 70.0).abs() < 1e-3);
         let given = "intervals = 80\nforce_limits = { surge_n = 1, sway_n = 0.5, yaw_nm = 0.25 }\n\
@@ -143,6 +197,7 @@ kind = "optimal-control"
             ),
             ("state_weights = [1, 1, 1, 1, 1]", "state_weights"),
             ("state_weights = [1, 1, -1, 1, 1, 1]", "state_weights[2]"),
+            ("state_weights = [0, 0, 0, 0, 0, 0]", "state_weights"),
             ("control_weights = [1, 0, 1]", "control_weights[1]"),
             ("control_weights = [1, nan, 1]", "control_weights[1]"),
             ("weights = [1]", "weights"),

@@ -4,7 +4,7 @@ use super::FORMAT;
 use super::file::{OwnShipFile, PlaceFile, PlanFile, SetFile, TargetFile};
 use super::motion;
 use super::sets;
-use crate::evaluation::{SpaceTimeSet, Violation};
+use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::geometry::{ConvexPolygon, Ellipse, Polygon};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, VelocitySpell};
@@ -59,6 +59,7 @@ pub(super) enum ClaimedMotion {
         motion: Steered,
         vessel: VesselKind,
         force_limits: ForceVector,
+        weights: StageWeights,
     },
 }
 
@@ -179,7 +180,7 @@ fn positive(path: &str, value: f64) -> Result<f64, ClaimError> {
     within(path, value, f64::MIN_POSITIVE, f64::INFINITY)
 }
 
-fn not_negative(path: &str, value: f64) -> Result<f64, ClaimError> {
+pub(super) fn not_negative(path: &str, value: f64) -> Result<f64, ClaimError> {
     within(path, value, 0.0, f64::INFINITY)
 }
 

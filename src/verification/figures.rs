@@ -3,7 +3,9 @@
 use super::claim::{Claim, ClaimedMotion};
 use super::coverage::about_centroid;
 use super::untrue;
-use crate::evaluation::{Evaluation, Request, SetShape, SpaceTimeSet, Violation, least_margins};
+use crate::evaluation::{
+    Evaluation, Request, SetShape, SpaceTimeSet, Steering, Violation, least_margins, stage_cost,
+};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -59,6 +61,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
         evaluation.min_clearance,
     );
     let minimised = match file.objective.as_str() {
+        _ if forces => driven(claim),
         "space-time-error" if claim.paths.is_none() => Some(evaluation.space_time_error),
         "time" => Some(evaluation.duration),
         "length" => Some(evaluation.length),
@@ -94,6 +97,26 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
     found.extend(risk(claim, cost.max_risk, request));
     found.extend(profile(claim));
     found
+}
+
+/// The stage cost of a motion under forces.
+fn driven(claim: &Claim) -> Option<f64> {
+    let Some(ClaimedMotion::Steered {
+        motion,
+        vessel,
+        force_limits,
+        weights,
+    }) = &claim.motion
+    else {
+        return None;
+    };
+    let vessel = vessel.exact();
+    let steering = Steering {
+        motion,
+        vessel: vessel.as_ref(),
+        force_limits: *force_limits,
+    };
+    Some(stage_cost(&steering, &claim.desired, weights))
 }
 
 /// Equal to [`tolerance::FIGURE`], relative above one.

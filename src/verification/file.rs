@@ -176,6 +176,8 @@ pub(super) struct PathTimeFile {
 pub(super) struct ControlFile {
     pub vessel: String,
     pub force_limits: ForceLimitsFile,
+    pub state_weights: [f64; 6],
+    pub control_weights: [f64; 3],
 }
 
 #[derive(Debug, Deserialize)]

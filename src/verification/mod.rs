@@ -85,6 +85,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
             motion,
             vessel,
             force_limits,
+            ..
         } => evaluate_steered(
             &request,
             &Steering {

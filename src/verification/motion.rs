@@ -1,11 +1,11 @@
 //! The motion of a document: segments, or nodes with forces.
 
-use super::claim::{ClaimError, ClaimedMotion, fault};
-use super::file::{PlanFile, SampleFile, SegmentFile, StartFile};
-use crate::evaluation::Violation;
+use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
+use super::file::{ControlFile, PlanFile, SampleFile, SegmentFile, StartFile};
+use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
 use crate::trajectory::{Node, Segment, Steered};
-use crate::vessel::{ForceVector, VesselKind};
+use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 impl ClaimedMotion {
     /// Segments, or intervals between nodes.
@@ -80,6 +80,7 @@ pub(super) fn read(
                     motion,
                     vessel,
                     force_limits,
+                    weights: weights(control)?,
                 })),
                 Err(error) => {
                     faults.push(Violation {
@@ -102,6 +103,20 @@ pub(super) fn read(
             "segments, or a motion under forces",
         )),
     }
+}
+
+fn weights(control: &ControlFile) -> Result<StageWeights, ClaimError> {
+    let checked = |key: &str, values: &[f64]| {
+        values.iter().enumerate().try_for_each(|(index, value)| {
+            not_negative(&format!("optimal_control.{key}[{index}]"), *value).map(|_| ())
+        })
+    };
+    checked("state_weights", &control.state_weights)?;
+    checked("control_weights", &control.control_weights)?;
+    Ok(StageWeights {
+        state: StateVector::from(control.state_weights),
+        force: ForceVector::from(control.control_weights),
+    })
 }
 
 fn pose(start: &StartFile) -> Pose {

@@ -2,21 +2,22 @@
 #![allow(dead_code, reason = "tests and benches use a part each")]
 
 use std::f64::consts::PI;
+use std::time::Duration;
 
 use nalgebra::Matrix2;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use searoom::frame::{Vector, direction};
+use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::Ellipse;
-use searoom::obstacle::EllipsoidObstacle;
-use searoom::planner::ControlSettings;
+use searoom::obstacle::{Coast, EllipsoidObstacle, Obstacle};
 use searoom::planner::optimal_control::KeepOut;
 use searoom::planner::optimal_control::guess::profile_along;
 use searoom::planner::optimal_control::solver::Settings;
 use searoom::planner::optimal_control::task::{Controls, Profile, Task};
 use searoom::planner::optimal_control::transcription::Weights;
+use searoom::planner::{ControlSettings, Objective, Problem, SearchKind};
 use searoom::trajectory::DesiredTrajectory;
-use searoom::vessel::{CyberShip2, StateVector, VesselKind};
+use searoom::vessel::{CyberShip2, Hull, OwnShip, StateVector, VesselKind};
 
 /// Seconds, of every scene.
 pub const DURATION: f64 = 100.0;
@@ -103,6 +104,42 @@ pub fn task<'a>(
         start_time: 0.0,
         duration: DURATION,
         intervals,
+    }
+}
+
+/// As the task starts, a point.
+pub fn own_ship() -> OwnShip {
+    OwnShip {
+        pose: Pose::new(Vector::zeros(), 0.0),
+        speed: 0.2,
+        hull: Hull {
+            length: 0.0,
+            beam: 0.0,
+        },
+        turning_radius: 2.0,
+        speeds: vec![0.1, 0.2, 0.24],
+        safety_margin: 0.0,
+    }
+}
+
+/// The whole of what the planner is asked.
+pub fn problem<'a>(
+    own: &'a OwnShip,
+    desired: &'a DesiredTrajectory,
+    obstacles: &'a [Obstacle],
+) -> Problem<'a> {
+    Problem {
+        own,
+        desired,
+        alternatives: &[],
+        objective: Objective::SpaceTimeError,
+        obstacles,
+        coast: Coast::none(),
+        horizon: DURATION,
+        time_weight: 0.05,
+        search: SearchKind::AStar,
+        deadline: Duration::from_secs(600),
+        first_turn: None,
     }
 }
 

@@ -9,6 +9,7 @@
 pub mod attempt;
 mod between;
 mod defect;
+mod grid;
 pub mod guess;
 mod keep_out;
 mod passing;

@@ -4,8 +4,8 @@ use super::keep_out::KeepOut;
 use crate::frame::{Side, cross};
 use crate::trajectory::Steered;
 
-/// Looks per piece.
-const LOOKS: usize = 8;
+/// Looks over the whole motion, at least; one per piece at least.
+const LOOKS: usize = 400;
 
 /// `(x - p_t)' Q_t^-1 (x - p_t)`: a set that never comes nearer than five times its size is not passed at all.
 const FAR: f64 = 25.0;
@@ -19,9 +19,10 @@ pub fn passing_sides(motion: &Steered, keep_outs: &[KeepOut]) -> Vec<Option<Side
 
 fn side(motion: &Steered, keep: &KeepOut) -> Option<Side> {
     let mut nearest = (f64::INFINITY, 0.0);
+    let looks = LOOKS.div_ceil(motion.nodes().len() - 1);
     for piece in motion.pieces() {
-        for look in 0..=LOOKS {
-            let part = look as f64 / LOOKS as f64;
+        for look in 0..=looks {
+            let part = look as f64 / looks as f64;
             let at = keep.at(piece.start_time + part * piece.duration);
             let level = at.level(piece.position(part));
             if level < nearest.0 {

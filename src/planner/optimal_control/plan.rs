@@ -5,7 +5,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::attempt::{Attempt, attempt};
-use super::defect::largest_defect;
+use super::grid::{Ended, Refined, brought_to};
 use super::guess::{Start, family, profile_along};
 use super::keep_out::KeepOut;
 use super::passing::passing_sides;
@@ -19,16 +19,16 @@ use crate::planner::{
     space_time,
 };
 use crate::tolerance;
-use crate::trajectory::{Steered, Trajectory, hermite};
+use crate::trajectory::{Steered, Trajectory};
 use crate::vessel::{CyberShip2, FULL_SCALE, FroudeScaled, Manoeuvring, StateVector, VesselKind};
 
-/// Where the intervals are too coarse there are half as many again, so often at most.
-const REFINEMENTS: usize = 6;
+/// Of the time budget: the starts end by then, so that the best of them is brought to a grid that is fine enough.
+const STARTS_SHARE: f64 = 0.6;
 
-/// The barrier to begin with on a finer grid.
-const REFINED_BARRIER: f64 = 1e-2;
+/// Of the time budget: the space-time planner, which makes one start of many, ends by then.
+const SPACE_TIME_SHARE: f64 = 0.25;
 
-/// Relative. Plans this near in their objective are one plan: the earlier start is named.
+/// Relative. Plans this near in their objective are one plan.
 const SAME: f64 = 1e-6;
 
 /// What came of one start.
@@ -66,9 +66,11 @@ pub struct ControlReport {
     pub starts: Vec<StartReport>,
     /// The classes of the feasible plans, the cheapest first.
     pub classes: Vec<HomotopyClass>,
-    /// Intervals of the plan's grid.
+    /// Intervals of the grid of the starts: their objectives, and those of the classes, are on it.
+    pub start_intervals: usize,
+    /// Intervals of the plan's grid; without a plan of the last one that was tried.
     pub intervals: usize,
-    /// The largest deviation at the end of an interval, in the ship's units; NaN without a plan.
+    /// The largest deviation at the end of an interval on that grid, in the ship's units; NaN where no start led to a plan.
     pub defect: f64,
 }
 
@@ -148,6 +150,10 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         self.begun.elapsed() < self.problem.deadline
     }
 
+    fn in_share(&self, share: f64) -> bool {
+        self.begun.elapsed() < self.problem.deadline.mul_f64(share)
+    }
+
     fn task(&self, intervals: usize) -> Task<'_, V> {
         let own = self.problem.own;
         Task {
@@ -173,6 +179,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         let mut report = ControlReport {
             starts: Vec::new(),
             classes: Vec::new(),
+            start_intervals: self.intervals,
             intervals: self.intervals,
             defect: f64::NAN,
         };
@@ -205,54 +212,89 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
 
     fn find(&self, report: &mut ControlReport) -> Outcome {
         let task = self.task(self.intervals);
-        let keep_going = || self.in_time();
         let mut starts: Vec<(Start, Option<Profile>)> = family(&task)
             .into_iter()
             .map(|(start, guess)| (start, Some(guess)))
             .collect();
         // the longest first, so that no thread waits for it alone
         starts.insert(0, (Start::SpaceTime, None));
-        let attempts: Vec<(Start, Attempt)> = starts
+        let tried: Vec<(StartReport, Option<Attempt>)> = starts
             .into_par_iter()
-            .filter_map(|(start, guess)| {
-                let guess = guess.or_else(|| self.space_time(&task))?;
-                Some((
-                    start,
-                    attempt(&task, &guess, &Settings::default(), &keep_going),
-                ))
-            })
+            .filter_map(|(start, guess)| self.tried(&task, start, guess))
             .collect();
-        for (start, found) in &attempts {
-            report.starts.push(StartReport {
-                start: *start,
-                status: found.report.status,
-                feasible: found.is_feasible(),
-                objective: found.objective,
-                iterations: found.iterations,
-                sides: self
-                    .steered(&task, &found.profile)
-                    .map_or_else(Vec::new, |motion| passing_sides(&motion, &self.keep_outs)),
-            });
-        }
-        report.classes = classes(&report.starts);
-        let Some(best) = cheapest(&attempts) else {
-            return if self.in_time() {
-                Outcome::Infeasible(self.locked(&attempts))
-            } else {
-                Outcome::Deadline(None)
-            };
-        };
-        let outcome = self.refined(best, report);
-        match outcome {
-            Outcome::Solved(plan) if !self.in_time() => Outcome::Deadline(Some(plan)),
-            _ if !self.in_time() => Outcome::Deadline(None),
+        let late = tried
+            .iter()
+            .any(|(report, _)| report.status == Status::OutOfTime);
+        let (reports, attempts): (Vec<StartReport>, Vec<Option<Attempt>>) =
+            tried.into_iter().unzip();
+        report.classes = classes(&reports);
+        report.starts = reports;
+        let attempts: Vec<Attempt> = attempts.into_iter().flatten().collect();
+        match self.finest(&attempts, report) {
+            Outcome::Solved(plan) if late || !self.in_time() => Outcome::Deadline(Some(plan)),
+            _ if late || !self.in_time() => Outcome::Deadline(None),
             other => other,
         }
     }
 
+    /// What a start leads to. `None` where the space-time planner has no plan to start from; no attempt where the time is up.
+    fn tried(
+        &self,
+        task: &Task<V>,
+        start: Start,
+        guess: Option<Profile>,
+    ) -> Option<(StartReport, Option<Attempt>)> {
+        let keep_going = || self.in_share(STARTS_SHARE);
+        if !keep_going() {
+            let unsolved = StartReport {
+                start,
+                status: Status::OutOfTime,
+                feasible: false,
+                objective: f64::NAN,
+                iterations: 0,
+                sides: Vec::new(),
+            };
+            return Some((unsolved, None));
+        }
+        let guess = guess.or_else(|| self.space_time(task))?;
+        let found = attempt(task, &guess, &Settings::default(), &keep_going);
+        let feasible = found.is_feasible();
+        let motion = self.steered(task, &found.profile).filter(|_| feasible);
+        let report = StartReport {
+            start,
+            status: found.report.status,
+            feasible,
+            objective: found.objective,
+            iterations: found.iterations,
+            sides: motion.map_or_else(Vec::new, |m| passing_sides(&m, &self.keep_outs)),
+        };
+        Some((report, Some(found)))
+    }
+
+    /// The cheapest attempt that can be brought to a grid that is fine enough.
+    fn finest(&self, attempts: &[Attempt], report: &mut ControlReport) -> Outcome {
+        let mut unrefined = None;
+        for found in cheapest_first(attempts) {
+            let fine = self.refined(found);
+            // of several that fail the cheapest is told of
+            if unrefined.is_none() || fine.plan.is_ok() {
+                (report.intervals, report.defect) = (fine.intervals, fine.defect);
+            }
+            match fine.plan {
+                Ok(plan) => return Outcome::Solved(plan),
+                Err(reason) => unrefined = unrefined.or(Some(reason)),
+            }
+            if !self.in_time() {
+                break;
+            }
+        }
+        Outcome::Infeasible(unrefined.unwrap_or_else(|| self.locked(attempts)))
+    }
+
     /// The space-time planner's positions at the nodes; at its end after it has arrived.
     fn space_time(&self, task: &Task<V>) -> Option<Profile> {
-        let left = self.problem.deadline.saturating_sub(self.begun.elapsed());
+        let until = self.problem.deadline.mul_f64(SPACE_TIME_SHARE);
+        let left = until.saturating_sub(self.begun.elapsed());
         let planned = space_time::plan(&Problem {
             deadline: left,
             ..self.problem.clone()
@@ -268,61 +310,64 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         Steered::new(task.nodes(&profile.states, &profile.forces)).ok()
     }
 
-    /// The plan on a grid that is fine enough.
-    fn refined(&self, best: &Attempt, report: &mut ControlReport) -> Outcome {
-        let mut task = self.task(self.intervals);
-        let mut found = best.clone();
-        let mut refinements = 0;
-        loop {
-            report.intervals = task.intervals;
-            report.defect = largest_defect(&self.exact, &found.profile, task.step());
-            // negated on purpose: a NaN is too coarse
-            if !(report.defect > tolerance::DEFECT) {
-                break;
-            }
-            if refinements == REFINEMENTS || !self.in_time() {
-                return Outcome::Infeasible(NoPlan::Coarse {
-                    intervals: task.intervals,
-                    off: report.defect,
-                    allowed: tolerance::DEFECT,
-                });
-            }
-            refinements += 1;
-            let finer = self.task(task.intervals + task.intervals.div_ceil(2));
-            let guess = resampled(&task, &found.profile, &finer);
-            task = finer;
-            let settings = Settings {
-                barrier: REFINED_BARRIER,
-                ..Settings::default()
-            };
-            found = attempt(&task, &guess, &settings, &|| self.in_time());
-            if !found.is_feasible() {
-                return Outcome::Infeasible(self.locked(&[(Start::Refined, found)]));
-            }
+    /// An attempt brought to a grid that is fine enough.
+    fn refined(&self, found: &Attempt) -> Fine {
+        let first = self.task(self.intervals);
+        let grid = brought_to(&first, found, &self.exact, &|| self.in_time());
+        let Refined {
+            intervals, defect, ..
+        } = grid;
+        let plan = match grid.ended {
+            Ended::Fine => self
+                .steered(&self.task(intervals), &grid.found.profile)
+                .map(|motion| Plan {
+                    trajectory: Trajectory::from(motion),
+                    cost: grid.found.objective,
+                    graph_cost: None,
+                })
+                .ok_or(NoPlan::NoRoute),
+            Ended::Coarse => Err(NoPlan::Coarse {
+                intervals,
+                off: defect,
+                allowed: tolerance::DEFECT,
+            }),
+            Ended::Lost => Err(NoPlan::Lost {
+                intervals,
+                coarse: self.intervals,
+                why: match grid
+                    .found
+                    .inside
+                    .filter(|_| grid.found.report.status == Status::Solved)
+                {
+                    Some(inside) => format!(
+                        "it would be inside the set of '{}' at {:.1} s",
+                        self.keep_outs[inside.obstacle].set().name(),
+                        inside.time
+                    ),
+                    None => said(grid.found.report.status),
+                },
+            }),
+        };
+        Fine {
+            plan,
+            intervals,
+            defect,
         }
-        let motion = self.steered(&task, &found.profile);
-        motion.map_or(Outcome::Infeasible(NoPlan::NoRoute), |motion| {
-            Outcome::Solved(Plan {
-                trajectory: Trajectory::from(motion),
-                cost: found.objective,
-                graph_cost: None,
-            })
-        })
     }
 
     /// Why none of the attempts is a plan.
-    fn locked(&self, attempts: &[(Start, Attempt)]) -> NoPlan {
+    fn locked(&self, attempts: &[Attempt]) -> NoPlan {
         let starts = attempts.len();
         let solved = attempts
             .iter()
-            .filter(|(_, a)| a.report.status == Status::Solved)
-            .filter_map(|(_, a)| a.inside)
+            .filter(|a| a.report.status == Status::Solved)
+            .filter_map(|a| a.inside)
             .max_by(|a, b| a.level.total_cmp(&b.level));
         let Some(inside) = solved else {
-            let status = attempts.first().map(|(_, a)| a.report.status);
+            let status = attempts.first().map(|a| a.report.status);
             return NoPlan::Unsolved {
                 starts,
-                why: status.map_or_else(|| "no start".to_owned(), |s| s.to_string()),
+                why: status.map_or_else(|| "no start".to_owned(), said),
             };
         };
         let set = self.keep_outs[inside.obstacle].set();
@@ -342,16 +387,43 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     }
 }
 
-/// The cheapest feasible one; of equals the first.
-fn cheapest(attempts: &[(Start, Attempt)]) -> Option<&Attempt> {
-    let mut best: Option<&Attempt> = None;
-    for (_, attempt) in attempts.iter().filter(|(_, a)| a.is_feasible()) {
-        let better = |b: &Attempt| attempt.objective < b.objective * (1.0 - SAME);
-        if best.is_none_or(better) {
-            best = Some(attempt);
-        }
+/// A plan on a grid that is fine enough, or why there is none.
+struct Fine {
+    plan: Result<Plan, NoPlan>,
+    intervals: usize,
+    defect: f64,
+}
+
+/// How a solve ended, and what may be done about it.
+fn said(status: Status) -> String {
+    match hint(status) {
+        Some(hint) => format!("{status}; {hint}"),
+        None => status.to_string(),
     }
-    best
+}
+
+fn hint(status: Status) -> Option<&'static str> {
+    match status {
+        Status::Iterations | Status::Stalled | Status::Unbounded => Some(
+            "what may help: weights and force limits nearer to the vessel's own, more intervals \
+             (planner.optimal_control), a shorter horizon",
+        ),
+        Status::NotANumber | Status::Singular => Some(
+            "what may help: more intervals (planner.optimal_control), a speed nearer to what the vessel can make",
+        ),
+        Status::OutOfTime => Some("what may help: a longer planner.deadline_s"),
+        Status::Solved | Status::BadProblem => None,
+    }
+}
+
+/// The feasible ones, the cheapest first; of equals the earlier one.
+fn cheapest_first(attempts: &[Attempt]) -> Vec<&Attempt> {
+    let mut left: Vec<&Attempt> = attempts.iter().filter(|a| a.is_feasible()).collect();
+    // stable; then those that are one plan in the order of their starts
+    left.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+    let same = |a: &Attempt, b: &Attempt| !(a.objective < b.objective * (1.0 - SAME));
+    left.dedup_by(|next, kept| same(kept, next));
+    left
 }
 
 fn classes(starts: &[StartReport]) -> Vec<HomotopyClass> {
@@ -371,27 +443,4 @@ fn classes(starts: &[StartReport]) -> Vec<HomotopyClass> {
     }
     classes.sort_by(|a, b| a.objective.total_cmp(&b.objective));
     classes
-}
-
-/// The same motion on another grid: states on the cubics, forces as they are at the middle of each interval.
-fn resampled<V: Manoeuvring>(task: &Task<V>, profile: &Profile, to: &Task<V>) -> Profile {
-    let h = task.step();
-    let at = |time: f64| {
-        let place = (time - task.start_time) / h;
-        let interval = (place.floor().max(0.0) as usize).min(task.intervals - 1);
-        (interval, place - interval as f64)
-    };
-    let state = |k: usize| {
-        let (interval, part) = at(to.time(k));
-        let [x, y] = [interval, interval + 1].map(|i| profile.states[i]);
-        let force = &profile.forces[interval];
-        let [a, b, c, d] = hermite(part);
-        let rates = [&x, &y].map(|x| task.vessel.rates(x, force));
-        a * x + h * b * rates[0] + c * y + h * d * rates[1]
-    };
-    let force = |k: usize| profile.forces[at(to.time(k) + 0.5 * to.step()).0];
-    Profile {
-        states: (0..=to.intervals).map(state).collect(),
-        forces: (0..to.intervals).map(force).collect(),
-    }
 }

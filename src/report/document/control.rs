@@ -16,9 +16,11 @@ pub struct ControlDocument {
     pub force_limits: ForceLimitsDocument,
     pub state_weights: [f64; 6],
     pub control_weights: [f64; 3],
+    /// As asked for: starts and homotopy classes are on that grid.
+    pub start_intervals: usize,
     /// Of the plan; more than asked for where those were too coarse.
     pub intervals: usize,
-    /// The largest deviation at the end of an interval, in the ship's units; null without a plan.
+    /// The largest deviation at the end of an interval, in the ship's units; null where no start led to a plan.
     pub defect: Option<f64>,
     /// Targets that are kept out of by an ellipsoid around their set.
     pub enclosed_targets: Vec<String>,
@@ -71,6 +73,7 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
         },
         state_weights: settings.state_weights.into(),
         control_weights: settings.force_weights.into(),
+        start_intervals: report.start_intervals,
         intervals: report.intervals,
         defect: finite(report.defect),
         enclosed_targets: run.enclosed.clone(),

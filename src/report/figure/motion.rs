@@ -4,10 +4,11 @@
 use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::sections::{PLAN, seconds};
 use super::{Figure, Panel, Window, field};
-use crate::frame::{Pose, Vector};
+use crate::frame::{Pose, Vector, deg_from_radians};
 use crate::geometry::ConvexPolygon;
 use crate::pipeline::Run;
-use crate::trajectory::{Steered, Trajectory};
+use crate::trajectory::{Node, Steered, Trajectory};
+use crate::vessel::ForceVector;
 
 /// Panels beside one another.
 const COLUMNS: usize = 2;
@@ -36,6 +37,25 @@ const SET: Stroke = Stroke {
     dashed: false,
 };
 
+const ZERO: Stroke = Stroke {
+    colour: "#bbbbbb",
+    width: 1.0,
+    dashed: false,
+};
+
+const SURGE: &str = "#0072b2";
+const SWAY: &str = "#009e73";
+const YAW: &str = "#d55e00";
+
+/// Of the greatest speed, or of what a force may be: a panel shows as much at least.
+const LEAST_SPAN: f64 = 0.02;
+
+/// Degrees per second, the same.
+const LEAST_TURN_DEG_PER_S: f64 = 0.05;
+
+/// A number from here on is written in thousands.
+const LONG: f64 = 1e4;
+
 /// Of the desired way: the shown part of the plane goes this far beyond it.
 const MARGIN: f64 = 0.12;
 
@@ -58,8 +78,7 @@ pub fn moments_figure(run: &Run) -> Option<Figure> {
         .map(|time| moment_panel(run, trajectory, *time))
         .collect();
     if let Some(motion) = trajectory.steered() {
-        panels.push(velocity_panel(motion));
-        panels.push(force_panel(motion));
+        panels.extend(driven(motion, &run.scenario.control.force_limits));
     }
     Some(Figure::new(COLUMNS, panels))
 }
@@ -111,68 +130,132 @@ fn moment_panel(run: &Run, trajectory: &Trajectory, time: f64) -> Panel {
     panel
 }
 
-/// One of three quantities over time.
+/// One quantity over time.
 struct Curve {
     label: &'static str,
     colour: &'static str,
     values: Vec<Vector>,
 }
 
-/// Surge, sway and yaw rate; starboard and clockwise are positive.
-fn velocity_panel(motion: &Steered) -> Panel {
-    let of = |value: fn(&crate::trajectory::Node) -> f64| -> Vec<Vector> {
+/// Quantities of one unit over time.
+struct Quantities<'a> {
+    title: &'a str,
+    unit: &'a str,
+    /// In the unit: what varies by less is drawn as what hardly varies.
+    least_span: f64,
+    curves: Vec<Curve>,
+}
+
+/// Velocities and forces: speeds, turn, forces and moment have a panel each, as they have units each. Starboard and
+/// clockwise are positive.
+fn driven(motion: &Steered, limits: &ForceVector) -> Vec<Panel> {
+    let states = |value: fn(&Node) -> f64| -> Vec<Vector> {
         let nodes = motion.nodes().iter();
         nodes.map(|n| Vector::new(n.time, value(n))).collect()
     };
-    over_time(
-        "Velocity",
-        "Surge, sway [m/s], yaw rate [rad/s]",
-        [
-            ("surge", of(|n| n.velocity.x)),
-            ("sway to starboard", of(|n| -n.velocity.y)),
-            ("yaw rate clockwise", of(|n| -n.yaw_rate)),
-        ],
-    )
-}
-
-/// Forces, each held until the next node; starboard and clockwise are positive.
-fn force_panel(motion: &Steered) -> Panel {
-    let of = |value: fn(&crate::trajectory::Node) -> f64| -> Vec<Vector> {
+    // each held until the next node
+    let forces = |value: fn(&Node) -> f64| -> Vec<Vector> {
         let pairs = motion.nodes().windows(2);
         pairs
             .flat_map(|p| [p[0].time, p[1].time].map(|t| Vector::new(t, value(&p[0]))))
             .collect()
     };
-    over_time(
-        "Forces",
-        "Surge, sway [N], yaw moment [Nm]",
-        [
-            ("surge", of(|n| n.force.x)),
-            ("sway to starboard", of(|n| -n.force.y)),
-            ("yaw moment clockwise", of(|n| -n.moment)),
-        ],
-    )
+    let curve = |label, colour, values| Curve {
+        label,
+        colour,
+        values,
+    };
+    let speeds = vec![
+        curve("surge", SURGE, states(|n| n.velocity.x)),
+        curve("sway to starboard", SWAY, states(|n| -n.velocity.y)),
+    ];
+    let turn = vec![curve(
+        "yaw rate clockwise",
+        YAW,
+        states(|n| -deg_from_radians(n.yaw_rate)),
+    )];
+    let pushes = vec![
+        curve("surge", SURGE, forces(|n| n.force.x)),
+        curve("sway to starboard", SWAY, forces(|n| -n.force.y)),
+    ];
+    let moment = vec![curve("yaw moment clockwise", YAW, forces(|n| -n.moment))];
+    let fastest = largest(&speeds);
+    [
+        Quantities {
+            title: "Speed through water",
+            unit: "m/s",
+            least_span: LEAST_SPAN * fastest,
+            curves: speeds,
+        },
+        Quantities {
+            title: "Rate of turn",
+            unit: "°/s",
+            least_span: LEAST_TURN_DEG_PER_S,
+            curves: turn,
+        },
+        prefixed("Force", ["N", "kN", "MN"], limits.x.max(limits.y), pushes),
+        prefixed("Moment", ["Nm", "kNm", "MNm"], limits.z, moment),
+    ]
+    .into_iter()
+    .map(over_time)
+    .collect()
 }
 
-fn over_time(title: &str, axis: &str, curves: [(&'static str, Vec<Vector>); 3]) -> Panel {
-    let colours = ["#0072b2", "#009e73", "#d55e00"];
-    let curves: Vec<Curve> = curves
-        .into_iter()
-        .zip(colours)
-        .map(|((label, values), colour)| Curve {
-            label,
-            colour,
-            values,
-        })
-        .collect();
+fn largest(curves: &[Curve]) -> f64 {
+    let values = curves.iter().flat_map(|c| &c.values);
+    values.fold(0.0, |most, v| most.max(v.y.abs()))
+}
+
+/// In the unit of three, each a thousand times the one before, in which the numbers on the axis are short.
+fn prefixed<'a>(
+    title: &'a str,
+    units: [&'a str; 3],
+    limit: f64,
+    mut curves: Vec<Curve>,
+) -> Quantities<'a> {
+    let least_span = LEAST_SPAN * limit;
+    let most = largest(&curves).max(least_span);
+    let (unit, size) = match most {
+        m if m >= 1e3 * LONG => (units[2], 1e6),
+        m if m >= LONG => (units[1], 1e3),
+        _ => (units[0], 1.0),
+    };
+    for value in curves.iter_mut().flat_map(|c| &mut c.values) {
+        value.y /= size;
+    }
+    Quantities {
+        title,
+        unit,
+        least_span: least_span / size,
+        curves,
+    }
+}
+
+fn over_time(quantities: Quantities) -> Panel {
+    let Quantities {
+        title,
+        unit,
+        least_span,
+        curves,
+    } = quantities;
     let all = curves.iter().flat_map(|c| c.values.iter().copied());
     let shown = Window::around(all, 0.0);
-    let air = Vector::new(0.02 * shown.size().x, 0.08 * shown.size().y.max(1e-9));
+    let size = shown.size();
+    let wider = 0.5 * (least_span - size.y).max(0.0);
+    let air = Vector::new(0.02 * size.x, wider + 0.08 * size.y.max(least_span));
     let window = Window {
         low: shown.low - air,
         high: shown.high + air,
     };
-    let mut panel = Panel::free(title.to_owned(), ["Time [s]", axis], window);
+    let axis = format!("{title} [{unit}]");
+    let mut panel = Panel::free(title.to_owned(), ["Time [s]", &axis], window);
+    let none = [
+        Vector::new(window.low.x, 0.0),
+        Vector::new(window.high.x, 0.0),
+    ];
+    if window.low.y < 0.0 && window.high.y > 0.0 {
+        panel.plots.push(curve(&none, false, ZERO));
+    }
     for Curve {
         label,
         colour,

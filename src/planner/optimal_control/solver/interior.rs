@@ -25,7 +25,8 @@ const PUSH_WARM: f64 = 1e-5;
 /// An objective or a state beyond this has run away.
 const FAR: f64 = 1e12;
 
-/// Solves from an iterate and leaves the result there, whatever the status. `keep_going` is asked before each step.
+/// Solves from an iterate and leaves the result there, whatever the status. `keep_going` is asked before each step
+/// and between the trial points of its line search.
 ///
 /// Deterministic. Each step costs `O(stages (N + M)³ + rows (N + M)²)` and allocates nothing.
 pub fn solve<const N: usize, const M: usize>(
@@ -238,7 +239,8 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
             if !longest[0].is_finite() {
                 return Status::NotANumber;
             }
-            match search.run(self, longest, to_limit) {
+            match search.run(self, longest, to_limit, keep_going) {
+                Accepted::OutOfTime => return Status::OutOfTime,
                 Accepted::Step(primal) => {
                     self.take(primal, longest[1]);
                     forced = false;

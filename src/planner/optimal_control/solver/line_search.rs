@@ -29,6 +29,8 @@ pub(super) enum Accepted {
     /// The fraction of the step; the trial point is in the workspace.
     Step(f64),
     Not,
+    /// The caller's clock ran out before one was found.
+    OutOfTime,
 }
 
 /// What a line search remembers from one to the next.
@@ -65,12 +67,13 @@ impl Search {
         Some(JUMP)
     }
 
-    /// Looks for an acceptable fraction of the step, the longest first.
+    /// Looks for an acceptable fraction of the step, the longest first. `keep_going` is asked before each but the first.
     pub fn run<P: StageProblem<N, M>, const N: usize, const M: usize>(
         &self,
         method: &mut Method<'_, P, N, M>,
         longest: [f64; 2],
         to_limit: f64,
+        keep_going: &dyn Fn() -> bool,
     ) -> Accepted {
         let from = method.merit();
         let descent = method.descent();
@@ -91,6 +94,9 @@ impl Search {
         };
         let mut step = longest[0];
         for halving in 0..HALVINGS {
+            if halving > 0 && !keep_going() {
+                return Accepted::OutOfTime;
+            }
             let found = method.trial_along(step);
             let judged = self.judge(method, from, descent, step, found);
             if let Some(descends) = judged {

@@ -1,0 +1,62 @@
+//! What a motion under forces costs, from its states and forces alone.
+
+use super::steered::{Steering, force, state};
+use crate::frame::{heading_of, wrap};
+use crate::trajectory::DesiredTrajectory;
+use crate::vessel::{ForceVector, StateVector};
+
+/// The diagonals of the stage cost `(x - r)' Q (x - r) + tau' R tau`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StageWeights {
+    /// Of `Q`, per squared unit of [`StateVector`] and second.
+    pub state: StateVector,
+    /// Of `R`, per squared unit of [`ForceVector`] and second.
+    pub force: ForceVector,
+}
+
+/// The integral of the stage cost by Simpson's rule over every interval, the state at half time on the cubic through both
+/// nodes with the ship's rates there: the definition of the planner, in code of its own and with the ship as published.
+/// O(nodes). The sum differs from the integral along the ship's own motion by less than 1e-4 of itself on a grid that is
+/// fine enough for a plan; where a leg ends within an interval by more.
+pub fn stage_cost(steering: &Steering, desired: &DesiredTrajectory, weights: &StageWeights) -> f64 {
+    let nodes = steering.motion.nodes();
+    let mut sum = 0.0;
+    for pair in nodes.windows(2) {
+        let (x, y, u) = (state(&pair[0]), state(&pair[1]), force(&pair[0]));
+        let duration = pair[1].time - pair[0].time;
+        let bend = steering.vessel.rates(&x, &u) - steering.vessel.rates(&y, &u);
+        let middle = 0.5 * (x + y) + 0.125 * duration * bend;
+        let off = |at: &StateVector, time: f64, moment: Moment| {
+            let mut off = at - wanted(desired, time, moment);
+            off[2] = wrap(off[2]);
+            (0..6)
+                .map(|i| weights.state[i] * off[i] * off[i])
+                .sum::<f64>()
+        };
+        let driven: f64 = (0..3).map(|i| weights.force[i] * u[i] * u[i]).sum();
+        let half = pair[0].time + 0.5 * duration;
+        let ends = off(&x, pair[0].time, Moment::Later) + off(&y, pair[1].time, Moment::Earlier);
+        sum += duration * ((ends + 4.0 * off(&middle, half, Moment::Later)) / 6.0 + driven);
+    }
+    sum
+}
+
+/// Which leg counts at the instant at which one follows another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Moment {
+    Earlier,
+    Later,
+}
+
+/// Where she is meant to be: on her leg, at its course and speed; at the end, at rest, once it is over.
+fn wanted(desired: &DesiredTrajectory, time: f64, moment: Moment) -> StateVector {
+    let legs = desired.legs();
+    let under_way = legs.iter().position(|leg| match moment {
+        Moment::Earlier => time <= leg.end_time(),
+        Moment::Later => time < leg.end_time(),
+    });
+    let leg = &legs[under_way.unwrap_or(legs.len() - 1)];
+    let speed = under_way.map_or(0.0, |index| legs[index].speed);
+    let place = desired.position_at(time);
+    StateVector::new(place.x, place.y, heading_of(leg.direction), speed, 0.0, 0.0)
+}
