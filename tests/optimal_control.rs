@@ -43,10 +43,8 @@ fn reason(run: &Run) -> &NoPlan {
 
 /// Figure 9 with other targets.
 fn with_targets(targets: &str) -> String {
-    let own = FIGURE_9
-        .split("[[targets]]")
-        .next()
-        .expect("own ship first");
+    let patient = FIGURE_9.replace("[planner]", "[planner]\ndeadline_s = 300.0");
+    let own = patient.split("[[targets]]").next().expect("own ship first");
     format!("{own}{targets}")
 }
 
@@ -529,7 +527,8 @@ fn weights_of_any_sizes_are_solved() {
         "control_weights = [1e6, 1e6, 1e6]",
         "control_weights = [1e-24, 1e-24, 1e-24]",
     ] {
-        let found = run(&FIGURE_9.replace("intervals = 50", &format!("intervals = 50\n{weights}")));
+        let patient = FIGURE_9.replace("[planner]", "[planner]\ndeadline_s = 300.0");
+        let found = run(&patient.replace("intervals = 50", &format!("intervals = 50\n{weights}")));
         let verified = found.evaluation.as_ref().is_some_and(Evaluation::verified);
         assert!(verified, "{weights}: {}", plan_text(&found));
     }
@@ -538,7 +537,8 @@ fn weights_of_any_sizes_are_solved() {
 #[test]
 fn what_is_not_solved_comes_with_what_may_help() {
     // no step of half a million seconds is solved, nor the ship found that makes 20 m/s
-    let long = run(&FIGURE_9.replace("horizon_s = 100.0", "horizon_s = 1000000.0"));
+    let patient = FIGURE_9.replace("[planner]", "[planner]\ndeadline_s = 300.0");
+    let long = run(&patient.replace("horizon_s = 100.0", "horizon_s = 1000000.0"));
     let NoPlan::Unsolved { starts, .. } = reason(&long) else {
         panic!("{:?}", reason(&long));
     };
@@ -548,7 +548,7 @@ fn what_is_not_solved_comes_with_what_may_help() {
         said.contains("what may help: ") && said.contains("a shorter horizon"),
         "{said}"
     );
-    let fast = run(&FIGURE_9.replace("speed_mps = 0.2\n", "speed_mps = 20.0\n"));
+    let fast = run(&patient.replace("speed_mps = 0.2\n", "speed_mps = 20.0\n"));
     let said = plan_text(&fast);
     match reason(&fast) {
         NoPlan::Lost {

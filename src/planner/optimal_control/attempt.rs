@@ -59,37 +59,20 @@ pub struct Attempt {
 }
 
 impl Attempt {
+    /// True where the solver got nowhere. Exact second derivatives alone may: Gauss–Newton steps are poor where the weights
+    /// of the states are small beside those of the forces.
+    pub fn is_lost(&self) -> bool {
+        matches!(self.report.status, Status::Iterations | Status::Stalled)
+    }
+
     /// True when solved and clear.
     pub fn is_feasible(&self) -> bool {
         self.report.status == Status::Solved && self.inside.is_none()
     }
 }
 
-/// Solves from a guess. `settings` are those of the first solve. Where Gauss–Newton steps lead nowhere, as with weights of
-/// the states that are small beside those of the forces, it is solved once more with exact second derivatives alone.
+/// Solves from a guess. `settings` are those of the first solve.
 pub fn attempt<V: Manoeuvring>(
-    task: &Task<V>,
-    guess: &Profile,
-    settings: &Settings,
-    keep_going: &dyn Fn() -> bool,
-) -> Attempt {
-    let found = from_guess(task, guess, settings, keep_going);
-    let lost = matches!(found.report.status, Status::Iterations | Status::Stalled);
-    if !(lost && settings.gauss_newton && keep_going()) {
-        return found;
-    }
-    let exact = Settings {
-        gauss_newton: false,
-        ..*settings
-    };
-    let again = from_guess(task, guess, &exact, keep_going);
-    Attempt {
-        iterations: found.iterations + again.iterations,
-        ..again
-    }
-}
-
-fn from_guess<V: Manoeuvring>(
     task: &Task<V>,
     guess: &Profile,
     settings: &Settings,

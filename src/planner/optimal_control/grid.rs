@@ -83,6 +83,13 @@ pub(super) fn brought_to<V: Manoeuvring>(
             ..Settings::default()
         };
         found = attempt(&task, &guess, &settings, keep_going);
+        if found.is_lost() {
+            let exact = Settings {
+                gauss_newton: false,
+                ..settings
+            };
+            found = attempt(&task, &guess, &exact, keep_going);
+        }
     }
 }
 

@@ -211,17 +211,15 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     }
 
     fn find(&self, report: &mut ControlReport) -> Outcome {
-        let task = self.task(self.intervals);
-        let mut starts: Vec<(Start, Option<Profile>)> = family(&task)
-            .into_iter()
-            .map(|(start, guess)| (start, Some(guess)))
-            .collect();
-        // the longest first, so that no thread waits for it alone
-        starts.insert(0, (Start::SpaceTime, None));
-        let tried: Vec<(StartReport, Option<Attempt>)> = starts
-            .into_par_iter()
-            .filter_map(|(start, guess)| self.tried(&task, start, guess))
-            .collect();
+        let mut tried = self.tried(&Settings::default());
+        let lost =
+            |(_, attempt): &(_, Option<Attempt>)| attempt.as_ref().is_none_or(Attempt::is_lost);
+        if tried.iter().all(lost) && self.in_share(STARTS_SHARE) {
+            tried = self.tried(&Settings {
+                gauss_newton: false,
+                ..Settings::default()
+            });
+        }
         let late = tried
             .iter()
             .any(|(report, _)| report.status == Status::OutOfTime);
@@ -237,12 +235,28 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         }
     }
 
+    /// What every start leads to, in their order.
+    fn tried(&self, settings: &Settings) -> Vec<(StartReport, Option<Attempt>)> {
+        let task = self.task(self.intervals);
+        let mut starts: Vec<(Start, Option<Profile>)> = family(&task)
+            .into_iter()
+            .map(|(start, guess)| (start, Some(guess)))
+            .collect();
+        // the longest first, so that no thread waits for it alone
+        starts.insert(0, (Start::SpaceTime, None));
+        starts
+            .into_par_iter()
+            .filter_map(|(start, guess)| self.tried_from(&task, start, guess, settings))
+            .collect()
+    }
+
     /// What a start leads to. `None` where the space-time planner has no plan to start from; no attempt where the time is up.
-    fn tried(
+    fn tried_from(
         &self,
         task: &Task<V>,
         start: Start,
         guess: Option<Profile>,
+        settings: &Settings,
     ) -> Option<(StartReport, Option<Attempt>)> {
         let keep_going = || self.in_share(STARTS_SHARE);
         if !keep_going() {
@@ -257,7 +271,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             return Some((unsolved, None));
         }
         let guess = guess.or_else(|| self.space_time(task))?;
-        let found = attempt(task, &guess, &Settings::default(), &keep_going);
+        let found = attempt(task, &guess, settings, &keep_going);
         let feasible = found.is_feasible();
         let motion = self.steered(task, &found.profile).filter(|_| feasible);
         let report = StartReport {
