@@ -127,7 +127,7 @@ kind = "optimal-control"
     fn a_ship_is_as_long_as_the_vessel_whose_forces_are_planned() {
         let faults = |length: &str| {
             let text = LEAST.replace("1.255", length);
-            Scenario::parse(&text).err().map_or_else(Vec::new, |f| f)
+            Scenario::parse(&text).err().unwrap_or_default()
         };
         for length in ["1.255", "0.84", "1.88"] {
             assert_eq!(faults(length), [], "{length}");
