@@ -82,6 +82,38 @@ fn the_same_figure_is_the_same_bytes() {
     );
 }
 
+/// A title stands above the panels; one that is too long is cut, and says so.
+#[test]
+fn a_title_is_drawn_and_fits() {
+    let all = targets();
+    let titled = |title: &str| figure(&all, 5.0, &[0.0]).titled(title).svg();
+    let svg = titled("Three & more");
+    assert!(svg.contains("Three &amp; more"));
+    let long = titled(&"ahoy ".repeat(40));
+    assert!(long.contains("…<") && !long.contains(&"ahoy ".repeat(40)));
+    assert!(!figure(&all, 5.0, &[0.0]).svg().contains("Three"));
+}
+
+/// Names that would lie on one another stand on lines of their own.
+#[test]
+fn names_do_not_lie_on_one_another() {
+    let at = |name: &str, east: f64| -> Obstacle {
+        let way = ConvexPolygon::point(Vector::new(-2.0, -1.0));
+        PolytopeObstacle::new(name, rectangle(Vector::new(east, 300.0), 9.0, 9.0), way).into()
+    };
+    let height = |svg: &str, name: &str| -> f64 {
+        let end = svg.find(&format!(">{name}<")).expect("drawn");
+        let start = svg[..end].rfind("<text").expect("a text");
+        let (_, y) = svg[start..end].split_once("y=\"").expect("a place");
+        let y = y.split('"').next().expect("a number");
+        y.parse().expect("a number")
+    };
+    let svg = figure(&[at("first", 300.0), at("second", 303.0)], 5.0, &[0.0]).svg();
+    assert!((height(&svg, "first") - height(&svg, "second")).abs() > 10.0);
+    let svg = figure(&[at("first", 100.0), at("second", 900.0)], 5.0, &[0.0]).svg();
+    assert!((height(&svg, "first") - height(&svg, "second")).abs() < 1e-6);
+}
+
 /// In the round: its own axes with their units, and a line for every section and edge that the key names.
 #[test]
 fn a_body_in_the_round_has_axes_and_units() {

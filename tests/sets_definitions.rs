@@ -4,7 +4,7 @@ mod set_generators;
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use rand::Rng;
-use searoom::frame::{Vector, direction, to_port};
+use searoom::frame::{Pose, Vector, direction, to_port};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{
     EllipsoidObstacle, PolytopeObstacle, SlabError, SlabObstacle, SpaceTimeObstacle,
@@ -210,6 +210,47 @@ fn the_largest_risk_over_a_segment_of_velocities() {
         sampled > 0.01 && peak.risk >= sampled && peak.risk < sampled + 1e-3,
         "{peak:?} {sampled}"
     );
+}
+
+/// A long hull whose velocities lie along it: faces that alpha hardly moves stand beside one that it does not move.
+/// Against bisection over contacts.
+#[test]
+fn the_largest_risk_where_the_velocities_lie_along_a_face() {
+    let mut rng = seeded(231);
+    let mut between = 0;
+    for _ in 0..2000 {
+        let heading = rng.random_range(-3.2..3.2);
+        let [ahead, abeam] = [direction(heading), to_port(direction(heading))];
+        let (long, wide) = (rng.random_range(20.0..150.0), rng.random_range(1.0..20.0));
+        let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
+            .map(|(x, y): (f64, f64)| ahead * (x * long) + abeam * (y * wide));
+        let disc = Ellipse::new(Vector::zeros(), Matrix2::identity() * 1600.0).expect("a shape");
+        let initial = hull(&corners).minkowski_sum(&disc.outer_polygon(16));
+        // a course that misses the hull's by what rounding leaves of nothing, and more
+        let course = heading + 10_f64.powf(rng.random_range(-17.0..-8.0));
+        let fastest = direction(course) * rng.random_range(5.0..40.0);
+        let velocities = hull(&[fastest * 0.01, fastest]);
+        let o = PolytopeObstacle::new("o", initial, velocities);
+        let half = rng.random_range(20.0..150.0);
+        let side = abeam * rng.random_range(-60.0..60.0);
+        let meets = fastest * (half * rng.random_range(0.0..1.0)) + side;
+        let (heading, speed) = (rng.random_range(-3.2..3.2), rng.random_range(1.0..8.0));
+        let line = Segment {
+            start: Pose::new(meets - direction(heading) * (speed * half), heading),
+            start_time: 0.0,
+            duration: 2.0 * half,
+            speed,
+            turn_rate: 0.0,
+        };
+        let exact = o.peak_risk(&line).risk;
+        let searched = SlabObstacle::unchanging(&o).peak_risk(&line).risk;
+        assert!(
+            (exact - searched).abs() < 1e-7,
+            "{exact} {searched} {o:?} {line:?}"
+        );
+        between += usize::from(exact > 0.0 && exact < 1.0);
+    }
+    assert!(between > 300, "{between}");
 }
 
 #[test]

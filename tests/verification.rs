@@ -80,6 +80,49 @@ fn what_was_planned_passes() {
         assert!(found.verified(), "{name}: {:#?}", found.violations);
     }
 }
+/// Level sets that are millions of times smaller than the sets, and sets that hardly spread at all: risk is made of the last digits
+/// there, and the document may say no less than the check finds.
+#[test]
+fn plans_at_a_risk_pass_however_small_the_level_sets() {
+    let plan = |max_risk: f64, target: &str| {
+        let text = format!(
+            r#"title = "risk"
+            horizon_s = 400.0
+            own_ship = {{ position = {{ east_m = 0.0, north_m = 0.0 }}, course_deg = 90.0, speed_mps = 5.0, length_m = 30.0,
+                beam_m = 8.0, turning_radius_m = 0.001 }}
+            mission = {{ waypoints = [{{ east_m = 0.0, north_m = 0.0 }}, {{ east_m = 1500.0, north_m = 0.0 }}] }}
+            planner = {{ max_risk = {max_risk} }}
+            [[targets]]
+            name = "target"
+            {target}"#
+        );
+        let written = document(Scenario::parse(&text).expect("a scenario"));
+        let found = checked(&written);
+        assert!(found.violations.is_empty(), "{:?}", found.violations);
+        written["cost"]["max_risk"].as_f64().expect("a number")
+    };
+    // from standing still to twice her speed, along her hull
+    let risk = plan(
+        0.999999,
+        r#"position = { east_m = 750.0, north_m = 0.0 }
+        course_deg = 144.76848081611433
+        speed_mps = 9.201127151574104
+        length_m = 269.03333503864656
+        beam_m = 1.3089970633978214
+        speed_spread_mps = 32.28479795338985
+        domain = "hull""#,
+    );
+    assert!((risk - 0.059130838).abs() < 1e-6, "{risk}");
+    // sets of a nanometre a second
+    let risk = plan(
+        0.5,
+        r#"initial_set = { vertices_m = [[1399.7335538893385, -100.26644611066152], [1600.2664461106615, -100.26644611066152],
+            [1600.2664461106615, 100.26644611066152], [1399.7335538893385, 100.26644611066152]] }
+        velocity_sets = [{ until_s = 0.07809908373380123, vertices_mps = [[-0.8394706159325942, 0.0], [-0.8393040782734484, 0.0],
+            [-0.8394706159325942, 2.9215047979011405e-11]] }, { vertices_mps = [[-0.8394706159325942, 0.0], [-0.8394706149325942, 0.0]] }]"#,
+    );
+    assert!(risk <= 0.5, "{risk}");
+}
 
 /// Every number below `value`, as JSON pointers.
 fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {

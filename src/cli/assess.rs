@@ -107,7 +107,14 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
     };
     let assessment = answer(&situation, query);
     let drawn = match &args.figure {
-        Some(path) => match assessment_figure(&situation, &query.sections).write(path) {
+        Some(path) => match assessment_figure(&situation, &query.sections)
+            .titled(&format!(
+                "{}, {} sets",
+                scenario.title,
+                if args.shaped { "shaped" } else { "hard" }
+            ))
+            .write(path)
+        {
             Ok(()) => Status::Good,
             Err(error) => {
                 output.error(&error);

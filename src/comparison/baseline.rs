@@ -116,7 +116,7 @@ pub(super) fn baseline(scenario: &Scenario, sets: &Sets, heading: f64, speed: f6
     };
     let trajectory = Trajectory::from(segment);
     let evaluation = pipeline::judge_free(scenario, &sets.level, &trajectory);
-    let risk = |set| pipeline::peak_risk(set, &trajectory);
+    let risk = |set| pipeline::peak_risk(set, &trajectory, scenario.max_risk);
     let risks = sets.whole.iter().map(risk).collect();
     Baseline {
         trajectory,

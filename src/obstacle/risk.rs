@@ -124,9 +124,16 @@ struct Affine {
     value: f64,
 }
 
+impl Affine {
+    fn at(&self, u: f64) -> f64 {
+        self.slope * u + self.value
+    }
+}
+
 /// The largest risk along a straight motion, in closed form. With `u = 1 / t` every face's ratio is affine,
 /// so alpha is a maximum of affine functions; its least value is found by descending from both ends to where
-/// the lowest two of them cross, in at most as many steps as there are faces.
+/// the lowest two of them cross, in at most as many steps as there are faces. Errs to the high side: a face that
+/// alpha moves by no more than [`tolerance::LENGTH_M`] until the end is taken where it is at 1.
 pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &Line) -> PeakRisk {
     let none = PeakRisk {
         risk: 0.0,
@@ -142,21 +149,26 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
     });
     for (face, spread) in faces.iter().zip(spreads) {
         let at_zero = face.normal.dot(&line.origin) - face.initial_support;
-        let rate = face.normal.dot(&line.velocity) - spread.nominal_rate;
+        let ahead = face.normal.dot(&line.velocity);
+        let rate = ahead - spread.nominal_rate;
         if (at_zero + rate).is_nan() {
             return certain;
         }
-        if spread.per_rate.is_finite() {
+        // one that alpha hardly moves stays where it is at 1: its ratio would be made of rounding
+        if line.end <= tolerance::LENGTH_M * spread.per_rate {
+            let rate = ahead - face.velocity_support;
+            if rate > 0.0 {
+                end = end.min((tolerance::FACE_M - at_zero) / rate);
+            } else if rate < 0.0 {
+                start = start.max((tolerance::FACE_M - at_zero) / rate);
+            } else if at_zero > tolerance::FACE_M {
+                return none;
+            }
+        } else {
             rows.push(Affine {
                 slope: at_zero * spread.per_rate,
                 value: rate * spread.per_rate,
             });
-        } else if rate > 0.0 {
-            end = end.min((tolerance::FACE_M - at_zero) / rate);
-        } else if rate < 0.0 {
-            start = start.max((tolerance::FACE_M - at_zero) / rate);
-        } else if at_zero > tolerance::FACE_M {
-            return none;
         }
     }
     if start > end || end < 0.0 {
@@ -177,10 +189,9 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
         return none;
     }
     let highest = |u: f64| {
-        let reach = |r: &Affine| r.slope * u + r.value;
         let mut best = rows[0];
         for row in &rows[1..] {
-            if reach(row) > reach(&best) {
+            if row.at(u) > best.at(u) {
                 best = *row;
             }
         }
@@ -205,13 +216,24 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
     } else {
         f64::NAN
     };
+    // no alpha on the line is less
+    let mut bound = f64::INFINITY;
     if u.is_nan() {
         u = low;
         for _ in 0..rows.len() {
             u = ((right.value - left.value) / (left.slope - right.slope)).clamp(low, high);
             let best = highest(u);
-            let (found, known) = (best.slope * u + best.value, left.slope * u + left.value);
-            if !(found > known + tolerance::RISK * known.abs()) || best.slope == 0.0 {
+            if best.slope == 0.0 {
+                bound = f64::INFINITY;
+                break;
+            }
+            // where they cross both say the same; rounding hurts the flatter one less
+            bound = if left.slope.abs() < right.slope.abs() {
+                left.at(u)
+            } else {
+                right.at(u)
+            };
+            if !(best.at(u) > bound + tolerance::RISK * bound.abs()) {
                 break;
             }
             if best.slope < 0.0 {
@@ -222,9 +244,8 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
         }
     }
     let time = (1.0 / u).clamp(start, end);
-    let best = highest(u);
-    // both are alpha at that instant; rounding errs to the high side of the risk
-    let alpha = at(time).min((best.slope * u + best.value).max(0.0));
+    // all are alpha at that instant; rounding errs to the high side of the risk
+    let alpha = at(time).min(bound).min(highest(u).at(u)).max(0.0);
     PeakRisk {
         risk: risk_of(alpha),
         time,

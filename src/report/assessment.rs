@@ -67,20 +67,18 @@ fn alteration(situation: &Situation, assessment: &Assessment) -> String {
     }
     let mut ways = Vec::new();
     for (side, turn) in [("starboard", found.starboard), ("port", found.port)] {
-        if let Some(turn) = turn {
-            ways.push(format!("{:.2}° to {side}", up(deg_from_radians(turn))));
-        }
+        ways.push(match turn {
+            Some(turn) => format!("{:.2}° to {side}", up(deg_from_radians(turn))),
+            None => format!("no turn to {side}"),
+        });
     }
-    if let Some(change) = found.speed {
-        let (word, change) = if change < 0.0 {
-            ("slower", -change)
-        } else {
-            ("faster", change)
-        };
-        ways.push(format!("{:.2} m/s {word}", up(change)));
-    }
+    ways.push(match found.speed {
+        Some(change) if change < 0.0 => format!("{:.2} m/s slower", up(-change)),
+        Some(change) => format!("{:.2} m/s faster", up(change)),
+        None => "no change of speed".to_owned(),
+    });
     let alone = "Alteration that leaves every velocity obstacle, each alone: ";
-    if ways.is_empty() {
+    if found.starboard.is_none() && found.port.is_none() && found.speed.is_none() {
         let limit = situation.max_speed.max(situation.speed);
         return format!("{alone}none, neither a turn nor a speed up to {limit:.2} m/s");
     }

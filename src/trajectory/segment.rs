@@ -69,6 +69,11 @@ impl Segment {
         }
     }
 
+    /// Pose halfway.
+    pub(crate) fn middle(&self) -> Pose {
+        self.pose_after(0.5 * self.duration)
+    }
+
     /// Metres.
     pub fn length(&self) -> f64 {
         self.speed * self.duration

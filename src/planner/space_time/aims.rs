@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 use super::hazard::Hazard;
 use super::interception::{Chase, Interception, Limits};
 use super::part::Window;
-use crate::frame::{Side, Vector, direction, heading_of, to_port, wrap};
+use crate::frame::{Side, Vector, direction, heading_of, to_port};
 use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
 
@@ -49,6 +49,8 @@ struct Level {
     ahead: Vector,
     heading: f64,
     plane: HalfSpace,
+    /// Of the normal, to port of the direction.
+    across: f64,
 }
 
 /// Directions between two [`Level`]s, in which a corner is touched.
@@ -56,6 +58,9 @@ struct Level {
 struct Gap {
     corner: usize,
     levels: [usize; 2],
+    /// m/s. The moment of the corner's position about the relative velocity is so many times the distance
+    /// from the plane of each level, along which that velocity points.
+    moments: [f64; 2],
 }
 
 /// What does not depend on where own ship is, for one speed.
@@ -75,6 +80,16 @@ pub(crate) struct Aims {
     window: Option<Window>,
     corners: Vec<Corner>,
     paces: Vec<Pace>,
+}
+
+/// A [`Level`] from where own ship is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bearing {
+    /// Radians to it, to port positive.
+    turn: f64,
+    /// Metres from its plane now, and how many more after a turn to it to port, fewer after one to starboard.
+    straight: f64,
+    turned: f64,
 }
 
 /// A way to a corner.
@@ -153,66 +168,75 @@ impl Aims {
         &self,
         chases: &[Chase; 2],
         limits: Limits,
-        signed: &mut Vec<(f64, f64)>,
+        bearings: &mut Vec<Bearing>,
         mut found: impl FnMut(Aim),
     ) {
         for pace in &self.paces {
-            for (side, chase) in Side::BOTH.into_iter().zip(chases) {
-                let chase = chase.at_speed(pace.speed);
-                let mut offer = |corner: usize, meeting: Interception| {
-                    found(Aim {
-                        kind: self.kind(corner),
-                        side,
-                        speed: pace.speed,
-                        meeting,
-                    });
-                };
-                signed.clear();
-                signed.extend(pace.levels.iter().map(|level| {
-                    let turn = wrap(level.heading - chase.heading()) * side.turn_sign();
-                    let (position, time) = chase.turned(level.ahead, turn);
-                    (turn, level.plane.slack(position, time))
-                }));
-                for gap in &pace.gaps {
-                    let [(a, from), (b, to)] = gap.levels.map(|l| signed[l]);
-                    let corner = &self.corners[gap.corner];
-                    let touches = from.min(to) <= NO_SIGN_M && from.max(to) >= -NO_SIGN_M;
-                    if (a - b).abs() > PI {
+            let chases = chases.map(|c| c.at_speed(pace.speed));
+            bearings.clear();
+            bearings.extend(pace.levels.iter().map(|level| {
+                let turn = nearer(level.heading - chases[0].heading());
+                let [straight, turned] = chases[0].slacks(&level.plane, level.across, turn);
+                Bearing {
+                    turn,
+                    straight,
+                    turned,
+                }
+            }));
+            let mut offer = |corner: usize, side: Side, meeting: Interception| {
+                found(Aim {
+                    kind: self.kind(corner),
+                    side,
+                    speed: pace.speed,
+                    meeting,
+                });
+            };
+            for gap in &pace.gaps {
+                let ends = gap.levels.map(|l| &bearings[l]);
+                let wraps = (ends[0].turn - ends[1].turn).abs() > PI;
+                for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
+                    let sign = side.turn_sign();
+                    let [a, b] = ends.map(|e| sign * e.turn);
+                    let [from, to] = ends.map(|e| e.straight + sign * e.turned);
+                    let touches = (from <= NO_SIGN_M) | (to <= NO_SIGN_M);
+                    let touches = touches & ((from >= -NO_SIGN_M) | (to >= -NO_SIGN_M));
+                    let ahead = ((a >= -TURN_RAD) | (b >= -TURN_RAD))
+                        & ((a <= limits.turn) | (b <= limits.turn));
+                    // one jump that is nearly always taken
+                    if !(wraps | (touches & ahead)) {
+                        continue;
+                    }
+                    if wraps {
                         if a.max(b) <= limits.turn {
-                            self.seek(gap.corner, &chase, limits, &mut offer);
+                            self.seek(gap.corner, chase, limits, |m| offer(gap.corner, side, m));
                         }
                         continue;
                     }
-                    if !touches || a.max(b) < -TURN_RAD || a.min(b) > limits.turn {
-                        continue;
-                    }
-                    let meeting = chase.touch(&corner.vertex, [a, b], limits);
+                    let corner = &self.corners[gap.corner];
+                    let moments = [gap.moments[0] * from, gap.moments[1] * to];
+                    let meeting = chase.touch(&corner.vertex, [a, b], moments, limits);
                     if let Some(meeting) = meeting
                         && corner.grazed(chase.after(meeting.turn), pace.speed)
                     {
-                        offer(gap.corner, meeting);
+                        offer(gap.corner, side, meeting);
                     }
                 }
-                for &corner in &pace.others {
-                    self.seek(corner, &chase, limits, &mut offer);
+            }
+            for &corner in &pace.others {
+                for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
+                    self.seek(corner, chase, limits, |m| offer(corner, side, m));
                 }
             }
         }
     }
 
-    fn seek(
-        &self,
-        corner: usize,
-        chase: &Chase,
-        limits: Limits,
-        offer: &mut impl FnMut(usize, Interception),
-    ) {
+    fn seek(&self, corner: usize, chase: &Chase, limits: Limits, offer: impl FnOnce(Interception)) {
         let c = &self.corners[corner];
         let meeting = chase.intercept(c.vertex.origin, c.vertex.velocity, limits);
         if let Some(meeting) = meeting
             && c.grazed(chase.after(meeting.turn), chase.speed())
         {
-            offer(corner, meeting);
+            offer(meeting);
         }
     }
 }
@@ -251,8 +275,8 @@ impl Pace {
                 _ if all(1.0) || all(-1.0) => {}
                 [a, b] => match (first[a], first[b]) {
                     (Some(a), Some(b)) => {
-                        pace.gap(index, [a, b]);
-                        pace.gap(index, [a + 1, b + 1]);
+                        pace.gap(index, corner, [a, b]);
+                        pace.gap(index, corner, [a + 1, b + 1]);
                     }
                     (Some(first), None) => pace.fan(index, corner, first, &faces[b]),
                     (None, Some(first)) => pace.fan(index, corner, first, &faces[a]),
@@ -269,11 +293,21 @@ impl Pace {
             ahead,
             heading: heading_of(ahead),
             plane,
+            across: plane.normal.dot(&to_port(ahead)),
         });
     }
 
-    fn gap(&mut self, corner: usize, levels: [usize; 2]) {
-        self.gaps.push(Gap { corner, levels });
+    fn gap(&mut self, index: usize, corner: &Corner, levels: [usize; 2]) {
+        let moments = levels.map(|l| {
+            let level = &self.levels[l];
+            let velocity = level.ahead * self.speed - corner.vertex.velocity;
+            -velocity.dot(&to_port(level.plane.normal))
+        });
+        self.gaps.push(Gap {
+            corner: index,
+            levels,
+            moments,
+        });
     }
 
     /// Gaps from one level of a face to its other one: about its normal where the other face is always
@@ -300,11 +334,18 @@ impl Pace {
             };
             let next = self.levels.len();
             self.level(ahead, plane);
-            self.gap(index, [before, next]);
+            self.gap(index, corner, [before, next]);
             before = next;
         }
-        self.gap(index, [before, first + 1]);
+        self.gap(index, corner, [before, first + 1]);
     }
+}
+
+/// The difference of two angles in `(-pi, pi]`, in that range too. Without a jump, unlike [`crate::frame::wrap`].
+fn nearer(apart: f64) -> f64 {
+    let over = if apart > PI { TAU } else { 0.0 };
+    let under = if apart <= -PI { TAU } else { 0.0 };
+    apart - over + under
 }
 
 #[cfg(test)]
@@ -375,7 +416,7 @@ mod tests {
                 for speed in speeds {
                     for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
                         let chase = chase.at_speed(speed);
-                        aims.seek(k, &chase, limits, &mut |_, meeting: Interception| {
+                        aims.seek(k, &chase, limits, |meeting| {
                             let same = touched.iter().any(|a| {
                                 a.kind == aims.kind(k)
                                     && a.side == side

@@ -197,18 +197,25 @@ impl<'a> Closer<'a> {
 
     /// The earliest time at which own ship can be beyond each face of each body.
     fn reached(&self, keep_out: &KeepOut, pose: &Pose, time: f64) -> Vec<f64> {
-        let heading = wrap(pose.heading);
+        let (heading, ahead) = (wrap(pose.heading), pose.ahead());
         keep_out
             .bodies()
             .iter()
             .flat_map(|b| &b.faces)
-            .map(|face| time + self.reached_after(face, pose.position, heading, time))
+            .map(|face| {
+                let need = -face.plane.slack(pose.position, time);
+                let turn = || {
+                    let sine = cross(ahead, face.plane.normal).abs();
+                    (between(face.heading, heading), sine)
+                };
+                time + self.reached_after(face, need, turn)
+            })
             .collect()
     }
 
-    /// Seconds; infinite when never.
-    fn reached_after(&self, face: &Face, position: Vector, heading: f64, time: f64) -> f64 {
-        let need = -face.plane.slack(position, time);
+    /// Seconds until own ship can be `need` metres on; `turn` is the angle to the face's normal, and its sine. Infinite
+    /// when never.
+    fn reached_after(&self, face: &Face, need: f64, turn: impl FnOnce() -> (f64, f64)) -> f64 {
         let faster = self.speed - face.plane.velocity_support;
         if need <= 0.0 {
             return 0.0;
@@ -216,8 +223,8 @@ impl<'a> Closer<'a> {
         if faster <= 0.0 {
             return f64::INFINITY;
         }
-        let angle = between(face.heading, heading);
-        let turned = (need + self.radius * (angle - angle.sin())) / faster;
+        let (angle, sine) = turn();
+        let turned = (need + self.radius * (angle - sine)) / faster;
         if turned < self.radius * angle / self.speed {
             need / faster
         } else if face.plane.velocity_support < 0.0 {

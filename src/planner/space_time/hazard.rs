@@ -119,7 +119,7 @@ impl<'a> Hazard<'a> {
 
     #[inline]
     fn local_clearance_bound(&self, segment: &Segment) -> f64 {
-        self.bound_about(segment, segment.pose_after(0.5 * segment.duration).position)
+        self.bound_about(segment, segment.middle().position)
     }
 
     #[inline]
@@ -193,18 +193,17 @@ impl<'a> Hazard<'a> {
         }
     }
 
-    /// True when the segment is inside, deeper than touching.
-    pub(crate) fn meets(&self, segment: &Segment) -> bool {
+    /// True when the segment, whose place halfway is `middle`, is inside, deeper than touching.
+    fn meets_about(&self, segment: &Segment, middle: Vector) -> bool {
         match &self.window {
-            None => self.local_meets(segment),
-            Some(window) => {
-                Self::meanwhile(window, segment).is_some_and(|local| self.local_meets(&local))
-            }
+            None => self.local_meets(segment, middle),
+            Some(window) => Self::meanwhile(window, segment)
+                .is_some_and(|s| self.local_meets(&s, s.middle().position)),
         }
     }
 
-    fn local_meets(&self, segment: &Segment) -> bool {
-        self.local_clearance_bound(segment) <= 0.0
+    fn local_meets(&self, segment: &Segment, middle: Vector) -> bool {
+        self.bound_about(segment, middle) <= 0.0
             && match self.round {
                 Some(ellipsoid) => round_contact(ellipsoid, segment).is_some(),
                 None => contact::meets(self.body, segment, TOUCH_M),
@@ -227,9 +226,11 @@ fn round_contact(ellipsoid: &EllipsoidObstacle, segment: &Segment) -> Option<f64
 
 /// The first obstacle, in their order, that the first segment to meet any meets deeper than touching.
 pub(crate) fn first_met(hazards: &[Hazard], segments: &[Segment]) -> Option<usize> {
-    segments
-        .iter()
-        .find_map(|s| hazards.iter().find(|h| h.meets(s)).map(|h| h.obstacle))
+    segments.iter().find_map(|s| {
+        let middle = s.middle().position;
+        let met = hazards.iter().find(|h| h.meets_about(s, middle));
+        met.map(|h| h.obstacle)
+    })
 }
 
 /// The first contact of a chain of segments with any obstacle: `(obstacle, time)`; of several at one

@@ -23,7 +23,7 @@
 
 use super::closer::Closer;
 use super::keep_out::KeepOut;
-use crate::frame::{Pose, cross, heading_of, wrap};
+use crate::frame::{Pose, cross, direction, heading_of, to_port, wrap};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
@@ -146,16 +146,17 @@ impl<'a> Heuristic<'a> {
     fn shrinking(&self, start: f64, angle: f64, growth: f64, until: f64) -> Stretch {
         let (u, r) = (self.max_speed, self.radius);
         let turning = (r * angle / u).min(until);
-        let value = |tau: f64| {
-            let made_good = r * (angle.sin() - (angle - u * tau / r).sin());
-            (start + growth * tau - made_good.max(0.0)).max(0.0)
-        };
         let mut sum = 0.0;
         let mut before = start;
         let step = turning / STEPS as f64;
         if turning > 0.0 {
+            // what is left to turn, by equal steps
+            let mut left = direction(angle);
+            let (from, back) = (left.y, direction(-u * step / r));
             for k in 1..=STEPS {
-                let now = value(step * k as f64);
+                left = back * left.x + to_port(back) * left.y;
+                let made_good = r * (from - left.y);
+                let now = (start + growth * step * k as f64 - made_good.max(0.0)).max(0.0);
                 sum += before.min(now).powi(2) * step;
                 before = now;
             }

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::frame::{Pose, Side, Vector, cross, to_port};
-use crate::obstacle::MovingVertex;
+use crate::frame::{Pose, Side, Vector, cross, to_port, wrap};
+use crate::obstacle::{HalfSpace, MovingVertex};
 
 /// What own ship sails: a turn and a line at one speed.
 #[derive(Debug, Clone, Copy)]
@@ -17,6 +17,8 @@ pub(crate) struct Chase {
     sigma: f64,
     time: f64,
     speed: f64,
+    /// Seconds for a radian.
+    pace: f64,
 }
 
 /// Bounds of what counts as a meeting.
@@ -45,6 +47,9 @@ const MEETING_M: f64 = 1e-7;
 /// Radians. A turn this close to a full circle is none.
 const DEAD_AHEAD_RAD: f64 = 1e-12;
 
+/// Radians. After a step this small a turn is as good as its rounding.
+const LAST_STEP_RAD: f64 = 1e-9;
+
 /// Iterations of a root; Newton on a concave piece needs about five.
 const MAX_ITERATIONS: usize = 60;
 
@@ -56,26 +61,31 @@ impl Chase {
         let centre = pose.position + to_port(ahead) * (sigma * radius);
         Self {
             position: pose.position,
-            heading: pose.heading,
+            heading: wrap(pose.heading),
             ahead,
             centre,
             radius,
             sigma,
             time,
             speed,
+            pace: radius / speed,
         }
     }
 
     /// The same chase at another speed.
     pub(crate) fn at_speed(&self, speed: f64) -> Self {
-        Self { speed, ..*self }
+        Self {
+            speed,
+            pace: self.radius / speed,
+            ..*self
+        }
     }
 
     pub(crate) fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Before the turn, radians.
+    /// Before the turn, radians in `(-pi, pi]`.
     pub(crate) fn heading(&self) -> f64 {
         self.heading
     }
@@ -89,15 +99,24 @@ impl Chase {
     /// Where and when a turn of this many radians, which leads into a direction, ends.
     pub(crate) fn turned(&self, direction: Vector, turn: f64) -> (Vector, f64) {
         let position = self.centre - to_port(direction) * (self.sigma * self.radius);
-        (position, self.time + self.radius * turn / self.speed)
+        (position, self.time + self.pace * turn)
+    }
+
+    /// The distance of own ship from a plane, metres, positive outside; and how much greater it is after a turn of this
+    /// many radians to port, smaller after one to starboard. `across` is the plane's normal to port of where she then heads.
+    pub(crate) fn slacks(&self, plane: &HalfSpace, across: f64, turn: f64) -> [f64; 2] {
+        let before = plane.normal.dot(&to_port(self.ahead));
+        let moved = self.radius * (before - across) - plane.velocity_support * self.pace * turn;
+        [plane.slack(self.position, self.time), moved]
     }
 
     /// The meeting with a moving vertex by a turn between two, where own ship's motion relative to the
-    /// vertex passes it on different sides.
+    /// vertex passes it on different sides: `moments` of the vertex about that motion, m²/s, have two signs.
     pub(crate) fn touch(
         &self,
         vertex: &MovingVertex,
         turns: [f64; 2],
+        moments: [f64; 2],
         limits: Limits,
     ) -> Option<Interception> {
         // moment of the relative position about the relative velocity, and its rate with the turn
@@ -110,8 +129,7 @@ impl Chase {
             let rate = cross(to, turning);
             (cross(to, velocity), rate, to, velocity, time)
         };
-        let [mut low, mut high] = turns;
-        let (at_low, at_high) = (moment(low).0, moment(high).0);
+        let ([mut low, mut high], [at_low, at_high]) = (turns, moments);
         if (at_low < 0.0) == (at_high < 0.0) {
             return None;
         }
@@ -128,7 +146,8 @@ impl Chase {
             let next = if within { newton } else { 0.5 * (low + high) };
             let step = (next - turn).abs();
             turn = next;
-            if step <= 1e-13 {
+            // each step of Newton's squares the error
+            if step <= LAST_STEP_RAD {
                 break;
             }
         }

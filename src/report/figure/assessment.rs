@@ -2,6 +2,7 @@
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
 use super::outline::{Stroke, curve, mark};
+use super::panel::{AREA, NOTE_SIZE};
 use super::sections::{seconds, sections_beside};
 use super::{Figure, Panel, Window};
 use crate::assessment::Situation;
@@ -75,6 +76,10 @@ fn name(panel: &mut Panel, situation: &Situation) {
     // a word stands on its line
     let [above, below] = [0.02, 0.045].map(|share| share * panel.window().size().y);
     let [east, north] = [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
+    // how wide a letter is and how high a line, about
+    let letter = panel.window().size().x * 0.6 * f64::from(NOTE_SIZE) / AREA[0];
+    let line = panel.window().size().y * 1.3 * f64::from(NOTE_SIZE) / AREA[1];
+    let mut taken: Vec<(Vector, f64)> = Vec::new();
     for target in situation.obstacles {
         let section = target.section(0.0);
         let middle = |n: Vector| 0.5 * (section.support(n) - section.support(-n));
@@ -85,6 +90,19 @@ fn name(panel: &mut Panel, situation: &Situation) {
         } else {
             section.support(north) + above
         };
-        panel.note(target.name(), Vector::new(middle(east), height));
+        // away from a name that stands there already
+        let half = 0.5 * letter * target.name().chars().count() as f64;
+        let way = if northward { -line } else { line };
+        let mut at = Vector::new(middle(east), height);
+        let meets = |at: Vector, (p, other): &(Vector, f64)| {
+            (p.x - at.x).abs() < half + other && (p.y - at.y).abs() < 0.9 * line
+        };
+        for _ in 0..2 * taken.len() {
+            if taken.iter().any(|other| meets(at, other)) {
+                at.y += way;
+            }
+        }
+        taken.push((at, half));
+        panel.note(target.name(), at);
     }
 }

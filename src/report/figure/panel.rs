@@ -25,6 +25,9 @@ const LIFT: f64 = 16.0;
 const LEGEND_LINE: f64 = 20.0;
 const LEGEND_FRAME: f64 = 26.0;
 
+/// Pixels of a note's letters.
+pub(super) const NOTE_SIZE: u32 = 11;
+
 /// One pair of axes with what is drawn between them.
 pub struct Panel {
     title: String,
@@ -95,7 +98,7 @@ impl Panel {
 
     /// A word at a place.
     pub(super) fn note(&mut self, text: &str, at: Vector) {
-        let note = TextAnnotation::new(text, at.x, at.y).with_font_size(11);
+        let note = TextAnnotation::new(text, at.x, at.y).with_font_size(NOTE_SIZE);
         self.notes.push(note);
     }
 

@@ -37,20 +37,33 @@ const ALTERNATIVE: Stroke = Stroke {
 /// Of land.
 pub(super) const LAND: &str = "#d9cba3";
 
+/// Around pieces of land.
+const SHORE: Stroke = Stroke {
+    colour: LAND,
+    width: 0.8,
+    dashed: false,
+};
+
 /// Instants at which the sets are drawn, the start among them.
 const MOMENTS: usize = 4;
 
 /// Seconds between two points of a curve.
 const STEP: f64 = 1.0;
 
-/// The chart of a run, and its path-time diagram where it has one; of a plan of forces, its moments.
+/// The chart of a run, and its path-time diagram where it has one; of a plan of forces, its moments. Under the
+/// scenario's title.
 pub fn plan_figure(run: &Run) -> Figure {
+    panels(run).titled(&run.scenario.title)
+}
+
+fn panels(run: &Run) -> Figure {
     let plan = run.planned.outcome.plan();
     if plan.is_some_and(|p| p.trajectory.steered().is_some())
         && let Some(figure) = moments_figure(run)
     {
         return figure;
     }
+    let scenario = &run.scenario;
     let mut panels = vec![chart_panel("Chart", run)];
     if let Some(diagram) = run.planned.path_time.as_deref() {
         let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
@@ -62,7 +75,11 @@ pub fn plan_figure(run: &Run) -> Figure {
             diagram,
             stroke: PLANNED,
         };
-        let title = format!("Path {} and time", words::paths(diagram));
+        let title = if scenario.alternatives.is_empty() {
+            "Path and time".to_owned()
+        } else {
+            format!("Path and time: {}", words::paths(diagram))
+        };
         panels.push(path_time_panel(&title, &names, &[line]));
     }
     Figure::new(2, panels)
@@ -140,7 +157,10 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
         }
         let list: Vec<String> = moments.iter().map(|t| seconds(*t)).collect();
         panel.line_key("planned", PLANNED);
-        panel.point_key(&format!("at {} s", list.join(", ")), PLANNED.colour);
+        panel.point_key(
+            &format!("own ship, and sets, at {} s", list.join(", ")),
+            PLANNED.colour,
+        );
     }
     panel.line_key("desired", DESIRED);
     if land.is_some() {
@@ -162,7 +182,8 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
     panel
 }
 
-/// The land within a window, filled, piece by piece.
+/// The land within a window, filled, piece by piece. Each has an outline too: without one the water would shine through
+/// where two meet.
 pub(super) fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
     let window = geometry::Window {
         low: shown.low,
@@ -171,6 +192,10 @@ pub(super) fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
     land.into_iter()
         .flat_map(|land| land.map.pieces_within(&window))
         .filter_map(|piece| ConvexPolygon::hull(&window.part_of(piece)).ok())
-        .filter_map(|piece| area(&piece, LAND, 1.0))
+        .filter_map(|piece| {
+            let outline = curve(piece.vertices(), true, SHORE);
+            area(&piece, LAND, 1.0).map(|filled| [filled, outline])
+        })
+        .flatten()
         .collect()
 }

@@ -14,6 +14,10 @@ use crate::report::{WriteError, write_atomically};
 /// Pixels of a PNG for one of the SVG.
 const PNG_SCALE: f32 = 2.0;
 
+/// Pixels of a title's letters, and how many of them stand above one panel.
+const TITLE_SIZE: u32 = 18;
+const LETTERS: usize = 54;
+
 /// What the drawing library calls its clip paths, before a number that counts on through a process.
 const CLIP: &str = "kuva-clip-";
 
@@ -57,8 +61,9 @@ pub enum FigureError {
     Write(#[from] WriteError),
 }
 
-/// Panels in rows of `columns`.
+/// Panels in rows of `columns`, under a title.
 pub struct Figure {
+    title: Option<String>,
     columns: usize,
     panels: Vec<Panel>,
 }
@@ -67,7 +72,26 @@ impl Figure {
     /// Panels, row by row.
     pub fn new(columns: usize, panels: Vec<Panel>) -> Self {
         let columns = columns.clamp(1, panels.len().max(1));
-        Self { columns, panels }
+        Self {
+            title: None,
+            columns,
+            panels,
+        }
+    }
+
+    /// With a title above all panels; what does not fit is left out, and three dots say so.
+    pub fn titled(self, title: &str) -> Self {
+        let fits = self.columns.max(1) * LETTERS;
+        let title = if title.chars().count() > fits {
+            let kept: String = title.chars().take(fits - 1).collect();
+            format!("{}…", kept.trim_end())
+        } else {
+            title.to_owned()
+        };
+        Self {
+            title: Some(title),
+            ..self
+        }
     }
 
     fn scene(self) -> kuva::render::render::Scene {
@@ -90,6 +114,9 @@ impl Figure {
             .with_padding(8.0);
         if count > 1 {
             canvas = canvas.with_labels_lowercase();
+        }
+        if let Some(title) = self.title {
+            canvas = canvas.with_title(title).with_title_size(TITLE_SIZE);
         }
         for (i, below) in rows.into_iter().enumerate() {
             canvas = canvas.with_row_height(i, top + AREA[1] + below);
