@@ -39,6 +39,41 @@ fn load(criterion: &mut Criterion) {
     }
 }
 
+/// One ragged ring of 100,000 vertices, 24 km about a point.
+fn ragged() -> String {
+    const VERTICES: u32 = 100_000;
+    let position = |i: u32| {
+        let angle = std::f64::consts::TAU * f64::from(i % VERTICES) / f64::from(VERTICES);
+        let waves =
+            (0..14).map(|k| 1.6_f64.powi(-k) * (2_f64.powi(k) * angle + f64::from(k)).sin());
+        let radius = 24e3 * (1.0 + 0.1 * waves.sum::<f64>());
+        let (sin, cos) = angle.sin_cos();
+        format!(
+            "[{:.7},{:.7}]",
+            10.4 + radius * cos / 49.8e3,
+            63.44 + radius * sin / 111.4e3
+        )
+    };
+    let positions: Vec<String> = (0..=VERTICES).map(position).collect();
+    format!(
+        r#"{{"type":"Polygon","coordinates":[[{}]]}}"#,
+        positions.join(",")
+    )
+}
+
+fn load_a_large_one(criterion: &mut Criterion) {
+    let (text, earth) = (ragged(), earth(63.44, 10.4));
+    let map = Map::parse(&text, &earth).expect("a map");
+    assert_eq!(map.polygons()[0].vertex_count(), 100_000);
+    let mut group = criterion.benchmark_group("map");
+    group
+        .sample_size(10)
+        .bench_function("load/100000 vertices", |b| {
+            b.iter(|| Map::parse(black_box(&text), &earth).expect("a map"))
+        });
+    group.finish();
+}
+
 /// A path around Munkholmen, and the distance from land.
 fn ask(criterion: &mut Criterion) {
     let map = Map::read(&file("trondheim-harbour"), &earth(63.44, 10.399)).expect("a map");
@@ -87,5 +122,5 @@ fn plan(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, load, ask, plan);
+criterion_group!(benches, load, load_a_large_one, ask, plan);
 criterion_main!(benches);

@@ -210,7 +210,7 @@ fn first_turn(plan: &Trajectory) -> Option<Side> {
 /// True when own ship, seen from the target's estimate, crosses its course line ahead of it.
 fn crosses_ahead(plan: &Trajectory, ship: &ShipTrack) -> bool {
     let seen: Vec<Vector> = plan
-        .sample_times(0.5)
+        .sample_times(0.5, u32::MAX)
         .into_iter()
         .map(|t| ship.pose_at(t).body_coordinates(plan.pose_at(t).position))
         .collect();

@@ -113,7 +113,7 @@ fn what_needs_an_origin_asks_for_it_once() {
         (
             "{ lat_deg = 63.4480, lon",
             "{ lat = 63.4480, lon",
-            "targets[0].position.lat: found an unknown key; allowed: did you mean 'lat_deg'?",
+            "targets[0].position.lat: found an unknown key, perhaps for 'lat_deg'; allowed: one of ",
         ),
     ] {
         assert!(SCENARIO.contains(from), "{from}");

@@ -608,7 +608,7 @@ fn the_risk_along_a_trajectory_is_the_largest_of_its_segments() {
         let peak = o.peak_risk_along(&trajectory);
         let (a, b) = (o.peak_risk(&first), o.peak_risk(&second));
         assert_eq!(peak.risk, a.risk.max(b.risk));
-        for t in trajectory.sample_times(0.5) {
+        for t in trajectory.sample_times(0.5, u32::MAX) {
             assert!(o.risk(trajectory.pose_at(t).position, t) <= peak.risk + 1e-9);
         }
         between += usize::from(peak.risk > 0.0 && peak.risk < 1.0);

@@ -80,6 +80,31 @@ fn what_was_planned_passes() {
         assert!(found.verified(), "{name}: {:#?}", found.violations);
     }
 }
+/// Eleven days and a half at a plan's greatest length: samples are farther apart, few enough for a file, and no farther.
+#[test]
+fn a_plan_of_a_million_seconds_is_written_and_checked() {
+    let text = r#"title = "long"
+        horizon_s = 1000000.0
+        own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }
+        mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 4900000, north_m = 0 }] }"#;
+    let written = document(Scenario::parse(text).expect("a scenario"));
+    let samples = "/trajectory/samples";
+    let count = written.pointer(samples).and_then(Value::as_array);
+    assert!((19_000..20_010).contains(&count.expect("samples").len()));
+    assert!(written.to_string().len() < 8 << 20);
+    let found = checked(&written);
+    assert!(found.violations.is_empty(), "{:?}", found.violations);
+    let mut gap = written;
+    list(&mut gap, samples).remove(700);
+    let found = checked(&gap);
+    assert!(
+        found
+            .violations
+            .iter()
+            .any(|v| v.what.contains("samples[700]"))
+    );
+}
+
 /// Level sets that are millions of times smaller than the sets, and sets that hardly spread at all: risk is made of the last digits
 /// there, and the document may say no less than the check finds.
 #[test]

@@ -1,5 +1,6 @@
 //! Convex polygons, degenerate ones included: a point is a polygon of one vertex, a segment of two.
 
+use super::rounded;
 use crate::frame::{Vector, cross, to_starboard};
 use crate::tolerance;
 
@@ -16,9 +17,7 @@ pub enum GeometryError {
         index: usize,
     },
     /// A vertex lies inside the hull of the others.
-    #[error(
-        "vertex {index} lies {depth:.3e} inside the hull of the vertices; the set must be convex"
-    )]
+    #[error("vertex {index} inside the hull of the others, {:?} deep", rounded(*depth))]
     NotConvex {
         /// Which vertex, from 0.
         index: usize,

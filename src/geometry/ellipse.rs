@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, SymmetricEigen};
 
-use super::ConvexPolygon;
+use super::{ConvexPolygon, rounded};
 use crate::frame::{Vector, cross, direction, to_port};
 use crate::tolerance;
 
@@ -31,9 +31,7 @@ pub enum ShapeError {
         found: f64,
     },
     /// The two entries off the diagonal differ.
-    #[error(
-        "shape matrix is not symmetric: [0][1] is {upper}, [1][0] is {lower}; they must be equal"
-    )]
+    #[error("a shape matrix that is not symmetric: [0][1] is {upper}, [1][0] is {lower}")]
     NotSymmetric {
         /// Entry `[0][1]`.
         upper: f64,
@@ -42,7 +40,8 @@ pub enum ShapeError {
     },
     /// A negative eigenvalue.
     #[error(
-        "shape matrix is not positive semidefinite: its least eigenvalue is {eigenvalue:.6e}; it must be >= 0"
+        "a shape matrix that is not positive semidefinite: its least eigenvalue is {:?}",
+        rounded(*eigenvalue)
     )]
     NotPositiveSemidefinite {
         /// The least eigenvalue.

@@ -22,3 +22,8 @@ pub use enclosing_ellipse::outer_enclosing_ellipse;
 pub use nearness::{Stretch, stretch_near};
 pub use polygon::{Polygon, PolygonError};
 pub use simplify::outer_simplified;
+
+/// A number to six digits, for an error to say.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}

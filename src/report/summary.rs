@@ -10,6 +10,7 @@ use crate::trajectory::Trajectory;
 
 /// Seconds between the positions among which the crossing of a track is looked for.
 const CROSSING_STEP: f64 = 1.0;
+const MOST_CROSSINGS: u32 = 1_000_000;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -169,7 +170,7 @@ fn cuts_astern(trajectory: &Trajectory, target: &Target, tcpa: f64) -> Option<bo
         ship.pose_at(time)
             .body_coordinates(trajectory.pose_at(time).position)
     };
-    let times = trajectory.sample_times(CROSSING_STEP);
+    let times = trajectory.sample_times(CROSSING_STEP, MOST_CROSSINGS);
     let mut nearest: Option<(f64, bool)> = None;
     for pair in times.windows(2) {
         let (a, b) = (seen(ship, pair[0]), seen(ship, pair[1]));

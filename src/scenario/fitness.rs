@@ -91,6 +91,11 @@ fn for_optimal_control(scenario: &Scenario) -> Vec<Fault> {
     faults
 }
 
+/// A length to the micrometre, without digits that say nothing.
+fn micrometres(length: f64) -> f64 {
+    (length * 1e6).round() / 1e6
+}
+
 fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
     let mut faults = Vec::new();
     let first = scenario.desired.legs()[0].start;
@@ -99,7 +104,7 @@ fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
     if !(away <= tolerance::JOINT_M) {
         faults.push(fault(
             "own_ship.position",
-            format!("a start {away} m from the first waypoint"),
+            format!("a start {} m from the first waypoint", micrometres(away)),
             "the first waypoint: the path-time planner keeps to the path",
         ));
     }

@@ -164,16 +164,16 @@ impl<'a, 'i> Section<'a, 'i> {
                 continue;
             }
             let meant = nearest(name, &self.known);
-            let allowed = match meant {
-                Some(meant) => format!("did you mean '{meant}'?"),
-                None => format!("one of {}", self.known.join(", ")),
+            let found = match meant {
+                Some(meant) => format!("an unknown key, perhaps for '{meant}'"),
+                None => "an unknown key".to_owned(),
             };
             missing.retain(|(keys, _)| !keys.iter().any(|key| Some(key) == meant));
             self.source.fault(
                 &self.path_of(name),
                 Some(key.span().start),
-                "an unknown key",
-                allowed,
+                &found,
+                format_args!("one of {}", self.known.join(", ")),
             );
         }
         for (keys, allowed) in missing {

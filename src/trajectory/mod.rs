@@ -192,11 +192,12 @@ impl Trajectory {
         }
     }
 
-    /// Every multiple of `step` seconds from the start, each segment's start or node and the end; increasing,
-    /// without repetition.
-    pub fn sample_times(&self, step: f64) -> Vec<f64> {
+    /// Every multiple of `step` seconds from the start, or of a longer step that makes `most` of them; each segment's
+    /// start or node and the end; increasing, without repetition.
+    pub fn sample_times(&self, step: f64, most: u32) -> Vec<f64> {
         let (start, end) = (self.start_time(), self.end_time());
-        let count = ((end - start) / step).floor().clamp(0.0, 1e6) as usize;
+        let step = step.max((end - start) / f64::from(most.max(1)));
+        let count = ((end - start) / step).floor().max(0.0) as usize;
         let mut times: Vec<f64> = (0..=count).map(|i| start + step * i as f64).collect();
         times.extend(self.joints());
         times.push(end);

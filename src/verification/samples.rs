@@ -7,8 +7,9 @@ use crate::evaluation::Violation;
 use crate::frame::{Vector, heading_from_course_deg, heading_of, wrap};
 use crate::tolerance;
 
-/// Seconds. Between two samples there is at most this, and rounding.
+/// Seconds. Between two samples there is at most this, and rounding; in a long plan one of so many parts.
 const STEP: f64 = 1.0;
+const PARTS: f64 = 20_000.0;
 
 /// The first sample that is not on the motion, or leaves a part of it out.
 pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> {
@@ -23,19 +24,20 @@ pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> 
             time,
         })
     };
+    let step = STEP.max(motion.end_time() / PARTS);
     let mut before = -tolerance::TIME_S;
     for (index, sample) in samples.iter().enumerate() {
         let gap = sample.t_s - before;
         let most = if index == 0 {
             2.0 * tolerance::TIME_S
         } else {
-            STEP * (1.0 + tolerance::FIGURE)
+            step * (1.0 + tolerance::FIGURE)
         };
         if !(gap > 0.0 && gap <= most) {
             let allowed = if index == 0 {
-                "0"
+                "0".to_owned()
             } else {
-                "at most a second later"
+                format!("at most {step} s later")
             };
             return wrong(
                 index,

@@ -45,7 +45,7 @@ fn every_fault_of_a_file_is_reported_at_once() {
         "line 7: own_ship.course_deg: found the text \"east\"; allowed: a number from -360 to 360",
         "own_ship.length_m: found nan",
         "own_ship.turning_radius_m: found 0; allowed: a number from 0.001",
-        "own_ship.safty_margin_m: found an unknown key; allowed: did you mean 'safety_margin_m'?",
+        "own_ship.safty_margin_m: found an unknown key, perhaps for 'safety_margin_m'; allowed: one of ",
         "mission.waypoints[1]: found the waypoint before it again",
         "targets[0].speed_spread_mps: found -0.5; allowed: a number from 0 to 100",
         "targets[0].speed_kn: found speed_kn beside speed_mps; allowed: one of the two, not both",

@@ -153,7 +153,8 @@ pub struct NodeDocument {
     pub yaw_nm: f64,
 }
 
-/// A trajectory, exact and sampled: every second, and wherever a segment starts or ends or a node is.
+/// A trajectory, exact and sampled: every second, or every 20,000th part of a longer one, and
+/// wherever a segment starts or ends or a node is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct TrajectoryDocument {

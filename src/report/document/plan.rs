@@ -25,8 +25,10 @@ use crate::trajectory::{Steered, Trajectory};
 /// The name of the plan document's format.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
 
-/// Seconds between two samples of a trajectory.
+/// Seconds between two samples of a trajectory, and how many there are at most beside those where it changes: a day's way
+/// is not written second by second.
 const SAMPLE_STEP: f64 = 1.0;
+const MOST_SAMPLES: u32 = 20_000;
 
 /// One plan, alone: everything that is needed to check it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -264,7 +266,7 @@ fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
     TrajectoryDocument {
         segments: trajectory.steered().is_none().then(|| segments.collect()),
         samples: trajectory
-            .sample_times(SAMPLE_STEP)
+            .sample_times(SAMPLE_STEP, MOST_SAMPLES)
             .into_iter()
             .map(|time| {
                 let mut pose = trajectory.pose_at(time);

@@ -47,8 +47,9 @@ const SHORE: Stroke = Stroke {
 /// Instants at which the sets are drawn, the start among them.
 const MOMENTS: usize = 4;
 
-/// Seconds between two points of a curve.
+/// Seconds between two points of a curve, and how many there are at most beside its joints.
 const STEP: f64 = 1.0;
+const MOST_POINTS: u32 = 5_000;
 
 /// The chart of a run, and its path-time diagram where it has one; of a plan of forces, its moments. Under the
 /// scenario's title.
@@ -102,7 +103,7 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
     let waypoints = scenario.desired.waypoints();
     let way: Vec<Vector> = match trajectory {
         Some(trajectory) => trajectory
-            .sample_times(STEP)
+            .sample_times(STEP, MOST_POINTS)
             .into_iter()
             .map(|time| trajectory.pose_at(time).position)
             .collect(),
