@@ -147,27 +147,14 @@ fn first_turn(trajectory: &Trajectory) -> Option<Turn> {
     turn.filter(|t| t.angle >= LEAST_TURN)
 }
 
-/// The first stretch of nodes over which the heading goes to one side by more than [`LEAST_TURN`].
+/// The first alteration of course under forces, which looks through steering.
 fn first_swing(motion: &Steered) -> Option<Turn> {
-    let mut swing: Option<Turn> = None;
-    for pair in motion.nodes().windows(2) {
-        let more = pair[1].pose.heading - pair[0].pose.heading;
-        let Some(side) = Side::of_turn(more) else {
-            continue;
-        };
-        match &mut swing {
-            Some(begun) if begun.side == side => begun.angle += more.abs(),
-            Some(done) if done.angle >= LEAST_TURN => break,
-            _ => {
-                swing = Some(Turn {
-                    side,
-                    angle: more.abs(),
-                    time: pair[0].time,
-                });
-            }
-        }
-    }
-    swing.filter(|turn| turn.angle >= LEAST_TURN)
+    let swing = *motion.swings().first()?;
+    Some(Turn {
+        side: Side::of_turn(swing.turned)?,
+        angle: swing.turned.abs(),
+        time: swing.start_time,
+    })
 }
 
 fn reason(outcome: &Outcome) -> String {

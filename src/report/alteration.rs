@@ -1,21 +1,17 @@
 //! Alterations of course of any motion: the first one and the largest.
 
 use super::summary::Turn;
-use crate::frame::{Side, deg_from_radians, radians_from_deg, wrap};
-use crate::trajectory::{Steered, Trajectory};
+use crate::frame::{Side, deg_from_radians, wrap};
+use crate::trajectory::Trajectory;
 
 /// Degrees. A smaller alteration of lines and arcs is no turn: nobody would see it.
 const LEAST_TURN_DEG: f64 = 0.5;
 
-/// Degrees. A motion under forces never holds a heading quite: what swings by less is steering, no alteration, and what
-/// swings back by less ends none.
-const LEAST_SWING_DEG: f64 = 5.0;
-
 /// The first alteration of a trajectory: arcs that follow each other to one side are one turn. Under forces the first
-/// swing of the heading to one side of [`LEAST_SWING_DEG`] or more.
+/// swing of the heading to one side.
 pub(super) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
     if let Some(motion) = trajectory.steered() {
-        return swings(motion).first().and_then(|swing| seen(*swing));
+        return motion.swings().first().and_then(|swing| seen(swing.turned));
     }
     let mut turned = 0.0_f64;
     for segment in trajectory.segments() {
@@ -40,8 +36,10 @@ pub(super) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
 /// radians, included; under forces the largest swing of the heading to one side. `None` where all are too small to be seen.
 pub(super) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option<Turn> {
     if let Some(motion) = trajectory.steered() {
-        let largest = swings(motion)
-            .into_iter()
+        let largest = motion
+            .swings()
+            .iter()
+            .map(|swing| swing.turned)
             .max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
         return seen(largest);
     }
@@ -68,38 +66,6 @@ fn seen(turned: f64) -> Option<Turn> {
     (degrees >= LEAST_TURN_DEG).then_some(Turn { side, degrees })
 }
 
-/// From one extreme of the heading to the next, radians, every one of at least [`LEAST_SWING_DEG`]: swings back by less
-/// are looked through. In order of time.
-fn swings(motion: &Steered) -> Vec<f64> {
-    let mut extremes: Vec<f64> = Vec::new();
-    // the least and the greatest heading since the last extreme
-    let [mut least, mut greatest] = [f64::INFINITY, f64::NEG_INFINITY];
-    let mut side = None;
-    for node in motion.nodes() {
-        let heading = deg_from_radians(node.pose.heading);
-        least = least.min(heading);
-        greatest = greatest.max(heading);
-        let turned = if side != Some(Side::Starboard) && greatest - heading >= LEAST_SWING_DEG {
-            (greatest, Side::Starboard)
-        } else if side != Some(Side::Port) && heading - least >= LEAST_SWING_DEG {
-            (least, Side::Port)
-        } else {
-            continue;
-        };
-        extremes.push(turned.0);
-        side = Some(turned.1);
-        (least, greatest) = (heading, heading);
-    }
-    extremes.extend(side.map(|side| match side {
-        Side::Port => greatest,
-        Side::Starboard => least,
-    }));
-    extremes
-        .windows(2)
-        .map(|pair| radians_from_deg(pair[1] - pair[0]))
-        .collect()
-}
-
 /// Changes of the heading along segments one after another, radians.
 fn changes(trajectory: &Trajectory, before: f64) -> Vec<f64> {
     let mut heading = before;
@@ -122,7 +88,7 @@ fn changes(trajectory: &Trajectory, before: f64) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::frame::{Pose, Vector};
-    use crate::trajectory::{Node, Segment};
+    use crate::trajectory::{Node, Segment, Steered};
 
     /// Degrees to starboard per segment of ten seconds.
     fn arcs(turns: &[f64]) -> Trajectory {

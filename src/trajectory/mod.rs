@@ -9,7 +9,7 @@ mod steered;
 pub use desired::{DesiredLeg, DesiredTrajectory, Nearest};
 pub use network::{NetworkError, NetworkLeg, PathNetwork};
 pub use segment::{Mover, Segment};
-pub use steered::{Bounds, Cubic, Node, Steered, hermite};
+pub use steered::{Bounds, Cubic, Node, Steered, Swing, hermite};
 
 use crate::frame::{Pose, wrap};
 use crate::tolerance;

@@ -45,6 +45,19 @@ impl Node {
     }
 }
 
+/// Radians, a thirty-sixth of a half circle. A motion under forces never holds a heading quite: what swings by less is
+/// steering, no alteration of course.
+const LEAST_SWING: f64 = std::f64::consts::PI / 36.0;
+
+/// From one extreme of the heading to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Swing {
+    /// At the extreme that it begins with, seconds.
+    pub start_time: f64,
+    /// Radians, to port positive; 5° at least.
+    pub turned: f64,
+}
+
 /// A motion given at nodes. Between two of them position and heading are the cubics through both with both rates: what a
 /// plan of forces claims to sail. How near the ship comes to that is for a check to say.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,6 +103,43 @@ impl Steered {
     pub fn node_at(&self, time: f64) -> &Node {
         let after = self.nodes.partition_point(|node| node.time <= time);
         &self.nodes[after.clamp(1, self.nodes.len()) - 1]
+    }
+
+    /// The alterations of course, in order of time: the swings of the heading from node to node of 5° or more. Swings back
+    /// by less are looked through. O(nodes).
+    pub fn swings(&self) -> Vec<Swing> {
+        // time and heading
+        let mut extremes: Vec<(f64, f64)> = Vec::new();
+        // the least and the greatest heading since the last extreme
+        let [mut least, mut greatest] = [(0.0, f64::INFINITY), (0.0, f64::NEG_INFINITY)];
+        let mut to_port = None;
+        for node in &self.nodes {
+            let here = (node.time, node.pose.heading);
+            if here.1 < least.1 {
+                least = here;
+            }
+            if here.1 > greatest.1 {
+                greatest = here;
+            }
+            let (extreme, port) = if to_port != Some(false) && greatest.1 - here.1 >= LEAST_SWING {
+                (greatest, false)
+            } else if to_port != Some(true) && here.1 - least.1 >= LEAST_SWING {
+                (least, true)
+            } else {
+                continue;
+            };
+            extremes.push(extreme);
+            to_port = Some(port);
+            (least, greatest) = (here, here);
+        }
+        extremes.extend(to_port.map(|port| if port { greatest } else { least }));
+        extremes
+            .windows(2)
+            .map(|pair| Swing {
+                start_time: pair[0].0,
+                turned: pair[1].1 - pair[0].1,
+            })
+            .collect()
     }
 
     /// Metres along the way, to about a thousandth of a per cent.
