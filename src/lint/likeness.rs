@@ -42,14 +42,23 @@ impl Seen {
     }
 }
 
-/// Of every scenario the first one before it that it is like. Scenarios without targets are like none. O(scenarios² targets²).
+/// Of every scenario the first one before it that it is like: own ship is meant to run as fast, and the targets are the same;
+/// routes are not compared. Scenarios without targets are like none. O(scenarios² targets²).
 pub fn likenesses(scenarios: &[&Scenario]) -> Vec<Option<(usize, Likeness)>> {
     let all: Vec<Option<Vec<Seen>>> = scenarios.iter().map(|s| seen(s)).collect();
+    let run = |index: usize| {
+        let desired = &scenarios[index].desired;
+        desired.length() / desired.duration()
+    };
     let like = |index: usize| {
         let here = all[index].as_ref()?;
         let mirrored: Vec<Seen> = here.iter().map(Seen::mirrored).collect();
         all[..index].iter().enumerate().find_map(|(before, there)| {
             let there = there.as_ref()?;
+            // negated on purpose: a NaN is like none
+            if !((run(before) - run(index)).abs() <= SAME_SPEED) {
+                return None;
+            }
             if are(here, there) {
                 return Some((before, Likeness::Same));
             }

@@ -270,4 +270,8 @@ fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
         .stdout(contains("CR-SO, HO: ships are missing: 2 said, 1 found"))
         .stdout(contains("4 scenarios, 3 targets"));
     searoom(&["suite", "--lint", "--plans", "x", "scenarios"]).code(2);
+    // the same traffic met at three speeds is three encounters, give-way and stand-on are one in a mirror
+    let ours = document(&searoom(&["suite", "--lint", "--json"]).success());
+    assert_eq!(findings(&ours, "Ferry crossing"), Vec::<String>::new());
+    assert!(findings(&ours, "Stand-on")[0].starts_with("the mirror image of Give-way ("));
 }
