@@ -322,7 +322,8 @@ impl Track {
                 vertices.push(Vector::zeros());
             }
             for (stretch, (enters, leaves)) in self.stretches.iter().zip(&times) {
-                if *enters <= until && *leaves >= from {
+                // touching is for no time at all
+                if *enters < until && *leaves > from {
                     let velocities = stretch.ship(spread).outer_velocity_set();
                     vertices.extend_from_slice(velocities.vertices());
                 }
