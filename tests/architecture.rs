@@ -198,6 +198,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "evaluation",
             "scenario",
             "pipeline",
+            "comparison",
             "simulation",
         ],
     ),

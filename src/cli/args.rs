@@ -145,6 +145,12 @@ pub struct CompareArgs {
     /// Write the rows as CSV
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
+    /// Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder
+    #[arg(long, value_name = "PATH")]
+    pub rrd: Option<PathBuf>,
+    /// Write a report for a browser, index.html and its figures, into this folder
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
     /// Draw ways, distances, and in a sweep cost over risk: a file ending in .svg or .png
     #[arg(long, value_name = "PATH")]
     pub figure: Option<PathBuf>,
@@ -210,6 +216,9 @@ pub struct Shared {
     /// Draw the chart, and the path-time diagram of a path-time plan: a file ending in .svg or .png, or a folder
     #[arg(long, value_name = "PATH")]
     pub figure: Option<PathBuf>,
+    /// Write a report for a browser, index.html and its figures, into this folder
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
@@ -293,6 +302,7 @@ impl Shared {
             recordings: self.rrd.as_deref(),
             figures: self.figure.as_deref(),
             plans: None,
+            report: self.report.as_deref(),
         }
     }
 

@@ -1,27 +1,31 @@
 //! `searoom compare`: every planner that applies and two baselines, side by side.
 
-use std::path::Path;
-
 use anyhow::{Context, anyhow};
 use rayon::prelude::*;
 use searoom::comparison::{Contender, Entry, Inapplicable, Method, Sailed, contenders, methods};
-use searoom::report::document::{ComparisonDocument, ScenarioComparisonDocument};
+use searoom::report::document::{
+    ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument, UNREADABLE,
+};
 use searoom::report::figure::comparison_figure;
+use searoom::report::page::Report;
 use searoom::report::{
-    COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_table, write_atomically,
+    COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_markdown, comparison_table,
+    write_atomically,
 };
 use searoom::scenario::{Scenario, ScenarioError};
 
 use super::args::CompareArgs;
 use super::figure;
-use super::files;
+use super::files::{self, Found};
 use super::output::Output;
+use super::products::{Products, ScenarioCompared, Wanted};
 use super::runner::guarded;
 use super::status::Status;
 
 /// A scenario and who is to sail it, or why it is none.
 struct Asked {
     file: String,
+    stem: String,
     scenario: Result<Scenario, String>,
     contenders: Vec<Contender>,
     inapplicable: Vec<Inapplicable>,
@@ -43,10 +47,24 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
         output.error(&format_args!("{error:#}"));
         return Status::BadInput;
     }
-    let asked: Vec<Asked> = files::find(&args.paths, &files::SCENARIOS, output)
+    let all = files::find(&args.paths, &files::SCENARIOS, output);
+    let found: Vec<Found> = all.iter().flatten().cloned().collect();
+    let wanted = Wanted {
+        recordings: args.rrd.as_deref(),
+        report: args.report.as_deref(),
+        ..Wanted::default()
+    };
+    let products = match Products::prepare(&found, wanted) {
+        Ok(products) => products,
+        Err(error) => {
+            output.error(&format_args!("{error:#}"));
+            return Status::BadInput;
+        }
+    };
+    let asked: Vec<Asked> = all
         .into_iter()
         .map(|found| match found {
-            Ok(found) => ask(&found.file, args),
+            Ok(found) => ask(&found, args),
             Err((path, error)) => Asked::refused(path.display().to_string(), format!("{error:#}")),
         })
         .collect();
@@ -62,6 +80,19 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
         output.error(&format_args!("{error:#}"));
         Status::BadInput
     });
+    for c in &compared {
+        let Some(side) = c.side() else { continue };
+        if let Err((reached, error)) = products.write_comparison(&c.asked.stem, &side) {
+            output.error(&error);
+            status = status.max(reached);
+        }
+    }
+    if products.wants_report()
+        && let Err((reached, error)) = report(&compared, &products)
+    {
+        output.error(&error);
+        status = status.max(reached);
+    }
     status.max(written).max(show(args, &compared, output))
 }
 
@@ -69,6 +100,7 @@ impl Asked {
     fn refused(file: String, error: String) -> Self {
         Self {
             file,
+            stem: String::new(),
             scenario: Err(error),
             contenders: Vec::new(),
             inapplicable: Vec::new(),
@@ -76,9 +108,10 @@ impl Asked {
     }
 }
 
-fn ask(file: &Path, args: &CompareArgs) -> Asked {
-    let name = file.display().to_string();
-    let read = guarded(|| Scenario::read(file));
+fn ask(found: &Found, args: &CompareArgs) -> Asked {
+    let name = found.file.display().to_string();
+    let stem = found.stem.clone();
+    let read = guarded(|| Scenario::read(&found.file));
     let mut scenario = match read {
         Ok(Ok(scenario)) => scenario,
         Ok(Err(error)) => return Asked::refused(name, sentence(&error)),
@@ -99,6 +132,7 @@ fn ask(file: &Path, args: &CompareArgs) -> Asked {
         .retain(|other| is_wanted(&other.method, args));
     Asked {
         file: name,
+        stem,
         contenders: contenders(&found.methods, &risks),
         inapplicable: found.inapplicable,
         scenario: Ok(scenario),
@@ -163,6 +197,34 @@ impl Compared {
         self.entries.iter().map(row).collect()
     }
 
+    /// The document's part about this scenario.
+    fn document(&self) -> ScenarioComparisonDocument {
+        let file = self.asked.file.clone();
+        match &self.asked.scenario {
+            Ok(scenario) => ScenarioComparisonDocument::of(
+                file,
+                &scenario.title,
+                &self.entries,
+                &self.rows(),
+                &self.asked.inapplicable,
+            ),
+            Err(error) => ScenarioComparisonDocument::failed(file, error.clone()),
+        }
+    }
+
+    /// What is written for this scenario alone; `None` where it is none.
+    fn side(&self) -> Option<ScenarioCompared<'_>> {
+        let scenario = self.asked.scenario.as_ref().ok()?;
+        Some(ScenarioCompared {
+            scenario,
+            entries: &self.entries,
+            table: comparison_markdown(&scenario.title, &self.rows(), &self.asked.inapplicable),
+            document: ComparisonDocument {
+                comparisons: vec![self.document()],
+            },
+        })
+    }
+
     /// Good when some planner has a plan that is clear; a plan that fails its check is a fault of the program.
     fn status(&self) -> Status {
         if self.asked.scenario.is_err() {
@@ -216,20 +278,30 @@ fn write(args: &CompareArgs, compared: &[Compared]) -> anyhow::Result<Status> {
     Ok(Status::Good)
 }
 
+/// The report of all scenarios, those that are none among them.
+fn report(compared: &[Compared], products: &Products) -> Result<(), (Status, String)> {
+    let mut report = Report::new();
+    for c in compared {
+        let file = c.asked.file.clone();
+        match &c.asked.scenario {
+            Ok(scenario) => {
+                let subject = products.subject(&c.asked.stem, file);
+                report.add_comparison(&subject, scenario, &c.entries, &c.asked.inapplicable);
+            }
+            Err(error) => report.add_failure(&file, UNREADABLE, error),
+        }
+        for fault in &c.faults {
+            report.add_failure(&c.asked.file, INTERNAL_FAULT, fault);
+        }
+    }
+    let lead = "Every planner that applies and two baselines on the same targets.";
+    products.write_report(&report, "Searoom: a comparison", lead)
+}
+
 fn show(args: &CompareArgs, compared: &[Compared], output: &Output) -> Status {
     if args.json {
-        let comparisons = compared.iter().map(|c| match &c.asked.scenario {
-            Ok(scenario) => ScenarioComparisonDocument::of(
-                c.asked.file.clone(),
-                &scenario.title,
-                &c.entries,
-                &c.rows(),
-                &c.asked.inapplicable,
-            ),
-            Err(error) => ScenarioComparisonDocument::failed(c.asked.file.clone(), error.clone()),
-        });
         return output.document(&ComparisonDocument {
-            comparisons: comparisons.collect(),
+            comparisons: compared.iter().map(Compared::document).collect(),
         });
     }
     let tables: Vec<String> = compared

@@ -51,13 +51,11 @@ pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<
         ..Difference::default()
     };
     let document = |r: &Recorded| -> Value {
-        let text = r.document();
+        let text = r.document().or_else(|| r.comparison());
         let mut value: Value = text
             .and_then(|t| serde_json::from_str(&t).ok())
             .unwrap_or_default();
-        if let Some(fields) = value.as_object_mut() {
-            fields.remove("timing");
-        }
+        forget_times(&mut value);
         value
     };
     differences(&document(&first), &document(&second), "", &mut found.plan);
@@ -91,6 +89,18 @@ pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<
         Status::NoPlan
     };
     Ok(shown.max(status))
+}
+
+/// Leaves out the time that planning took, wherever it stands.
+fn forget_times(value: &mut Value) {
+    match value {
+        Value::Object(fields) => {
+            fields.remove("timing");
+            fields.values_mut().for_each(forget_times);
+        }
+        Value::Array(list) => list.iter_mut().for_each(forget_times),
+        _ => {}
+    }
 }
 
 /// Where two documents differ, field by field; lists of different lengths at once.
@@ -135,7 +145,7 @@ impl Difference {
             return lines.join("\n");
         }
         if !self.plan.is_empty() {
-            lines.push(format!("Plan documents: {} fields differ", self.plan.len()));
+            lines.push(format!("Documents: {} fields differ", self.plan.len()));
         }
         for d in self.plan.iter().take(LISTED) {
             lines.push(format!(

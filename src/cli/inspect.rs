@@ -57,6 +57,12 @@ fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
             recorded.application
         );
     }
+    if recorded.comparison().is_some() {
+        bail!(
+            "{}: the recording of a comparison, which holds no plan document; --json prints its own",
+            path.display()
+        );
+    }
     recorded.document().with_context(|| {
         format!(
             "{}: holds no plan document: it was cut short, or written by a Searoom that kept none",
@@ -170,6 +176,8 @@ struct Contents {
     cost: Value,
     search_stats: Value,
     targets: Vec<Value>,
+    /// Of a comparison: its part of `compare --json`; else null.
+    comparison: Value,
     timelines: Vec<TimelineDocument>,
     entities: Vec<ContentsDocument>,
 }
@@ -224,6 +232,15 @@ impl Contents {
             .document()
             .and_then(|text| serde_json::from_str(&text).ok())
             .unwrap_or_default();
+        let compared: Value = recorded
+            .comparison()
+            .and_then(|text| serde_json::from_str(&text).ok())
+            .unwrap_or_default();
+        let comparison = compared["comparisons"][0].clone();
+        let scenario = [&document, &comparison]
+            .into_iter()
+            .find_map(|d| d.get("scenario"))
+            .cloned();
         let field = |key: &str| document.get(key).cloned().unwrap_or_default();
         let names = document["encounters"].as_array().into_iter().flatten();
         Self {
@@ -231,7 +248,7 @@ impl Contents {
             bytes: recorded.bytes,
             application: recorded.application.clone(),
             rerun_version: recorded.version.clone(),
-            scenario: field("scenario"),
+            scenario: scenario.unwrap_or_default(),
             planner: field("planner"),
             search: field("search"),
             outcome: field("outcome"),
@@ -239,6 +256,7 @@ impl Contents {
             cost: field("cost"),
             search_stats: field("search_stats"),
             targets: names.cloned().collect(),
+            comparison,
             timelines: TimelineDocument::all(recorded.timelines()),
             entities: recorded
                 .entities()
@@ -264,6 +282,7 @@ impl Contents {
                 .unwrap_or("of an unknown version")
         )];
         match self.scenario.as_str() {
+            Some(scenario) if self.comparison.is_object() => lines.extend(self.compared(scenario)),
             Some(scenario) => lines.extend(self.plan(scenario)),
             None => lines.push("no plan document in it".to_owned()),
         }
@@ -301,6 +320,30 @@ impl Contents {
         lines.join("\n")
     }
 
+    fn compared(&self, scenario: &str) -> Vec<String> {
+        let entries = self.comparison["entries"].as_array();
+        let entries = entries.map_or(&[][..], Vec::as_slice);
+        let mut lines = vec![format!(
+            "{scenario}: a comparison of {} contenders",
+            entries.len()
+        )];
+        for entry in entries {
+            let word = |key: &str| entry[key].as_str().unwrap_or("unknown");
+            let risk = match entry["max_risk"].as_f64() {
+                Some(risk) if risk > 0.0 => format!(" at risk {risk}"),
+                _ => String::new(),
+            };
+            let costs = costs(&entry["cost"]);
+            lines.push(format!(
+                "  {}{risk}: {}{}{costs}",
+                word("method"),
+                word("outcome"),
+                if costs.is_empty() { "" } else { ", " }
+            ));
+        }
+        lines
+    }
+
     fn plan(&self, scenario: &str) -> Vec<String> {
         let word = |value: &Value| value.as_str().unwrap_or("unknown").to_owned();
         let verified = match self.verified.as_bool() {
@@ -316,22 +359,9 @@ impl Contents {
                 word(&self.search)
             ),
         ];
-        let number = |key: &str| self.cost[key].as_f64();
-        let mut costs = Vec::new();
-        for (key, name, unit) in [
-            ("space_time_error_m2", "J", "m²"),
-            ("duration_s", "duration", "s"),
-            ("delay_s", "delay", "s"),
-            ("length_m", "length", "m"),
-            ("min_clearance_m", "clearance", "m"),
-            ("max_risk", "largest risk", ""),
-        ] {
-            if let Some(value) = number(key) {
-                costs.push(format!("{name} {value:.1} {unit}").trim_end().to_owned());
-            }
-        }
+        let costs = costs(&self.cost);
         if !costs.is_empty() {
-            lines.push(format!("  costs        {}", costs.join(", ")));
+            lines.push(format!("  costs        {costs}"));
         }
         if let Some(expanded) = self.search_stats["expanded"].as_u64() {
             lines.push(format!("  search       {expanded} nodes expanded"));
@@ -351,6 +381,24 @@ impl Contents {
         }
         lines
     }
+}
+
+/// The costs of a document in words; empty without any.
+fn costs(cost: &Value) -> String {
+    let mut costs = Vec::new();
+    for (key, name, unit) in [
+        ("space_time_error_m2", "J", "m²"),
+        ("duration_s", "duration", "s"),
+        ("delay_s", "delay", "s"),
+        ("length_m", "length", "m"),
+        ("min_clearance_m", "clearance", "m"),
+        ("max_risk", "largest risk", ""),
+    ] {
+        if let Some(value) = cost[key].as_f64() {
+            costs.push(format!("{name} {value:.1} {unit}").trim_end().to_owned());
+        }
+    }
+    costs.join(", ")
 }
 
 fn list(texts: &[String]) -> String {

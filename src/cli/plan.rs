@@ -1,9 +1,12 @@
 //! `searoom plan`: one scenario.
 
+use searoom::pipeline::Run;
 use searoom::report::document::PlanDocument;
+use searoom::report::page::Report;
 use searoom::report::plan_text;
 
 use super::args::PlanArgs;
+use super::files::Found;
 use super::output::Output;
 use super::products::Products;
 use super::runner::{Attempt, attempt};
@@ -59,7 +62,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
                 } else {
                     output.result(&plan_text(&run))
                 };
-                let written = match products.write(&scene.found.stem, &run) {
+                let written = match write(&products, &scene.found, &run) {
                     Ok(()) => Status::Good,
                     Err((status, error)) => {
                         output.error(&error);
@@ -80,4 +83,14 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
         status = status.max(reached);
     }
     status
+}
+
+fn write(products: &Products, found: &Found, run: &Run) -> Result<(), (Status, String)> {
+    products.write(&found.stem, run)?;
+    let mut report = Report::new();
+    if products.wants_report() {
+        let subject = products.subject(&found.stem, found.file.display().to_string());
+        report.add_run(&subject, run);
+    }
+    products.write_report(&report, &run.scenario.title, "Planned by Searoom.")
 }

@@ -4,10 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail};
+use searoom::comparison::Entry;
 use searoom::pipeline::Run;
-use searoom::report::document::PlanDocument;
+use searoom::report::document::{ComparisonDocument, PlanDocument};
 use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
+use searoom::report::page::{Report, Subject, link_from};
 use searoom::report::write_atomically;
+use searoom::scenario::Scenario;
 
 use super::files::{Found, refuse_clashes};
 use super::output::json;
@@ -20,6 +23,7 @@ pub struct Products {
     recordings: Option<Place>,
     figures: Option<Place>,
     plans: Option<PathBuf>,
+    report: Option<PathBuf>,
 }
 
 /// What is asked for.
@@ -28,6 +32,7 @@ pub struct Wanted<'a> {
     pub recordings: Option<&'a Path>,
     pub figures: Option<&'a Path>,
     pub plans: Option<&'a Path>,
+    pub report: Option<&'a Path>,
 }
 
 #[derive(Debug)]
@@ -44,6 +49,7 @@ impl Products {
             recordings,
             figures,
             plans,
+            report,
         } = wanted;
         if recordings.is_some() && !cfg!(feature = "recording") {
             bail!(
@@ -51,7 +57,10 @@ impl Products {
                  build it with its default features, `cargo build`"
             );
         }
-        if recordings.is_some() || figures.is_some() || plans.is_some() {
+        if [recordings, figures, plans, report]
+            .iter()
+            .any(Option::is_some)
+        {
             refuse_clashes(found)?;
         }
         let is_recording = |path: &Path| path.extension().is_some_and(|e| e == "rrd");
@@ -60,9 +69,13 @@ impl Products {
             let path = path.display();
             bail!("--rrd: {path}: a recording ends in .rrd, a folder that is to be made in '/'");
         }
-        if let Some(path) = plans.filter(|path| is_another_file(path)) {
-            let path = path.display();
-            bail!("--plans: {path}: a folder; one with an ending that is to be made ends in '/'");
+        for (option, folder) in [("--plans", plans), ("--report", report)] {
+            if let Some(path) = folder.filter(|path| is_another_file(path)) {
+                let path = path.display();
+                bail!(
+                    "{option}: {path}: a folder; one with an ending that is to be made ends in '/'"
+                );
+            }
         }
         let recordings = recordings
             .map(|path| Place::prepare("--rrd", path, is_recording(path), found.len()))
@@ -74,13 +87,14 @@ impl Products {
         let figures = figures
             .map(|path| Place::prepare("--figure", path, is_figure(path), found.len()))
             .transpose()?;
-        if let Some(folder) = plans {
+        for folder in plans.into_iter().chain(report) {
             make(folder)?;
         }
         Ok(Self {
             recordings,
             figures,
             plans: plans.map(Path::to_owned),
+            report: report.map(Path::to_owned),
         })
     }
 
@@ -89,6 +103,46 @@ impl Products {
         match guarded(|| self.try_write(stem, run)) {
             Ok(Ok(())) => Ok(()),
             Ok(Err(error)) => Err((Status::BadInput, format!("{error:#}"))),
+            Err(fault) => Err((Status::InternalFault, fault)),
+        }
+    }
+
+    /// What a report says of a scenario besides what came of it: call it when all else is written.
+    pub fn subject(&self, stem: &str, file: String) -> Subject {
+        let recording = self.recordings.as_ref().map(|p| p.file(stem, "rrd"));
+        let plan = self.plans.as_ref().map(|f| f.join(format!("{stem}.json")));
+        let written = [("recording", recording), ("plan document", plan)];
+        let folder = self.report.as_deref().unwrap_or(Path::new("."));
+        let links = written.into_iter().filter_map(|(name, file)| {
+            // a link to what could not be written would lead nowhere
+            let file = file.filter(|f| f.is_file())?;
+            Some((name.to_owned(), link_from(folder, &file)))
+        });
+        Subject {
+            stem: stem.to_owned(),
+            file,
+            links: links.collect(),
+        }
+    }
+
+    /// True when a report is asked for.
+    pub fn wants_report(&self) -> bool {
+        self.report.is_some()
+    }
+
+    /// Writes the report, if one was asked for; on failure the status and the reason.
+    pub fn write_report(
+        &self,
+        report: &Report,
+        title: &str,
+        lead: &str,
+    ) -> Result<(), (Status, String)> {
+        let Some(folder) = &self.report else {
+            return Ok(());
+        };
+        match guarded(|| report.write(folder, title, lead)) {
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(error)) => Err((Status::BadInput, error.to_string())),
             Err(fault) => Err((Status::InternalFault, fault)),
         }
     }
@@ -111,6 +165,36 @@ impl Products {
             write_atomically(&file, document.as_bytes()).map_err(|error| anyhow!("{error}"))?;
         }
         Ok(())
+    }
+}
+
+/// A comparison of one scenario, as it is written.
+#[cfg_attr(
+    not(feature = "recording"),
+    expect(dead_code, reason = "recordings alone are written of it")
+)]
+pub struct ScenarioCompared<'a> {
+    pub scenario: &'a Scenario,
+    pub entries: &'a [Entry],
+    pub table: String,
+    pub document: ComparisonDocument,
+}
+
+impl Products {
+    /// Writes the recording of a comparison, if one was asked for; on failure the status and the reason.
+    pub fn write_comparison(
+        &self,
+        stem: &str,
+        side: &ScenarioCompared,
+    ) -> Result<(), (Status, String)> {
+        let Some(place) = &self.recordings else {
+            return Ok(());
+        };
+        match guarded(|| record_comparison(side, &place.file(stem, "rrd"))) {
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(error)) => Err((Status::BadInput, format!("{error:#}"))),
+            Err(fault) => Err((Status::InternalFault, fault)),
+        }
     }
 }
 
@@ -157,6 +241,24 @@ fn record(run: &Run, file: &Path) -> anyhow::Result<()> {
     // the message names its cause already
     let document = json(&PlanDocument::of(run))?;
     searoom::recording::write(run, Some(&document), file).map_err(|error| anyhow!("{error}"))
+}
+
+#[cfg(feature = "recording")]
+fn record_comparison(side: &ScenarioCompared, file: &Path) -> anyhow::Result<()> {
+    let document = json(&side.document)?;
+    let compared = searoom::recording::Compared {
+        scenario: side.scenario,
+        entries: side.entries,
+        table: &side.table,
+        document: &document,
+    };
+    // the message names its cause already
+    searoom::recording::write_comparison(&compared, file).map_err(|error| anyhow!("{error}"))
+}
+
+#[cfg(not(feature = "recording"))]
+fn record_comparison(_: &ScenarioCompared, file: &Path) -> anyhow::Result<()> {
+    bail!("{}: built without recordings", file.display())
 }
 
 #[cfg(not(feature = "recording"))]

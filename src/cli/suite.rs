@@ -2,6 +2,7 @@
 
 use searoom::pipeline::Run;
 use searoom::report::document::{INTERNAL_FAULT, SuiteDocument, SuiteRunDocument, UNREADABLE};
+use searoom::report::page::Report;
 use searoom::report::{Row, Summary, suite_table};
 use searoom::scenario::formats::Assumed;
 
@@ -22,6 +23,7 @@ struct Tally {
     errors: Vec<String>,
     /// Runs of which something was assumed or not used.
     noted: usize,
+    report: Report,
     status: Option<Status>,
 }
 
@@ -44,6 +46,7 @@ impl Tally {
             Status::BadInput
         });
         self.errors.push(error.clone());
+        self.report.add_failure(&file, outcome, &error);
         self.rows.push(Row::Failed {
             file: file.clone(),
             outcome,
@@ -98,6 +101,11 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
         ));
     }
     let document = SuiteDocument::of(tally.runs);
+    let lead = document.summary.to_string();
+    if let Err((status, error)) = products.write_report(&tally.report, "Searoom: a suite", &lead) {
+        output.error(&error);
+        tally.status = tally.status.max(Some(status));
+    }
     let shown = if args.shared.json {
         output.document(&document)
     } else {
@@ -111,10 +119,14 @@ fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, 
     let file = scene.found.file.display().to_string();
     match attempt(scene, &args.shared, assumed) {
         Attempt::Run(run, notes) => {
-            tally.run(file, &run, notes);
+            tally.run(file.clone(), &run, notes);
             if let Err((status, error)) = products.write(&scene.found.stem, &run) {
                 tally.reach(status);
                 tally.errors.push(error);
+            }
+            if products.wants_report() {
+                let subject = products.subject(&scene.found.stem, file);
+                tally.report.add_run(&subject, &run);
             }
         }
         Attempt::Unreadable(error) => tally.failed(file, UNREADABLE, error.to_string()),

@@ -55,6 +55,18 @@ impl Role {
             Self::None => "none",
         }
     }
+
+    /// The number of the rule that tells own ship what to do; `None` without a role.
+    pub fn rule(self) -> Option<u8> {
+        match self {
+            Self::Overtaking | Self::Overtaken => Some(13),
+            // port to port is kept as head-on is
+            Self::HeadOn | Self::PortToPort => Some(14),
+            Self::GiveWay | Self::BothGiveWay => Some(15),
+            Self::StandOn => Some(17),
+            Self::Static | Self::None => None,
+        }
+    }
 }
 
 /// A ship on a steady course: the sectors of the rules are taken on the heading, and there is no drift.

@@ -6,10 +6,12 @@
 
 mod applies;
 mod baseline;
+mod look;
 mod method;
 
 pub use applies::{Inapplicable, Methods, methods};
 pub use baseline::{Baseline, constant_velocity, hold_course};
+pub use look::Look;
 pub use method::Method;
 
 use crate::evaluation::Evaluation;

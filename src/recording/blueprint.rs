@@ -13,15 +13,17 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
 };
-use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
+use rerun::{
+    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult,
+};
 
 use super::chart::legend_height;
 use super::curves::{CLEARANCE, COURSE, MARGIN, RISK, SPEED, clearances, courses, margins};
 use super::explored::BLOCKED;
-use super::scene::Scene;
+use super::scene::{Scene, Stage};
 use super::{
     APPLICATION, CHART, EXPLORED, PATH_TIME, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, forces,
-    path_time, style, velocities,
+    path, path_time, style, velocities,
 };
 use crate::frame::{Vector, knots_from_mps, to_starboard};
 
@@ -37,8 +39,9 @@ type Properties = Vec<(String, Box<dyn AsComponents>)>;
 /// Lays out all views and makes that the recording's blueprint.
 pub fn send_blueprint(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let mut properties = Properties::new();
-    let chart = chart_view(scene, &mut properties);
-    let volume = volume_view(scene, &mut properties);
+    let chart = chart_view(scene, 1, &[path(&[EXPLORED])], &mut properties);
+    let blocked = path(&[VOLUME, "explored", BLOCKED]);
+    let volume = volume_view(scene, &[blocked], &mut properties);
     let summary = TextDocumentView::new("Verdict").with_origin(SUMMARY).into();
     let mut small = Vec::from(curve_views(scene, &mut properties));
     if forces::steered(scene).is_some() {
@@ -53,6 +56,44 @@ pub fn send_blueprint(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     shares.push(0.5);
     let right = Vertical::new(views).with_row_shares(shares);
     let root = Horizontal::new([left.into(), right.into()]).with_column_shares(vec![0.54, 0.46]);
+    open_with(rec, scene, root, &properties)
+}
+
+/// The layout of a comparison: chart and volume side by side, below them the table and the curves. `hidden` are folders on the
+/// chart and in the volume; `rows` those of the legend, `plots` the name, the entity and the range of each plot.
+pub fn send_comparison_blueprint(
+    rec: &RecordingStream,
+    stage: &Stage,
+    rows: usize,
+    hidden: &[Vec<EntityPath>; 2],
+    plots: &[(&str, &str, [f64; 2])],
+) -> RecordingStreamResult<()> {
+    let mut properties = Properties::new();
+    let chart = chart_view(stage, rows, &hidden[0], &mut properties);
+    let volume = volume_view(stage, &hidden[1], &mut properties);
+    let table = TextDocumentView::new("Comparison").with_origin(SUMMARY);
+    let plots: Vec<ContainerLike> = plots
+        .iter()
+        .map(|(name, origin, range)| {
+            // the legend of the chart is theirs, too
+            let legend = PlotLegend::new().with_visible(false);
+            plot_view(stage, (name, origin), *range, legend, &mut properties)
+        })
+        .collect();
+    let pictures = Horizontal::new([chart, volume]).with_column_shares(vec![0.5, 0.5]);
+    let below = Horizontal::new([table.into(), Vertical::new(plots).into()])
+        .with_column_shares(vec![0.56, 0.44]);
+    let root = Vertical::new([pictures.into(), below.into()]).with_row_shares(vec![0.62, 0.38]);
+    open_with(rec, stage, root, &properties)
+}
+
+/// The panels around the views, paused at the start.
+fn open_with(
+    rec: &RecordingStream,
+    stage: &Stage,
+    root: impl Into<ContainerLike>,
+    properties: &Properties,
+) -> RecordingStreamResult<()> {
     let blueprint = Blueprint::new(root)
         .with_auto_views(false)
         .with_auto_layout(false)
@@ -62,11 +103,11 @@ pub fn send_blueprint(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
             TimePanel::new()
                 .with_state(PanelState::Collapsed)
                 .with_timeline(TIMELINE)
-                .with_playback_speed((scene.end / PLAY_S).round().max(1.0))
+                .with_playback_speed((stage.end / PLAY_S).round().max(1.0))
                 .with_play_state(PlayState::Paused)
                 .with_loop_mode(LoopMode::All),
         );
-    send(rec, blueprint, &properties)
+    send(rec, blueprint, properties)
 }
 
 /// Adds a property to a view and returns the view.
@@ -93,7 +134,9 @@ fn hidden() -> Box<dyn AsComponents> {
 }
 
 /// Where a view keeps what it does with an entity.
-fn behavior(entity: &str) -> String {
+fn behavior(entity: &EntityPath) -> String {
+    let entity = entity.to_string();
+    let entity = entity.trim_start_matches('/');
     format!("ViewContents/overrides/{entity}/visualizers")
 }
 
@@ -109,46 +152,66 @@ fn up_to_cursor() -> VisibleTimeRanges {
 }
 
 /// From the start to the end, with a little air.
-fn whole_time(scene: &Scene) -> TimeRange {
+fn whole_time(stage: &Stage) -> TimeRange {
     let nanoseconds =
         |seconds: f64| TimeRangeBoundary::Absolute(((seconds * 1e9).round() as i64).into());
     TimeRange {
-        start: nanoseconds(-0.02 * scene.end),
-        end: nanoseconds(1.02 * scene.end),
+        start: nanoseconds(-0.02 * stage.end),
+        end: nanoseconds(1.02 * stage.end),
     }
 }
 
-fn chart_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
-    let (low, high) = (scene.bounds.low, scene.bounds.high);
+fn chart_view(
+    stage: &Stage,
+    legend_rows: usize,
+    hidden_folders: &[EntityPath],
+    properties: &mut Properties,
+) -> ContainerLike {
+    let (low, high) = (stage.bounds.low, stage.bounds.high);
     // the view's own axis points down: north is negative there
     let shown = rerun::datatypes::Range2D {
         x_range: [low.x, high.x].into(),
-        y_range: [-high.y, -low.y + legend_height(scene)].into(),
+        y_range: [-high.y, -low.y + legend_height(stage, legend_rows)].into(),
     };
-    with(
+    let chart = with(
         Spatial2DView::new("Chart, north up").with_origin(CHART),
         properties,
         vec![
             ("VisualBounds2D", Box::new(VisualBounds2D::new(shown))),
             ("Background", plain_background()),
-            (&behavior(EXPLORED), hidden()),
-            (&behavior(TRAILS), Box::new(up_to_cursor())),
+            (&behavior(&path(&[TRAILS])), Box::new(up_to_cursor())),
         ],
-    )
+    );
+    without(chart, properties, hidden_folders)
 }
 
-fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
-    let size = 0.92 * scene.bounds.size().norm();
-    let middle = scene.lifted(scene.bounds.center(), 0.42 * scene.end);
+/// The view with some folders of it hidden until they are asked for.
+fn without(
+    view: ContainerLike,
+    properties: &mut Properties,
+    folders: &[EntityPath],
+) -> ContainerLike {
+    folders.iter().fold(view, |view, folder| {
+        with(view, properties, vec![(&behavior(folder), hidden())])
+    })
+}
+
+fn volume_view(
+    stage: &Stage,
+    hidden_folders: &[EntityPath],
+    properties: &mut Properties,
+) -> ContainerLike {
+    let size = 0.92 * stage.bounds.size().norm();
+    let middle = stage.lifted(stage.bounds.center(), 0.42 * stage.end);
     // from starboard and somewhat astern: own ship runs from left to right and upward
-    let ahead = scene.ahead();
+    let ahead = stage.ahead();
     let side: Vector = to_starboard(ahead) - ahead * 0.35;
     let eye = [
         middle[0] + (side.x * size) as f32,
         middle[1] + (side.y * size) as f32,
         middle[2] + (0.36 * size) as f32,
     ];
-    with(
+    let volume = with(
         Spatial3DView::new("Space-time: time upward").with_origin(VOLUME),
         properties,
         vec![
@@ -166,18 +229,20 @@ fn volume_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
                 Box::new(LineGrid3D::new().with_visible(false)),
             ),
             ("Background", plain_background()),
-            (&behavior(&format!("{VOLUME}/explored/{BLOCKED}")), hidden()),
         ],
-    )
+    );
+    without(volume, properties, hidden_folders)
 }
 
 fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 5] {
-    let margin = scene.run.scenario.own_ship.safety_margin;
+    let margin = scene.scenario.own_ship.safety_margin;
     let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
-    let targets = &scene.run.scenario.targets;
-    let clearance = targets.iter().map(|t| least(clearances(scene, t)));
+    let targets = &scene.scenario.targets;
+    let clearance = targets
+        .iter()
+        .map(|t| least(clearances(scene, &scene.motion, t)));
     let clearance = clearance.fold(0.0, f64::max);
-    let sets: Vec<_> = scene.run.sets.iter().map(|s| &s.hard).collect();
+    let sets: Vec<_> = scene.sets.iter().map(|s| &s.hard).collect();
     let views = [
         (
             "Clearance between hulls (m)",
@@ -195,7 +260,7 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 5]
             SPEED,
             [
                 0.0,
-                1.4 * knots_from_mps(scene.run.scenario.own_ship.max_speed()),
+                1.4 * knots_from_mps(scene.scenario.own_ship.max_speed()),
             ],
         ),
         ("Course (deg)", COURSE, course_range(scene)),
@@ -203,18 +268,28 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 5]
     views.map(|(name, origin, range)| {
         // curves of distances are low where they matter
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-        let times = TimeAxis::new().with_view_range(whole_time(scene));
-        let range = rerun::datatypes::Range1D(range);
-        with(
-            TimeSeriesView::new(name).with_origin(origin),
-            properties,
-            vec![
-                ("PlotLegend", Box::new(legend)),
-                ("TimeAxis", Box::new(times)),
-                ("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))),
-            ],
-        )
+        plot_view(scene, (name, origin), range, legend, properties)
     })
+}
+
+fn plot_view(
+    stage: &Stage,
+    (name, origin): (&str, &str),
+    range: [f64; 2],
+    legend: PlotLegend,
+    properties: &mut Properties,
+) -> ContainerLike {
+    let times = TimeAxis::new().with_view_range(whole_time(stage));
+    let range = rerun::datatypes::Range1D(range);
+    with(
+        TimeSeriesView::new(name).with_origin(origin),
+        properties,
+        vec![
+            ("PlotLegend", Box::new(legend)),
+            ("TimeAxis", Box::new(times)),
+            ("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))),
+        ],
+    )
 }
 
 /// Of a plan of forces: what the ship does, and what makes her do it.
@@ -274,11 +349,11 @@ fn path_time_view(scene: &Scene, properties: &mut Properties) -> Option<Containe
 }
 
 /// The interesting part of a distance that falls to `least`, where `margin` is asked for; metres.
-fn near_zero(scene: &Scene, least: f64, margin: f64) -> [f64; 2] {
+pub fn near_zero(stage: &Stage, least: f64, margin: f64) -> [f64; 2] {
     let least = if least.is_finite() { least } else { 0.0 };
     let top = (3.0 * least.abs())
         .max(8.0 * margin)
-        .max(LEAST_RANGE_M.min(0.5 * scene.bounds.extent()));
+        .max(LEAST_RANGE_M.min(0.5 * stage.bounds.extent()));
     [least.min(0.0) - 0.1 * top, top]
 }
 

@@ -2,7 +2,7 @@
 
 use rerun::Mesh3D;
 
-use super::scene::Scene;
+use super::scene::Stage;
 use crate::frame::{Vector, direction, heading_of, wrap_positive};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
@@ -79,8 +79,8 @@ impl Stretch {
     }
 
     /// The section at a time, closed.
-    pub fn ring(&self, scene: &Scene, time: f64) -> Vec<[f32; 3]> {
-        let lifted = |v: &MovingVertex| scene.lifted(v.at(time), time);
+    pub fn ring(&self, stage: &Stage, time: f64) -> Vec<[f32; 3]> {
+        let lifted = |v: &MovingVertex| stage.lifted(v.at(time), time);
         let mut ring: Vec<_> = self.vertices.iter().map(lifted).collect();
         ring.extend(ring.first().copied());
         ring
@@ -92,8 +92,8 @@ impl Stretch {
 }
 
 /// The stretches from t = 0 to the scene's end: exact for polytopes and slabs, chords of an ellipsoid.
-pub fn stretches(scene: &Scene, set: &Obstacle) -> Vec<Stretch> {
-    let end = scene.end;
+pub fn stretches(stage: &Stage, set: &Obstacle) -> Vec<Stretch> {
+    let end = stage.end;
     match set {
         Obstacle::Polytope(o) => vec![Stretch::polytope(o, 0.0, end)],
         Obstacle::Ellipsoid(o) => match o.flat() {
@@ -141,7 +141,7 @@ fn extreme(set: &ConvexPolygon, along: Vector) -> Vector {
 
 /// The body from t = 0 to the scene's end: one flat side per face and stretch, and the last section on top. Every
 /// side has its own corners, so that its normal is flat.
-pub fn mesh(scene: &Scene, stretches: &[Stretch]) -> Mesh3D {
+pub fn mesh(stage: &Stage, stretches: &[Stretch]) -> Mesh3D {
     let mut corners: Vec<[f32; 3]> = Vec::new();
     let mut normals: Vec<[f32; 3]> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
@@ -152,9 +152,9 @@ pub fn mesh(scene: &Scene, stretches: &[Stretch]) -> Mesh3D {
             let ends = [vertices[(i + count - 1) % count], vertices[i]];
             let base = corners.len() as u32;
             for time in [stretch.from, stretch.to] {
-                corners.extend(ends.map(|v| scene.lifted(v.at(time), time)));
+                corners.extend(ends.map(|v| stage.lifted(v.at(time), time)));
             }
-            let rise = -speed / scene.metres_per_second;
+            let rise = -speed / stage.metres_per_second;
             let length = (1.0 + rise * rise).sqrt();
             let normal = [outward.x, outward.y, rise].map(|n| (n / length) as f32);
             normals.extend([normal; 4]);
@@ -164,7 +164,7 @@ pub fn mesh(scene: &Scene, stretches: &[Stretch]) -> Mesh3D {
     if let Some(last) = stretches.last() {
         let base = corners.len() as u32;
         let top = last.vertices.iter();
-        corners.extend(top.map(|v| scene.lifted(v.at(last.to), last.to)));
+        corners.extend(top.map(|v| stage.lifted(v.at(last.to), last.to)));
         let count = last.vertices.len();
         normals.extend(std::iter::repeat_n([0.0, 0.0, 1.0], count));
         triangles.extend((2..count as u32).map(|i| [base, base + i - 1, base + i]));

@@ -4,12 +4,13 @@ use rerun::{
     AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult,
 };
 
-use super::scene::{Bounds, Scene, desired_leg, flat, round_down};
+use super::scene::{Bounds, Motion, Scene, Stage, desired_leg, flat, round_down};
 use super::style::{self, Pace};
 use super::{MAP, path};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::target::Target;
+use crate::trajectory::Trajectory;
 
 /// Degrees of turn between two drawn points of an arc, radians.
 const ARC_STEP: f64 = std::f64::consts::PI / 60.0;
@@ -41,25 +42,31 @@ impl Lines {
 
 /// Everything of the chart that does not move.
 pub fn log_chart(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    // views of Rerun are y-down: this turns north up for everything below
-    rec.log_static(MAP, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
-    log_grid(rec, scene)?;
-    log_legend(rec, scene)?;
-    log_desired(rec, scene)?;
+    log_waters(rec, scene)?;
+    log_legend(rec, scene, plan_legend(scene), 1)?;
     log_planned(rec, scene)?;
     log_time_marks(rec, scene)?;
-    for (index, target) in scene.run.scenario.targets.iter().enumerate() {
-        log_track(rec, scene, index, target)?;
-    }
     log_closest_points(rec, scene)?;
     log_conflict(rec, scene)?;
     log_violations(rec, scene)
 }
 
+/// What is there whoever sails: the grid, the desired trajectory, the targets' tracks.
+pub fn log_waters(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+    // views of Rerun are y-down: this turns north up for everything below
+    rec.log_static(MAP, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
+    log_grid(rec, stage)?;
+    log_desired(rec, stage)?;
+    for (index, target) in stage.scenario.targets.iter().enumerate() {
+        log_track(rec, stage, index, target)?;
+    }
+    Ok(())
+}
+
 /// Lines every round number of metres, the scale named at one of them, and north.
-fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let Bounds { low, high } = scene.bounds.grown(0.6 * scene.bounds.extent());
-    let spacing = grid_spacing(scene);
+fn log_grid(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = stage.bounds.grown(0.6 * stage.bounds.extent());
+    let spacing = grid_spacing(stage);
     let mut lines = Lines::default();
     for east in multiples(low.x, high.x, spacing) {
         let ends = [Vector::new(east, low.y), Vector::new(east, high.y)];
@@ -70,8 +77,8 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         lines.add(ends.map(flat).to_vec(), style::grid(), style::points(0.5));
     }
 
-    let unit = scene.bounds.extent() / 100.0;
-    let corner = Vector::new(scene.bounds.low.x, scene.bounds.high.y);
+    let unit = stage.bounds.extent() / 100.0;
+    let corner = Vector::new(stage.bounds.low.x, stage.bounds.high.y);
     let foot = corner + Vector::new(2.5, -9.0) * unit;
     let head = foot + Vector::new(0.0, 5.0 * unit);
     let barbs = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
@@ -94,8 +101,8 @@ fn log_grid(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
 }
 
 /// Metres between two lines of the grid.
-pub fn grid_spacing(scene: &Scene) -> f64 {
-    round_down(scene.bounds.extent() / 4.0)
+pub fn grid_spacing(stage: &Stage) -> f64 {
+    round_down(stage.bounds.extent() / 4.0)
 }
 
 /// Multiples of `step` within the interval.
@@ -104,42 +111,62 @@ pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     (first..=last).map(move |i| step * i as f64)
 }
 
-/// Samples of the line styles with their meaning, below the sea that is shown.
-fn log_legend(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let mut entries: Vec<(String, Color, Radius)> =
-        vec![("desired".into(), style::desired(), style::points(0.8))];
+/// A line of the chart and what it means.
+pub type Key = (String, Color, Radius);
+
+fn plan_legend(scene: &Scene) -> Vec<Key> {
+    let mut entries = vec![("desired".into(), style::desired(), style::points(0.8))];
     for pace in shown_paces(scene) {
         entries.push((pace.name().into(), pace.color(), pace.radius()));
     }
-    if let Some(set) = scene.run.sets.first() {
+    entries.extend(waters_legend(scene));
+    entries
+}
+
+/// The sets, the land and the grid.
+pub fn waters_legend(stage: &Stage) -> Vec<Key> {
+    let mut entries: Vec<Key> = Vec::new();
+    if let Some(set) = stage.sets.first() {
         entries.push((
             "hard set".into(),
-            style::target(0),
+            stage.target_color(0),
             super::movers::HARD_RADIUS,
         ));
         if set.hard != set.shaped {
             entries.push((
                 "shaped set".into(),
-                super::movers::shaped_color(0),
+                super::movers::shaped_color(stage, 0),
                 super::movers::SHAPED_RADIUS,
             ));
         }
     }
-    if scene.run.scenario.land.is_some() {
+    if stage.scenario.land.is_some() {
         entries.push(("land".into(), style::land(), style::points(1.2)));
     }
     entries.push((
-        format!("grid {:.0} m", grid_spacing(scene)),
+        format!("grid {:.0} m", grid_spacing(stage)),
         style::chart_text(),
         style::points(0.5),
     ));
-    let bounds = scene.bounds;
-    let width = bounds.size().x / entries.len() as f64;
-    let north = bounds.low.y - 0.25 * legend_height(scene);
+    entries
+}
+
+/// Samples of the line styles with their meaning, in rows below the sea that is shown.
+pub fn log_legend(
+    rec: &RecordingStream,
+    stage: &Stage,
+    entries: Vec<Key>,
+    rows: usize,
+) -> RecordingStreamResult<()> {
+    let bounds = stage.bounds;
+    let columns = entries.len().div_ceil(rows.max(1)).max(1);
+    let width = bounds.size().x / columns as f64;
     let mut lines = Lines::default();
     let mut labels = Vec::new();
     for (index, (label, color, radius)) in entries.into_iter().enumerate() {
-        let west = bounds.low.x + width * (index as f64 + 0.2);
+        let (row, column) = (index / columns, index % columns);
+        let north = bounds.low.y - (0.25 + LEGEND_ROW * row as f64) * legend_height(stage, 1);
+        let west = bounds.low.x + width * (column as f64 + 0.2);
         let ends = [
             Vector::new(west, north),
             Vector::new(west + 0.6 * width, north),
@@ -153,9 +180,13 @@ fn log_legend(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
     )
 }
 
-/// Metres below the sea that is shown, for the legend.
-pub fn legend_height(scene: &Scene) -> f64 {
-    0.1 * scene.bounds.extent()
+/// Of the height of a legend of one row: what each further one adds.
+const LEGEND_ROW: f64 = 0.7;
+
+/// Metres below the sea that is shown, for a legend of so many rows.
+pub fn legend_height(stage: &Stage, rows: usize) -> f64 {
+    let further = rows.saturating_sub(1) as f64;
+    0.1 * stage.bounds.extent() * (1.0 + LEGEND_ROW * further)
 }
 
 fn shown_paces(scene: &Scene) -> Vec<Pace> {
@@ -165,10 +196,10 @@ fn shown_paces(scene: &Scene) -> Vec<Pace> {
 }
 
 /// Dashed: where own ship is meant to be.
-fn log_desired(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let dash = scene.bounds.extent() / 120.0;
+fn log_desired(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+    let dash = stage.bounds.extent() / 120.0;
     let mut lines = Lines::default();
-    for leg in scene.run.scenario.desired.legs() {
+    for leg in stage.scenario.desired.legs() {
         let mut along = 0.0;
         while along < leg.length {
             let ends = [along, (along + dash).min(leg.length)];
@@ -201,10 +232,15 @@ const PIECE_POINTS: usize = 4;
 
 /// The plan's segments, or pieces, as polylines through `(position, time)`. Empty without a plan.
 pub fn planned_strips(scene: &Scene) -> Vec<(Pace, Vec<(Vector, f64)>)> {
-    let super::scene::Motion::Planned(trajectory) = scene.motion else {
-        return Vec::new();
-    };
-    let desired = &scene.run.scenario.desired;
+    match scene.motion {
+        Motion::Planned(trajectory) => strips(scene, trajectory),
+        Motion::Undisturbed(_) => Vec::new(),
+    }
+}
+
+/// The segments, or pieces, of a motion as polylines through `(position, time)`.
+pub fn strips(stage: &Stage, trajectory: &Trajectory) -> Vec<(Pace, Vec<(Vector, f64)>)> {
+    let desired = &stage.scenario.desired;
     if let Some(motion) = trajectory.steered() {
         let strip = |piece: crate::trajectory::Cubic| {
             let points = (0..=PIECE_POINTS).map(|k| {
@@ -244,8 +280,8 @@ pub fn polyline(segment: &crate::trajectory::Segment) -> Vec<(Vector, f64)> {
 }
 
 /// Seconds between two time marks on the tracks.
-pub fn mark_step(scene: &Scene) -> f64 {
-    round_down(scene.end / 4.0)
+pub fn mark_step(stage: &Stage) -> f64 {
+    round_down(stage.end / 4.0)
 }
 
 /// Own ship's position every round number of seconds, with the time.
@@ -269,13 +305,13 @@ fn log_time_marks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 /// Where a target is expected, with the same time marks.
 fn log_track(
     rec: &RecordingStream,
-    scene: &Scene,
+    stage: &Stage,
     index: usize,
     target: &Target,
 ) -> RecordingStreamResult<()> {
-    let color = style::toward_background(style::target(index), 0.6);
-    let ends = [0.0, scene.end].map(|t| flat(target.position_at(t)));
-    let marks = multiples(0.0, scene.end, mark_step(scene))
+    let color = style::toward_background(stage.target_color(index), 0.6);
+    let ends = [0.0, stage.end].map(|t| flat(target.position_at(t)));
+    let marks = multiples(0.0, stage.end, mark_step(stage))
         .skip(1)
         .map(|t| flat(target.position_at(t)));
     let line = LineStrips2D::new([ends])
@@ -298,7 +334,7 @@ fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     let beyond = scene.bounds.extent() / 10.0;
     let mut lines = Lines::default();
     let mut nearest: Option<(f64, Vector, String)> = None;
-    for (target, passage) in scene.run.scenario.targets.iter().zip(&evaluation.passages) {
+    for (target, passage) in scene.scenario.targets.iter().zip(&evaluation.passages) {
         let own = scene.motion.pose_at(passage.tcpa).position;
         let other = target.position_at(passage.tcpa);
         lines.add(

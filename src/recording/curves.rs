@@ -1,10 +1,10 @@
 //! Curves over time: clearance, margin, speed, course.
 
 use rerun::components::{AggregationPolicy, InterpolationMode};
-use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
+use rerun::{EntityPath, RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
-use super::scene::{Motion, Scene, desired_leg};
-use super::{TIMELINE, style};
+use super::scene::{Motion, Scene, Stage, desired_leg};
+use super::{TIMELINE, path, style};
 use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::target::Target;
@@ -34,20 +34,23 @@ pub fn log_curves(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 pub struct Series {
     /// As the legend has it.
     pub name: String,
-    color: rerun::Color,
-    width: f32,
-    /// One per time; where it is not a number, nothing is drawn.
+    pub color: rerun::Color,
+    pub width: f32,
+    /// One per time.
     pub values: Vec<f64>,
 }
 
-/// All curves of a plot in one entity: a recording pays for entities, not for values.
-fn log_plot(
+/// All curves of a plot in one entity: a recording pays for entities, not for values. Every row has all of them, and
+/// each is a number: one that is none equals nothing, itself neither, and no two recordings would be alike.
+pub fn log_plot(
     rec: &RecordingStream,
-    entity: &str,
+    entity: EntityPath,
     times: &[f64],
     between: InterpolationMode,
     series: &[Series],
 ) -> RecordingStreamResult<()> {
+    let shortest = series.iter().map(|s| s.values.len()).min().unwrap_or(0);
+    let times = &times[..shortest.min(times.len())];
     let look = SeriesLines::new()
         .with_names(series.iter().map(|s| s.name.as_str()))
         .with_colors(series.iter().map(|s| s.color))
@@ -55,7 +58,7 @@ fn log_plot(
         .with_interpolation_mode(between)
         // averaging neighbours would show speeds and depths that are not there
         .with_aggregation_policy(AggregationPolicy::Off);
-    rec.log_static(entity, &look)?;
+    rec.log_static(entity.clone(), &look)?;
     let rows = 0..times.len();
     let values = rows.flat_map(|row| series.iter().map(move |s| s.values[row]));
     rec.send_columns(
@@ -71,57 +74,66 @@ fn log_plot(
 }
 
 fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let targets = scene.run.scenario.targets.iter().enumerate();
+    let targets = scene.scenario.targets.iter().enumerate();
     let mut series: Vec<Series> = targets
         .map(|(index, target)| Series {
             name: target.name.clone(),
             color: style::target(index),
             width: 2.0,
-            values: clearances(scene, target),
+            values: clearances(scene, &scene.motion, target),
         })
         .collect();
-    series.push(Series {
-        name: "safety margin".to_owned(),
-        color: style::alarm(),
-        width: 1.0,
-        values: vec![scene.run.scenario.own_ship.safety_margin; scene.samples.len()],
-    });
+    series.push(safety_margin(scene));
     log_plot(
         rec,
-        CLEARANCE,
+        path(&[CLEARANCE]),
         &scene.samples,
         InterpolationMode::Linear,
         &series,
     )
 }
 
+/// What is asked for between the hulls, at every sample.
+pub fn safety_margin(stage: &Stage) -> Series {
+    Series {
+        name: "safety margin".to_owned(),
+        color: style::alarm(),
+        width: 1.0,
+        values: vec![stage.scenario.own_ship.safety_margin; stage.samples.len()],
+    }
+}
+
 /// Metres between own hull and the target's expected hull, or between own ship's centre and the target's set
-/// where that is given (it has her hull in it), at every sample; negative in overlap, no number after arrival.
-pub fn clearances(scene: &Scene, target: &Target) -> Vec<f64> {
-    let own = &scene.run.scenario.own_ship.hull;
+/// where that is given (it has her hull in it), at every sample until arrival; negative in overlap.
+pub fn clearances(stage: &Stage, motion: &Motion, target: &Target) -> Vec<f64> {
+    let own = &stage.scenario.own_ship.hull;
     let at = |&time: &f64| {
-        let pose = scene.motion.pose_at(time);
-        let clearance = match (target.ship(), target.outer_set_at(time)) {
+        let pose = motion.pose_at(time);
+        match (target.ship(), target.outer_set_at(time)) {
             (Some(ship), _) => {
                 let hull = ship.hull.polygon(&ship.pose_at(time));
                 own.polygon(&pose).separation(&hull)
             }
             (None, Some(set)) => set.signed_distance(pose.position),
+            // a ship or a set: nothing else is a target
             (None, None) => f64::NAN,
-        };
-        scene.motion.until_arrival(time, clearance)
+        }
     };
-    scene.samples.iter().map(at).collect()
+    motion
+        .until_arrival(&stage.samples)
+        .iter()
+        .map(at)
+        .collect()
 }
 
 fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    if scene.run.sets.is_empty() {
+    if scene.sets.is_empty() {
         return Ok(());
     }
     let series = margin_curves(scene);
     log_plot(
         rec,
-        MARGIN,
+        path(&[MARGIN]),
         &scene.samples,
         InterpolationMode::Linear,
         &series,
@@ -130,7 +142,7 @@ fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
 
 /// Of the hard and the shaped sets, and of those that were kept out of where they are neither.
 pub fn margin_curves(scene: &Scene) -> Vec<Series> {
-    let sets = &scene.run.sets;
+    let sets = &scene.sets;
     let hard: Vec<&Obstacle> = sets.iter().map(|s| &s.hard).collect();
     let shaped: Vec<&Obstacle> = sets.iter().map(|s| &s.shaped).collect();
     let mut series = vec![Series {
@@ -166,28 +178,33 @@ pub fn margin_curves(scene: &Scene) -> Vec<Series> {
     series
 }
 
-/// Metres from own ship's centre to the nearest of the sets at every sample; negative inside, no number after
-/// arrival.
+/// Metres from own ship's centre to the nearest of the sets at every sample until arrival; negative inside.
 pub fn margins(scene: &Scene, sets: &[&Obstacle]) -> Vec<f64> {
     let at = |&time: &f64| {
         let own = scene.motion.pose_at(time).position;
         let margins = sets.iter().map(|s| s.signed_distance(own, time).distance);
-        let least = margins.fold(f64::INFINITY, f64::min);
-        scene.motion.until_arrival(time, least)
+        margins.fold(f64::INFINITY, f64::min)
     };
-    scene.samples.iter().map(at).collect()
+    let times = scene.motion.until_arrival(&scene.samples);
+    times.iter().map(at).collect()
 }
 
 fn log_risks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     let times = risk_times(scene);
     let series = risk_curves(scene, &times);
-    log_plot(rec, RISK, &times, InterpolationMode::Linear, &series)
+    log_plot(
+        rec,
+        path(&[RISK]),
+        &times,
+        InterpolationMode::Linear,
+        &series,
+    )
 }
 
 /// The risks that the plan document reports, against the sets that were planned against; beside them those against the
 /// hard sets where these differ.
 pub fn risk_curves(scene: &Scene, times: &[f64]) -> Vec<Series> {
-    let both = scene.run.whole_sets().zip(&scene.run.sets).enumerate();
+    let both = scene.run.whole_sets().zip(scene.sets).enumerate();
     let mut series = Vec::new();
     for (index, (kept_out_of, sets)) in both {
         let name = sets.hard.name();
@@ -208,7 +225,7 @@ pub fn risk_curves(scene: &Scene, times: &[f64]) -> Vec<Series> {
         name: "accepted".to_owned(),
         color: style::alarm(),
         width: 1.0,
-        values: vec![scene.run.scenario.max_risk; times.len()],
+        values: vec![scene.scenario.max_risk; times.len()],
     });
     series
 }
@@ -222,55 +239,71 @@ pub fn risk_times(scene: &Scene) -> Vec<f64> {
     times
 }
 
-/// The risk of a set at own ship's centre at every one of the times; no number after arrival. As in the report, a
+/// The risk of a set at own ship's centre at every one of the times until arrival. As in the report, a
 /// place that is not deeper than [`tolerance::DEPTH_M`] in the set is at none.
 fn risks(scene: &Scene, set: &Obstacle, times: &[f64]) -> Vec<f64> {
     let at = |&time: &f64| {
         let own = scene.motion.pose_at(time).position;
         let clear = set.signed_distance(own, time).distance >= -tolerance::DEPTH_M;
-        let risk = if clear { 0.0 } else { set.risk(own, time) };
-        scene.motion.until_arrival(time, risk)
+        if clear { 0.0 } else { set.risk(own, time) }
+    };
+    let times = scene.motion.until_arrival(times);
+    times.iter().map(at).collect()
+}
+
+fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    let wanted = Motion::Undisturbed(&scene.scenario.desired);
+    let mut shown = vec![(wanted, "desired", style::desired(), 1.0)];
+    if scene.motion.is_planned() {
+        shown.push((scene.motion, "own ship", style::own_ship(), 2.0));
+    }
+    let times = step_times(scene, shown.iter().map(|(motion, ..)| motion));
+    let series = shown
+        .into_iter()
+        .map(|(motion, name, color, width)| Series {
+            name: name.to_owned(),
+            color,
+            width,
+            values: speeds(&motion, &times),
+        });
+    let series: Vec<Series> = series.collect();
+    log_plot(
+        rec,
+        path(&[SPEED]),
+        &times,
+        InterpolationMode::StepAfter,
+        &series,
+    )
+}
+
+/// Speeds are steps: a row where one begins, and where one ends for good; seconds.
+pub fn step_times<'a>(stage: &Stage, motions: impl Iterator<Item = &'a Motion<'a>>) -> Vec<f64> {
+    let mut times: Vec<f64> = motions.flat_map(Motion::steps).collect();
+    times.retain(|&t| t <= stage.end);
+    times.push(stage.end);
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|later, earlier| *later - *earlier < tolerance::TIME_S);
+    times
+}
+
+/// Knots, at every one of the times; 0 where the motion has ended and the pictures show her at rest.
+pub fn speeds(motion: &Motion, times: &[f64]) -> Vec<f64> {
+    let last = times.last().copied().unwrap_or(0.0);
+    let end = motion.end();
+    // where the plot ends with the motion, it ends with its speed
+    let lasts = end > last - tolerance::TIME_S;
+    let at = |&time: &f64| {
+        if lasts || time < end - tolerance::TIME_S {
+            knots_from_mps(motion.speed_at(time))
+        } else {
+            0.0
+        }
     };
     times.iter().map(at).collect()
 }
 
-/// Speeds are steps: a row where one begins, and where one ends for good.
-fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let desired = &scene.run.scenario.desired;
-    let mut times: Vec<f64> = desired.legs().iter().map(|l| l.start_time).collect();
-    times.extend([desired.duration(), scene.end]);
-    if let Motion::Planned(trajectory) = scene.motion {
-        times.extend(trajectory.joints());
-        times.push(trajectory.end_time());
-    }
-    times.retain(|&t| t <= scene.end);
-    times.sort_by(f64::total_cmp);
-    times.dedup_by(|later, earlier| *later - *earlier < tolerance::TIME_S);
-    let until = |end: f64, time: f64, speed: f64| {
-        let over = time > end - tolerance::TIME_S;
-        knots_from_mps(if over { f64::NAN } else { speed })
-    };
-    let wanted = |&t: &f64| until(desired.duration(), t, desired_leg(desired, t).speed);
-    let mut series = vec![Series {
-        name: "desired".to_owned(),
-        color: style::desired(),
-        width: 1.0,
-        values: times.iter().map(wanted).collect(),
-    }];
-    if let Motion::Planned(trajectory) = scene.motion {
-        let planned = |&t: &f64| until(trajectory.end_time(), t, trajectory.speed_at(t));
-        series.push(Series {
-            name: "own ship".to_owned(),
-            color: style::own_ship(),
-            width: 2.0,
-            values: times.iter().map(planned).collect(),
-        });
-    }
-    log_plot(rec, SPEED, &times, InterpolationMode::StepAfter, &series)
-}
-
 fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let desired = &scene.run.scenario.desired;
+    let desired = &scene.scenario.desired;
     let wanted = scene
         .samples
         .iter()
@@ -291,7 +324,7 @@ fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
     }
     log_plot(
         rec,
-        COURSE,
+        path(&[COURSE]),
         &scene.samples,
         InterpolationMode::Linear,
         &series,

@@ -1,4 +1,4 @@
-//! The plan document in a recording: all of it but the time that planning took, which lies in a store of its own, so that
+//! The plan or comparison document in a recording: all of it but the time that planning took, which lies in a store of its own, so that
 //! recordings of one scenario compare equal.
 
 use rerun::external::re_log_types::LogMsg;
@@ -6,7 +6,7 @@ use rerun::{
     MediaType, RecordingStream, RecordingStreamBuilder, RecordingStreamResult, TextDocument,
 };
 
-use super::{APPLICATION, DOCUMENT, TIMING};
+use super::{APPLICATION, TIMING};
 
 /// What stands before the time in the text of a document.
 const KEY: &str = "\"plan_s\": ";
@@ -14,49 +14,54 @@ const KEY: &str = "\"plan_s\": ";
 /// What stands in its place in the recording.
 const NOTHING: &str = "null";
 
-/// The text without its time, and the time as it stands there.
+/// The text without its times, and the times as they stand there, a line each.
 struct Parted {
     text: String,
-    time: String,
+    times: String,
 }
 
 impl Parted {
-    fn of(text: &str) -> Self {
-        // the last one: a title may say anything
-        let Some(at) = text.rfind(KEY).map(|at| at + KEY.len()) else {
-            return Self {
-                text: text.to_owned(),
-                time: String::new(),
-            };
-        };
-        let is_end = |c: char| c.is_whitespace() || c == ',' || c == '}';
-        let end = text[at..].find(is_end).map_or(text.len(), |n| at + n);
+    /// The key is found as a key alone: within a text its quotes are escaped.
+    fn of(document: &str) -> Self {
+        let mut parts = document.split(KEY);
+        let mut text = parts.next().unwrap_or_default().to_owned();
+        let mut times = Vec::new();
+        for part in parts {
+            let is_end = |c: char| c.is_whitespace() || c == ',' || c == '}';
+            let end = part.find(is_end).unwrap_or(part.len());
+            times.push(&part[..end]);
+            text.extend([KEY, NOTHING, &part[end..]]);
+        }
         Self {
-            text: format!("{}{NOTHING}{}", &text[..at], &text[end..]),
-            time: text[at..end].to_owned(),
+            text,
+            times: times.join("\n"),
         }
     }
 }
 
-/// Puts the time back; a document whose time is lost keeps null.
-pub(super) fn joined(text: &str, time: Option<&str>) -> String {
+/// Puts the times back; where a time is lost there stays null.
+pub(super) fn joined(text: &str, times: Option<&str>) -> String {
+    let mut times = times.unwrap_or_default().lines();
     let key = format!("{KEY}{NOTHING}");
-    match (text.rfind(&key), time) {
-        (Some(at), Some(time)) => {
-            let rest = &text[at + key.len()..];
-            format!("{}{KEY}{time}{rest}", &text[..at])
-        }
-        _ => text.to_owned(),
+    let mut parts = text.split(&key);
+    let mut whole = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        whole.extend([KEY, times.next().unwrap_or(NOTHING), part]);
     }
+    whole
 }
 
 /// Logs the document after everything else, so that a recording that was cut short is without it.
-pub(super) fn log_document(rec: &RecordingStream, document: &str) -> RecordingStreamResult<()> {
+pub(super) fn log_document(
+    rec: &RecordingStream,
+    entity: &str,
+    document: &str,
+) -> RecordingStreamResult<()> {
     // what is logged before is then in messages before
     let _ = rec.flush_blocking();
     let json = MediaType("application/json".into());
     let text = Parted::of(document).text;
-    rec.log_static(DOCUMENT, &TextDocument::new(text).with_media_type(json))
+    rec.log_static(entity, &TextDocument::new(text).with_media_type(json))
 }
 
 /// The time in a store of the kind that is not compared, nor shown unless it is made active.
@@ -67,7 +72,7 @@ pub(super) fn timing(document: &str) -> RecordingStreamResult<Vec<LogMsg>> {
         .memory()?;
     rec.set_log_time_enabled(false);
     rec.set_log_tick_enabled(false);
-    rec.log_static(TIMING, &TextDocument::new(Parted::of(document).time))?;
+    rec.log_static(TIMING, &TextDocument::new(Parted::of(document).times))?;
     Ok(store.take())
 }
 
@@ -80,11 +85,12 @@ mod tests {
         for text in [
             "{\n  \"scenario\": \"\\\"plan_s\\\": 3\",\n  \"timing\": {\n    \"plan_s\": 0.0025\n  }\n}\n",
             "{\"timing\":{\"plan_s\": 1e-5},\"more\":[]}",
+            "[{\"plan_s\": 1e-5},{\"plan_s\": null},{\"plan_s\": 0.0025}]",
             "{}",
         ] {
             let parted = Parted::of(text);
             assert!(!parted.text.contains("0.0025") && !parted.text.contains("1e-5"));
-            assert_eq!(joined(&parted.text, Some(&parted.time)), text);
+            assert_eq!(joined(&parted.text, Some(&parted.times)), text);
         }
         assert_eq!(joined("{\"plan_s\": null}", None), "{\"plan_s\": null}");
     }

@@ -1,20 +1,28 @@
-//! The graph that the search made, on the chart and in the volume.
+//! The graph that the search made, on the chart and in the volume; what was refused says why.
 
-use rerun::{Color, LineStrips2D, LineStrips3D, RecordingStream, RecordingStreamResult};
+use std::cell::OnceCell;
+
+use rerun::{
+    Color, EntityPath, LineStrips2D, LineStrips3D, RecordingStream, RecordingStreamResult,
+};
 
 use super::chart::polyline;
-use super::scene::{Scene, flat};
-use super::{MAP, VOLUME, path, style};
+use super::scene::{Stage, flat};
+use super::style;
 use crate::frame::Vector;
+use crate::obstacle::{Coast, SpaceTimeObstacle};
+use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
+use crate::tolerance;
+use crate::trajectory::Segment;
 
 /// Edges that are clear of every set.
 const FREE: &str = "free";
 /// Edges that meet one.
 pub const BLOCKED: &str = "blocked";
 
-/// Points that the edges may have in all: 24 bytes each, in both pictures.
-const POINT_BUDGET: usize = 2400;
+/// Points that the edges of a plan may have in all: 24 bytes each, in both pictures.
+pub const POINT_BUDGET: usize = 2400;
 
 /// How much of the graph is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,32 +38,40 @@ struct Kind {
     name: &'static str,
     color: Color,
     strips: Vec<Vec<(Vector, f64)>>,
+    /// One per strip, or none at all.
+    reasons: Vec<String>,
 }
 
-/// Tested edges, in the order in which they were made, until the budget is used; edges that were never
-/// tested are not drawn. The answer says how many that were.
-pub fn log_explored(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<Drawn> {
+/// Tested edges, in the order in which they were made, until `budget` points are used; edges that were never
+/// tested are not drawn. They lie below `folders`, on the chart and in the volume, and the refused ones carry the reason as
+/// their label, which is shown where one is pointed at. The answer says how many that were.
+pub fn log_explored(
+    rec: &RecordingStream,
+    stage: &Stage,
+    run: &Run,
+    folders: [EntityPath; 2],
+    budget: usize,
+) -> RecordingStreamResult<Drawn> {
+    let kind = |name, color| Kind {
+        name,
+        color,
+        strips: Vec::new(),
+        reasons: Vec::new(),
+    };
     let mut kinds = [
-        Kind {
-            name: FREE,
-            color: style::graph_free(),
-            strips: Vec::new(),
-        },
-        Kind {
-            name: BLOCKED,
-            color: style::graph_blocked(),
-            strips: Vec::new(),
-        },
+        kind(FREE, style::graph_free()),
+        kind(BLOCKED, style::graph_blocked()),
     ];
+    let judge = Judge::new(run);
     let mut drawn = Drawn {
         edges: 0,
         tested: 0,
     };
     let mut points = 0;
-    for edge in scene.run.planned.explored.edge_weights() {
-        let kind = match edge.verdict {
-            EdgeVerdict::Free => &mut kinds[0],
-            EdgeVerdict::Blocked { .. } => &mut kinds[1],
+    for edge in run.planned.explored.edge_weights() {
+        let (kind, obstacle) = match edge.verdict {
+            EdgeVerdict::Free => (&mut kinds[0], None),
+            EdgeVerdict::Blocked { obstacle } => (&mut kinds[1], Some(obstacle)),
             EdgeVerdict::Untested => continue,
         };
         let strip = edge_line(edge);
@@ -65,15 +81,80 @@ pub fn log_explored(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResu
         }
         drawn.tested += 1;
         points += strip.len();
-        if points <= POINT_BUDGET {
+        if points <= budget {
             drawn.edges += 1;
             kind.strips.push(strip);
+            let reason = obstacle.map(|o| judge.reason(&edge.segments, o));
+            kind.reasons.extend(reason);
         }
     }
     for kind in kinds {
-        log_kind(rec, scene, kind)?;
+        log_kind(rec, stage, kind, &folders)?;
     }
     Ok(drawn)
+}
+
+/// Says why an edge was refused.
+struct Judge<'a> {
+    run: &'a Run,
+    /// Made for the first edge that runs aground.
+    coast: OnceCell<Coast>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(run: &'a Run) -> Self {
+        Self {
+            run,
+            coast: OnceCell::new(),
+        }
+    }
+
+    /// What an edge meets, when first, and what of it: `obstacle` is an index of [`Run::obstacles`], or behind the last for
+    /// land.
+    fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
+        let Some(set) = self.run.obstacles.get(obstacle) else {
+            let coast = self
+                .coast
+                .get_or_init(|| pipeline::coast(&self.run.scenario, &self.run.land));
+            let depth = tolerance::GRAZE_M;
+            let met = edge.iter().find_map(|s| coast.first_contact(s, depth));
+            return said("land", met, "nearer than the hull and the margin allow");
+        };
+        let enters = |set: &dyn Fn(&Segment) -> Option<f64>| edge.iter().find_map(set);
+        // an edge that only just meets the set is found without the depth
+        let met = enters(&|s| set.first_contact(s, tolerance::DEPTH_M))
+            .or_else(|| enters(&|s| set.first_contact(s, 0.0)));
+        said(set.name(), met, &self.limit(edge, obstacle))
+    }
+
+    /// What of a target is in the way.
+    fn limit(&self, edge: &[Segment], obstacle: usize) -> String {
+        let run = self.run;
+        let sets = &run.sets[obstacle];
+        let is_hard = |s: &Segment| sets.hard.first_contact(s, tolerance::DEPTH_M).is_some();
+        let ship = run.scenario.targets[obstacle].ship();
+        let limit = if run.shaped && sets.hard != sets.shaped && !edge.iter().any(is_hard) {
+            let role = sets.encounter.role;
+            let rule = role.rule().map_or(String::new(), |n| format!(", Rule {n}"));
+            format!("the shape about her ({}{rule})", role.name())
+        } else if ship.is_some() {
+            let margin = run.scenario.own_ship.safety_margin;
+            format!("hulls and a margin of {margin} m")
+        } else {
+            "the set that is given".to_owned()
+        };
+        match run.scenario.max_risk {
+            risk if risk > 0.0 => format!("{limit}, at more than the accepted risk {risk}"),
+            _ => limit,
+        }
+    }
+}
+
+fn said(who: &str, met: Option<f64>, limit: &str) -> String {
+    match met {
+        Some(time) => format!("{who} at {time:.0} s: {limit}"),
+        None => format!("{who}: {limit}"),
+    }
 }
 
 /// The whole edge, its arcs coarser than those of the plan.
@@ -93,23 +174,34 @@ fn edge_line(edge: &ExploredEdge) -> Vec<(Vector, f64)> {
     line
 }
 
-fn log_kind(rec: &RecordingStream, scene: &Scene, kind: Kind) -> RecordingStreamResult<()> {
+fn log_kind(
+    rec: &RecordingStream,
+    stage: &Stage,
+    kind: Kind,
+    folders: &[EntityPath; 2],
+) -> RecordingStreamResult<()> {
     if kind.strips.is_empty() {
         return Ok(());
     }
+    let [on, over] = folders.each_ref().map(|f| f.join(&kind.name.into()));
     let on_chart = kind.strips.iter().map(|s| s.iter().map(|&(p, _)| flat(p)));
     let on_chart = LineStrips2D::new(on_chart)
         .with_colors([kind.color])
         .with_radii([style::points(0.5)])
         // below everything but the grid
         .with_draw_order(5.0);
-    rec.log_static(path(&[MAP, "explored", kind.name]), &on_chart)?;
+    let on_chart = if kind.reasons.is_empty() {
+        on_chart
+    } else {
+        on_chart.with_labels(kind.reasons).with_show_labels(false)
+    };
+    rec.log_static(on, &on_chart)?;
     let in_volume = kind
         .strips
         .iter()
-        .map(|s| s.iter().map(|&(p, t)| scene.lifted(p, t)));
+        .map(|s| s.iter().map(|&(p, t)| stage.lifted(p, t)));
     let in_volume = LineStrips3D::new(in_volume)
         .with_colors([kind.color])
         .with_radii([style::points(0.4)]);
-    rec.log_static(path(&[VOLUME, "explored", kind.name]), &in_volume)
+    rec.log_static(over, &in_volume)
 }

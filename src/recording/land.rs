@@ -2,7 +2,7 @@
 
 use rerun::{LineStrips2D, LineStrips3D, Mesh3D, RecordingStream, RecordingStreamResult};
 
-use super::scene::{Bounds, Scene, flat};
+use super::scene::{Bounds, Stage, flat};
 use super::{MAP, VOLUME, path, style};
 use crate::frame::Vector;
 use crate::geometry::{Polygon, Window};
@@ -11,11 +11,11 @@ use crate::geometry::{Polygon, Window};
 const BEYOND: f64 = 0.6;
 
 /// Nothing without land.
-pub fn log_land(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let Some(land) = &scene.run.scenario.land else {
+pub fn log_land(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+    let Some(land) = &stage.scenario.land else {
         return Ok(());
     };
-    let Bounds { low, high } = scene.bounds.grown(BEYOND * scene.bounds.extent());
+    let Bounds { low, high } = stage.bounds.grown(BEYOND * stage.bounds.extent());
     let rings = land.map.polygons().iter().flat_map(Polygon::rings);
     let outlines: Vec<Vec<Vector>> = rings
         .map(|ring| ring.iter().chain(&ring[..1]).copied().collect())
@@ -28,7 +28,7 @@ pub fn log_land(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
             .with_radii([style::points(1.2)]),
     )?;
 
-    let shown = scene.bounds;
+    let shown = stage.bounds;
     let window = Window {
         low: shown.low,
         high: shown.high,
@@ -38,7 +38,7 @@ pub fn log_land(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
     for piece in land.map.pieces_within(&window) {
         let clipped = window.part_of(piece);
         let base = corners.len() as u32;
-        corners.extend(clipped.iter().map(|p| scene.lifted(*p, 0.0)));
+        corners.extend(clipped.iter().map(|p| stage.lifted(*p, 0.0)));
         triangles.extend((2..clipped.len() as u32).map(|i| [base, base + i - 1, base + i]));
     }
     if triangles.is_empty() {
@@ -54,7 +54,7 @@ pub fn log_land(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
         .iter()
         .flat_map(|o| o.windows(2))
         .filter(|edge| edge.iter().all(near))
-        .map(|edge| [edge[0], edge[1]].map(|p| scene.lifted(p, 0.0)));
+        .map(|edge| [edge[0], edge[1]].map(|p| stage.lifted(p, 0.0)));
     let shores = LineStrips3D::new(shores)
         .with_colors([style::land()])
         .with_radii([style::points(0.8)]);

@@ -39,9 +39,23 @@
 //! | `path_time/plane/axes`, `profile` | the grid with its units and the joints of legs; the planned speeds |
 //! | `path_time/plane/obstacles/<target>` | the set along the path |
 //! | `path_time/plane/now`, `own_ship` | the cursor's instant, and own ship in it |
-//! | `curves/speed_kn` | desired and own speed, knots; a row where one changes, no number where one has ended |
+//! | `curves/speed_kn` | desired and own speed, knots; a row where one changes, 0 where one has ended |
 //! | `curves/states`, `curves/forces` | of a plan of forces: surge, sway and yaw rate at its nodes, and the forces held between them; starboard and clockwise are positive |
 //! | `curves/course_deg` | desired and own course, degrees clockwise from true north, continuous |
+//!
+//! A comparison ([`write_comparison`]) shows the same sea, the same targets in grey, and in the place of own ship and her plan:
+//!
+//! | entity | what it is |
+//! | --- | --- |
+//! | `summary` | the table of the comparison, as markdown |
+//! | `comparison_document` | its JSON document |
+//! | `chart/map/methods/<method>/way`, `space_time/methods/<method>/way` | her motion, in the colour that the method has in figures |
+//! | `chart/map/methods/<method>/own_ship`, `own_ship/hull` | her place, hull and speed vector at the cursor |
+//! | `…/methods/<method>/explored/free`, `blocked` | edges that the search tested; hidden until asked for |
+//! | `curves/clearance_m/<method>` | metres between own hull and the nearest expected hull, or her centre and the nearest set |
+//! | `curves/speed_kn` | speeds, knots |
+//!
+//! Edges in `blocked` carry as labels what they meet, when, and by which rule or limit.
 //!
 //! A plot is one entity; its curves are the scalars of each row, named in `SeriesLines:names`.
 //! The blueprint, a store of its own in the same file, lays this out. Two recordings of one run differ
@@ -50,6 +64,7 @@
 mod blueprint;
 mod body;
 mod chart;
+mod comparison;
 mod curves;
 mod document;
 mod explored;
@@ -67,6 +82,7 @@ mod summary;
 mod table;
 mod velocities;
 
+pub use comparison::{Compared, write_comparison};
 pub use frames::is_recording;
 pub use reading::{EntityContents, ReadError, Recorded, TimelineContents};
 pub use table::{Columns, EntityRow, EntityTable};
@@ -74,7 +90,9 @@ pub use table::{Columns, EntityRow, EntityTable};
 use std::path::{Path, PathBuf};
 
 use rerun::external::re_log_encoding::Encoder;
-use rerun::{EntityPath, EntityPathPart, RecordingStreamBuilder, RecordingStreamResult};
+use rerun::{
+    EntityPath, EntityPathPart, RecordingStream, RecordingStreamBuilder, RecordingStreamResult,
+};
 
 use crate::pipeline::Run;
 use scene::Scene;
@@ -83,6 +101,7 @@ const APPLICATION: &str = "searoom";
 const TIMELINE: &str = "sim_time";
 const SUMMARY: &str = "summary";
 const DOCUMENT: &str = "plan_document";
+const COMPARISON: &str = "comparison_document";
 const TIMING: &str = "plan_s";
 const CHART: &str = "chart";
 const MAP: &str = "chart/map";
@@ -120,7 +139,20 @@ pub enum RecordingError {
 /// One target makes about 250 kB, every
 /// further one about 60 kB more. `document`, the text of the plan document, is kept in it: [`Recorded::document`] gives it back.
 pub fn write(run: &Run, document: Option<&str>, path: &Path) -> Result<(), RecordingError> {
-    let bytes = encode(run, document).map_err(|source| RecordingError::Encode {
+    let document = document.map(|text| (DOCUMENT, text));
+    put(path, &run.scenario.title, document, |rec| {
+        log_run(rec, &Scene::new(run))
+    })
+}
+
+/// Encodes what `log` logs, and a document at its entity, and writes the file.
+fn put(
+    path: &Path,
+    title: &str,
+    document: Option<(&str, &str)>,
+    log: impl FnOnce(&RecordingStream) -> RecordingStreamResult<()>,
+) -> Result<(), RecordingError> {
+    let bytes = encode(title, document, log).map_err(|source| RecordingError::Encode {
         path: path.to_owned(),
         source,
     })?;
@@ -131,20 +163,21 @@ pub fn write(run: &Run, document: Option<&str>, path: &Path) -> Result<(), Recor
 }
 
 fn encode(
-    run: &Run,
-    document: Option<&str>,
+    title: &str,
+    document: Option<(&str, &str)>,
+    log: impl FnOnce(&RecordingStream) -> RecordingStreamResult<()>,
 ) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
     let (rec, store) = RecordingStreamBuilder::new(APPLICATION)
-        .recording_name(run.scenario.title.clone())
+        .recording_name(title)
         // whatever the environment says of other programs' recordings
         .enabled(true)
         .memory()?;
     rec.set_log_time_enabled(false);
     rec.set_log_tick_enabled(false);
-    log_run(&rec, &Scene::new(run))?;
+    log(&rec)?;
     let mut timing = Vec::new();
-    if let Some(document) = document {
-        document::log_document(&rec, document)?;
+    if let Some((entity, document)) = document {
+        document::log_document(&rec, entity, document)?;
         timing = document::timing(document)?;
     }
     // the footer is an index into files too large to be read whole; here it would be 40 % of the file
@@ -158,13 +191,14 @@ fn encode(
     Ok(encoder.into_inner()?)
 }
 
-fn log_run(rec: &rerun::RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_run(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
     blueprint::send_blueprint(rec, scene)?;
     land::log_land(rec, scene)?;
     chart::log_chart(rec, scene)?;
     movers::log_movers(rec, scene)?;
     space_time::log_volume(rec, scene)?;
-    let drawn = explored::log_explored(rec, scene)?;
+    let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
+    let drawn = explored::log_explored(rec, scene, scene.run, folders, explored::POINT_BUDGET)?;
     curves::log_curves(rec, scene)?;
     forces::log_forces(rec, scene)?;
     velocities::log_velocities(rec, scene)?;

@@ -1,12 +1,12 @@
 //! The chart that moves with the cursor: ships and the sections of their sets.
 
 use rerun::{
-    AsComponents, Color, LineStrips2D, Points2D, Quaternion, Radius, RecordingStream,
+    AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, Radius, RecordingStream,
     RecordingStreamResult, TimeColumn, Transform3D,
 };
 
 use super::chart::{Lines, Strip};
-use super::scene::{Motion, Scene, flat, round_down};
+use super::scene::{Motion, Scene, Stage, flat, round_down};
 use super::{MAP, TIMELINE, TRAILS, path, style};
 use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
@@ -19,44 +19,69 @@ pub const HARD_RADIUS: Radius = Radius(rerun::datatypes::Float32(-1.6));
 pub const SHAPED_RADIUS: Radius = Radius(rerun::datatypes::Float32(-0.7));
 
 /// Colour of the outline of a shaped set.
-pub fn shaped_color(index: usize) -> Color {
-    style::toward_background(style::target(index), 0.75)
+pub fn shaped_color(stage: &Stage, index: usize) -> Color {
+    style::toward_background(stage.target_color(index), 0.75)
+}
+
+/// Own ship on one of the motions that are shown.
+#[derive(Debug, Clone)]
+pub struct OwnShip<'a> {
+    pub motion: Motion<'a>,
+    /// Beside her on the chart, or where nobody has room for names when she is pointed at.
+    pub name: String,
+    pub color: Color,
 }
 
 /// Everything on the chart that moves.
 pub fn log_movers(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    for (index, sets) in scene.run.sets.iter().enumerate() {
+    log_others(rec, scene)?;
+    let name = if scene.motion.is_planned() {
+        "Own ship"
+    } else {
+        "Own ship (no plan)"
+    };
+    let own = OwnShip {
+        motion: scene.motion,
+        name: name.to_owned(),
+        color: style::own_ship(),
+    };
+    log_own_ship(rec, scene, path(&[MAP, "own_ship"]), &own, true)?;
+    log_trails(rec, scene, &[own])
+}
+
+/// The targets and their sets.
+pub fn log_others(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+    for (index, sets) in stage.sets.iter().enumerate() {
         let name = sets.hard.name();
         if sets.shaped != sets.hard {
-            let look = (shaped_color(index), SHAPED_RADIUS);
+            let look = (shaped_color(stage, index), SHAPED_RADIUS);
             log_sections(
                 rec,
-                scene,
+                stage,
                 path(&[MAP, "shaped_sets", name]),
                 &sets.shaped,
                 look,
             )?;
         }
-        let look = (style::target(index), HARD_RADIUS);
+        let look = (stage.target_color(index), HARD_RADIUS);
         log_sections(
             rec,
-            scene,
+            stage,
             path(&[MAP, "hard_sets", name]),
             &sets.hard,
             look,
         )?;
     }
-    for (index, target) in scene.run.scenario.targets.iter().enumerate() {
-        log_target(rec, scene, index, target)?;
+    for (index, target) in stage.scenario.targets.iter().enumerate() {
+        log_target(rec, stage, index, target)?;
     }
-    log_own_ship(rec, scene)?;
-    log_trails(rec, scene)
+    Ok(())
 }
 
 /// The outline of the section at every moment.
 fn log_sections(
     rec: &RecordingStream,
-    scene: &Scene,
+    stage: &Stage,
     entity: rerun::EntityPath,
     set: &Obstacle,
     (color, radius): (Color, Radius),
@@ -65,14 +90,14 @@ fn log_sections(
         .with_colors([color])
         .with_radii([radius]);
     rec.log_static(entity.clone(), &look)?;
-    let outlines = scene
+    let outlines = stage
         .moments
         .iter()
         .map(|&t| outline(&set.outer_section(t)));
     let columns = LineStrips2D::update_fields()
         .with_strips(outlines)
         .columns_of_unit_batches()?;
-    rec.send_columns(entity, [scene.moment_column()], columns)
+    rec.send_columns(entity, [stage.moment_column()], columns)
 }
 
 /// The closed boundary of a polygon.
@@ -85,12 +110,12 @@ pub fn outline(polygon: &ConvexPolygon) -> Strip {
 /// A target's hull and speed vector do not turn: they are drawn turned and only move.
 fn log_target(
     rec: &RecordingStream,
-    scene: &Scene,
+    stage: &Stage,
     index: usize,
     target: &Target,
 ) -> RecordingStreamResult<()> {
     let entity = path(&[MAP, "targets", &target.name]);
-    let color = style::target(index);
+    let color = stage.target_color(index);
     let mut lines = Lines::default();
     if let Some(ship) = target.ship() {
         let here = Pose::new(Vector::zeros(), ship.pose.heading);
@@ -99,39 +124,45 @@ fn log_target(
             color,
             style::points(1.0),
         );
-        let tip = ship.velocity() * vector_seconds(scene);
+        let tip = ship.velocity() * vector_seconds(stage);
         lines.add(vec![[0.0, 0.0], flat(tip)], color, style::points(0.8));
     }
     let lines = lines.archetype();
-    let parts: [&dyn AsComponents; 2] = [&lines, &label(scene, color, &target.name)];
+    let parts: [&dyn AsComponents; 2] = [&lines, &label(stage, color, &target.name)];
     rec.log_static(entity.clone(), &parts)?;
-    let places = scene.moments.iter().map(|&t| target.position_at(t));
-    log_places(rec, scene, entity, places)
+    let places = stage.moments.iter().map(|&t| target.position_at(t));
+    log_places(rec, stage, entity, places)
 }
 
-fn log_own_ship(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let color = style::own_ship();
-    let entity = path(&[MAP, "own_ship"]);
-    let name = if scene.motion.is_planned() {
-        "Own ship"
-    } else {
-        "Own ship (no plan)"
-    };
-    rec.log_static(entity.clone(), &label(scene, color, name))?;
-    let poses = scene.moments.iter().map(|&t| scene.motion.pose_at(t));
-    log_places(rec, scene, entity, poses.clone().map(|p| p.position))?;
+/// Her place and name, and below it her hull and her speed vector; the name is always shown where `named`.
+pub fn log_own_ship(
+    rec: &RecordingStream,
+    stage: &Stage,
+    entity: EntityPath,
+    own: &OwnShip,
+    named: bool,
+) -> RecordingStreamResult<()> {
+    let name = label(stage, own.color, &own.name).with_show_labels(named);
+    rec.log_static(entity.clone(), &name)?;
+    let poses = stage.moments.iter().map(|&t| own.motion.pose_at(t));
+    log_places(
+        rec,
+        stage,
+        entity.clone(),
+        poses.clone().map(|p| p.position),
+    )?;
 
-    let hull = path(&[MAP, "own_ship", "hull"]);
+    let hull = entity.join(&EntityPath::from("hull"));
     let turns = Transform3D::update_fields()
         .with_many_quaternion(poses.map(|p| rotation(p.heading)))
         .columns_of_unit_batches()?;
-    rec.send_columns(hull.clone(), [scene.moment_column()], turns)?;
-    log_own_outline(rec, scene, hull)
+    rec.send_columns(hull.clone(), [stage.moment_column()], turns)?;
+    log_own_outline(rec, stage, hull, own)
 }
 
 fn log_places(
     rec: &RecordingStream,
-    scene: &Scene,
+    stage: &Stage,
     entity: rerun::EntityPath,
     places: impl Iterator<Item = Vector>,
 ) -> RecordingStreamResult<()> {
@@ -139,28 +170,34 @@ fn log_places(
     let columns = Transform3D::update_fields()
         .with_many_translation(raised)
         .columns_of_unit_batches()?;
-    rec.send_columns(entity, [scene.moment_column()], columns)
+    rec.send_columns(entity, [stage.moment_column()], columns)
 }
 
 /// A dot per ship and moment; the blueprint shows those up to the cursor. The last one marks the ship
 /// at any zoom.
-fn log_trails(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let targets = &scene.run.scenario.targets;
+pub fn log_trails(
+    rec: &RecordingStream,
+    stage: &Stage,
+    own: &[OwnShip],
+) -> RecordingStreamResult<()> {
+    let targets = &stage.scenario.targets;
     let entity = path(&[TRAILS]);
-    let colors = std::iter::once(style::own_ship()).chain((0..targets.len()).map(style::target));
+    let others = (0..targets.len()).map(|index| stage.target_color(index));
+    let colors = own.iter().map(|o| o.color).chain(others);
     let look = Points2D::update_fields()
         .with_colors(colors)
         .with_radii([style::points(2.4)]);
     rec.log_static(entity.clone(), &look)?;
     let mut dots = Vec::new();
-    for &time in &scene.moments {
-        dots.push(flat(scene.motion.pose_at(time).position));
-        dots.extend(targets.iter().map(|t| flat(t.position_at(time))));
+    for &time in &stage.moments {
+        let own = own.iter().map(|o| o.motion.pose_at(time).position);
+        let all = own.chain(targets.iter().map(|t| t.position_at(time)));
+        dots.extend(all.map(flat));
     }
-    let lengths = vec![1 + targets.len(); scene.moments.len()];
+    let lengths = vec![own.len() + targets.len(); stage.moments.len()];
     rec.send_columns(
         entity,
-        [scene.moment_column()],
+        [stage.moment_column()],
         Points2D::update_fields()
             .with_positions(dots)
             .columns(lengths)?,
@@ -170,22 +207,23 @@ fn log_trails(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
 /// Own ship's hull and speed vector in her own frame, logged where the speed changes.
 fn log_own_outline(
     rec: &RecordingStream,
-    scene: &Scene,
-    entity: rerun::EntityPath,
+    stage: &Stage,
+    entity: EntityPath,
+    own: &OwnShip,
 ) -> RecordingStreamResult<()> {
     let look = LineStrips2D::update_fields()
-        .with_colors([style::own_ship()])
+        .with_colors([own.color])
         .with_radii([style::points(1.2), style::points(0.8)]);
     rec.log_static(entity.clone(), &look)?;
-    let mut times = match scene.motion {
+    let mut times = match own.motion {
         Motion::Planned(trajectory) => trajectory.joints(),
         Motion::Undisturbed(desired) => desired.legs().iter().map(|l| l.start_time).collect(),
     };
     dedup_increasing(&mut times);
-    let own = scene.run.scenario.own_ship.hull;
-    let hull = outline(&own.polygon(&Pose::new(Vector::zeros(), 0.0)));
+    let hull = stage.scenario.own_ship.hull;
+    let hull = outline(&hull.polygon(&Pose::new(Vector::zeros(), 0.0)));
     let strips = times.iter().flat_map(|&t| {
-        let tip = scene.motion.speed_at(t) * vector_seconds(scene);
+        let tip = own.motion.speed_at(t) * vector_seconds(stage);
         [hull.clone(), vec![[0.0, 0.0], [tip as f32, 0.0]]]
     });
     let columns = LineStrips2D::update_fields()
@@ -207,13 +245,13 @@ fn dedup_increasing(times: &mut Vec<f64>) {
 }
 
 /// Seconds that a speed vector reaches ahead.
-pub fn vector_seconds(scene: &Scene) -> f64 {
-    round_down(scene.end / 6.0)
+pub fn vector_seconds(stage: &Stage) -> f64 {
+    round_down(stage.end / 6.0)
 }
 
 /// A name north of the ship: the time marks have theirs south of the track.
-fn label(scene: &Scene, color: Color, name: &str) -> Points2D {
-    let off = scene.bounds.extent() / 22.0;
+fn label(stage: &Stage, color: Color, name: &str) -> Points2D {
+    let off = stage.bounds.extent() / 22.0;
     Points2D::new([[0.0, off as f32]])
         .with_colors([color])
         .with_radii([style::points(0.0)])

@@ -10,7 +10,7 @@ use rerun::log::Chunk;
 
 use super::document::joined;
 use super::table::{EntityTable, text_of};
-use super::{APPLICATION, DOCUMENT, TIMING, frames};
+use super::{APPLICATION, COMPARISON, DOCUMENT, TIMING, frames};
 
 /// Bytes, 1 GiB: more is no plan of ours, and would have to fit into memory.
 const FILE_BYTES: u64 = 1 << 30;
@@ -153,7 +153,19 @@ impl Recorded {
         if !self.is_ours() {
             return None;
         }
-        let text = text_of(self.chunks.get(&format!("/{DOCUMENT}"))?)?;
+        self.document_at(DOCUMENT)
+    }
+
+    /// The document of a comparison: that of `compare --json` for its one scenario; `None` in a recording of anything else.
+    pub fn comparison(&self) -> Option<String> {
+        if !self.is_ours() {
+            return None;
+        }
+        self.document_at(COMPARISON)
+    }
+
+    fn document_at(&self, entity: &str) -> Option<String> {
+        let text = text_of(self.chunks.get(&format!("/{entity}"))?)?;
         Some(joined(&text, self.timing.as_deref()))
     }
 

@@ -1,12 +1,13 @@
-//! What all pictures of one run share: whose motion is shown, until when, at which moments, and how
-//! much of the sea is seen.
+//! What all pictures of a recording share: the stage, which is the scenario with its sets, until when, at which moments, and
+//! how much of the sea is seen; and of one run whose motion is shown on it.
 
-use rerun::TimeColumn;
+use rerun::{Color, TimeColumn};
 
-use super::TIMELINE;
+use super::{TIMELINE, style};
 use crate::frame::{Pose, Vector, heading_of};
 use crate::obstacle::Obstacle;
-use crate::pipeline::Run;
+use crate::pipeline::{Run, TargetSets};
+use crate::scenario::Scenario;
 use crate::tolerance;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
 
@@ -37,12 +38,33 @@ impl Motion<'_> {
         matches!(self, Self::Planned(_))
     }
 
-    /// The value, or no number once the plan has arrived: nothing is claimed after that.
-    pub fn until_arrival(&self, time: f64, value: f64) -> f64 {
+    /// Of times that rise those until the plan has arrived: nothing is claimed after that.
+    pub fn until_arrival<'t>(&self, times: &'t [f64]) -> &'t [f64] {
         match self {
-            Self::Planned(plan) if time > plan.end_time() + tolerance::TIME_S => f64::NAN,
-            Self::Planned(_) | Self::Undisturbed(_) => value,
+            Self::Planned(plan) => {
+                let end = plan.end_time() + tolerance::TIME_S;
+                &times[..times.partition_point(|t| *t <= end)]
+            }
+            Self::Undisturbed(_) => times,
         }
+    }
+
+    /// Seconds.
+    pub fn end(&self) -> f64 {
+        match self {
+            Self::Planned(trajectory) => trajectory.end_time(),
+            Self::Undisturbed(desired) => desired.duration(),
+        }
+    }
+
+    /// When its speed may change, seconds, its start and its end among them.
+    pub fn steps(&self) -> Vec<f64> {
+        let mut times = match self {
+            Self::Planned(trajectory) => trajectory.joints(),
+            Self::Undisturbed(desired) => desired.legs().iter().map(|l| l.start_time).collect(),
+        };
+        times.push(self.end());
+        times
     }
 
     pub fn pose_at(&self, time: f64) -> Pose {
@@ -111,13 +133,21 @@ impl Bounds {
     }
 }
 
-/// One run, prepared for drawing.
+/// What colours are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hues {
+    /// Own ship is white.
+    Targets,
+    /// Targets are grey.
+    OwnShips,
+}
+
+/// A scenario and its sets, prepared for drawing whoever sails in it.
 #[derive(Debug)]
-pub struct Scene<'a> {
-    pub run: &'a Run,
-    pub motion: Motion<'a>,
-    /// Seconds: arrival, or the end of the desired trajectory if that is later. Nothing is claimed
-    /// after arrival, and the sets only grow.
+pub struct Stage<'a> {
+    pub scenario: &'a Scenario,
+    pub sets: &'a [TargetSets],
+    /// Seconds: nothing is shown after that.
     pub end: f64,
     /// Seconds: every position of the cursor at which something moves.
     pub moments: Vec<f64>,
@@ -127,6 +157,71 @@ pub struct Scene<'a> {
     pub bounds: Bounds,
     /// Metres of height per second in the space-time volume.
     pub metres_per_second: f64,
+    /// Colours of the targets: these, or greys where colours tell own ships apart.
+    pub hues: Hues,
+}
+
+impl<'a> Stage<'a> {
+    /// `motions` are to be seen whole.
+    pub fn new(
+        scenario: &'a Scenario,
+        sets: &'a [TargetSets],
+        motions: &[Motion],
+        end: f64,
+        hues: Hues,
+    ) -> Self {
+        let moments = steps(end, moment_step(sets, end));
+        let samples = steps(end, (end / CURVE_SAMPLES).ceil().max(1.0));
+        let bounds = bounds(scenario, motions, &moments);
+        Self {
+            scenario,
+            sets,
+            end,
+            moments,
+            samples,
+            bounds,
+            metres_per_second: one_digit(0.65 * bounds.extent() / end),
+            hues,
+        }
+    }
+
+    /// The colour of a target by its index.
+    pub fn target_color(&self, index: usize) -> Color {
+        match self.hues {
+            Hues::Targets => style::target(index),
+            Hues::OwnShips => style::grey_target(index),
+        }
+    }
+
+    /// The unit vector from the first waypoint to the last; own ship's first heading on a round trip.
+    pub fn ahead(&self) -> Vector {
+        let desired = &self.scenario.desired;
+        let start = desired.legs()[0].start;
+        (desired.end() - start)
+            .try_normalize(0.0)
+            .unwrap_or_else(|| self.scenario.own_ship.pose.ahead())
+    }
+
+    /// The index column of everything that moves.
+    pub fn moment_column(&self) -> TimeColumn {
+        TimeColumn::new_duration_secs(TIMELINE, self.moments.iter().copied())
+    }
+
+    /// The point of the space-time volume, metres.
+    pub fn lifted(&self, position: Vector, time: f64) -> [f32; 3] {
+        let [east, north] = flat(position);
+        [east, north, (time * self.metres_per_second) as f32]
+    }
+}
+
+/// One run on its stage.
+#[derive(Debug)]
+pub struct Scene<'a> {
+    pub run: &'a Run,
+    pub motion: Motion<'a>,
+    /// Until arrival, or the end of the desired trajectory if that is later. Nothing is claimed after arrival, and the sets only
+    /// grow.
+    pub stage: Stage<'a>,
 }
 
 impl<'a> Scene<'a> {
@@ -141,38 +236,20 @@ impl<'a> Scene<'a> {
             Motion::Undisturbed(_) => desired.duration(),
         }
         .min(run.scenario.horizon);
-        let moments = steps(end, moment_step(run, end));
-        let samples = steps(end, (end / CURVE_SAMPLES).ceil().max(1.0));
-        let bounds = bounds(run, motion, &moments);
         Self {
             run,
             motion,
-            end,
-            moments,
-            samples,
-            bounds,
-            metres_per_second: one_digit(0.65 * bounds.extent() / end),
+            stage: Stage::new(&run.scenario, &run.sets, &[motion], end, Hues::Targets),
         }
     }
+}
 
-    /// The unit vector from the first waypoint to the last; own ship's first heading on a round trip.
-    pub fn ahead(&self) -> Vector {
-        let desired = &self.run.scenario.desired;
-        let start = desired.legs()[0].start;
-        (desired.end() - start)
-            .try_normalize(0.0)
-            .unwrap_or_else(|| self.motion.pose_at(0.0).ahead())
-    }
+/// A scene is a stage with somebody on it: what the stage knows, it knows.
+impl<'a> std::ops::Deref for Scene<'a> {
+    type Target = Stage<'a>;
 
-    /// The index column of everything that moves.
-    pub fn moment_column(&self) -> TimeColumn {
-        TimeColumn::new_duration_secs(TIMELINE, self.moments.iter().copied())
-    }
-
-    /// The point of the space-time volume, metres.
-    pub fn lifted(&self, position: Vector, time: f64) -> [f32; 3] {
-        let [east, north] = flat(position);
-        [east, north, (time * self.metres_per_second) as f32]
+    fn deref(&self) -> &Stage<'a> {
+        &self.stage
     }
 }
 
@@ -214,9 +291,8 @@ fn corners(set: &Obstacle, end: f64) -> usize {
     set.outer_section(end).vertices().len()
 }
 
-fn moment_step(run: &Run, end: f64) -> f64 {
-    let each: usize = run
-        .sets
+fn moment_step(sets: &[TargetSets], end: f64) -> f64 {
+    let each: usize = sets
         .iter()
         .map(|s| corners(&s.hard, end) + corners(&s.shaped, end) + 2)
         .sum();
@@ -227,22 +303,24 @@ fn moment_step(run: &Run, end: f64) -> f64 {
         .max(end / 1000.0)
 }
 
-/// The desired and the planned trajectory, and every target while it is near own ship.
-fn bounds(run: &Run, motion: Motion, moments: &[f64]) -> Bounds {
-    let desired = &run.scenario.desired;
+/// The desired trajectory, the motions, and every target while it is near one of them.
+fn bounds(scenario: &Scenario, motions: &[Motion], moments: &[f64]) -> Bounds {
+    let desired = &scenario.desired;
     let near = 0.6 * desired.length();
     let mut points = desired.waypoints();
-    points.push(run.scenario.own_ship.pose.position);
+    points.push(scenario.own_ship.pose.position);
     for &time in moments {
-        let own = motion.pose_at(time).position;
-        points.push(own);
-        points.extend(
-            run.scenario
-                .targets
-                .iter()
-                .map(|target| target.position_at(time))
-                .filter(|p| (p - own).norm() < near),
-        );
+        for motion in motions {
+            let own = motion.pose_at(time).position;
+            points.push(own);
+            points.extend(
+                scenario
+                    .targets
+                    .iter()
+                    .map(|target| target.position_at(time))
+                    .filter(|p| (p - own).norm() < near),
+            );
+        }
     }
     let bounds = Bounds::of(points);
     let bounds = bounds.grown(0.06 * bounds.extent());

@@ -7,10 +7,14 @@ use rerun::{
 
 use super::body::{mesh, stretches};
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
-use super::scene::{Bounds, Scene};
+use super::movers::OwnShip;
+use super::scene::{Bounds, Scene, Stage};
 use super::{VOLUME, path, style};
 use crate::frame::{Vector, to_port};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+
+/// Strength of the shadow of a plan on the sea.
+const SHADOW: f32 = 0.35;
 
 /// Of the sides of a shaped body.
 const SHAPED_ALPHA: u8 = 16;
@@ -41,27 +45,38 @@ impl Lines {
 
 /// The whole volume.
 pub fn log_volume(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    log_waters(rec, scene)?;
+    log_planned(rec, scene)?;
+    let own = OwnShip {
+        motion: scene.motion,
+        name: "Own ship".to_owned(),
+        color: style::own_ship(),
+    };
+    log_now(rec, scene, &[own])
+}
+
+/// What is there whoever sails: the axes, the sets, the desired motion and those of the targets.
+pub fn log_waters(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
     rec.log_static(VOLUME, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-    log_axes(rec, scene)?;
-    for (index, sets) in scene.run.sets.iter().enumerate() {
+    log_axes(rec, stage)?;
+    for (index, sets) in stage.sets.iter().enumerate() {
         let name = sets.hard.name();
         if sets.shaped != sets.hard {
             let entity = path(&[VOLUME, "shaped_sets", name]);
-            log_body(rec, scene, entity, &sets.shaped, (index, SHAPED_ALPHA))?;
+            log_body(rec, stage, entity, &sets.shaped, (index, SHAPED_ALPHA))?;
         }
         let entity = path(&[VOLUME, "hard_sets", name]);
-        log_body(rec, scene, entity, &sets.hard, (index, HARD_ALPHA))?;
+        log_body(rec, stage, entity, &sets.hard, (index, HARD_ALPHA))?;
     }
-    log_motions(rec, scene)?;
-    log_now(rec, scene)
+    log_expected(rec, stage)
 }
 
 /// The sea at t = 0 as a grid, the time axis with its ticks.
-fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let Bounds { low, high } = scene.bounds;
-    let spacing = grid_spacing(scene);
+fn log_axes(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = stage.bounds;
+    let spacing = grid_spacing(stage);
     let mut lines = Lines::default();
-    let ground = |east: f64, north: f64| scene.lifted(Vector::new(east, north), 0.0);
+    let ground = |east: f64, north: f64| stage.lifted(Vector::new(east, north), 0.0);
     for east in multiples(low.x, high.x, spacing) {
         lines.add(
             vec![ground(east, low.y), ground(east, high.y)],
@@ -77,25 +92,25 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         );
     }
     let text = style::chart_text();
-    let axis = axis_corner(scene);
-    let axis_line = [0.0, scene.end].map(|t| scene.lifted(axis, t));
+    let axis = axis_corner(stage);
+    let axis_line = [0.0, stage.end].map(|t| stage.lifted(axis, t));
     lines.add(axis_line.to_vec(), text, 1.0);
     let mut places = Vec::new();
     let mut labels = Vec::new();
-    for time in multiples(0.0, scene.end, 2.0 * mark_step(scene)) {
-        places.push(scene.lifted(axis, time));
+    for time in multiples(0.0, stage.end, 2.0 * mark_step(stage)) {
+        places.push(stage.lifted(axis, time));
         labels.push(if time == 0.0 {
             "t = 0 s".to_owned()
         } else {
             format!("{time:.0} s")
         });
     }
-    let middle = scene.bounds.center();
+    let middle = stage.bounds.center();
     for (place, name) in [
         (Vector::new(high.x, middle.y), "E"),
         (Vector::new(middle.x, high.y), "N"),
     ] {
-        places.push(scene.lifted(place, 0.0));
+        places.push(stage.lifted(place, 0.0));
         labels.push(name.to_owned());
     }
     let ticks = Points3D::new(places)
@@ -109,9 +124,9 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
 }
 
 /// Where the time axis stands: on the far side as the eye sees it, at the end where own ship starts.
-fn axis_corner(scene: &Scene) -> Vector {
-    let Bounds { low, high } = scene.bounds;
-    let ahead = scene.ahead();
+fn axis_corner(stage: &Stage) -> Vector {
+    let Bounds { low, high } = stage.bounds;
+    let ahead = stage.ahead();
     let beside = to_port(ahead) - ahead;
     let corner = |along: f64, low: f64, high: f64| if along < 0.0 { low } else { high };
     Vector::new(
@@ -123,20 +138,20 @@ fn axis_corner(scene: &Scene) -> Vector {
 /// The translucent body, its edges and its last section.
 fn log_body(
     rec: &RecordingStream,
-    scene: &Scene,
+    stage: &Stage,
     entity: rerun::EntityPath,
     set: &Obstacle,
     (index, alpha): (usize, u8),
 ) -> RecordingStreamResult<()> {
-    let color = style::target(index);
-    let stretches = stretches(scene, set);
-    let body = mesh(scene, &stretches).with_albedo_factor(style::translucent(color, alpha).0);
+    let color = stage.target_color(index);
+    let stretches = stretches(stage, set);
+    let body = mesh(stage, &stretches).with_albedo_factor(style::translucent(color, alpha).0);
     let strength = 0.3 + f32::from(alpha) / 100.0;
     let faint = style::toward_background(color, strength);
     let mut lines = Lines::default();
-    for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * scene.end) {
+    for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * stage.end) {
         if let Some(stretch) = stretches.iter().find(|s| s.contains(time)) {
-            lines.add(stretch.ring(scene, time), faint, 0.6);
+            lines.add(stretch.ring(stage, time), faint, 0.6);
         }
     }
     let lines = lines.archetype();
@@ -144,48 +159,52 @@ fn log_body(
     rec.log_static(entity, &parts)
 }
 
-/// Planned, desired and expected motions, and the plan's shadow on the sea.
-fn log_motions(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let desired = &scene.run.scenario.desired;
+/// The plan, and its shadow on the sea.
+fn log_planned(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+    if !scene.motion.is_planned() {
+        return Ok(());
+    }
+    let mut lines = Lines::default();
+    let shadow = style::toward_background(style::own_ship(), SHADOW);
+    for (pace, points) in planned_strips(scene) {
+        let risen = points.iter().map(|&(p, t)| scene.lifted(p, t)).collect();
+        lines.add(risen, pace.color(), 2.0);
+        let fallen = points.iter().map(|&(p, _)| scene.lifted(p, 0.0)).collect();
+        lines.add(fallen, shadow, 0.8);
+    }
+    rec.log_static(path(&[VOLUME, "planned"]), &lines.archetype())
+}
+
+/// Desired and expected motions.
+fn log_expected(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+    let desired = &stage.scenario.desired;
     let mut lines = Lines::default();
     let mut strip: Vec<_> = desired
         .legs()
         .iter()
-        .map(|l| scene.lifted(l.start, l.start_time))
+        .map(|l| stage.lifted(l.start, l.start_time))
         .collect();
-    strip.push(scene.lifted(desired.end(), desired.duration()));
+    strip.push(stage.lifted(desired.end(), desired.duration()));
     lines.add(strip, style::desired(), 0.9);
     rec.log_static(path(&[VOLUME, "desired"]), &lines.archetype())?;
-
-    if scene.motion.is_planned() {
-        let mut lines = Lines::default();
-        let shadow = style::toward_background(style::own_ship(), 0.35);
-        for (pace, points) in planned_strips(scene) {
-            let risen = points.iter().map(|&(p, t)| scene.lifted(p, t)).collect();
-            lines.add(risen, pace.color(), 2.0);
-            let fallen = points.iter().map(|&(p, _)| scene.lifted(p, 0.0)).collect();
-            lines.add(fallen, shadow, 0.8);
-        }
-        rec.log_static(path(&[VOLUME, "planned"]), &lines.archetype())?;
-    }
-    if scene.run.scenario.targets.is_empty() {
+    if stage.scenario.targets.is_empty() {
         return Ok(());
     }
     let mut lines = Lines::default();
-    for (index, target) in scene.run.scenario.targets.iter().enumerate() {
+    for (index, target) in stage.scenario.targets.iter().enumerate() {
         let mut times = vec![0.0];
-        times.extend(target.changes().into_iter().filter(|&t| t < scene.end));
-        times.push(scene.end);
+        times.extend(target.changes().into_iter().filter(|&t| t < stage.end));
+        times.push(stage.end);
         let places = times.iter();
-        let strip = places.map(|&t| scene.lifted(target.position_at(t), t));
-        lines.add(strip.collect(), style::target(index), 1.0);
+        let strip = places.map(|&t| stage.lifted(target.position_at(t), t));
+        lines.add(strip.collect(), stage.target_color(index), 1.0);
     }
     rec.log_static(path(&[VOLUME, "targets"]), &lines.archetype())
 }
 
 /// The plane of the cursor, and where the ships are in it.
-fn log_now(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    let Bounds { low, high } = scene.bounds;
+pub fn log_now(rec: &RecordingStream, stage: &Stage, own: &[OwnShip]) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = stage.bounds;
     let frame = [
         [low.x, low.y],
         [high.x, low.y],
@@ -193,39 +212,38 @@ fn log_now(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
         [low.x, high.y],
         [low.x, low.y],
     ]
-    .map(|[east, north]| scene.lifted(Vector::new(east, north), 0.0));
+    .map(|[east, north]| stage.lifted(Vector::new(east, north), 0.0));
     let frame = LineStrips3D::new([frame])
         .with_colors([style::toward_background(style::own_ship(), 0.5)])
         .with_radii([style::points(0.6)]);
-    let targets = &scene.run.scenario.targets;
-    let colors = std::iter::once(style::own_ship()).chain((0..targets.len()).map(style::target));
-    let names = std::iter::once("Own ship").chain(targets.iter().map(|t| t.name.as_str()));
+    let targets = &stage.scenario.targets;
+    let others = (0..targets.len()).map(|index| stage.target_color(index));
+    let colors = own.iter().map(|o| o.color).chain(others);
+    let others = targets.iter().map(|t| t.name.as_str());
+    let names = own.iter().map(|o| o.name.as_str()).chain(others);
     let ships = Points3D::update_fields()
         .with_colors(colors)
         .with_radii([style::points(5.0)])
         .with_labels(names)
-        .with_show_labels(true);
+        // names of several own ships would lie on one another: they are shown when one is pointed at
+        .with_show_labels(own.len() <= 1);
     let entity = path(&[VOLUME, "now"]);
     let parts: [&dyn AsComponents; 2] = [&frame, &ships];
     rec.log_static(entity.clone(), &parts)?;
 
-    let plane = |time: f64| scene.lifted(Vector::zeros(), time);
+    let plane = |time: f64| stage.lifted(Vector::zeros(), time);
     let rises = Transform3D::update_fields()
-        .with_many_translation(scene.moments.iter().map(|&t| plane(t)))
+        .with_many_translation(stage.moments.iter().map(|&t| plane(t)))
         .columns_of_unit_batches()?;
     let mut places = Vec::new();
-    for &time in &scene.moments {
-        let own = scene.motion.pose_at(time).position;
-        places.push(scene.lifted(own, 0.0));
-        places.extend(
-            targets
-                .iter()
-                .map(|t| scene.lifted(t.position_at(time), 0.0)),
-        );
+    for &time in &stage.moments {
+        let own = own.iter().map(|o| o.motion.pose_at(time).position);
+        let all = own.chain(targets.iter().map(|t| t.position_at(time)));
+        places.extend(all.map(|p| stage.lifted(p, 0.0)));
     }
-    let lengths = vec![1 + targets.len(); scene.moments.len()];
+    let lengths = vec![own.len() + targets.len(); stage.moments.len()];
     let moves = Points3D::update_fields()
         .with_positions(places)
         .columns(lengths)?;
-    rec.send_columns(entity, [scene.moment_column()], rises.chain(moves))
+    rec.send_columns(entity, [stage.moment_column()], rises.chain(moves))
 }

@@ -23,6 +23,7 @@ const TARGETS: [(u8, u8, u8); 6] = [
     (206, 168, 40),
     (150, 170, 90),
 ];
+const GREYS: [(u8, u8, u8); 3] = [(188, 194, 204), (140, 146, 158), (222, 226, 232)];
 
 pub fn rgb(color: (u8, u8, u8)) -> Color {
     Color::from_rgb(color.0, color.1, color.2)
@@ -67,6 +68,11 @@ pub fn graph_blocked() -> Color {
 /// Colour of a target by its place in the scenario.
 pub fn target(index: usize) -> Color {
     rgb(TARGETS[index % TARGETS.len()])
+}
+
+/// A grey for a target by its place in the scenario, where colours tell own ships apart.
+pub fn grey_target(index: usize) -> Color {
+    rgb(GREYS[index % GREYS.len()])
 }
 
 /// The same colour at a fraction of its strength on the [`BACKGROUND`].

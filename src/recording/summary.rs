@@ -94,7 +94,7 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
         said.push(format!("is planned for {arrival:.0} s, all of the horizon"));
         return format!("**Own ship {}.**", said.join(", "));
     }
-    let delay = arrival - scene.run.scenario.desired.duration();
+    let delay = arrival - scene.scenario.desired.duration();
     said.push(if delay.abs() < 0.05 {
         format!("arrives on time at {arrival:.0} s")
     } else {

@@ -214,10 +214,149 @@ fn nothing_is_said_of_the_margin_after_arrival() {
     let scene = Scene::new(&run);
     assert!((scene.end - late).abs() < 1e-9);
     let margins = curves::margins(&scene, &[&run.sets[0].hard]);
-    let arrival = run.planned.outcome.plan().map(|p| p.trajectory.end_time());
-    for (time, margin) in scene.samples.iter().zip(margins) {
-        assert_eq!(margin.is_nan(), Some(*time) > arrival, "{time} {margin}");
+    let plan = run.planned.outcome.plan().expect("a plan");
+    let arrival = plan.trajectory.end_time();
+    let before = scene.samples.iter().filter(|t| **t <= arrival).count();
+    assert!(before < scene.samples.len());
+    assert_eq!(margins.len(), before);
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("early.rrd");
+    write(&run, None, &path).expect("writes");
+    assert_eq!(read(&path)["/curves/margin_m"].0, before as u64 + 1);
+    let recorded = Recorded::read(&path).expect("whole");
+    let speeds = recorded.table(curves::SPEED).expect("there");
+    let last = &speeds.rows.last().expect("rows").values;
+    let scalars = speeds
+        .components
+        .iter()
+        .position(|c| c.starts_with("Scalars:"));
+    let own = &last[scalars.expect("scalars")][1];
+    assert_eq!(own.as_f64(), Some(0.0), "she rests: {last:?}");
+    assert_numbers(&recorded);
+}
+
+/// A value that is no number equals nothing, not even itself: no two recordings would be alike.
+fn assert_numbers(recorded: &Recorded) {
+    for entity in recorded.entities() {
+        let table = recorded.table(&entity.path).expect("listed");
+        for row in &table.rows {
+            for values in row.values.iter().filter(|v| !v.is_null()) {
+                let text = values.to_string();
+                assert!(!text.contains("null"), "{}: {text}", entity.path);
+            }
+        }
     }
+}
+
+fn compared(scenario: &Scenario) -> Vec<crate::comparison::Entry> {
+    crate::comparison::compare(scenario, &[scenario.max_risk])
+}
+
+fn recorded_comparison(scenario: &Scenario, path: &Path) -> Recorded {
+    let entries = compared(scenario);
+    let written = Compared {
+        scenario,
+        entries: &entries,
+        table: "a table",
+        document: "{\"plan_s\": 0.25, \"more\": [{\"plan_s\": 3}]}",
+    };
+    write_comparison(&written, path).expect("writes");
+    Recorded::read(path).expect("whole")
+}
+
+/// What the labels of an entity say.
+fn labels(recorded: &Recorded, entity: &str) -> Vec<String> {
+    let table = recorded.table(entity).expect(entity);
+    let is_label = |c: &String| c.ends_with(":labels");
+    let place = table.components.iter().position(is_label).expect("labels");
+    let rows = table
+        .rows
+        .iter()
+        .filter_map(|row| row.values[place].as_array());
+    rows.flatten()
+        .map(|v| v.as_str().expect("text").to_owned())
+        .collect()
+}
+
+#[test]
+fn a_comparison_is_one_recording_with_every_motion() {
+    let folder = tempfile::tempdir().expect("folder");
+    let scenario = scenario();
+    let path = folder.path().join("compared.rrd");
+    let recorded = recorded_comparison(&scenario, &path);
+    assert_eq!(
+        recorded.comparison().as_deref(),
+        Some("{\"plan_s\": 0.25, \"more\": [{\"plan_s\": 3}]}")
+    );
+    assert_eq!(recorded.document(), None);
+    let entities = read(&path);
+    for entry in compared(&scenario)
+        .iter()
+        .filter(|e| e.trajectory().is_some())
+    {
+        let method = entry.contender.method.to_string();
+        let name = EntityPathPart::new(&method).escaped_string();
+        let mut parts = vec![
+            format!("/chart/map/methods/{name}/way"),
+            format!("/chart/map/methods/{name}/own_ship/hull"),
+            format!("/space_time/methods/{name}/way"),
+            format!("/curves/clearance_m/{name}"),
+        ];
+        if matches!(
+            entry.contender.method,
+            crate::comparison::Method::Planner { .. }
+        ) {
+            parts.push(format!("/chart/map/methods/{name}/explored/free"));
+        }
+        for part in parts {
+            assert!(entities.contains_key(&part), "{part} in {entities:#?}");
+        }
+    }
+    assert!(!entities.contains_key("/chart/map/planned"));
+    for (entity, (_, timelines)) in &entities {
+        assert!(timelines.iter().all(|t| t == TIMELINE), "{entity}");
+    }
+    assert_numbers(&recorded);
+    let again = recorded_comparison(&scenario, &folder.path().join("again.rrd"));
+    for entity in recorded.entities() {
+        let same = recorded.table(&entity.path) == again.table(&entity.path);
+        // when it was made
+        assert!(same || entity.path == "/__properties", "{}", entity.path);
+    }
+}
+
+#[test]
+fn a_refused_edge_says_what_it_meets_when_and_why() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("edges.rrd");
+    write(&run(), None, &path).expect("writes");
+    let recorded = Recorded::read(&path).expect("whole");
+    let said = labels(&recorded, "/chart/map/explored/blocked");
+    assert!(!said.is_empty());
+    for reason in &said {
+        let (what, limit) = reason.split_once(": ").expect("two parts");
+        let time = what.strip_prefix(NAME).and_then(|t| t.strip_prefix(" at "));
+        let time = time
+            .and_then(|t| t.strip_suffix(" s"))
+            .and_then(|t| t.parse::<f64>().ok());
+        assert!((1.0..300.0).contains(&time.expect("a time")), "{reason}");
+        let known = [
+            "the shape about her (head-on, Rule 14)",
+            "hulls and a margin of 20 m",
+        ];
+        assert!(known.contains(&limit), "{reason}");
+    }
+    assert!(said.iter().any(|r| r.contains("Rule 14")), "{said:?}");
+
+    let shore = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/harbour/munkholmen.toml");
+    let run = pipeline::run(Scenario::read(&shore).expect("valid"));
+    write(&run, None, &path).expect("writes");
+    let said = labels(
+        &Recorded::read(&path).expect("whole"),
+        "/chart/map/explored/blocked",
+    );
+    let aground = said.iter().filter(|r| r.starts_with("land at ")).count();
+    assert!(aground > 0, "{said:?}");
 }
 
 #[test]

@@ -23,7 +23,7 @@ const FINENESS: f64 = 1e-3;
 
 /// Metres per second, east and north, that the view shows to each side: half as much again as own ship's greatest speed.
 pub fn limit(scene: &Scene) -> f64 {
-    1.5 * scene.run.scenario.own_ship.max_speed()
+    1.5 * scene.scenario.own_ship.max_speed()
 }
 
 /// The whole view.
@@ -32,7 +32,7 @@ pub fn log_velocities(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     let turned = Transform3D::from_scale([1.0, -1.0, 1.0]);
     rec.log_static(PLANE, &turned)?;
     log_axes(rec, scene)?;
-    for (index, sets) in scene.run.sets.iter().enumerate() {
+    for (index, sets) in scene.sets.iter().enumerate() {
         let entity = path(&[PLANE, "obstacles", sets.hard.name()]);
         let look = LineStrips2D::update_fields()
             .with_colors([style::target(index)])
@@ -76,7 +76,7 @@ fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
             style::points(0.5),
         );
     }
-    for &speed in &scene.run.scenario.own_ship.speeds {
+    for &speed in &scene.scenario.own_ship.speeds {
         let circle = (0..=72).map(|k| flat(direction(f64::from(k) * CIRCLE_STEP) * speed));
         lines.add(circle.collect(), style::grid(), style::points(0.8));
     }

@@ -1,16 +1,16 @@
 //! Contenders side by side for the eye, and as rows of a CSV file.
 
-use comfy_table::{Cell, Color};
+use comfy_table::Cell;
 
 use super::alteration::largest_alteration;
 use super::summary::{Turn, Verdict};
-use super::table::{figures, metres, signed, square_metres};
+use super::table::{Tone, cell, figures, metres, said, signed, square_metres};
 use crate::comparison::{Entry, Inapplicable, Method, Sailed};
 use crate::frame::Side;
 use crate::scenario::Scenario;
 
 /// Units below the names, so that the table fits a terminal.
-const HEADER: [&str; 13] = [
+pub(super) const HEADER: [&str; 13] = [
     "method",
     "outcome",
     "J\n[m²]",
@@ -26,8 +26,11 @@ const HEADER: [&str; 13] = [
     "verified",
 ];
 
+/// The column of the time that planning took.
+pub(super) const TIME: usize = 11;
+
 /// Between the outcome and the accepted risk in a sweep.
-const ACCEPTED: &str = "accepted\nrisk";
+pub(super) const ACCEPTED: &str = "accepted\nrisk";
 
 /// One contender in a few figures. Figures of the motion are `None` without one.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,6 +117,11 @@ impl ComparisonRow {
     }
 }
 
+/// True where several risks were accepted.
+pub(super) fn is_sweep(rows: &[ComparisonRow]) -> bool {
+    rows.iter().any(|row| row.max_risk != rows[0].max_risk)
+}
+
 /// The table of one scenario, and what does not apply. Colour only when `colour`.
 pub fn comparison_table(
     title: &str,
@@ -121,7 +129,7 @@ pub fn comparison_table(
     inapplicable: &[Inapplicable],
     colour: bool,
 ) -> String {
-    let sweep = rows.iter().any(|row| row.max_risk != rows[0].max_risk);
+    let sweep = is_sweep(rows);
     let mut header = HEADER.to_vec();
     if sweep {
         header.insert(2, ACCEPTED);
@@ -136,6 +144,13 @@ pub fn comparison_table(
         table.add_row(cells);
     }
     let mut lines = vec![title.to_owned(), table.trim_fmt()];
+    lines.extend(remarks(rows, inapplicable));
+    lines.join("\n")
+}
+
+/// Why there is no motion, and what does not apply: a sentence each.
+pub(super) fn remarks(rows: &[ComparisonRow], inapplicable: &[Inapplicable]) -> Vec<String> {
+    let mut lines = Vec::new();
     let mut told: Vec<Method> = Vec::new();
     for row in rows {
         let Some(reason) = row.reason.as_ref().filter(|_| !told.contains(&row.method)) else {
@@ -152,20 +167,60 @@ pub fn comparison_table(
     for other in inapplicable {
         lines.push(format!("{} does not apply: {}", other.method, other.reason));
     }
+    lines
+}
+
+/// The table as markdown, without the time that planning took: the same comparison, the same text.
+pub fn comparison_markdown(
+    title: &str,
+    rows: &[ComparisonRow],
+    inapplicable: &[Inapplicable],
+) -> String {
+    let sweep = is_sweep(rows);
+    let line = |mut cells: Vec<String>, risk: String| {
+        cells.remove(TIME);
+        if sweep {
+            cells.insert(2, risk);
+        }
+        let cells: Vec<String> = cells.iter().map(|cell| in_cell(cell)).collect();
+        format!("| {} |", cells.join(" | "))
+    };
+    let names = HEADER.map(|name| name.replace('\n', " ")).to_vec();
+    let columns = HEADER.len() - 1 + usize::from(sweep);
+    let mut lines = vec![
+        format!("# {}", in_cell(title)),
+        String::new(),
+        line(names, ACCEPTED.replace('\n', " ")),
+        format!("|{}", "---|".repeat(columns)),
+    ];
+    lines.extend(rows.iter().map(|row| {
+        let cells = texts(row).into_iter().map(|(text, _)| text).collect();
+        line(cells, row.max_risk.to_string())
+    }));
+    lines.push(String::new());
+    let told = remarks(rows, inapplicable).into_iter();
+    lines.extend(told.map(|remark| format!("- {}", in_cell(&remark))));
     lines.join("\n")
 }
 
-fn cells(row: &ComparisonRow) -> Vec<Cell> {
-    let text = |value: Option<String>| Cell::new(value.unwrap_or_else(|| "–".to_owned()));
+/// A text that stays in its cell.
+fn in_cell(text: &str) -> String {
+    text.replace('|', "\\|").replace(['\n', '\r'], " ")
+}
+
+/// A row as texts, in the order of [`HEADER`].
+pub(super) fn texts(row: &ComparisonRow) -> [(String, Tone); 13] {
+    let text = |value: Option<String>| (value.unwrap_or_else(|| "–".to_owned()), Tone::Plain);
     let tenths = |value: f64| format!("{value:.1}");
     let moved = row.verified.is_some();
-    vec![
-        Cell::new(row.method),
-        Cell::new(row.outcome).fg(match row.outcome {
-            "solved" | "clear" => Color::Green,
-            "relaxed" => Color::Yellow,
-            _ => Color::Red,
-        }),
+    let outcome = match row.outcome {
+        "solved" | "clear" => Tone::Good,
+        "relaxed" => Tone::Fair,
+        _ => Tone::Bad,
+    };
+    [
+        (row.method.to_string(), Tone::Plain),
+        (row.outcome.to_owned(), outcome),
         text(row.space_time_error.map(square_metres)),
         text(row.arc_length_error.map(square_metres)),
         text(row.duration.map(tenths)),
@@ -176,12 +231,12 @@ fn cells(row: &ComparisonRow) -> Vec<Cell> {
         text(moved.then(|| row.largest_turn.map_or_else(|| "none".to_owned(), short))),
         text(row.expanded.map(|n| n.to_string())),
         text(row.milliseconds.map(|ms| format!("{ms:.2}"))),
-        match row.verified.filter(|_| row.is_planned()) {
-            Some(true) => Cell::new("yes").fg(Color::Green),
-            Some(false) => Cell::new("NO").fg(Color::Red),
-            None => Cell::new("–"),
-        },
+        said(row.verified.filter(|_| row.is_planned())),
     ]
+}
+
+fn cells(row: &ComparisonRow) -> Vec<Cell> {
+    texts(row).into_iter().map(cell).collect()
 }
 
 /// `S 39°` or `P 12°`.

@@ -7,6 +7,7 @@ mod comparison;
 pub mod document;
 pub mod figure;
 mod lint;
+pub mod page;
 mod summary;
 mod table;
 mod verification;
@@ -14,7 +15,9 @@ mod words;
 mod write;
 
 pub use assessment::assessment_text;
-pub use comparison::{COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_table};
+pub use comparison::{
+    COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_markdown, comparison_table,
+};
 pub use lint::lint_text;
 pub use summary::{Meeting, Summary, Turn, Verdict};
 pub use table::{Row, plan_text, suite_table};

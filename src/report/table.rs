@@ -15,7 +15,7 @@ use crate::scenario::Compliance;
 const NAMED: usize = 3;
 
 /// Units below the names, so that the table fits a terminal.
-const HEADER: [&str; 12] = [
+pub(super) const HEADER: [&str; 12] = [
     "scenario",
     "outcome",
     "encounter",
@@ -31,7 +31,10 @@ const HEADER: [&str; 12] = [
 ];
 
 /// Columns with numbers.
-const NUMBERS: std::ops::Range<usize> = 5..11;
+pub(super) const NUMBERS: std::ops::Range<usize> = 5..11;
+
+/// The column of the time that planning took.
+pub(super) const TIME: usize = 10;
 
 /// One line of a suite's table.
 #[derive(Debug, Clone)]
@@ -84,31 +87,62 @@ pub(super) fn figures(header: &[&str], numbers: std::ops::Range<usize>, colour: 
     table
 }
 
+/// What a cell says: good, bad or neither.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Tone {
+    Plain,
+    Good,
+    Fair,
+    Bad,
+}
+
+/// A cell in its colour.
+pub(super) fn cell((text, tone): (String, Tone)) -> Cell {
+    match tone {
+        Tone::Plain => Cell::new(text),
+        Tone::Good => Cell::new(text).fg(Color::Green),
+        Tone::Fair => Cell::new(text).fg(Color::Yellow),
+        Tone::Bad => Cell::new(text).fg(Color::Red),
+    }
+}
+
 fn cells(summary: &Summary) -> Vec<Cell> {
+    texts(summary).into_iter().map(cell).collect()
+}
+
+/// A row as texts, in the order of [`HEADER`].
+pub(super) fn texts(summary: &Summary) -> [(String, Tone); 12] {
     let planned = summary.verified.is_some();
-    let text = |value: Option<String>| Cell::new(value.unwrap_or_else(|| "–".to_owned()));
-    vec![
-        Cell::new(&summary.title),
-        Cell::new(summary.verdict.word()).fg(match summary.verdict {
-            Verdict::Solved => Color::Green,
-            Verdict::Relaxed => Color::Yellow,
-            Verdict::Infeasible | Verdict::Deadline => Color::Red,
-        }),
-        Cell::new(encounters(summary)),
+    let plain = |text: String| (text, Tone::Plain);
+    let text = |value: Option<String>| plain(value.unwrap_or_else(|| "–".to_owned()));
+    let verdict = match summary.verdict {
+        Verdict::Solved => Tone::Good,
+        Verdict::Relaxed => Tone::Fair,
+        Verdict::Infeasible | Verdict::Deadline => Tone::Bad,
+    };
+    [
+        plain(summary.title.clone()),
+        (summary.verdict.word().to_owned(), verdict),
+        plain(encounters(summary)),
         text(planned.then(|| turn(summary))),
         text(planned.then(|| passings(summary))),
         text(summary.space_time_error.map(square_metres)),
         text(summary.delay.map(signed)),
         text(summary.clearance.map(metres)),
         text(summary.max_risk.map(|risk| format!("{risk:.2}"))),
-        Cell::new(summary.expanded),
-        Cell::new(format!("{:.2}", summary.milliseconds)),
-        match summary.verified {
-            Some(true) => Cell::new("yes").fg(Color::Green),
-            Some(false) => Cell::new("NO").fg(Color::Red),
-            None => Cell::new("–"),
-        },
+        plain(summary.expanded.to_string()),
+        plain(format!("{:.2}", summary.milliseconds)),
+        said(summary.verified),
     ]
+}
+
+/// What the independent check said.
+pub(super) fn said(verified: Option<bool>) -> (String, Tone) {
+    match verified {
+        Some(true) => ("yes".to_owned(), Tone::Good),
+        Some(false) => ("NO".to_owned(), Tone::Bad),
+        None => ("–".to_owned(), Tone::Plain),
+    }
 }
 
 pub(super) fn square_metres(value: f64) -> String {
@@ -271,20 +305,30 @@ fn stage_cost(value: f64) -> String {
     }
 }
 
+/// What a line of a plan's text says of the time that planning took.
+pub(super) const TIME_LINE: &str = "time";
+
 /// The verdict and the costs of one run, aligned.
 pub fn plan_text(run: &Run) -> String {
+    let (head, lines) = plan_lines(run);
+    let aligned = lines
+        .iter()
+        .map(|(name, value)| format!("  {name:<13}{value}"));
+    let all: Vec<String> = std::iter::once(head).chain(aligned).collect();
+    all.join("\n")
+}
+
+/// The verdict of one run, and its costs with their names; a line without a name goes on with the one before.
+pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
     let summary = Summary::of(run);
     let verified = match summary.verified {
         Some(true) => ", verified",
         Some(false) => ", FAILED ITS VERIFICATION",
         None => "",
     };
-    let mut lines = vec![format!(
-        "{}: {}{verified}",
-        summary.title,
-        summary.verdict.word()
-    )];
-    let mut say = |name: &str, value: String| lines.push(format!("  {name:<13}{value}"));
+    let head = format!("{}: {}{verified}", summary.title, summary.verdict.word());
+    let mut lines: Vec<(&'static str, String)> = Vec::new();
+    let mut say = |name: &'static str, value: String| lines.push((name, value));
     match &run.planned.outcome {
         Outcome::Infeasible(reason) => say("reason", reason.to_string()),
         Outcome::Deadline(_) => say(
@@ -375,8 +419,8 @@ pub fn plan_text(run: &Run) -> String {
         forces(run, report)
             .into_iter()
             .for_each(|(name, value)| say(name, value));
-        say("time", format!("{:.2} ms", summary.milliseconds));
-        return lines.join("\n");
+        say(TIME_LINE, format!("{:.2} ms", summary.milliseconds));
+        return (head, lines);
     }
     let stats = &run.planned.stats;
     say(
@@ -386,8 +430,8 @@ pub fn plan_text(run: &Run) -> String {
             stats.expanded, stats.generated, stats.edges_checked
         ),
     );
-    say("time", format!("{:.2} ms", summary.milliseconds));
-    lines.join("\n")
+    say(TIME_LINE, format!("{:.2} ms", summary.milliseconds));
+    (head, lines)
 }
 
 #[cfg(test)]

@@ -190,6 +190,70 @@ fn shells_and_manuals_know_every_command() {
     assert!(page.contains("\\-\\-max\\-risk"));
 }
 
+#[test]
+fn a_report_is_one_page_with_its_figures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| text(&folder.path().join(name)).to_owned();
+    let (suite, plans) = (at("suite"), at("plans"));
+    let broken = at("broken.toml");
+    fs::write(&broken, "title = \"<b>\"\n").expect("written");
+    searoom(&[
+        "suite",
+        "scenarios/colregs",
+        &broken,
+        "--report",
+        &suite,
+        "--plans",
+        &plans,
+    ])
+    .code(2);
+    let page = fs::read_to_string(format!("{suite}/index.html")).expect("a page");
+    assert_eq!(page.matches("<img").count(), 4, "{page}");
+    assert!(page.contains("href=\"./../plans/head-on.json\"") && page.contains("unreadable"));
+    assert!(page.contains("5 scenarios: 4 solved"));
+
+    let compared = at("compared");
+    searoom(&[
+        "compare",
+        "scenarios/colregs/head-on.toml",
+        "--report",
+        &compared,
+    ])
+    .success();
+    let page = fs::read_to_string(format!("{compared}/index.html")).expect("a page");
+    assert!(page.contains("hold course") && page.contains("head-on-2.svg"));
+    for figure in fs::read_dir(&compared).expect("a folder") {
+        let name = figure
+            .expect("an entry")
+            .file_name()
+            .to_string_lossy()
+            .into_owned();
+        assert!(
+            name == "index.html" || page.contains(&format!("./{name}\"")),
+            "{name}"
+        );
+    }
+
+    let one = at("one");
+    searoom(&[
+        "plan",
+        "scenarios/harbour/ferry-crossing.toml",
+        "--report",
+        &one,
+    ])
+    .success();
+    let page = fs::read_to_string(format!("{one}/index.html")).expect("a page");
+    assert_eq!(page.matches("<img").count(), 2);
+    searoom(&[
+        "plan",
+        "scenarios/colregs/head-on.toml",
+        "--report",
+        &broken,
+    ])
+    .code(2)
+    .stderr(contains("--report: ").and(contains("a folder")));
+}
+
 /// Recordings are written and read by the default features alone.
 #[cfg(feature = "recording")]
 mod recordings {
@@ -275,6 +339,66 @@ mod recordings {
             .stderr(contains(
                 "no entity /curves/clearence; the nearest names: /curves/clearance_m",
             ));
+    }
+
+    #[test]
+    fn a_comparison_is_recorded_scenario_by_scenario_and_read_again() {
+        let folder = tempfile::tempdir().expect("folder");
+        let recordings = folder.path().join("new");
+        let compared = searoom(&[
+            "compare",
+            "scenarios/colregs",
+            "--search",
+            "a-star",
+            "--json",
+            "--rrd",
+            text(&recordings),
+        ])
+        .success();
+        let document: Value =
+            serde_json::from_slice(&compared.get_output().stdout).expect("a document");
+        assert_eq!(fs::read_dir(&recordings).expect("a folder").count(), 4);
+        let file = recordings.join("head-on.rrd");
+        let inspected = searoom(&["inspect", text(&file), "--json"]).success();
+        let contents: Value =
+            serde_json::from_slice(&inspected.get_output().stdout).expect("a document");
+        let (read, written) = (&contents["comparison"], &document["comparisons"][1]);
+        let entries = |c: &Value| c["entries"].as_array().expect("a list").clone();
+        assert_eq!(entries(read).len(), entries(written).len());
+        for (read, written) in entries(read).iter().zip(entries(written)) {
+            for key in ["method", "outcome", "search_stats", "verified"] {
+                assert_eq!(read[key], written[key], "{key}");
+            }
+            assert_eq!(read["timing"].is_null(), written["timing"].is_null());
+            assert!(read["timing"].is_null() || read["timing"]["plan_s"].is_number());
+        }
+        searoom(&["inspect", text(&file)])
+            .success()
+            .stdout(contains("Head-on: a comparison of"))
+            .stdout(contains("hold course: collides, J "));
+        searoom(&["inspect", "--plan", text(&file)])
+            .code(2)
+            .stderr(contains("the recording of a comparison"));
+        searoom(&["compare", "scenarios/colregs", "--rrd", text(&file)])
+            .code(2)
+            .stderr(contains("name a folder"));
+        let again = folder.path().join("again.rrd");
+        searoom(&[
+            "compare",
+            HEAD_ON,
+            "--search",
+            "a-star",
+            "--rrd",
+            text(&again),
+        ])
+        .success();
+        searoom(&["inspect", text(&file), text(&again)])
+            .success()
+            .stdout(contains("the same, but for the time that planning took"));
+        let other = recordings.join("overtaking.rrd");
+        searoom(&["inspect", text(&file), text(&other)])
+            .code(1)
+            .stdout(contains("comparisons[0].entries[0].cost.duration_s"));
     }
 
     #[test]

@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 
 use super::outline::{Stroke, area, curve, mark, sampled_boundary};
+use super::path_time::{ProfileLine, path_time_panel};
 use super::plan::{DESIRED, LAND, land_areas};
 use super::sections::PLAN;
 use super::{Figure, Panel, Window};
-use crate::comparison::{Entry, Method};
+use crate::comparison::{Entry, Look, Method, Sailed};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
-use crate::planner::{PlannerKind, SearchKind};
+use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
-use crate::target::Representation;
 
 /// Of the targets' sets.
 const SETS: &str = "#888888";
@@ -29,15 +29,47 @@ const SHOWN: f64 = 4.0;
 /// over risk.
 pub fn comparison_figure(compared: &[(&Scenario, &[Entry])]) -> Figure {
     let sweep = compared.iter().any(|(_, entries)| is_sweep(entries));
-    let mut panels = Vec::new();
-    for (scenario, entries) in compared {
-        panels.push(chart(scenario, entries));
-        panels.push(distances(scenario, entries));
-        if sweep {
-            panels.push(pareto(scenario, entries));
-        }
+    let rows = compared
+        .iter()
+        .flat_map(|(scenario, entries)| comparison_panels(scenario, entries, sweep));
+    Figure::new(if sweep { 3 } else { 2 }, rows.collect())
+}
+
+/// Chart, distance from the nearest target over time, and in a sweep cost over risk.
+pub fn comparison_panels(scenario: &Scenario, entries: &[Entry], sweep: bool) -> Vec<Panel> {
+    let mut panels = vec![chart(scenario, entries), distances(scenario, entries)];
+    if sweep {
+        panels.push(pareto(scenario, entries));
     }
-    Figure::new(if sweep { 3 } else { 2 }, panels)
+    panels
+}
+
+/// The diagrams that the contenders along paths planned in; sets of one representation have one. Empty without such.
+pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
+    entries
+        .iter()
+        .filter_map(|entry| match &entry.result {
+            Sailed::Planned(run) => Some((entry, run, run.planned.path_time.as_deref()?)),
+            Sailed::Baseline(_) | Sailed::Nothing(_) => None,
+        })
+        .map(|(entry, run, diagram)| {
+            let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
+            let method = entry.contender.method;
+            let line = ProfileLine {
+                label: match run.planned.outcome.plan() {
+                    Some(_) => method.to_string(),
+                    None => "no plan".to_owned(),
+                },
+                diagram,
+                stroke: stroke(method),
+            };
+            let title = match entry.contender.max_risk {
+                risk if risk > 0.0 => format!("Path and time: {method} at risk {risk}"),
+                _ => format!("Path and time: {method}"),
+            };
+            path_time_panel(&title, &names, &[line])
+        })
+        .collect()
 }
 
 fn is_sweep(entries: &[Entry]) -> bool {
@@ -45,30 +77,12 @@ fn is_sweep(entries: &[Entry]) -> bool {
     entries.iter().any(|e| risk(e) != risk(&entries[0]))
 }
 
-/// One colour for each method, whatever others there are. What often lies under another line is wide and pale.
 fn stroke(method: Method) -> Stroke {
-    let (colour, width, dashed) = match method {
-        Method::Planner {
-            kind,
-            search,
-            representation,
-        } => {
-            let ellipsoid = representation == Some(Representation::Ellipsoid);
-            match (kind, search) {
-                (PlannerKind::SpaceTime, SearchKind::AStar) if ellipsoid => ("#00734d", 1.6, false),
-                (PlannerKind::SpaceTime, SearchKind::AStar) => ("#000000", 1.8, false),
-                (PlannerKind::SpaceTime, SearchKind::Dijkstra) if ellipsoid => {
-                    ("#a6dba0", 6.0, false)
-                }
-                (PlannerKind::SpaceTime, SearchKind::Dijkstra) => ("#bcbddc", 6.0, false),
-                (PlannerKind::PathTime, _) if ellipsoid => ("#e69f00", 1.6, false),
-                (PlannerKind::PathTime, _) => ("#d55e00", 1.6, false),
-                (PlannerKind::OptimalControl, _) => ("#cc79a7", 2.4, false),
-            }
-        }
-        Method::HoldCourse => ("#999999", 1.6, true),
-        Method::ConstantVelocity => ("#0072b2", 1.6, false),
-    };
+    let Look {
+        colour,
+        width,
+        dashed,
+    } = Look::of(method);
     Stroke {
         colour,
         width,

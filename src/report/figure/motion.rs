@@ -63,6 +63,11 @@ const MARGIN: f64 = 0.12;
 /// where she is driven by forces, these over time. `None` without a plan.
 pub fn moments_figure(run: &Run) -> Option<Figure> {
     let trajectory = &run.planned.outcome.plan()?.trajectory;
+    Some(Figure::new(COLUMNS, moments_panels(run, trajectory)))
+}
+
+/// The panels of [`moments_figure`].
+pub(super) fn moments_panels(run: &Run, trajectory: &Trajectory) -> Vec<Panel> {
     let mut times: Vec<f64> = run
         .evaluation
         .iter()
@@ -80,7 +85,7 @@ pub fn moments_figure(run: &Run) -> Option<Figure> {
     if let Some(motion) = trajectory.steered() {
         panels.extend(driven(motion, &run.scenario.control.force_limits));
     }
-    Some(Figure::new(COLUMNS, panels))
+    panels
 }
 
 /// Tracks and sets at one moment.

@@ -15,6 +15,9 @@ pub(super) const AREA: [f64; 2] = [400.0, 330.0];
 /// Pixels around it: left, right, top; below come the legend's lines.
 pub(super) const MARGIN: [f64; 3] = [74.0, 106.0, 44.0];
 
+/// Pixels to the right of an area without a colour scale, of a panel that has no others beside it.
+const ALONE: f64 = 18.0;
+
 /// Pixels for the numbers and the name of the lower axis.
 const AXIS: f64 = 64.0;
 
@@ -73,6 +76,11 @@ impl Panel {
         }
     }
 
+    /// What it is called.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
     /// What it shows.
     pub fn window(&self) -> Window {
         self.window
@@ -115,10 +123,19 @@ impl Panel {
         self.legend.len()
     }
 
-    /// The layout in a cell with so many pixels below the area.
-    pub(super) fn layout(&self, below: f64) -> Layout {
+    /// Pixels to the right of the area that it needs, alone.
+    pub(super) fn right(&self) -> f64 {
+        if self.plots.iter().any(|p| p.colorbar_info(false).is_some()) {
+            MARGIN[1]
+        } else {
+            ALONE
+        }
+    }
+
+    /// The layout in a cell with so many pixels to the right of the area and below it.
+    pub(super) fn layout(&self, right: f64, below: f64) -> Layout {
         let Window { low, high } = self.window;
-        let [left, right, top] = MARGIN;
+        let [left, _, top] = MARGIN;
         let mut layout = Layout::new((low.x, high.x), (low.y, high.y))
             .with_title(self.title.as_str())
             .with_x_label(self.axes[0].as_str())

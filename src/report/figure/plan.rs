@@ -2,10 +2,11 @@
 
 use kuva::render::plots::Plot;
 
+use super::motion::moments_panels;
 use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
-use super::{Figure, Panel, Window, moments_figure};
+use super::{Figure, Panel, Window};
 use crate::frame::Vector;
 use crate::geometry::{self, ConvexPolygon};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -54,15 +55,14 @@ const MOST_POINTS: u32 = 5_000;
 /// The chart of a run, and its path-time diagram where it has one; of a plan of forces, its moments. Under the
 /// scenario's title.
 pub fn plan_figure(run: &Run) -> Figure {
-    panels(run).titled(&run.scenario.title)
+    Figure::new(2, plan_panels(run)).titled(&run.scenario.title)
 }
 
-fn panels(run: &Run) -> Figure {
+/// The panels of [`plan_figure`].
+pub fn plan_panels(run: &Run) -> Vec<Panel> {
     let plan = run.planned.outcome.plan();
-    if plan.is_some_and(|p| p.trajectory.steered().is_some())
-        && let Some(figure) = moments_figure(run)
-    {
-        return figure;
+    if let Some(plan) = plan.filter(|p| p.trajectory.steered().is_some()) {
+        return moments_panels(run, &plan.trajectory);
     }
     let scenario = &run.scenario;
     let mut panels = vec![chart_panel("Chart", run)];
@@ -83,7 +83,7 @@ fn panels(run: &Run) -> Figure {
         };
         panels.push(path_time_panel(&title, &names, &[line]));
     }
-    Figure::new(2, panels)
+    panels
 }
 
 /// Sections of obstacles at `times`, seconds, and a path, waypoints in metres.

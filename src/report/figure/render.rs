@@ -100,11 +100,15 @@ impl Figure {
             .chunks(self.columns)
             .map(|row| Panel::below(row.iter().map(Panel::lines).max().unwrap_or(0)))
             .collect();
-        let layouts = (self.panels.iter().enumerate())
-            .map(|(i, panel)| panel.layout(rows[i / self.columns]))
-            .collect();
         let count = self.panels.len();
-        let [left, right, top] = MARGIN;
+        let [left, beside, top] = MARGIN;
+        let right = match &self.panels[..] {
+            [panel] => panel.right(),
+            _ => beside,
+        };
+        let layouts = (self.panels.iter().enumerate())
+            .map(|(i, panel)| panel.layout(right, rows[i / self.columns]))
+            .collect();
         let mut canvas = Canvas::new(rows.len().max(1), self.columns)
             .with_cell_size(left + AREA[0] + right, top + AREA[1] + Panel::below(0))
             .with_structure((0..count).map(|i| vec![i]).collect())

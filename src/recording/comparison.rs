@@ -1,0 +1,326 @@
+//! Contenders side by side → one recording: every motion on the chart and in the volume, one colour each, on one cursor.
+
+use std::path::Path;
+
+use rerun::components::InterpolationMode;
+use rerun::{
+    Color, EntityPath, LineStrips2D, LineStrips3D, MediaType, RecordingStream,
+    RecordingStreamResult, TextDocument,
+};
+
+use super::chart::{self, Key};
+use super::curves::{self, CLEARANCE, SPEED, Series};
+use super::explored::log_explored;
+use super::movers::{self, OwnShip};
+use super::scene::{Hues, Motion, Stage, flat};
+use super::{
+    COMPARISON, MAP, RecordingError, SUMMARY, VOLUME, blueprint, land, path, put, space_time, style,
+};
+use crate::comparison::{Entry, Look, Method, Sailed};
+use crate::frame::{Vector, knots_from_mps};
+use crate::pipeline;
+use crate::scenario::Scenario;
+
+/// The folder of the contenders, on the chart and in the volume.
+const METHODS: &str = "methods";
+
+/// Of the sea that is shown: the length of a dash.
+const DASH: f64 = 1.0 / 60.0;
+
+/// Points that the graph of one contender may have.
+const POINT_BUDGET: usize = 1200;
+
+/// Keys in a row of the legend: their names are long.
+const KEYS: usize = 3;
+
+/// Radius on the screen for one pixel of a figure's line.
+const RADIUS: f64 = 0.6;
+
+/// On the screen, of a line that is wide on the chart, because it often lies under another.
+const VOLUME_RADIUS: f32 = 0.7;
+
+/// Pixels of a curve, at most: the plots are low.
+const WIDEST: f32 = 3.0;
+
+/// Of the colour: what the last risk of a sweep keeps.
+const WEAKEST: f32 = 0.45;
+
+/// A comparison of one scenario, with what stands in its recording as text.
+#[derive(Debug, Clone, Copy)]
+pub struct Compared<'a> {
+    /// What was asked.
+    pub scenario: &'a Scenario,
+    /// Who sailed, in the order of the rows.
+    pub entries: &'a [Entry],
+    /// The rows as markdown, without the time that planning took: recordings of one comparison are alike.
+    pub table: &'a str,
+    /// The document of the comparison: [`super::Recorded::comparison`] gives it back.
+    pub document: &'a str,
+}
+
+/// Writes a comparison as one recording, in full or not at all, as [`super::write`] does a run. A contender makes about
+/// 30 kB.
+pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), RecordingError> {
+    let title = &compared.scenario.title;
+    put(path, title, Some((COMPARISON, compared.document)), |rec| {
+        log(rec, compared)
+    })
+}
+
+/// One motion and what it looks like.
+struct Contender<'a> {
+    entry: &'a Entry,
+    own: OwnShip<'a>,
+    look: Look,
+}
+
+fn log(rec: &RecordingStream, compared: &Compared) -> RecordingStreamResult<()> {
+    let Compared {
+        scenario, entries, ..
+    } = *compared;
+    let contenders = contenders(entries);
+    let sets = pipeline::sets(scenario);
+    let is_plan = |c: &&Contender| matches!(c.entry.contender.method, Method::Planner { .. });
+    let plans: Vec<Motion> = contenders
+        .iter()
+        .filter(is_plan)
+        .map(|c| c.own.motion)
+        .collect();
+    // baselines go on to the horizon, and far away
+    let end = plans.iter().map(Motion::end).fold(0.0, f64::max);
+    let end = end.max(scenario.desired.duration()).min(scenario.horizon);
+    let stage = Stage::new(scenario, &sets, &plans, end, Hues::OwnShips);
+
+    let legend = legend(&stage, &contenders);
+    let rows = legend.len().div_ceil(KEYS);
+    let own: Vec<OwnShip> = contenders.iter().map(|c| c.own.clone()).collect();
+    land::log_land(rec, &stage)?;
+    chart::log_waters(rec, &stage)?;
+    chart::log_legend(rec, &stage, legend, rows)?;
+    movers::log_others(rec, &stage)?;
+    movers::log_trails(rec, &stage, &own)?;
+    space_time::log_waters(rec, &stage)?;
+    space_time::log_now(rec, &stage, &own)?;
+    let mut graphs = Vec::new();
+    let mut hidden = [Vec::new(), Vec::new()];
+    for (index, contender) in contenders.iter().enumerate() {
+        // the first row on top
+        let order = (contenders.len() - index) as f32;
+        log_way(rec, &stage, contender, order)?;
+        let ship = path(&[MAP, METHODS, &contender.own.name, "own_ship"]);
+        movers::log_own_ship(rec, &stage, ship, &contender.own, false)?;
+        let Sailed::Planned(run) = &contender.entry.result else {
+            continue;
+        };
+        let folders =
+            [MAP, VOLUME].map(|view| path(&[view, METHODS, &contender.own.name, "explored"]));
+        let drawn = log_explored(rec, &stage, run, folders.clone(), POINT_BUDGET)?;
+        if drawn.edges > 0 {
+            let (name, shown, tested) = (&contender.own.name, drawn.edges, drawn.tested);
+            graphs.push(format!("{name} {shown} of {tested} edges"));
+            for (folders, folder) in hidden.iter_mut().zip(folders) {
+                folders.push(folder);
+            }
+        }
+    }
+    let plots = log_curves(rec, &stage, &contenders)?;
+    blueprint::send_comparison_blueprint(rec, &stage, rows, &hidden, &plots)?;
+    let text = text(compared.table, &graphs);
+    let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
+    rec.log_static(SUMMARY, &text)
+}
+
+/// Those that sail. In a sweep a method keeps its colour, the weaker the more risk it accepts.
+fn contenders(entries: &[Entry]) -> Vec<Contender<'_>> {
+    let risks = |method: Method| {
+        let of_method = entries.iter().filter(move |e| e.contender.method == method);
+        of_method.map(|e| e.contender.max_risk)
+    };
+    let sailing = entries.iter().filter_map(|entry| {
+        let motion = Motion::Planned(entry.trajectory()?);
+        let contender = entry.contender;
+        let look = Look::of(contender.method);
+        let all: Vec<f64> = risks(contender.method).collect();
+        let place = all.iter().position(|r| *r == contender.max_risk);
+        let share = place.unwrap_or(0) as f32 / (all.len().max(2) - 1) as f32;
+        let [r, g, b] = look.rgb();
+        let color = Color::from_rgb(r, g, b);
+        let name = if all.len() > 1 {
+            format!("{} at risk {}", contender.method, contender.max_risk)
+        } else {
+            contender.method.to_string()
+        };
+        let own = OwnShip {
+            motion,
+            name,
+            color: style::toward_background(color, 1.0 - share * (1.0 - WEAKEST)),
+        };
+        Some(Contender { entry, own, look })
+    });
+    sailing.collect()
+}
+
+fn radius(look: &Look) -> rerun::Radius {
+    style::points((RADIUS * look.width) as f32)
+}
+
+fn legend(stage: &Stage, contenders: &[Contender]) -> Vec<Key> {
+    let mut keys: Vec<Key> = contenders
+        .iter()
+        .map(|c| (c.own.name.clone(), c.own.color, radius(&c.look)))
+        .collect();
+    keys.push(("desired".into(), style::desired(), style::points(0.8)));
+    keys.extend(chart::waters_legend(stage));
+    keys
+}
+
+/// The motion on the chart and in the volume.
+fn log_way(
+    rec: &RecordingStream,
+    stage: &Stage,
+    contender: &Contender,
+    order: f32,
+) -> RecordingStreamResult<()> {
+    let Contender { own, look, .. } = contender;
+    let Motion::Planned(trajectory) = own.motion else {
+        return Ok(());
+    };
+    let mut line: Vec<(Vector, f64)> = Vec::new();
+    for (_, strip) in chart::strips(stage, trajectory) {
+        let joint = usize::from(!line.is_empty());
+        line.extend(strip.into_iter().skip(joint));
+    }
+    let strips = if look.dashed {
+        dashes(stage, &line)
+    } else {
+        vec![line]
+    };
+    let on_chart = strips.iter().map(|s| s.iter().map(|&(p, _)| flat(p)));
+    let on_chart = LineStrips2D::new(on_chart)
+        .with_colors([own.color])
+        .with_radii([radius(look)])
+        .with_labels([own.name.as_str()])
+        .with_show_labels(false)
+        .with_draw_order(FIRST_ORDER + order);
+    let entity = |view: &str| -> EntityPath { path(&[view, METHODS, &own.name, "way"]) };
+    rec.log_static(entity(MAP), &on_chart)?;
+    let in_volume = strips
+        .iter()
+        .map(|s| s.iter().map(|&(p, t)| stage.lifted(p, t)));
+    // a wide line would hide the one that it lies under on the chart, from whichever side one looks
+    let radius = if look.is_wide() {
+        style::points(VOLUME_RADIUS)
+    } else {
+        radius(look)
+    };
+    let in_volume = LineStrips3D::new(in_volume)
+        .with_colors([own.color])
+        .with_radii([radius])
+        .with_labels([own.name.as_str()])
+        .with_show_labels(false);
+    rec.log_static(entity(VOLUME), &in_volume)
+}
+
+/// Above sets and tracks.
+const FIRST_ORDER: f32 = 30.0;
+
+/// A line in pieces, by its length in the volume: one that waits is broken, too.
+fn dashes(stage: &Stage, line: &[(Vector, f64)]) -> Vec<Vec<(Vector, f64)>> {
+    let dash = DASH * stage.bounds.extent();
+    let mut strips: Vec<Vec<(Vector, f64)>> = vec![line.first().copied().into_iter().collect()];
+    let (mut drawn, mut left) = (true, dash);
+    for pair in line.windows(2) {
+        let [(a, from), (b, to)] = [pair[0], pair[1]];
+        let rise = (to - from) * stage.metres_per_second;
+        let length = (b - a).norm().hypot(rise);
+        let mut along = 0.0;
+        while length - along > left {
+            along += left;
+            let share = along / length;
+            let here = (a + (b - a) * share, from + (to - from) * share);
+            if drawn {
+                strips.last_mut().into_iter().for_each(|s| s.push(here));
+            } else {
+                strips.push(vec![here]);
+            }
+            (drawn, left) = (!drawn, dash);
+        }
+        left -= length - along;
+        if drawn {
+            strips.last_mut().into_iter().for_each(|s| s.push((b, to)));
+        }
+    }
+    strips.retain(|strip| strip.len() > 1);
+    strips
+}
+
+/// Distance from the nearest target that keeps course and speed, and the speed; the plots for the layout.
+fn log_curves(
+    rec: &RecordingStream,
+    stage: &Stage,
+    contenders: &[Contender],
+) -> RecordingStreamResult<Vec<(&'static str, &'static str, [f64; 2])>> {
+    let series = |c: &Contender, values: Vec<f64>| Series {
+        name: c.own.name.clone(),
+        color: c.own.color,
+        width: (c.look.width as f32).min(WIDEST),
+        values,
+    };
+    let targets = &stage.scenario.targets;
+    let mut plots = Vec::new();
+    if !targets.is_empty() {
+        let nearest = |c: &Contender| -> Vec<f64> {
+            let all = targets
+                .iter()
+                .map(|t| curves::clearances(stage, &c.own.motion, t));
+            let nearer =
+                |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a.min(*b)).collect();
+            all.reduce(nearer).unwrap_or_default()
+        };
+        let mut curves: Vec<Series> = contenders.iter().map(|c| series(c, nearest(c))).collect();
+        let least = |s: &Series| s.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let farthest = curves.iter().map(least).fold(0.0, f64::max);
+        curves.push(curves::safety_margin(stage));
+        // each ends where its motion does, so each is an entity
+        for curve in curves {
+            let entity = path(&[CLEARANCE, &curve.name]);
+            let (times, between) = (&stage.samples, InterpolationMode::Linear);
+            curves::log_plot(rec, entity, times, between, &[curve])?;
+        }
+        let margin = stage.scenario.own_ship.safety_margin;
+        let range = blueprint::near_zero(stage, farthest, margin);
+        plots.push(("Distance from the nearest target (m)", CLEARANCE, range));
+    }
+    let times = curves::step_times(stage, contenders.iter().map(|c| &c.own.motion));
+    let speeds: Vec<Series> = contenders
+        .iter()
+        .map(|c| series(c, curves::speeds(&c.own.motion, &times)))
+        .collect();
+    curves::log_plot(
+        rec,
+        path(&[SPEED]),
+        &times,
+        InterpolationMode::StepAfter,
+        &speeds,
+    )?;
+    let fastest = knots_from_mps(stage.scenario.own_ship.max_speed());
+    plots.push(("Speed (kn)", SPEED, [0.0, 1.4 * fastest]));
+    Ok(plots)
+}
+
+fn text(table: &str, graphs: &[String]) -> String {
+    let mut parts = vec![table.to_owned()];
+    parts.push(
+        "Lines are named where they are pointed at; broken ones are baselines. The sets are those of the scenario: a method \
+         with ellipsoids, or one that accepts a risk, keeps out of its own."
+            .to_owned(),
+    );
+    if !graphs.is_empty() {
+        parts.push(format!(
+            "Explored graphs are hidden, under `methods/…/explored` on the chart and in the volume ({}). A refused edge that is pointed \
+             at says what it meets, when, and by which rule or limit.",
+            graphs.join("; ")
+        ));
+    }
+    parts.join("\n\n")
+}

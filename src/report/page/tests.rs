@@ -1,0 +1,121 @@
+use super::*;
+use crate::pipeline;
+
+const NASTY: &str = r#"<script>alert("x")</script> & 'y'"#;
+
+fn scenario(kind: &str) -> Scenario {
+    let title = NASTY.replace('"', "\\\"");
+    let text = format!(
+        r#"
+title = "{title}"
+horizon_s = 400.0
+own_ship = {{ position = {{ east_m = 0.0, north_m = 0.0 }}, course_deg = 90.0, speed_mps = 5.0, length_m = 30.0, beam_m = 8.0, turning_radius_m = 100.0 }}
+mission = {{ waypoints = [{{ east_m = 0.0, north_m = 0.0 }}, {{ east_m = 1500.0, north_m = 0.0 }}] }}
+planner = {{ kind = "{kind}" }}
+[[targets]]
+name = "{title}"
+position = {{ east_m = 700.0, north_m = 700.0 }}
+course_deg = 180.0
+speed_mps = 5.0
+length_m = 60.0
+beam_m = 12.0
+"#
+    );
+    Scenario::parse(&text).expect("valid")
+}
+
+fn subject(stem: &str) -> Subject {
+    Subject {
+        stem: stem.to_owned(),
+        file: NASTY.to_owned(),
+        links: vec![(NASTY.to_owned(), address("a \"b\"#?.rrd"))],
+    }
+}
+
+/// What is text stays text, every figure that is shown is there, and nothing comes from elsewhere.
+fn assert_sound(report: &Report, page: &str) {
+    assert!(!page.contains("<script") && !page.contains("alert(\"x\")"));
+    assert!(page.contains("&lt;script&gt;"));
+    assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("//"));
+    for (name, svg) in &report.figures {
+        assert!(
+            page.contains(&format!("src=\"{}\"", address(name))),
+            "{name}"
+        );
+        assert!(
+            svg.starts_with("<svg") && !svg.contains("<script"),
+            "{name}"
+        );
+    }
+    assert_eq!(page.matches("<img").count(), report.figures.len());
+    assert_eq!(
+        page.matches("<table").count(),
+        page.matches("</table>").count()
+    );
+}
+
+#[test]
+fn a_report_of_plans_has_rows_sections_and_figures() {
+    let build = || {
+        let mut report = Report::new();
+        report.add_run(&subject("a"), &pipeline::run(scenario("space-time")));
+        report.add_run(&subject("b"), &pipeline::run(scenario("path-time")));
+        report.add_failure(NASTY, "unreadable", NASTY);
+        report
+    };
+    let report = build();
+    let page = report.html(NASTY, "3 scenarios");
+    assert_sound(&report, &page);
+    let names: Vec<&str> = report
+        .figures
+        .iter()
+        .map(|(name, _)| name.as_str())
+        .collect();
+    assert_eq!(names, ["a-1.svg", "b-1.svg", "b-2.svg"]);
+    assert!(report.figures[2].1.contains("Distance along the path"));
+    assert_eq!(page.matches("<h2>").count(), 3);
+    assert!(page.contains("href=\"./a%20%22b%22%23%3F.rrd\""));
+    // no clock is in it
+    let again = build();
+    assert_eq!(page, again.html(NASTY, "3 scenarios"));
+    assert_eq!(report.figures, again.figures);
+    assert!(!page.contains("[ms]"));
+}
+
+#[test]
+fn a_report_of_a_comparison_has_a_table_and_the_diagrams() {
+    let scenario = scenario("space-time");
+    let entries = crate::comparison::compare(&scenario, &[0.0, 0.2]);
+    let mut report = Report::new();
+    report.add_comparison(&subject("c"), &scenario, &entries, &[]);
+    let page = report.html("Compared", "");
+    assert_sound(&report, &page);
+    assert!(page.contains("hold course") && page.contains("accepted"));
+    let diagrams = |svg: &&(String, String)| svg.1.contains("Distance along the path");
+    // polytopes and ellipsoids, at two risks
+    assert_eq!(report.figures.iter().filter(diagrams).count(), 4);
+    assert!(report.figures[2].1.contains("Accepted risk"));
+}
+
+#[test]
+fn a_report_is_written_whole_and_its_links_lead_from_its_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let inside = folder.path().join("deep/report");
+    let mut report = Report::new();
+    report.add_run(&subject("a"), &pipeline::run(scenario("space-time")));
+    report.write(&inside, "A", "b").expect("written");
+    let mut names: Vec<String> = std::fs::read_dir(&inside)
+        .expect("there")
+        .map(|e| e.expect("entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["a-1.svg", "index.html"]);
+    let recording = folder.path().join("rec ordings.rrd");
+    std::fs::write(&recording, b"x").expect("written");
+    assert_eq!(link_from(&inside, &recording), "./../../rec%20ordings.rrd");
+    let taken = folder.path().join("rec ordings.rrd");
+    let error = report
+        .write(&taken, "A", "b")
+        .expect_err("a file is in the way");
+    assert!(error.to_string().contains("rec ordings.rrd"));
+}
