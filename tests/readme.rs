@@ -9,7 +9,8 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use searoom::scenario::Scenario;
+use searoom::report::COMPARISON_COLUMNS;
+use searoom::scenario::{Fault, Scenario};
 
 const BEGIN: &str = "all but the time -->\n```text\n";
 const END: &str = "```\n<!-- suite end -->";
@@ -141,18 +142,89 @@ fn the_example_in_the_readme_runs() {
     example().expect("a scenario without faults");
 }
 
+/// A key that is none, in every table of a scenario: the program answers with those that are.
+const NO_KEYS: &str = r#"
+title = "A"
+horizon_s = 400.0
+zzz = 1
+origin = { zzz = 1 }
+own_ship = { zzz = 1, position = { zzz = 1 } }
+mission = { zzz = 1, waypoints = [{ zzz = 1 }] }
+planner = { zzz = 1, optimal_control = { zzz = 1, force_limits = { zzz = 1 } } }
+targets = [
+    { zzz = 1, name = "a", domain = { zzz = 1 } },
+    { name = "b", initial_set = { zzz = 1 }, velocity_set = { zzz = 1 } },
+    { name = "c", initial_set = { zzz = 1 }, velocity_sets = [{ zzz = 1 }] },
+]
+"#;
+
+/// Tables of a scenario, where a key that is none was put.
+const TABLES: usize = 14;
+
+#[test]
+fn the_guide_has_every_field_of_a_scenario() {
+    let guide = read("docs/scenario.md");
+    let faults = Scenario::parse(NO_KEYS).expect_err("keys that are none");
+    let unknown: Vec<&Fault> = faults.iter().filter(|f| f.path.ends_with("zzz")).collect();
+    assert_eq!(unknown.len(), TABLES, "{unknown:#?}");
+    for fault in unknown {
+        let keys = fault.allowed.strip_prefix("one of ").expect("a list");
+        for key in keys.split(", ") {
+            // the guide says once that knots may stand for metres per second
+            let key = &key.replace("_kn", "_mps");
+            let is_word = |text: &str| {
+                let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+                words.any(|word| word == key)
+            };
+            assert!(is_word(&guide), "{}: {key}", fault.path);
+        }
+    }
+}
+
+#[test]
+fn the_page_on_comparisons_has_every_column() {
+    let page = read("docs/compare.md");
+    for column in COMPARISON_COLUMNS {
+        assert!(page.contains(&format!("`{column}`")), "{column}");
+    }
+}
+
+/// All the pictures that the documents show, bytes together.
+const PICTURES: u64 = 1_000_000;
+
+#[test]
+fn the_gallery_is_small_and_shows_what_there_is() {
+    let page = read("docs/gallery.md");
+    let mut bytes = 0;
+    for picture in std::fs::read_dir(file("docs/gallery")).expect("a folder") {
+        let picture = picture.expect("an entry");
+        let name = picture.file_name().to_string_lossy().into_owned();
+        assert!(page.contains(&format!("(gallery/{name})")), "{name}");
+        bytes += picture.metadata().expect("a file").len();
+    }
+    assert!((1..PICTURES).contains(&bytes), "{bytes} bytes");
+}
+
+/// The README and all of docs.
+fn pages() -> Vec<String> {
+    let docs = std::fs::read_dir(file("docs")).expect("a folder");
+    let names = docs.map(|e| {
+        e.expect("an entry")
+            .file_name()
+            .to_string_lossy()
+            .into_owned()
+    });
+    let pages = names.filter(|name| name.ends_with(".md"));
+    let mut all: Vec<String> = pages.map(|name| format!("docs/{name}")).collect();
+    all.push("README.md".to_owned());
+    all
+}
+
 #[test]
 fn every_file_that_the_documents_link_to_is_there() {
-    for name in [
-        "README.md",
-        "docs/scenario.md",
-        "docs/formats.md",
-        "docs/sets.md",
-        "docs/assess.md",
-        "docs/space-time-planner.md",
-        "docs/path-time-planner.md",
-        "docs/development.md",
-    ] {
+    let pages = pages();
+    assert!(pages.len() > 12, "{pages:?}");
+    for name in &pages {
         let text = read(name);
         let folder = file(name).parent().expect("a folder").to_owned();
         for target in text
@@ -161,6 +233,7 @@ fn every_file_that_the_documents_link_to_is_there() {
             .filter_map(|rest| rest.split(')').next())
             .filter(|target| !target.starts_with("http"))
         {
+            let target = target.split('#').next().unwrap_or(target);
             assert!(folder.join(target).exists(), "{name}: {target}");
         }
     }

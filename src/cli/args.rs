@@ -109,7 +109,7 @@ pub struct SuiteArgs {
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
     /// Plan nothing: say where ships would meet, and what is odd about the scenarios
-    #[arg(long, conflicts_with_all = ["plans", "rrd", "figure", "planner", "search", "compliance", "max_risk"])]
+    #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk"])]
     pub lint: bool,
 }
 

@@ -24,8 +24,8 @@ impl MovingVertex {
 }
 
 /// Sides, and stretches of time, of the polytopes that stand for an ellipsoid in pictures.
-const ROUND_SIDES: usize = 32;
-const ROUND_STRETCHES: usize = 8;
+const ROUND_SIDES: usize = 24;
+const ROUND_STRETCHES: usize = 6;
 
 /// A stretch of time within which the section is a polygon whose vertices move in straight lines.
 #[derive(Debug)]

@@ -254,7 +254,7 @@ pub fn strips(stage: &Stage, trajectory: &Trajectory) -> Vec<(Pace, Vec<(Vector,
             let wanted = desired_leg(desired, piece.start_time).speed;
             (Pace::of(speed, wanted), points.collect())
         };
-        return motion.pieces().map(strip).collect();
+        return joined(motion.pieces().map(strip));
     }
     trajectory
         .segments()
@@ -265,6 +265,20 @@ pub fn strips(stage: &Stage, trajectory: &Trajectory) -> Vec<(Pace, Vec<(Vector,
             (Pace::of(segment.speed, desired), polyline(segment))
         })
         .collect()
+}
+
+/// Strips of one pace that follow one another as one: a strip costs more than a point.
+fn joined(
+    strips: impl Iterator<Item = (Pace, Vec<(Vector, f64)>)>,
+) -> Vec<(Pace, Vec<(Vector, f64)>)> {
+    let mut all: Vec<(Pace, Vec<(Vector, f64)>)> = Vec::new();
+    for (pace, points) in strips {
+        match all.last_mut() {
+            Some((before, line)) if *before == pace => line.extend(points.into_iter().skip(1)),
+            _ => all.push((pace, points)),
+        }
+    }
+    all
 }
 
 /// Points of a segment with their times: an arc every 3° at most.

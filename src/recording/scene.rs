@@ -14,8 +14,8 @@ use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
 /// Bytes that the moving sections of all sets may take; the step of the cursor follows.
 const SECTION_BYTES: f64 = 96e3;
 
-/// Seconds between two moments of the cursor.
-const MOMENT_STEP_S: (f64, f64) = (2.0, 5.0);
+/// Seconds between two moments of the cursor, at least and at most.
+const MOMENT_STEP_S: (f64, f64) = (2.0, 10.0);
 
 /// Most moments, as far as the largest step allows.
 const MOMENTS: f64 = 120.0;

@@ -1,0 +1,50 @@
+//! The pictures of docs/gallery.md, into a folder.
+//!
+//! ```text
+//! cargo run --release --no-default-features --example gallery [FOLDER]
+//! ```
+
+use std::path::Path;
+
+use searoom::comparison::compare;
+use searoom::pipeline;
+use searoom::report::figure::{comparison_figure, plan_figure};
+use searoom::scenario::Scenario;
+
+/// Where the pictures of the page are.
+const FOLDER: &str = "docs/gallery";
+
+/// Scenario files, below `scenarios/`, of which the plan is drawn.
+const PLANS: [&str; 5] = [
+    "colregs/head-on",
+    "colregs/give-way",
+    "harbour/munkholmen",
+    "harbour/ferry-crossing",
+    "paper/figure_9",
+];
+
+/// A scenario whose planners are drawn side by side, and the risks that they may accept.
+const COMPARED: (&str, [f64; 4]) = ("colregs/give-way", [0.0, 0.1, 0.2, 0.4]);
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| FOLDER.to_owned());
+    let folder = Path::new(&folder);
+    std::fs::create_dir_all(folder)?;
+    let read = |name: &str| {
+        let file = format!("{}/scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        Scenario::read(Path::new(&file))
+    };
+    let picture = |name: &str, end: &str| {
+        let stem = name.rsplit('/').next().unwrap_or(name);
+        folder.join(format!("{stem}{end}.svg"))
+    };
+    for name in PLANS {
+        let run = pipeline::run(read(name)?);
+        plan_figure(&run).write(&picture(name, ""))?;
+    }
+    let (name, risks) = COMPARED;
+    let scenario = read(name)?;
+    let entries = compare(&scenario, &risks);
+    comparison_figure(&[(&scenario, &entries)]).write(&picture(name, "-compared"))?;
+    Ok(())
+}
