@@ -1,6 +1,7 @@
 //! The rules of the road: encounters and the shapes that answer them.
 
 mod bevelled_box;
+pub mod conduct;
 mod domain;
 mod encounter;
 mod role;
@@ -8,5 +9,5 @@ mod sweep;
 
 pub use domain::{Shapes, shapes};
 pub use encounter::{Encounter, Risk, encounter, first_risk, risk_distance};
-pub use role::{Role, SteadyShip, raw_role};
+pub use role::{Role, Sectors, SteadyShip, raw_role, role_within};
 pub use sweep::sweep;

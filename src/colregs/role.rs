@@ -2,17 +2,30 @@
 
 use crate::frame::{Pose, Vector, relative_bearing};
 
-/// Radians. Both relative bearings within this of ahead: head-on (10°).
-const HEAD_ON: f64 = std::f64::consts::PI / 18.0;
+/// By what numbers roles are told apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sectors {
+    /// Radians. Both relative bearings within this of ahead: head-on.
+    pub head_on: f64,
+    /// Radians. More than this from ahead is the sector of the sternlight, Rule 13(b).
+    pub abaft_the_beam: f64,
+    /// m/s. A slower ship is at rest: she has no course to judge.
+    pub at_rest: f64,
+    /// m/s. Overtaking needs the distance to shrink at least this fast.
+    pub closing: f64,
+}
 
-/// Radians. More than 22.5° abaft the beam, the sector of the sternlight (112.5°), Rule 13b.
-const ABAFT_THE_BEAM: f64 = std::f64::consts::PI * 0.625;
-
-/// m/s. A slower ship is at rest: she has no course to judge.
-const AT_REST: f64 = 0.2;
-
-/// m/s. Overtaking needs the distance to shrink at least this fast.
-const CLOSING: f64 = 0.1;
+impl Default for Sectors {
+    /// 10°, 112.5°, 0.2 m/s and 0.1 m/s: what planners use.
+    fn default() -> Self {
+        Self {
+            head_on: std::f64::consts::PI / 18.0,
+            abaft_the_beam: std::f64::consts::PI * 0.625,
+            at_rest: 0.2,
+            closing: 0.1,
+        }
+    }
+}
 
 /// Radians. A bearing this close to ahead or astern has no side of its own.
 const SIDE: f64 = 1e-9;
@@ -100,22 +113,27 @@ impl SteadyShip {
 /// `None` when a number is not finite or the two centres coincide (no bearing): the caller must claim
 /// nothing. An own ship at rest has no duty of Rules 13-17: [`Role::None`].
 pub fn raw_role(own: &SteadyShip, target: &SteadyShip) -> Option<Role> {
+    role_within(own, target, &Sectors::default())
+}
+
+/// The same by other numbers.
+pub fn role_within(own: &SteadyShip, target: &SteadyShip, sectors: &Sectors) -> Option<Role> {
     let offset = target.pose.position - own.pose.position;
     let range = offset.norm();
     if !(own.is_finite() && target.is_finite() && range > 0.0 && range.is_finite()) {
         return None;
     }
-    if target.speed < AT_REST {
+    if target.speed < sectors.at_rest {
         return Some(Role::Static);
     }
-    if own.speed < AT_REST {
+    if own.speed < sectors.at_rest {
         return Some(Role::None);
     }
     let bearing = relative_bearing(&own.pose, target.pose.position);
     let aspect = relative_bearing(&target.pose, own.pose.position);
-    let closing = offset.dot(&(own.velocity() - target.velocity())) / range > CLOSING;
-    let overtaking = closing && aspect.abs() > ABAFT_THE_BEAM;
-    let overtaken = closing && bearing.abs() > ABAFT_THE_BEAM;
+    let closing = offset.dot(&(own.velocity() - target.velocity())) / range > sectors.closing;
+    let overtaking = closing && aspect.abs() > sectors.abaft_the_beam;
+    let overtaken = closing && bearing.abs() > sectors.abaft_the_beam;
     // two ships astern of each other open; the tie is decided all the same, so that the list is total
     let lead = own
         .speed
@@ -127,7 +145,7 @@ pub fn raw_role(own: &SteadyShip, target: &SteadyShip) -> Option<Role> {
         (true, ..) => return Some(Role::Overtaking),
         (false, false, _) => {}
     }
-    if bearing.abs().max(aspect.abs()) <= HEAD_ON {
+    if bearing.abs().max(aspect.abs()) <= sectors.head_on {
         return Some(Role::HeadOn);
     }
     // dead ahead: the other's view decides
@@ -244,7 +262,8 @@ pub(super) mod tests {
             );
             // a ship at rest has no role, and the other sees one at rest
             let resting = matches!(pair, (Role::Static, Role::Static | Role::None));
-            let at_rest = own.speed < AT_REST || other.speed < AT_REST;
+            let sectors = Sectors::default();
+            let at_rest = own.speed < sectors.at_rest || other.speed < sectors.at_rest;
             assert!(
                 if at_rest { resting } else { consistent },
                 "{own:?} {other:?}: {pair:?}"
@@ -275,12 +294,12 @@ pub(super) mod tests {
         for (beyond, role) in [(1e-9, Role::Overtaking), (-1e-9, Role::GiveWay)] {
             // bearing 45° to starboard, own on the port side of the target
             let p = direction(-PI / 4.0) * 500.0;
-            let heading = heading_of(-p) - (ABAFT_THE_BEAM + beyond);
+            let heading = heading_of(-p) - (Sectors::default().abaft_the_beam + beyond);
             let other = ship(p.x, p.y, heading, 2.0);
             assert_eq!(raw_role(&own, &other), Some(role));
         }
         for (beyond, role) in [(-1e-9, Role::HeadOn), (1e-9, Role::StandOn)] {
-            let p = direction(HEAD_ON + beyond) * 500.0;
+            let p = direction(Sectors::default().head_on + beyond) * 500.0;
             assert_eq!(
                 raw_role(&own, &ship(p.x, p.y, heading_of(-p), 6.0)),
                 Some(role)

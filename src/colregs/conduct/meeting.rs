@@ -1,0 +1,149 @@
+//! Two ships that meet, sight after sight: all that the judges see.
+
+use super::super::role::SteadyShip;
+use crate::frame::{Vector, relative_bearing};
+use crate::geometry::ConvexPolygon;
+use crate::target::ShipTrack;
+use crate::trajectory::Trajectory;
+use crate::vessel::Hull;
+
+/// Seconds between two sights; the joints of a trajectory are sights, too.
+const STEP_S: f64 = 1.0;
+
+/// m/s. Below this relative speed two ships keep their distance.
+const NO_RELATIVE_SPEED: f64 = 1e-9;
+
+/// Both ships at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// Seconds.
+    pub time: f64,
+    /// Own ship.
+    pub own: SteadyShip,
+    /// The target.
+    pub target: SteadyShip,
+    /// Between the hulls, metres, negative in overlap.
+    pub apart: f64,
+}
+
+/// Where two ships that hold course and speed will be nearest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ahead {
+    /// Metres between the centres.
+    pub distance: f64,
+    /// Seconds from now; negative when it is past, 0 when the distance does not change.
+    pub time: f64,
+}
+
+impl Sight {
+    fn offset(&self) -> Vector {
+        self.target.pose.position - self.own.pose.position
+    }
+
+    /// Metres between the centres.
+    pub fn range(&self) -> f64 {
+        self.offset().norm()
+    }
+
+    /// How fast the range grows, m/s; a NaN where the centres coincide.
+    pub fn opening(&self) -> f64 {
+        let relative = self.target.velocity() - self.own.velocity();
+        self.offset().dot(&relative) / self.range()
+    }
+
+    /// Of the target from own ship, radians clockwise from ahead.
+    pub fn bearing(&self) -> f64 {
+        relative_bearing(&self.own.pose, self.target.pose.position)
+    }
+
+    /// Of own ship from the target, radians clockwise from ahead.
+    pub fn aspect(&self) -> f64 {
+        relative_bearing(&self.target.pose, self.own.pose.position)
+    }
+
+    /// If both hold course and speed.
+    pub fn ahead(&self) -> Ahead {
+        let relative = self.own.velocity() - self.target.velocity();
+        let square = relative.norm_squared();
+        if !(square > NO_RELATIVE_SPEED * NO_RELATIVE_SPEED) {
+            return Ahead {
+                distance: self.range(),
+                time: 0.0,
+            };
+        }
+        let time = self.offset().dot(&relative) / square;
+        Ahead {
+            distance: (self.offset() - relative * time.max(0.0)).norm(),
+            time,
+        }
+    }
+
+    /// Own ship from the target: metres ahead of her, and to port.
+    pub fn from_target(&self) -> Vector {
+        self.target.pose.body_coordinates(self.own.pose.position)
+    }
+}
+
+/// All sights of own ship and one target, in order of time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Meeting {
+    sights: Vec<Sight>,
+    own: Hull,
+    target: Hull,
+}
+
+impl Meeting {
+    /// From the start of a trajectory to its end, the target on her nominal track. O(duration). Own ship's heading is
+    /// taken for her course: a drift is not seen.
+    pub fn along(trajectory: &Trajectory, own: Hull, target: &ShipTrack) -> Self {
+        let sights = trajectory
+            .sample_times(STEP_S)
+            .into_iter()
+            .map(|time| {
+                let ships = [
+                    SteadyShip {
+                        pose: trajectory.pose_at(time),
+                        speed: trajectory.speed_at(time),
+                    },
+                    SteadyShip {
+                        pose: target.pose_at(time),
+                        speed: target.speed,
+                    },
+                ];
+                Sight {
+                    time,
+                    own: ships[0],
+                    target: ships[1],
+                    apart: apart(&own, &ships[0], &target.hull, &ships[1]),
+                }
+            })
+            .collect();
+        Self {
+            sights,
+            own,
+            target: target.hull,
+        }
+    }
+
+    /// In order of time, at least one.
+    pub fn sights(&self) -> &[Sight] {
+        &self.sights
+    }
+
+    /// Of the longer ship, metres.
+    pub fn length(&self) -> f64 {
+        self.own.length.max(self.target.length)
+    }
+
+    /// Of the target, metres.
+    pub fn target_length(&self) -> f64 {
+        self.target.length
+    }
+}
+
+fn apart(own: &Hull, a: &SteadyShip, target: &Hull, b: &SteadyShip) -> f64 {
+    let between: ConvexPolygon = target
+        .polygon(&b.pose)
+        .minkowski_sum(&own.polygon(&a.pose).negated());
+    between.signed_distance(Vector::zeros())
+}
