@@ -1,5 +1,6 @@
 //! The arrows in one place: Scenario → obstacles → Plan → Evaluation = Run.
 
+mod conduct;
 mod shore;
 
 pub use shore::{coast, land_within_reach};

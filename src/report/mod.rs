@@ -4,6 +4,7 @@
 mod alteration;
 mod assessment;
 mod comparison;
+mod conduct;
 pub mod document;
 pub mod figure;
 mod lint;

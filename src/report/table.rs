@@ -2,6 +2,7 @@
 
 use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets};
 
+use super::conduct;
 use super::summary::{Meeting, Summary, Verdict};
 use super::words;
 use crate::frame::Side;
@@ -373,6 +374,9 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
                 ),
             );
         }
+    }
+    for (name, value) in conduct::lines(run) {
+        say(name, value);
     }
     if let Some(evaluation) = &run.evaluation {
         say("turn", turn(&summary));

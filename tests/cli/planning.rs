@@ -301,6 +301,11 @@ fn a_plan_document_has_what_the_contract_names() {
         "/encounters/0/tcpa_s",
         "/encounters/0/undisturbed_dcpa_m",
         "/encounters/0/undisturbed_tcpa_s",
+        "/encounters/0/scores/safety",
+        "/encounters/0/scores/rule_8",
+        "/encounters/0/scores/rule_14",
+        "/encounters/0/roles/0/until_s",
+        "/encounters/0/monitors/2/robustness",
     ] {
         let found = plan.pointer(pointer);
         assert!(found.is_some_and(Value::is_number), "{pointer}: {found:?}");
@@ -309,7 +314,8 @@ fn a_plan_document_has_what_the_contract_names() {
     assert_eq!(plan["cost"]["arrived"], true);
     assert_eq!(plan["relaxation"], Value::Null);
     assert_eq!(plan["land"], Value::Array(Vec::new()));
-    assert_eq!(plan["encounters"][0].get("scores"), None);
+    assert_eq!(plan["encounters"][0]["roles"][0]["role"], "head-on");
+    assert_eq!(plan["encounters"][0]["scores"].get("rule_15"), None);
     // own ship goes east and turns to starboard first: positive, toward the south
     let segments = plan["trajectory"]["segments"].as_array().expect("a list");
     let rates = segments

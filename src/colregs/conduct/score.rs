@@ -311,7 +311,11 @@ impl Act<'_> {
         };
         let port_turn = |rule: &'static str, breach: &mut dyn FnMut(&'static str, f64, String)| {
             if let Some(sight) = self.turned(s.steady, true) {
-                breach(rule, sight.time, "alters course to port".to_owned());
+                breach(
+                    rule,
+                    sight.time,
+                    "heads to port of her first course before she has passed".to_owned(),
+                );
             }
         };
         let passing = self.onset().is_some() || !(closest.apart > s.least_lengths * self.length);

@@ -4,6 +4,7 @@
 
 mod assessment;
 mod comparison;
+mod conduct;
 mod control;
 mod lint;
 mod parts;
@@ -18,6 +19,7 @@ pub use comparison::{
     ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
     TrackPointDocument,
 };
+pub use conduct::{BreachDocument, ConductDocument, MonitorDocument, RoleDocument};
 pub use control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };

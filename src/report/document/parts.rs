@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::conduct::ConductDocument;
+
 /// A point of the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
@@ -230,4 +232,7 @@ pub struct EncounterDocument {
     pub max_risk: Option<f64>,
     /// When; null where the risk is 0.
     pub max_risk_t_s: Option<f64>,
+    /// What the judges say; absent without a plan and where the target is no ship on a nominal track.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub conduct: Option<ConductDocument>,
 }

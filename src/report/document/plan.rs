@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::conduct::ConductDocument;
 use super::control::{ControlDocument, control};
 use super::parts::{
     CostDocument, EncounterDocument, InitialSetDocument, MissionDocument, NodeDocument,
@@ -362,6 +363,7 @@ pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
 
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
+    let conduct = run.conduct(Default::default());
     run.scenario
         .targets
         .iter()
@@ -383,6 +385,7 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
                     .get(index)
                     .filter(|peak| peak.risk > 0.0)
                     .map(|peak| peak.time),
+                conduct: conduct[index].as_ref().map(ConductDocument::of),
             }
         })
         .collect()
