@@ -195,6 +195,9 @@ fn is_said_only(pointer: &str) -> bool {
     .any(|part| pointer.starts_with(part))
         || pointer.contains("undisturbed")
         || pointer.contains("max_risk")
+        || ["roles", "scores", "breaches", "monitors"]
+            .iter()
+            .any(|judged| pointer.contains(&format!("/{judged}")))
 }
 
 /// The hull is nearest in the midst of a turn on the spot, on a heading between two legs.
