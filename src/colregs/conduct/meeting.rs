@@ -10,6 +10,9 @@ use crate::vessel::Hull;
 /// Seconds between two sights; the joints of a trajectory are sights, too.
 const STEP_S: f64 = 1.0;
 
+/// Steps at most: those of a longer trajectory are longer.
+const MOST_SIGHTS: u32 = 20_000;
+
 /// m/s. Below this relative speed two ships keep their distance.
 const NO_RELATIVE_SPEED: f64 = 1e-9;
 
@@ -97,7 +100,7 @@ impl Meeting {
     /// taken for her course: a drift is not seen.
     pub fn along(trajectory: &Trajectory, own: Hull, target: &ShipTrack) -> Self {
         let sights = trajectory
-            .sample_times(STEP_S)
+            .sample_times(STEP_S, MOST_SIGHTS)
             .into_iter()
             .map(|time| {
                 let ships = [
