@@ -398,7 +398,7 @@ mod recordings {
         let other = recordings.join("overtaking.rrd");
         searoom(&["inspect", text(&file), text(&other)])
             .code(1)
-            .stdout(contains("comparisons[0].entries[0].cost.duration_s"));
+            .stdout(contains("comparisons[0].entries[0].cost.length_m"));
     }
 
     #[test]
