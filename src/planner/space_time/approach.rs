@@ -48,8 +48,8 @@ trait Shape {
     /// What attains the slack.
     type Face: Copy;
 
-    /// Metres, and what attains it.
-    fn slack(&self, position: Vector, time: f64) -> Slack<Self::Face>;
+    /// Metres, and what attains it; `near` attains it nearby.
+    fn slack(&self, position: Vector, time: f64, near: Option<Self::Face>) -> Slack<Self::Face>;
 
     /// Its outward normal, and how fast it moves that way, m/s.
     fn plane(&self, face: Self::Face) -> (Vector, f64);
@@ -68,8 +68,11 @@ struct Slack<F> {
 impl Shape for PolytopeObstacle {
     type Face = usize;
 
-    fn slack(&self, position: Vector, time: f64) -> Slack<usize> {
-        let slack = self.slack(position, time);
+    fn slack(&self, position: Vector, time: f64, near: Option<usize>) -> Slack<usize> {
+        let slack = match near {
+            Some(face) => self.slack_near(position, time, face),
+            None => self.slack(position, time),
+        };
         Slack {
             value: slack.value,
             face: slack.face,
@@ -89,7 +92,7 @@ impl Shape for PolytopeObstacle {
 impl Shape for EllipsoidObstacle {
     type Face = (Vector, f64);
 
-    fn slack(&self, position: Vector, time: f64) -> Slack<(Vector, f64)> {
+    fn slack(&self, position: Vector, time: f64, _: Option<Self::Face>) -> Slack<Self::Face> {
         let found = self.signed_distance(position, time);
         Slack {
             value: found.distance,
@@ -146,13 +149,13 @@ fn approaches_of<S: Shape>(
         let count = (segment.turn_rate.abs() * segment.duration * (last - first) / chord)
             .ceil()
             .max(1.0);
-        let sample = |fraction: f64, position: Vector| {
+        let sample = |fraction: f64, position: Vector, near: Option<S::Face>| {
             let time = segment.start_time + segment.duration * fraction - clock;
             Sample {
                 position,
                 time,
                 fraction,
-                slack: shape.slack(position, time),
+                slack: shape.slack(position, time, near),
             }
         };
         // each sample is the one before turned about the centre of the arc
@@ -168,7 +171,7 @@ fn approaches_of<S: Shape>(
             (segment.start.position, l.ahead)
         };
         let mut arm = to_starboard(ahead) * segment.radius();
-        let mut from = sample(first, start);
+        let mut from = sample(first, start, None);
         if first == 0.0 && from.slack.value < SLIDING_M {
             joints.push(joint(shape, leg, &from));
         }
@@ -186,7 +189,7 @@ fn approaches_of<S: Shape>(
                 let fraction = first + (last - first) * (k / count);
                 let (position, ahead) = l.along(fraction);
                 arm = to_starboard(ahead) * segment.radius();
-                from = sample(fraction, position);
+                from = sample(fraction, position, Some(from.slack.face));
                 continue;
             }
             if k >= count {
@@ -202,10 +205,11 @@ fn approaches_of<S: Shape>(
             } else {
                 from.position + l.ahead * (segment.length() * (last - first))
             };
-            let to = sample(fraction, position);
+            let to = sample(fraction, position, Some(from.slack.face));
             let mut piece = Chord::new(shape, leg, &from, &to);
             if count > 1.0 && piece.least.is_mixed() {
-                let at = sample(piece.least.fraction, l.along(piece.least.fraction).0);
+                let place = l.along(piece.least.fraction).0;
+                let at = sample(piece.least.fraction, place, Some(to.slack.face));
                 piece.least.slack = at.slack.value;
             }
             if chords.capacity() == 0 {
@@ -389,7 +393,8 @@ impl<F: Copy> Chord<F> {
                 let (fall, rise) = (rate(a.1.face), rate(b.1.face));
                 let s = (a.0 + (b.1.value - a.1.value - rise * (b.0 - a.0)) / (fall - rise))
                     .clamp(a.0, b.0);
-                let g = shape.slack(from.position + velocity * s, from.time + s);
+                let place = from.position + velocity * s;
+                let g = shape.slack(place, from.time + s, Some(a.1.face));
                 let weight = rise / (rise - fall);
                 best = (s, g.value, [(a.1.face, weight), (b.1.face, 1.0 - weight)]);
                 let gap = g.value - a.1.value - fall * (s - a.0);
