@@ -16,8 +16,8 @@ pub struct StageWeights {
 
 /// The integral of the stage cost by Simpson's rule over every interval, the state at half time on the cubic through both
 /// nodes with the ship's rates there: the definition of the planner, in code of its own and with the ship as published.
-/// O(nodes). The sum differs from the integral along the ship's own motion by less than 1e-4 of itself on a grid that is
-/// fine enough for a plan; where a leg ends within an interval by more.
+/// O(nodes).
+/// Where a leg ends within an interval the sum is coarser.
 pub fn stage_cost(steering: &Steering, desired: &DesiredTrajectory, weights: &StageWeights) -> f64 {
     let nodes = steering.motion.nodes();
     let mut sum = 0.0;
