@@ -95,12 +95,12 @@ pub fn roles(meeting: &Meeting, t: &Thresholds) -> Vec<RoleSpell> {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use super::super::tests::{planned, steady};
+    use super::super::tests::{planned, standard, steady};
     use super::*;
 
     fn of(own: &crate::trajectory::Trajectory, x: f64, y: f64, heading: f64, u: f64) -> Vec<Role> {
         let meeting = steady(own, x, y, heading, u);
-        let spells = roles(&meeting, Default::default());
+        let spells = roles(&meeting, standard());
         for s in &spells {
             assert!(s.from <= s.until);
         }

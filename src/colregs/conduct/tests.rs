@@ -38,23 +38,32 @@ pub fn planned(legs: &[(f64, f64)], speed: f64) -> Trajectory {
     Trajectory::new(segments).expect("a trajectory")
 }
 
-/// Own ship and a target that holds course and speed.
-pub fn steady(own: &Trajectory, x: f64, y: f64, heading: f64, speed: f64) -> Meeting {
-    let hull = Hull {
-        length: LENGTH,
-        beam: 10.0,
-    };
-    let target = ShipTrack {
-        pose: Pose::new(Vector::new(x, y), heading),
+const HULL: Hull = Hull {
+    length: LENGTH,
+    beam: 10.0,
+};
+
+pub fn standard() -> &'static Thresholds {
+    Thresholds::standard().expect("the file is read")
+}
+
+fn track(pose: Pose, speed: f64) -> ShipTrack {
+    ShipTrack {
+        pose,
         speed,
-        hull,
+        hull: HULL,
         speed_spread: 0.0,
         course_spread: 0.0,
         turn_rate: 0.0,
         position_std: 0.0,
         domain: DomainKind::Hull,
-    };
-    Meeting::along(own, hull, &target)
+    }
+}
+
+/// Own ship and a target that holds course and speed.
+pub fn steady(own: &Trajectory, x: f64, y: f64, heading: f64, speed: f64) -> Meeting {
+    let pose = Pose::new(Vector::new(x, y), heading);
+    Meeting::along(own, HULL, &track(pose, speed))
 }
 
 const OUT_AND_BACK: [(f64, f64); 4] = [(0.0, 30.0), (-0.7, 90.0), (1.1, 50.0), (-0.4, 60.0)];
@@ -65,7 +74,7 @@ fn mirrored(legs: &[(f64, f64)]) -> Vec<(f64, f64)> {
 
 fn conduct(legs: &[(f64, f64)], x: f64, y: f64, heading: f64, speed: f64) -> Conduct {
     let meeting = steady(&planned(legs, 6.0), x, y, heading, speed);
-    Conduct::judge(&meeting, Default::default())
+    Conduct::judge(&meeting, standard())
 }
 
 fn rules(c: &Conduct) -> Vec<&'static str> {
@@ -175,10 +184,6 @@ fn many_small_turns_are_a_succession() {
 /// Turned about and moved, nothing changes; mirrored, the give-way ship stands on.
 #[test]
 fn the_judges_do_not_see_where_the_scene_lies() {
-    let hull = Hull {
-        length: LENGTH,
-        beam: 10.0,
-    };
     let own = planned(&OUT_AND_BACK, 6.0);
     let judge = |angle: f64, by: Vector| {
         let turned = |p: &Pose| {
@@ -191,18 +196,12 @@ fn the_judges_do_not_see_where_the_scene_lies() {
             start: turned(&s.start),
             ..*s
         });
-        let target = ShipTrack {
-            pose: turned(&Pose::new(Vector::new(720.0, -720.0), FRAC_PI_2)),
-            speed: 6.0,
-            hull,
-            speed_spread: 0.0,
-            course_spread: 0.0,
-            turn_rate: 0.0,
-            position_std: 0.0,
-            domain: DomainKind::Hull,
-        };
+        let target = track(
+            turned(&Pose::new(Vector::new(720.0, -720.0), FRAC_PI_2)),
+            6.0,
+        );
         let own = Trajectory::new(segments.collect()).expect("a trajectory");
-        Conduct::judge(&Meeting::along(&own, hull, &target), Default::default())
+        Conduct::judge(&Meeting::along(&own, HULL, &target), standard())
     };
     let here = judge(0.0, Vector::zeros());
     for k in 0..20 {
@@ -219,7 +218,7 @@ fn the_judges_do_not_see_where_the_scene_lies() {
 #[test]
 fn what_is_not_a_number_is_a_collision() {
     let own = planned(&[(0.0, 60.0)], 6.0);
-    let c = Conduct::judge(&steady(&own, f64::NAN, 0.0, PI, 6.0), Default::default());
+    let c = Conduct::judge(&steady(&own, f64::NAN, 0.0, PI, 6.0), standard());
     assert_eq!(c.scores.safety, 0.0);
     assert_eq!(c.findings[0].verdict, Verdict::Violated);
 }

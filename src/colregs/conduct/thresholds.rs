@@ -78,12 +78,17 @@ pub struct MonitorLimits {
     pub manoeuvre: f64,
 }
 
-static ALL: LazyLock<Vec<Thresholds>> = LazyLock::new(|| read(FILE));
+static ALL: LazyLock<Vec<Thresholds>> = LazyLock::new(|| read(FILE).unwrap_or_default());
 
 impl Thresholds {
-    /// Every set, in the order of the file; the first is the default.
+    /// Every set, in the order of the file.
     pub fn all() -> &'static [Self] {
         &ALL
+    }
+
+    /// The first set, by which the command line judges.
+    pub fn standard() -> Option<&'static Self> {
+        Self::all().first()
     }
 
     /// The set of a name; `None` when there is none.
@@ -92,23 +97,13 @@ impl Thresholds {
     }
 }
 
-impl Default for &Thresholds {
-    fn default() -> Self {
-        &Thresholds::all()[0]
-    }
-}
-
 /// The entries of a file, one that is `like` another completed from that.
-fn read(text: &str) -> Vec<Thresholds> {
+fn read(text: &str) -> Result<Vec<Thresholds>, toml::de::Error> {
     #[derive(Deserialize)]
     struct File {
         profile: Vec<toml::Table>,
     }
-    #[expect(
-        clippy::expect_used,
-        reason = "the file is part of the program, and a test reads it"
-    )]
-    let file: File = toml::from_str(text).expect("thresholds.toml");
+    let file: File = toml::from_str(text)?;
     let mut tables: Vec<toml::Table> = Vec::new();
     for entry in file.profile {
         let like = entry.get("like").cloned();
@@ -119,14 +114,8 @@ fn read(text: &str) -> Vec<Thresholds> {
         table.extend(entry.into_iter().filter(|(key, _)| key != "like"));
         tables.push(table);
     }
-    #[expect(
-        clippy::expect_used,
-        reason = "the file is part of the program, and a test reads it"
-    )]
-    let entries = tables
-        .into_iter()
-        .map(|t| t.try_into::<Entry>().expect("an entry of thresholds.toml"));
-    entries.map(Entry::thresholds).collect()
+    let entries = tables.into_iter().map(|t| t.try_into::<Entry>());
+    entries.map(|e| e.map(Entry::thresholds)).collect()
 }
 
 /// An entry as it is written.
@@ -238,7 +227,8 @@ mod tests {
         assert_eq!(head_on("dnv-trafficgen"), degrees(5.0));
         assert_eq!(head_on("sfi-autoship"), degrees(13.0));
         assert_eq!(head_on("nobody"), None);
-        let default: &Thresholds = Default::default();
+        let default = Thresholds::standard().expect("the file is read");
+        assert_eq!(Thresholds::all().len(), 3);
         let (a, b) = (default.sectors, Sectors::default());
         for (a, b) in [
             (a.head_on, b.head_on),

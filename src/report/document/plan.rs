@@ -12,6 +12,7 @@ use super::parts::{
 };
 use super::path_time::{PathTimeDocument, path_time_document};
 use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
+use crate::colregs::conduct::Thresholds;
 use crate::evaluation::Evaluation;
 use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading, heading_of};
 use crate::geometry::{ConvexPolygon, Ellipse};
@@ -363,7 +364,7 @@ pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
 
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
-    let conduct = run.conduct(Default::default());
+    let conduct = Thresholds::standard().map_or_else(Vec::new, |t| run.conduct(t));
     run.scenario
         .targets
         .iter()
@@ -385,7 +386,10 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
                     .get(index)
                     .filter(|peak| peak.risk > 0.0)
                     .map(|peak| peak.time),
-                conduct: conduct[index].as_ref().map(ConductDocument::of),
+                conduct: conduct
+                    .get(index)
+                    .and_then(Option::as_ref)
+                    .map(ConductDocument::of),
             }
         })
         .collect()
