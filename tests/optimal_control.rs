@@ -26,7 +26,9 @@ use searoom::report::figure::plan_figure;
 use searoom::report::plan_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::{Node, Steered, Trajectory};
-use searoom::vessel::{CyberShip2, ForceVector, Manoeuvring, StateVector, VesselKind};
+use searoom::vessel::{
+    CyberShip2, FULL_SCALE, ForceVector, FroudeScaled, Manoeuvring, StateVector, VesselKind,
+};
 
 const FIGURE_9: &str = include_str!("../scenarios/paper/figure_9.toml");
 
@@ -275,29 +277,89 @@ fn random_scenes_have_plans_that_are_the_ships_and_clear_between_the_nodes() {
     }
 }
 
-/// From `SEAROOM_STARTS` wandering starts on the plan's own grid.
-#[test]
-fn no_random_start_finds_a_cheaper_plan_of_figure_9() {
-    let run = run(FIGURE_9);
-    let plan = run.planned.outcome.plan().expect("a plan").cost;
-    let intervals = run.control.as_ref().expect("forces").intervals;
-    let (desired, keep_outs) = (scenes::desired(), scenes::figure_9());
-    let task = scenes::task(&desired, &keep_outs, intervals);
+/// What a run was asked, for the smooth model of its ship, on the grid of its plan.
+fn objectives_of_wandering_starts<V: Manoeuvring>(
+    run: &Run,
+    vessel: &V,
+    starts: usize,
+) -> Vec<f64> {
+    let (scenario, control) = (&run.scenario, &run.scenario.control);
+    let keep_outs: Vec<KeepOut> = run.obstacles.iter().map(KeepOut::outer_of).collect();
+    let own = &scenario.own_ship;
+    let (place, heading) = (own.pose.position, own.pose.heading);
+    let task = Task {
+        vessel,
+        controls: Controls {
+            force_limits: control.force_limits,
+            weights: Weights {
+                state: control.state_weights,
+                force: control.force_weights,
+            },
+        },
+        desired: &scenario.desired,
+        keep_outs: &keep_outs,
+        first: StateVector::new(place.x, place.y, heading, own.speed, 0.0, 0.0),
+        start_time: 0.0,
+        duration: scenario.horizon,
+        intervals: run.control.as_ref().expect("forces").intervals,
+    };
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let starts = asked("SEAROOM_STARTS", 10);
-    let found: Vec<f64> = (0..starts)
+    (0..starts)
         .map(|_| scenes::wandering(&task, &mut rng))
         .map(|guess| attempt(&task, &guess, &Settings::default(), &|| true))
         .filter(Attempt::is_feasible)
         .map(|found| found.objective)
-        .collect();
-    let best = found.iter().copied().fold(f64::INFINITY, f64::min);
-    println!(
-        "figure 9: stage cost {plan:.6}; {} of {starts} wandering starts lead to a plan, the best of them to {best:.6}",
-        found.len()
-    );
-    assert!(found.len() * 2 > starts);
-    assert!(plan <= best * (1.0 + 1e-3));
+        .collect()
+}
+
+/// Every scenario in the tree whose planner is this one.
+fn shipped() -> Vec<(String, String)> {
+    let mut folders = vec![std::path::PathBuf::from("scenarios")];
+    let mut found = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "toml") {
+                let text = std::fs::read_to_string(&path).expect("reads");
+                if text.contains("kind = \"optimal-control\"") {
+                    found.push((path.display().to_string(), text));
+                }
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// From `SEAROOM_STARTS` wandering starts on the plan's own grid.
+#[test]
+fn no_random_start_finds_a_cheaper_plan_of_any_shipped_scenario() {
+    let starts = asked("SEAROOM_STARTS", 10);
+    let shipped = shipped();
+    assert!(shipped.len() >= 2, "{shipped:?}");
+    for (file, text) in shipped {
+        let patient = text.replace("[planner]", "[planner]\ndeadline_s = 300.0");
+        let run = run(&patient);
+        let plan = run.planned.outcome.plan().expect("a plan").cost;
+        let found = match run.scenario.control.vessel {
+            VesselKind::CyberShip2 => {
+                objectives_of_wandering_starts(&run, &CyberShip2::SMOOTH, starts)
+            }
+            VesselKind::CyberShip2Full => {
+                let full = FroudeScaled::new(CyberShip2::SMOOTH, FULL_SCALE);
+                objectives_of_wandering_starts(&run, &full, starts)
+            }
+        };
+        let best = found.iter().copied().fold(f64::INFINITY, f64::min);
+        println!(
+            "{file}: stage cost {plan:.6}; {} of {starts} wandering starts lead to a plan, the best of them to {best:.6}",
+            found.len()
+        );
+        assert!(found.len() * 2 > starts, "{file}");
+        assert!(plan <= best * (1.0 + 1e-3), "{file}: {plan} {best}");
+    }
 }
 
 /// A problem whose last state is drawn to a goal besides.
@@ -450,18 +512,16 @@ fn what_cannot_be_planned_is_said_with_the_place() {
          velocity_set = { center_mps = [0.0, 0.0], shape_m2_per_s2 = [[2.5, 0.0], [0.0, 2.5]] }\n",
     );
     let found = run(&growing);
-    match reason(&found) {
-        NoPlan::Locked {
-            target,
-            time,
-            depth,
-            starts,
-        } => {
-            assert!(target == "growing" && *time > 5.0 && *depth > 1.0 && *starts > 5);
-        }
-        NoPlan::Unsolved { starts, .. } => assert!(*starts > 5),
-        other => panic!("{other:?}"),
-    }
+    let NoPlan::Locked {
+        target,
+        time,
+        depth,
+        starts,
+    } = reason(&found)
+    else {
+        panic!("{:?}", reason(&found));
+    };
+    assert!(target == "growing" && *time > 5.0 && *depth > 1.0 && *starts > 5);
     assert!(found.evaluation.is_none());
     // the goal inside a set for the whole horizon: as near as may be
     let goal = with_targets(

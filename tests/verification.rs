@@ -910,6 +910,11 @@ fn what_only_some_plans_have_is_held_too() {
                     "off the plan",
                 ),
                 (
+                    "a ship of another size",
+                    |d| scale(at(d, "/own_ship/length_m"), 1.6),
+                    "own_ship.length_m",
+                ),
+                (
                     "other forces",
                     |d| {
                         for s in list(d, "/trajectory/samples") {

@@ -5,7 +5,7 @@ use super::file::{ControlFile, PlanFile, SampleFile, SegmentFile, StartFile};
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
 use crate::trajectory::{Node, Segment, Steered};
-use crate::vessel::{ForceVector, StateVector, VesselKind};
+use crate::vessel::{ForceVector, OwnShip, StateVector, VesselKind};
 
 impl ClaimedMotion {
     /// Segments, or intervals between nodes.
@@ -32,6 +32,22 @@ impl ClaimedMotion {
             Self::Segments(segments) => segments.last().map_or(f64::NAN, Segment::end_time),
             Self::Steered { motion, .. } => motion.nodes()[motion.nodes().len() - 1].time,
         }
+    }
+
+    /// What is wrong where own ship is of another size than the ship whose forces move her.
+    pub fn another_ship(&self, own: &OwnShip) -> Option<Violation> {
+        let Self::Steered { vessel, .. } = self else {
+            return None;
+        };
+        let length = own.hull.length;
+        let [low, high] = vessel.lengths_alike();
+        (!vessel.is_alike(length)).then(|| Violation {
+            what: format!(
+                "own_ship.length_m: {length} m, under the forces of '{}', which are those of ships of {low:.2} to {high:.2} m",
+                vessel.word()
+            ),
+            time: 0.0,
+        })
     }
 
     /// The poses that it has at a time: two where one piece ends and the next begins.

@@ -17,7 +17,7 @@ use searoom::planner::optimal_control::task::{Controls, Profile, Task};
 use searoom::planner::optimal_control::transcription::Weights;
 use searoom::planner::{ControlSettings, Objective, Problem, SearchKind};
 use searoom::trajectory::DesiredTrajectory;
-use searoom::vessel::{CyberShip2, Hull, OwnShip, StateVector, VesselKind};
+use searoom::vessel::{CyberShip2, Hull, Manoeuvring, OwnShip, StateVector, VesselKind};
 
 /// Seconds, of every scene.
 pub const DURATION: f64 = 100.0;
@@ -149,16 +149,20 @@ pub fn straight(task: &Task<CyberShip2>) -> Profile {
     profile_along(task, &(0..=task.intervals).map(place).collect::<Vec<_>>())
 }
 
-/// A way that wanders up to 8 m to the sides in three waves, at a pace that varies.
-pub fn wandering(task: &Task<CyberShip2>, rng: &mut ChaCha8Rng) -> Profile {
-    let waves: [f64; 3] = std::array::from_fn(|_| rng.random_range(-4.0..4.0));
+/// Of the way that is meant to be made: how far a wave of a wandering way goes to either side, at most.
+const WAVE: f64 = 0.18;
+
+/// A way that wanders to the sides in three waves, as far as a third of its length, at a pace that varies.
+pub fn wandering<V: Manoeuvring>(task: &Task<V>, rng: &mut ChaCha8Rng) -> Profile {
+    let waves: [f64; 3] = std::array::from_fn(|_| rng.random_range(-WAVE..WAVE));
     let pace = rng.random_range(-0.15..0.15);
-    let aside = Vector::new(-10.0, 20.0).normalize();
+    let way = task.desired.position_at(task.duration) - task.desired.position_at(0.0);
+    let aside = Vector::new(-way.y, way.x);
     let places: Vec<Vector> = (0..=task.intervals)
         .map(|k| {
             let part = k as f64 / task.intervals as f64;
             let bow = |n: f64| (PI * n * part).sin();
-            let along = (part + pace * bow(1.0)) * DURATION;
+            let along = (part + pace * bow(1.0)) * task.duration;
             let off = waves[0] * bow(1.0) + waves[1] * bow(2.0) + 0.5 * waves[2] * bow(3.0);
             task.desired.position_at(along) + aside * off
         })

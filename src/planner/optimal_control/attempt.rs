@@ -52,6 +52,8 @@ pub struct Attempt {
     pub objective: f64,
     /// The deepest place; `None` where the motion is clear of every set at all times.
     pub inside: Option<Inside>,
+    /// True where rows fell short and no solution was found at a higher price: the motion is that at the lower one.
+    pub priced_out: bool,
     /// Where later solves may go on from.
     pub iterate: Iterate<6, 3>,
     /// Fractions and sets of the rows, per interval.
@@ -62,7 +64,7 @@ impl Attempt {
     /// True where the solver got nowhere. Exact second derivatives alone may: Gauss–Newton steps are poor where the weights
     /// of the states are small beside those of the forces.
     pub fn is_lost(&self) -> bool {
-        matches!(self.report.status, Status::Iterations | Status::Stalled)
+        got_nowhere(self.report.status) || self.priced_out
     }
 
     /// True when solved and clear.
@@ -111,15 +113,34 @@ pub(super) fn go_on<V: Manoeuvring>(
     }
     let mut report = solve(&problem, &mut iterate, &mut work, &settings, keep_going);
     let (mut iterations, mut rounds, mut raised) = (report.iterations, 0, false);
-    let inside = loop {
+    // solved but short of rows, before the price was raised
+    let mut cheaper: Option<Attempt> = None;
+    loop {
         let (deepest, added) = deepest(task, &problem, &iterate);
+        let found = Found {
+            report,
+            iterations,
+            rounds,
+            inside: deepest,
+        };
+        if let Some(short) = cheaper.take()
+            && got_nowhere(report.status)
+        {
+            return Attempt {
+                iterations,
+                rounds,
+                priced_out: true,
+                ..short
+            };
+        }
         let short = report.shortfall > SHORT.max(settings.tolerance);
         if report.status != Status::Solved || rounds == ROUNDS || (short && raised) {
-            break deepest;
+            return found.attempt(&problem, iterate);
         }
         settings.barrier = WARM_BARRIER;
         if short {
             // maybe the price was too low: locally infeasible only if a higher one does not help
+            cheaper = Some(found.attempt(&problem, iterate.clone()));
             raised = true;
             settings.penalty *= DEARER;
             settings.barrier = 1e2 * WARM_BARRIER;
@@ -127,7 +148,7 @@ pub(super) fn go_on<V: Manoeuvring>(
         let fresh = add_rows(task, &mut problem, &mut iterate, &added, &settings);
         if !fresh && !short {
             if settings.tolerance <= tight {
-                break deepest;
+                return found.attempt(&problem, iterate);
             }
             settings.tolerance = tight;
         }
@@ -137,24 +158,48 @@ pub(super) fn go_on<V: Manoeuvring>(
         report = solve(&problem, &mut iterate, &mut work, &settings, keep_going);
         iterations += report.iterations;
         rounds += 1;
-    };
-    Attempt {
-        profile: Profile {
-            states: iterate.states.iter().map(|x| problem.state(x)).collect(),
-            forces: iterate.controls.iter().map(|u| problem.force(u)).collect(),
-        },
-        objective: report.objective * problem.cost_unit(),
-        report,
-        iterations,
-        rounds,
-        inside,
-        iterate,
-        rows: problem
-            .row_sets()
-            .iter()
-            .map(|rows| rows.iter().map(|r| (r.obstacle, r.fraction)).collect())
-            .collect(),
     }
+}
+
+/// What the solves so far came to.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    report: Report,
+    iterations: usize,
+    rounds: usize,
+    inside: Option<Inside>,
+}
+
+impl Found {
+    fn attempt<V: Manoeuvring>(
+        self,
+        problem: &Transcription<V>,
+        iterate: Iterate<6, 3>,
+    ) -> Attempt {
+        Attempt {
+            profile: Profile {
+                states: iterate.states.iter().map(|x| problem.state(x)).collect(),
+                forces: iterate.controls.iter().map(|u| problem.force(u)).collect(),
+            },
+            report: self.report,
+            iterations: self.iterations,
+            rounds: self.rounds,
+            objective: self.report.objective * problem.cost_unit(),
+            inside: self.inside,
+            priced_out: false,
+            iterate,
+            rows: problem
+                .row_sets()
+                .iter()
+                .map(|rows| rows.iter().map(|r| (r.obstacle, r.fraction)).collect())
+                .collect(),
+        }
+    }
+}
+
+/// True where a solve ended away from any solution.
+fn got_nowhere(status: Status) -> bool {
+    matches!(status, Status::Iterations | Status::Stalled)
 }
 
 /// A row to be added.

@@ -1,5 +1,6 @@
 //! One problem: every start in parallel, the best plan of all, on a grid that is fine enough.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -22,7 +23,8 @@ use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
 use crate::vessel::{CyberShip2, FULL_SCALE, FroudeScaled, Manoeuvring, StateVector, VesselKind};
 
-/// Of the time budget: the starts end by then, so that the best of them is brought to a grid that is fine enough.
+/// Of the time budget: the starts end by then, so that the best of them is brought to a grid that is fine enough. As long as
+/// none has led to a plan they go on: the first one's own grid may be fine enough.
 const STARTS_SHARE: f64 = 0.6;
 
 /// Of the time budget: the space-time planner, which makes one start of many, ends by then.
@@ -244,9 +246,17 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             .collect();
         // the longest first, so that no thread waits for it alone
         starts.insert(0, (Start::SpaceTime, None));
+        let any_feasible = AtomicBool::new(false);
+        let keep_going = || {
+            self.in_share(STARTS_SHARE) || self.in_time() && !any_feasible.load(Ordering::Relaxed)
+        };
         starts
             .into_par_iter()
-            .filter_map(|(start, guess)| self.tried_from(&task, start, guess, settings))
+            .filter_map(|(start, guess)| {
+                let tried = self.tried_from(&task, start, guess, settings, &keep_going)?;
+                any_feasible.fetch_or(tried.0.feasible, Ordering::Relaxed);
+                Some(tried)
+            })
             .collect()
     }
 
@@ -257,8 +267,8 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         start: Start,
         guess: Option<Profile>,
         settings: &Settings,
+        keep_going: &(dyn Fn() -> bool + Sync),
     ) -> Option<(StartReport, Option<Attempt>)> {
-        let keep_going = || self.in_share(STARTS_SHARE);
         if !keep_going() {
             let unsolved = StartReport {
                 start,
@@ -271,7 +281,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             return Some((unsolved, None));
         }
         let guess = guess.or_else(|| self.space_time(task))?;
-        let found = attempt(task, &guess, settings, &keep_going);
+        let found = attempt(task, &guess, settings, keep_going);
         let feasible = found.is_feasible();
         let motion = self.steered(task, &found.profile).filter(|_| feasible);
         let report = StartReport {
@@ -285,7 +295,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         Some((report, Some(found)))
     }
 
-    /// The cheapest attempt that can be brought to a grid that is fine enough.
+    /// The cheapest attempt that can be brought to a grid that is fine enough; once the time is up, that is on one.
     fn finest(&self, attempts: &[Attempt], report: &mut ControlReport) -> Outcome {
         let mut unrefined = None;
         for found in cheapest_first(attempts) {
@@ -297,9 +307,6 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             match fine.plan {
                 Ok(plan) => return Outcome::Solved(plan),
                 Err(reason) => unrefined = unrefined.or(Some(reason)),
-            }
-            if !self.in_time() {
-                break;
             }
         }
         Outcome::Infeasible(unrefined.unwrap_or_else(|| self.locked(attempts)))

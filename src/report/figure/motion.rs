@@ -56,8 +56,11 @@ const LEAST_TURN_DEG_PER_S: f64 = 0.05;
 /// A number from here on is written in thousands.
 const LONG: f64 = 1e4;
 
-/// Of the desired way: the shown part of the plane goes this far beyond it.
-const MARGIN: f64 = 0.12;
+/// Of the greater side: around what is shown.
+const MARGIN: f64 = 0.06;
+
+/// Of the greater side of the ways: sets are shown whole where they come this near at a shown moment.
+const REACH: f64 = 0.3;
 
 /// Where own ship is among the obstacles at the start and at the closest approach to each target, in order of time, and
 /// where she is driven by forces, these over time. `None` without a plan.
@@ -78,9 +81,11 @@ pub(super) fn moments_panels(run: &Run, trajectory: &Trajectory) -> Vec<Panel> {
     times.insert(0, trajectory.start_time());
     times.dedup();
     times.truncate(MOMENTS + 1);
+    let track = track(trajectory);
+    let window = window(run, &track, &times);
     let mut panels: Vec<Panel> = times
         .iter()
-        .map(|time| moment_panel(run, trajectory, *time))
+        .map(|time| moment_panel(run, trajectory, &track, window, *time))
         .collect();
     if let Some(motion) = trajectory.steered() {
         panels.extend(driven(motion, &run.scenario.control.force_limits));
@@ -88,23 +93,47 @@ pub(super) fn moments_panels(run: &Run, trajectory: &Trajectory) -> Vec<Panel> {
     panels
 }
 
-/// Tracks and sets at one moment.
-fn moment_panel(run: &Run, trajectory: &Trajectory, time: f64) -> Panel {
+/// Where own ship is, at times that are equally far apart.
+fn track(trajectory: &Trajectory) -> Vec<Vector> {
     let step = (trajectory.end_time() - trajectory.start_time()) / TRACK as f64;
-    let track: Vec<Vector> = (0..=TRACK)
-        .map(|k| {
-            trajectory
-                .pose_at(trajectory.start_time() + step * k as f64)
-                .position
-        })
-        .collect();
+    let at = |k: usize| trajectory.start_time() + step * k as f64;
+    (0..=TRACK)
+        .map(|k| trajectory.pose_at(at(k)).position)
+        .collect()
+}
+
+/// One for all moments, so that they compare: both ways, and every set that comes near them at one of the moments. Of a
+/// set that is larger than the ways the part that is near.
+fn window(run: &Run, track: &[Vector], times: &[f64]) -> Window {
     let wanted = run.scenario.desired.waypoints();
-    let shown = track.iter().chain(&wanted).copied();
-    let mut panel = Panel::plan(
-        format!("At {} s", seconds(time)),
-        PLAN,
-        Window::around(shown, MARGIN),
-    );
+    let mut shown: Vec<Vector> = track.iter().chain(&wanted).copied().collect();
+    let reach = Window::around(shown.iter().copied(), REACH);
+    let sections = run
+        .obstacles
+        .iter()
+        .flat_map(|o| times.iter().map(|time| o.section(*time)));
+    for section in sections {
+        let boundary = sampled_boundary(&section);
+        let size = Window::around(boundary.iter().copied(), 0.0).size();
+        if size.max() > reach.size().max() {
+            shown.extend(boundary.iter().filter(|p| reach.contains(**p)));
+        } else if boundary.iter().any(|p| reach.contains(*p)) {
+            shown.extend(boundary);
+        }
+    }
+    Window::around(shown, MARGIN)
+}
+
+/// Tracks and sets at one moment.
+fn moment_panel(
+    run: &Run,
+    trajectory: &Trajectory,
+    track: &[Vector],
+    window: Window,
+    time: f64,
+) -> Panel {
+    let wanted = run.scenario.desired.waypoints();
+    let mut panel = Panel::plan(format!("At {} s", seconds(time)), PLAN, window);
     for obstacle in &run.obstacles {
         let boundary = sampled_boundary(&obstacle.section(time));
         let filled = ConvexPolygon::hull(&boundary).ok();
@@ -116,7 +145,8 @@ fn moment_panel(run: &Run, trajectory: &Trajectory, time: f64) -> Panel {
     panel.plots.push(curve(&wanted, false, DESIRED));
     panel
         .plots
-        .push(curve(&track, false, Stroke { width: 1.0, ..OWN }));
+        .push(curve(track, false, Stroke { width: 1.0, ..OWN }));
+    let step = (trajectory.end_time() - trajectory.start_time()) / TRACK as f64;
     let sailed = ((time - trajectory.start_time()) / step)
         .floor()
         .clamp(0.0, TRACK as f64);
@@ -276,4 +306,50 @@ fn over_time(quantities: Quantities) -> Panel {
         panel.line_key(label, stroke);
     }
     panel
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline;
+    use crate::scenario::Scenario;
+
+    const FIGURE_9: &str = include_str!("../../../scenarios/paper/figure_9.toml");
+
+    #[test]
+    fn the_window_holds_the_ways_and_whole_sets_that_come_near_and_no_others() {
+        let run = pipeline::run(Scenario::parse(FIGURE_9).expect("valid"));
+        let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
+        let track = track(trajectory);
+        let times = [0.0, 30.0, 60.0];
+        let near = window(&run, &track, &times);
+        assert!(track.iter().all(|p| near.contains(*p)));
+        for obstacle in &run.obstacles {
+            for time in times {
+                let boundary = sampled_boundary(&obstacle.section(time));
+                assert!(boundary.iter().all(|p| near.contains(*p)), "{time}");
+            }
+        }
+        // twenty times as far away as she sails, and larger than all that she sails in
+        let size = Window::around(track.iter().copied(), REACH).size().max();
+        let moved = |from: Vector, size: &str| {
+            let center = format!("center_m = [{}, {}]", from.x, from.y);
+            let text = FIGURE_9.replace("center_m = [13.0, 6.5]", &center);
+            let text = text.replace("[[0.64, 0.0], [0.0, 0.64]]", size);
+            let sets = pipeline::run(Scenario::parse(&text).expect("valid")).obstacles;
+            let run = Run {
+                obstacles: sets,
+                ..run.clone()
+            };
+            window(&run, &track, &times)
+        };
+        let shown = near.size();
+        let far = moved(Vector::new(0.0, 500.0), "[[0.64, 0.0], [0.0, 0.64]]");
+        assert!(far.size().x <= shown.x && far.size().y <= shown.y);
+        let large = moved(
+            Vector::new(0.0, 500.0),
+            "[[240000.0, 0.0], [0.0, 240000.0]]",
+        );
+        assert!(large.size().max() < 2.0 * size, "{:?}", large.size());
+    }
 }

@@ -116,9 +116,7 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
     let mut shown: Vec<Vector> = waypoints.iter().chain(&way).chain(paths).copied().collect();
     let reach = Window::around(shown.iter().copied(), 0.3);
     // of what goes far away the beginning is enough
-    let within = |p: &Vector| {
-        p.x > reach.low.x && p.x < reach.high.x && p.y > reach.low.y && p.y < reach.high.y
-    };
+    let within = |p: &Vector| reach.contains(*p);
     let mut sets: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
     for (index, obstacle) in run.obstacles.iter().enumerate() {
         for (k, time) in moments.iter().enumerate() {

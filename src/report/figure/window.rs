@@ -39,6 +39,11 @@ impl Window {
         self.high - self.low
     }
 
+    /// True for a point of the rectangle; false for one that is no number.
+    pub fn contains(&self, p: Vector) -> bool {
+        p.x >= self.low.x && p.x <= self.high.x && p.y >= self.low.y && p.y <= self.high.y
+    }
+
     /// Widened about its middle until width over height is `ratio`.
     pub fn with_ratio(&self, ratio: f64) -> Self {
         let (middle, size) = ((self.low + self.high) * 0.5, self.size());
