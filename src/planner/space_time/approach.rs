@@ -21,9 +21,6 @@ const SAME_S: f64 = 0.2;
 pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;
 pub(crate) const FINE_CHORD_RAD: f64 = 0.05;
 
-/// Chords that room is made for at once.
-const MANY_CHORDS: usize = 64;
-
 /// Cuts of one minimum at most.
 const MAX_CUTS: usize = 30;
 
@@ -132,8 +129,7 @@ fn approaches_of<S: Shape>(
     middles: &[Vector],
     chord: f64,
 ) -> Vec<Approach> {
-    let mut chords: Vec<Chord<S::Face>> = Vec::new();
-    let mut found: Vec<Approach> = Vec::new();
+    let mut minima = Minima::new(shape, hazard, sailed);
     let mut joints: Vec<Approach> = Vec::new();
     let clock = hazard.start();
     for (leg, (l, middle)) in sailed.legs.iter().zip(middles).enumerate() {
@@ -142,7 +138,7 @@ fn approaches_of<S: Shape>(
             continue;
         }
         if hazard.clearance_bound_about(segment, *middle) > NEAR_M {
-            local_minima((shape, hazard, sailed), &mut chords, &mut found);
+            minima.end_run();
             continue;
         }
         let Span { first, last } = Span::of(l, hazard.window);
@@ -181,7 +177,7 @@ fn approaches_of<S: Shape>(
             // what is far from near is so for as long as closing takes
             let far = ((from.slack.value - NEAR_M) / closing).floor();
             if far >= 1.0 {
-                local_minima((shape, hazard, sailed), &mut chords, &mut found);
+                minima.end_run();
                 k += far;
                 if k >= count {
                     break;
@@ -212,22 +208,20 @@ fn approaches_of<S: Shape>(
                 let at = sample(piece.least.fraction, place, Some(to.slack.face));
                 piece.least.slack = at.slack.value;
             }
-            if chords.capacity() == 0 {
-                chords.reserve(MANY_CHORDS);
-            }
-            chords.push(piece);
+            minima.push(piece);
             from = to;
         }
     }
-    local_minima((shape, hazard, sailed), &mut chords, &mut found);
+    minima.end_run();
+    let mut found = minima.found;
     let time = |a: &Approach| {
         let s = &sailed.legs[a.leg].segment;
         s.start_time + s.duration * a.fraction
     };
-    let minima = found.len();
+    let count = found.len();
     for joint in joints {
         let is_apart = |f: &Approach| (time(f) - time(&joint)).abs() > SAME_S;
-        if found[..minima].iter().all(is_apart) {
+        if found[..count].iter().all(is_apart) {
             found.push(joint);
         }
     }
@@ -281,54 +275,85 @@ fn velocity_at_edge<F>(hazard: &Hazard, sailed: &Sailed, least: &Minimum<F>) -> 
         .then(|| leg.along(least.fraction).1 * leg.segment.speed)
 }
 
-/// Moves the local minima of a run of chords to `found`.
-fn local_minima<S: Shape>(
-    (shape, hazard, sailed): (&S, &Hazard, &Sailed),
-    chords: &mut Vec<Chord<S::Face>>,
-    found: &mut Vec<Approach>,
-) {
-    for i in 0..chords.len() {
-        let here = &chords[i].least;
-        let before = if i > 0 {
-            chords[i - 1].least.slack
-        } else {
-            f64::INFINITY
+/// The local minima of runs of chords, found as the chords come.
+struct Minima<'a, S: Shape> {
+    shape: &'a S,
+    hazard: &'a Hazard<'a>,
+    sailed: &'a Sailed,
+    /// The last chord of the run, and the least slack on the one before it.
+    last: Option<Chord<S::Face>>,
+    before: f64,
+    found: Vec<Approach>,
+}
+
+impl<'a, S: Shape> Minima<'a, S> {
+    fn new(shape: &'a S, hazard: &'a Hazard<'a>, sailed: &'a Sailed) -> Self {
+        Self {
+            shape,
+            hazard,
+            sailed,
+            last: None,
+            before: f64::INFINITY,
+            found: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, chord: Chord<S::Face>) {
+        let Some(last) = self.last.replace(chord) else {
+            return;
         };
-        let after = chords.get(i + 1).map_or(f64::INFINITY, |c| c.least.slack);
-        if !(here.slack < before && here.slack <= after && here.slack < NEAR_M) {
-            continue;
+        let slack = last.least.slack;
+        if slack < self.before && slack <= chord.least.slack {
+            self.add(&last, Some(&chord));
+        }
+        self.before = slack;
+    }
+
+    /// What comes next does not follow on what came.
+    fn end_run(&mut self) {
+        if let Some(last) = self.last.take()
+            && last.least.slack < self.before
+        {
+            self.add(&last, None);
+        }
+        self.before = f64::INFINITY;
+    }
+
+    fn add(&mut self, chord: &Chord<S::Face>, next: Option<&Chord<S::Face>>) {
+        let here = &chord.least;
+        if !(here.slack < NEAR_M) {
+            return;
         }
         let mut faces = here.faces;
         // at a joint the two sides share the instant: its faces are one falling, one rising
-        if let Some(next) = chords.get(i + 1)
+        if let Some(next) = next
             && next.least.slack - here.slack < 1e-9
             && !here.is_mixed()
-            && chords[i].end_rate < 0.0
+            && chord.end_rate < 0.0
             && next.start_rate > 0.0
         {
-            let weight = next.start_rate / (next.start_rate - chords[i].end_rate);
+            let weight = next.start_rate / (next.start_rate - chord.end_rate);
             faces = [
                 (here.faces[0].0, weight),
                 (next.least.faces[0].0, 1.0 - weight),
             ];
         }
-        let edge = velocity_at_edge(hazard, sailed, here);
+        let edge = velocity_at_edge(self.hazard, self.sailed, here);
         let mut rates = [0.0; 3];
         for (face, weight) in faces {
-            let (normal, speed) = shape.plane(face);
+            let (normal, speed) = self.shape.plane(face);
             let clock = edge.map_or(speed, |velocity| normal.dot(&velocity));
             for (sum, rate) in rates.iter_mut().zip([normal.x, normal.y, -clock]) {
                 *sum += weight * rate;
             }
         }
-        found.push(Approach {
+        self.found.push(Approach {
             leg: here.leg,
             fraction: here.fraction,
             slack: here.slack,
             rates,
         });
     }
-    chords.clear();
 }
 
 /// An instant of a segment with its slack.
