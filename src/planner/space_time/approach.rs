@@ -107,29 +107,30 @@ impl Shape for EllipsoidObstacle {
     }
 }
 
-/// The local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`], and joints below [`SLIDING_M`]; arcs are cut into chords of `chord`
-/// radians at most.
-/// `middles` are the places halfway along each leg.
-pub(crate) fn approaches(
+/// Adds the local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`], and joints below [`SLIDING_M`]; arcs
+/// are cut into chords of `chord` radians at most. `middles` are those of the legs, see [`Sailed::middles`].
+pub(crate) fn add_approaches(
     hazard: &Hazard,
     sailed: &Sailed,
     middles: &[Vector],
     chord: f64,
-) -> Vec<Approach> {
+    found: &mut Vec<Approach>,
+) {
     match hazard.round {
-        Some(ellipsoid) => approaches_of(ellipsoid, hazard, sailed, middles, chord),
-        None => approaches_of(hazard.body, hazard, sailed, middles, chord),
+        Some(ellipsoid) => add_of(ellipsoid, hazard, sailed, (middles, chord), found),
+        None => add_of(hazard.body, hazard, sailed, (middles, chord), found),
     }
 }
 
-fn approaches_of<S: Shape>(
+fn add_of<S: Shape>(
     shape: &S,
     hazard: &Hazard,
     sailed: &Sailed,
-    middles: &[Vector],
-    chord: f64,
-) -> Vec<Approach> {
-    let mut minima = Minima::new(shape, hazard, sailed);
+    (middles, chord): (&[Vector], f64),
+    found: &mut Vec<Approach>,
+) {
+    let already = found.len();
+    let mut minima = Minima::new(shape, hazard, sailed, found);
     let mut joints: Vec<Approach> = Vec::new();
     let clock = hazard.start();
     for (leg, (l, middle)) in sailed.legs.iter().zip(middles).enumerate() {
@@ -213,19 +214,17 @@ fn approaches_of<S: Shape>(
         }
     }
     minima.end_run();
-    let mut found = minima.found;
     let time = |a: &Approach| {
         let s = &sailed.legs[a.leg].segment;
         s.start_time + s.duration * a.fraction
     };
-    let count = found.len();
+    let end = found.len();
     for joint in joints {
         let is_apart = |f: &Approach| (time(f) - time(&joint)).abs() > SAME_S;
-        if found[..count].iter().all(is_apart) {
+        if found[already..end].iter().all(is_apart) {
             found.push(joint);
         }
     }
-    found
 }
 
 /// The start of a leg: its place on the leg is fixed, so any face that attains the slack gives its rates.
@@ -283,18 +282,23 @@ struct Minima<'a, S: Shape> {
     /// The last chord of the run, and the least slack on the one before it.
     last: Option<Chord<S::Face>>,
     before: f64,
-    found: Vec<Approach>,
+    found: &'a mut Vec<Approach>,
 }
 
 impl<'a, S: Shape> Minima<'a, S> {
-    fn new(shape: &'a S, hazard: &'a Hazard<'a>, sailed: &'a Sailed) -> Self {
+    fn new(
+        shape: &'a S,
+        hazard: &'a Hazard<'a>,
+        sailed: &'a Sailed,
+        found: &'a mut Vec<Approach>,
+    ) -> Self {
         Self {
             shape,
             hazard,
             sailed,
             last: None,
             before: f64::INFINITY,
-            found: Vec::new(),
+            found,
         }
     }
 

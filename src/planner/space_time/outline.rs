@@ -1,7 +1,7 @@
 //! One manoeuvre outlined: sailed, with its cost and where it comes near the sets. All that a step of the refinement is
 //! judged by; the rates are found for those that are taken.
 
-use super::approach::{Approach, NEAR_M, approaches};
+use super::approach::{Approach, NEAR_M, add_approaches};
 use super::ashore;
 use super::hazard::Hazard;
 use super::model::MARGIN_M;
@@ -10,7 +10,6 @@ use super::route::Route;
 use super::sailed::{Owner, Place, Sailed};
 use super::tail::Tail;
 use super::template::{Ending, Template};
-use crate::frame::Vector;
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4};
 use crate::trajectory::Nearest;
@@ -87,13 +86,12 @@ impl Scene<'_> {
         cost += tail.as_ref().map_or(0.0, |t| t.cost);
         let sails = sailed.legs.iter().map(|l| &l.segment);
         let land = ashore::near(self.problem.coast, sails, NEAR_M);
-        let middles: Vec<Vector> = sailed.legs.iter().map(|l| l.along(0.5).0).collect();
-        let approaches: Vec<Approach> = self
-            .hazards
-            .iter()
-            .chain(land.into_iter().map(|b| &self.blocks[b]))
-            .flat_map(|hazard| approaches(hazard, &sailed, &middles, self.chord))
-            .collect();
+        let middles = sailed.middles();
+        let mut approaches = Vec::new();
+        let near_land = land.into_iter().map(|b| &self.blocks[b]);
+        for hazard in self.hazards.iter().chain(near_land) {
+            add_approaches(hazard, &sailed, &middles, self.chord, &mut approaches);
+        }
         let least_slack = approaches
             .iter()
             .fold(f64::INFINITY, |least, a| least.min(a.slack));

@@ -99,6 +99,16 @@ pub(crate) struct Place {
 }
 
 impl Sailed {
+    /// Of each leg the place halfway between its ends: no place on it is farther from there than half its length.
+    pub(crate) fn middles(&self) -> Vec<Vector> {
+        let ends = self.legs.iter().skip(1).map(|l| l.segment.start.position);
+        let last = self.legs.last().map(|l| l.along(1.0).0);
+        let pairs = self.legs.iter().zip(ends.chain(last));
+        pairs
+            .map(|(l, end)| l.segment.start.position.lerp(&end, 0.5))
+            .collect()
+    }
+
     /// The point at `fraction` of a leg; `None` on the tail.
     pub(crate) fn place(&self, leg: usize, fraction: f64) -> Option<Place> {
         let l = &self.legs[leg];

@@ -122,12 +122,15 @@ impl Template {
         if !matches!(self.ending, Ending::Goal { .. }) {
             let mut tail = Vec::with_capacity(4);
             route.follow(sailed.joined.0, sailed.joined.1, &mut tail);
-            let owned = tail.into_iter().enumerate();
-            sailed.legs.extend(owned.map(|(index, segment)| Leg {
-                segment,
-                ahead: segment.start.ahead(),
-                owner: Owner::Tail { index },
-            }));
+            for (index, segment) in tail.into_iter().enumerate() {
+                let ahead = at.ahead_of(&segment);
+                sailed.legs.push(Leg {
+                    segment,
+                    ahead,
+                    owner: Owner::Tail { index },
+                });
+                at.pass(&segment, ahead);
+            }
         }
         let end = sailed.legs.last().map_or(at.time, |l| l.segment.end_time());
         // negated on purpose: a NaN does not fit
@@ -230,6 +233,25 @@ struct Cursor {
 }
 
 impl Cursor {
+    /// The unit vector ahead at the start of a motion that follows.
+    fn ahead_of(&self, next: &Segment) -> Vector {
+        if next.start.heading == self.pose.heading {
+            self.ahead
+        } else {
+            next.start.ahead()
+        }
+    }
+
+    /// Goes on to the end of a motion.
+    fn pass(&mut self, segment: &Segment, ahead: Vector) {
+        (self.pose, self.time) = (segment.end(), segment.end_time());
+        self.ahead = if segment.is_arc() {
+            self.pose.ahead()
+        } else {
+            ahead
+        };
+    }
+
     fn run(&mut self, route: &Route, index: usize, length: f64, speed: f64, sailed: &mut Sailed) {
         let mut motions = Vec::new();
         let before = self.route;
@@ -238,13 +260,13 @@ impl Cursor {
         let mut from = 0.0;
         for segment in motions {
             let to = from + segment.length() / total;
+            let ahead = self.ahead_of(&segment);
             sailed.legs.push(Leg {
                 segment,
-                ahead: segment.start.ahead(),
+                ahead,
                 owner: Owner::Slot { index, from, to },
             });
-            (self.pose, self.time) = (segment.end(), segment.end_time());
-            self.ahead = self.pose.ahead();
+            self.pass(&segment, ahead);
             from = to;
         }
         if from == 0.0 {
