@@ -1,6 +1,7 @@
 //! One plan, from sets to verdict. Every bench asserts the answer, then times it.
 
 use std::hint::black_box;
+use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use searoom::obstacle::{Coast, Obstacle};
@@ -8,6 +9,11 @@ use searoom::pipeline::{self, problem};
 use searoom::planner::{Outcome, Problem, SearchKind, space_time};
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
+
+/// Random encounters of each kind, random traffic of each size, and runs of each scene.
+const ENCOUNTERS: u64 = 250;
+const TRAFFIC: u64 = 50;
+const RUNS: usize = 2;
 
 fn shaped(scenario: &Scenario) -> Vec<Obstacle> {
     pipeline::sets(scenario)
@@ -89,6 +95,54 @@ fn many_targets(criterion: &mut Criterion) {
     }
 }
 
+/// Milliseconds of each scene's plan, the least of so many runs, sorted.
+fn times(scenes: impl Iterator<Item = Scenario>) -> Vec<f64> {
+    let mut times: Vec<f64> = scenes
+        .map(|scenario| {
+            let obstacles = shaped(&scenario);
+            let problem = problem(&scenario, &obstacles, Coast::none());
+            (0..RUNS)
+                .map(|_| {
+                    let start = Instant::now();
+                    black_box(space_time::plan(black_box(&problem)));
+                    start.elapsed().as_secs_f64() * 1e3
+                })
+                .fold(f64::INFINITY, f64::min)
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times
+}
+
+fn print_times(name: &str, times: &[f64]) {
+    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+    println!(
+        "{name}: {} scenes, ms: median {:.2}, 95 % {:.2}, worst {:.2}",
+        times.len(),
+        at(0.5),
+        at(0.95),
+        at(1.0)
+    );
+}
+
+/// Not one scene many times but many scenes, printed: what a scene takes varies more than the clock.
+fn random_scenes(_: &mut Criterion) {
+    let mut all = Vec::new();
+    for kind in EncounterKind::ALL {
+        let scenes = (0..ENCOUNTERS).map(|seed| random_encounter(kind, seed, Placement::Origin));
+        let found = times(scenes.map(|drawn| drawn.expect("drawn").scenario));
+        print_times(&format!("random/{}", kind.name()), &found);
+        all.extend(found);
+    }
+    all.sort_by(f64::total_cmp);
+    print_times("random/one target", &all);
+    for count in [4, 10] {
+        let scenes = (0..TRAFFIC).map(|seed| random_traffic(count, seed, Placement::Origin));
+        let found = times(scenes.map(|drawn| drawn.expect("drawn").scenario));
+        print_times(&format!("random/{count} targets"), &found);
+    }
+}
+
 /// Sets, plan and verdict together.
 fn whole_run(criterion: &mut Criterion) {
     let drawn = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin).expect("drawn");
@@ -98,5 +152,12 @@ fn whole_run(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, one_target, dijkstra, many_targets, whole_run);
+criterion_group!(
+    benches,
+    one_target,
+    dijkstra,
+    many_targets,
+    whole_run,
+    random_scenes
+);
 criterion_main!(benches);

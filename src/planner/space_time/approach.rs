@@ -8,7 +8,7 @@ use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::tolerance;
 
 /// Metres. Approaches closer than this become rows.
-pub(crate) const NEAR_M: f64 = 60.0;
+pub(crate) const NEAR_M: f64 = 40.0;
 
 /// Metres. Where legs meet closer than this the joint is a row too: a leg that slides along a face touches it at both
 /// ends, and of two ends only one is a minimum.
@@ -133,6 +133,8 @@ fn add_of<S: Shape>(
     let mut minima = Minima::new(shape, hazard, sailed, found);
     let mut joints: Vec<Approach> = Vec::new();
     let clock = hazard.start();
+    // where a leg begins the one before it ended
+    let mut near = None;
     for (leg, (l, middle)) in sailed.legs.iter().zip(middles).enumerate() {
         let segment = &l.segment;
         if segment.duration <= 0.0 {
@@ -168,7 +170,7 @@ fn add_of<S: Shape>(
             (segment.start.position, l.ahead)
         };
         let mut arm = to_starboard(ahead) * segment.radius();
-        let mut from = sample(first, start, None);
+        let mut from = sample(first, start, near);
         if first == 0.0 && from.slack.value < SLIDING_M {
             joints.push(joint(shape, leg, &from));
         }
@@ -212,6 +214,7 @@ fn add_of<S: Shape>(
             minima.push(piece);
             from = to;
         }
+        near = Some(from.slack.face);
     }
     minima.end_run();
     let time = |a: &Approach| {
