@@ -90,6 +90,7 @@ fn problem(scene: &Scene, objective: Objective) -> Problem<'_> {
         search: SearchKind::AStar,
         deadline: Duration::from_secs(60),
         first_turn: None,
+        encountered: &[],
     }
 }
 

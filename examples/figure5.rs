@@ -41,6 +41,7 @@ fn main() -> Result<(), FigureError> {
         obstacles: &obstacles,
         coast: Coast::none(),
         first_turn: None,
+        encountered: &[],
         horizon: 200.0,
         time_weight: 1.0,
         search: SearchKind::AStar,

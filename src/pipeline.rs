@@ -1,17 +1,18 @@
 //! The arrows in one place: Scenario → obstacles → Plan → Evaluation = Run.
 
 mod conduct;
+mod duty;
 mod shore;
 
 pub use shore::{coast, land_within_reach};
 
+use duty::{encountered, first_turn, relaxations, rules_given_up};
 use std::time::{Duration, Instant};
 
 use crate::colregs::{self, Encounter, Role};
 use crate::evaluation::{
     Evaluation, Freedom, Request, SetShape, SpaceTimeSet, Steering, evaluate, evaluate_steered,
 };
-use crate::frame::Side;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
     Coast, EllipsoidObstacle, Obstacle, PeakRisk, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
@@ -63,6 +64,13 @@ pub enum Relaxation {
         target: String,
         /// The largest risk along the plan, eq. (25), in `(0, 1)`.
         amount: f64,
+    },
+    /// The plan keeps clear of the shapes, but not to the rules.
+    Compliance {
+        /// Name of a target that asks something of own ship.
+        target: String,
+        /// Her role toward it.
+        role: Role,
     },
 }
 
@@ -233,6 +241,7 @@ pub fn problem<'a>(
         search: scenario.search,
         deadline: deadline(scenario),
         first_turn: None,
+        encountered: &[],
     }
 }
 
@@ -240,18 +249,14 @@ fn deadline(scenario: &Scenario) -> Duration {
     Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX)
 }
 
-/// Rules 14 and 15 in open water: to starboard where own ship meets head-on or gives way.
-fn first_turn(sets: &[TargetSets]) -> Option<Side> {
-    let alters = |s: &TargetSets| matches!(s.encounter.role, Role::HeadOn | Role::GiveWay);
-    sets.iter().any(alters).then_some(Side::Starboard)
-}
-
 /// Plans a scenario and judges the plan. Where no plan keeps clear of the shapes, one that keeps clear of the
 /// hard sets alone is looked for, and what was given up is said. The clock is read around planning alone
 /// and enters no result but `plan_time`, unless the deadline ends the search.
 pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
-    let shaped = scenario.compliance == Compliance::Shape;
+    let shaped = scenario.compliance.shapes();
+    let encountered = encountered(&scenario, &sets);
+    let ruled = scenario.compliance == Compliance::Rules && !encountered.is_empty();
     let begun = Instant::now();
     let forces = scenario.planner == PlannerKind::OptimalControl;
     let land = land_within_reach(&scenario);
@@ -264,7 +269,7 @@ pub fn run(scenario: Scenario) -> Run {
         // the paths are kept off land when the scenario is read
         PlannerKind::PathTime => Coast::none(),
     };
-    let plan = |kept: bool| -> (Vec<Obstacle>, Planned, Option<ControlReport>) {
+    let plan = |kept: bool, ruled: bool| -> (Vec<Obstacle>, Planned, Option<ControlReport>) {
         let whole: Vec<Obstacle> = sets.iter().map(|s| s.either(kept).clone()).collect();
         let risk = scenario.max_risk;
         let level_sets: Vec<Obstacle> = if risk > 0.0 {
@@ -280,6 +285,7 @@ pub fn run(scenario: Scenario) -> Run {
         let asked = Problem {
             deadline: deadline(&scenario).saturating_sub(begun.elapsed()),
             first_turn: shaped.then(|| first_turn(&sets)).flatten(),
+            encountered: if ruled { &encountered } else { &[] },
             ..problem(&scenario, &level_sets, coast)
         };
         let planned = match (scenario.planner, scenario.objective) {
@@ -306,7 +312,13 @@ pub fn run(scenario: Scenario) -> Run {
     } else {
         Vec::new()
     };
-    let (mut obstacles, mut planned, mut control) = plan(shaped);
+    let (mut obstacles, mut planned, mut control) = plan(shaped, ruled);
+    let unruly = ruled
+        && matches!(&planned.outcome, Outcome::Infeasible(reason) if reason.is_for_the_sets());
+    if unruly {
+        (obstacles, planned, control) = plan(shaped, false);
+        relaxations.splice(0..0, rules_given_up(&scenario, &sets));
+    }
     let stuck = match &planned.outcome {
         // the ellipse around a shape may hold own ship where the shape does not
         Outcome::Infeasible(NoPlan::StartInside { .. }) => forces,
@@ -314,10 +326,11 @@ pub fn run(scenario: Scenario) -> Run {
         Outcome::Solved(_) | Outcome::Deadline(_) => false,
     };
     if shaped && stuck && sets.iter().any(|s| s.shape_reach > 0.0) {
-        let (obstacles_left, again, report) = plan(false);
+        let (obstacles_left, again, report) = plan(false, false);
         if again.outcome.plan().is_some() {
             (obstacles, planned, control) = (obstacles_left, again, report);
-            relaxations = self::relaxations(&sets, |s| s.shape_reach);
+            relaxations.retain(|r| matches!(r, Relaxation::Compliance { .. }));
+            relaxations.extend(duty::relaxations(&sets, |s| s.shape_reach));
             kept_shapes = false;
         } else if matches!(again.outcome, Outcome::Deadline(_)) {
             // there may be a way, which was not found in time
@@ -481,19 +494,6 @@ fn judged(
         }
         None => evaluate(&request),
     }
-}
-
-/// The shapes that were drawn back, the largest cut first.
-fn relaxations(sets: &[TargetSets], cut: impl Fn(&TargetSets) -> f64) -> Vec<Relaxation> {
-    let mut drawn: Vec<&TargetSets> = sets.iter().filter(|s| cut(s) > 0.0).collect();
-    drawn.sort_by(|a, b| cut(b).total_cmp(&cut(a)));
-    drawn
-        .into_iter()
-        .map(|s| Relaxation::Domain {
-            target: s.shaped.name().to_owned(),
-            amount: cut(s),
-        })
-        .collect()
 }
 
 #[cfg(test)]

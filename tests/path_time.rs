@@ -145,6 +145,7 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         search,
         deadline: Duration::from_secs(60),
         first_turn: None,
+        encountered: &[],
     })
 }
 
@@ -547,6 +548,7 @@ fn alternatives_are_as_good_as_the_best_way_through_them() {
             let desired = DesiredTrajectory::new(&main, &[drawn.speed; 3]).expect("valid");
             let planned = path_time::plan(&Problem {
                 first_turn: None,
+                encountered: &[],
                 coast: Coast::none(),
                 own: &own,
                 desired: &desired,
@@ -603,6 +605,7 @@ fn risk_is_weighed_against_length() {
     let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
     let problem = Problem {
         first_turn: None,
+        encountered: &[],
         coast: Coast::none(),
         own: &own,
         desired: &desired,

@@ -136,7 +136,7 @@ pub struct CompareArgs {
     /// Only this search: a-star, dijkstra
     #[arg(long, value_name = "KIND", value_parser = search)]
     pub search: Option<SearchKind>,
-    /// Compliance instead of the scenario's: none (hulls only), shape (domains)
+    /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and filters)
     #[arg(long, value_name = "C", value_parser = compliance)]
     pub compliance: Option<Compliance>,
     /// Risks that may be accepted instead of the scenario's, each 0 to below 1: several are a sweep
@@ -204,7 +204,7 @@ pub struct Shared {
     /// Search instead of the scenario's: a-star, dijkstra
     #[arg(long, value_name = "KIND", value_parser = search)]
     pub search: Option<SearchKind>,
-    /// Compliance instead of the scenario's: none (hulls only), shape (domains)
+    /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and filters)
     #[arg(long, value_name = "C", value_parser = compliance)]
     pub compliance: Option<Compliance>,
     /// Risk that the plan may accept instead of the scenario's: 0 to below 1
@@ -362,8 +362,8 @@ fn compliance(word: &str) -> Result<Compliance, String> {
     match word {
         "none" => Ok(Compliance::None),
         "shape" => Ok(Compliance::Shape),
-        "rules" => Err(unbuilt(word, "none, shape")),
-        _ => Err("allowed: none, shape".to_owned()),
+        "rules" => Ok(Compliance::Rules),
+        _ => Err("allowed: none, shape, rules".to_owned()),
     }
 }
 
@@ -373,8 +373,4 @@ fn max_risk(word: &str) -> Result<f64, String> {
         Ok(risk) if Scenario::allows_max_risk(risk) => Ok(risk + 0.0),
         _ => Err(allowed),
     }
-}
-
-fn unbuilt(word: &str, allowed: &str) -> String {
-    format!("{word} is not built yet; allowed: {allowed}")
 }

@@ -86,7 +86,7 @@ pub(super) struct Sets {
 impl Sets {
     pub fn of(scenario: &Scenario) -> Self {
         let used = |sets: TargetSets| match scenario.compliance {
-            Compliance::Shape => sets.shaped,
+            Compliance::Shape | Compliance::Rules => sets.shaped,
             Compliance::None => sets.hard,
         };
         let whole: Vec<Obstacle> = pipeline::sets(scenario).into_iter().map(used).collect();

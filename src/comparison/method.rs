@@ -1,7 +1,7 @@
 //! Ways to sail a scenario, and their names.
 
 use crate::planner::{Objective, PlannerKind, SearchKind};
-use crate::scenario::Scenario;
+use crate::scenario::{Compliance, Scenario};
 use crate::target::Representation;
 
 /// A planner with its settings, or a baseline.
@@ -23,7 +23,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// The scenario with what this method changes in it. The objective of a planner that knows the space-time error alone becomes
+    /// The scenario with what this method changes in it. What keeps to no rules keeps out of the shapes. The objective of a planner that knows the space-time error alone becomes
     /// that, and other paths are left to the planner that keeps to paths.
     pub fn asked(self, scenario: &Scenario) -> Scenario {
         let mut asked = scenario.clone();
@@ -34,6 +34,9 @@ impl Method {
         } = self
         {
             asked.planner = kind;
+            if kind != PlannerKind::SpaceTime && asked.compliance == Compliance::Rules {
+                asked.compliance = Compliance::Shape;
+            }
             asked.search = search;
             if let Some(representation) = representation {
                 for target in &mut asked.targets {

@@ -14,6 +14,7 @@ pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeK
 
 use std::time::Duration;
 
+use crate::colregs::{Duty, Encountered};
 use crate::frame::{Side, Vector};
 use crate::obstacle::{Coast, Obstacle};
 use crate::trajectory::{DesiredTrajectory, NetworkError, Trajectory};
@@ -104,6 +105,15 @@ pub struct Problem<'a> {
     /// Side to which own ship should turn first: a plan that first turns to the other has to be cheaper by
     /// [`AGAINST_THE_RULES`].
     pub first_turn: Option<Side>,
+    /// The targets toward which a plan has to comply with the rules of the road; empty where that is not asked.
+    pub encountered: &'a [Encountered],
+}
+
+impl Problem<'_> {
+    /// What is asked of the first alteration.
+    pub fn duty(&self) -> Duty {
+        Duty::of(self.encountered.iter().map(|e| e.role))
+    }
 }
 
 /// Share of the cost by which a plan has to be cheaper whose first turn is to the side that the collision

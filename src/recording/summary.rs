@@ -188,6 +188,10 @@ fn relaxation(relaxation: &Relaxation) -> String {
         Relaxation::Risk { target, amount } => format!(
             "- **Relaxed:** the set of {target} is entered, at a risk of up to {amount:.3}, which was accepted."
         ),
+        Relaxation::Compliance { target, role } => format!(
+            "- **Relaxed:** no plan complies with the rules as {} to {target}.",
+            role.name()
+        ),
     }
 }
 
@@ -286,7 +290,7 @@ fn claim(scene: &Scene) -> String {
         return "Nothing is claimed.".to_owned();
     }
     let sets = match run.scenario.compliance {
-        Compliance::Shape => "shaped and hard sets",
+        Compliance::Shape | Compliance::Rules => "shaped and hard sets",
         Compliance::None => "hard sets",
     };
     let ships = run.scenario.targets.iter().filter(|t| t.ship().is_some());

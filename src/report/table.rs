@@ -10,7 +10,6 @@ use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::Outcome;
 use crate::planner::optimal_control::ControlReport;
-use crate::scenario::Compliance;
 
 /// Targets of one scenario that a row names; the rest is counted.
 const NAMED: usize = 3;
@@ -261,7 +260,7 @@ fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
     let feasible = report.starts.iter().filter(|start| start.feasible).count();
     let steps: usize = report.starts.iter().map(|start| start.iterations).sum();
     // of two passes, with the domains and without, one is told of
-    let pass = if run.scenario.compliance == Compliance::Shape && !run.shaped {
+    let pass = if run.scenario.compliance.shapes() && !run.shaped {
         "without the domains, "
     } else {
         ""
@@ -345,6 +344,12 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
             }
             Relaxation::Risk { target, amount } => {
                 format!("the set of '{target}' is entered, at a risk of up to {amount:.3}")
+            }
+            Relaxation::Compliance { target, role } => {
+                format!(
+                    "no plan complies with the rules as {} to '{target}'",
+                    role.name()
+                )
             }
         };
         say("relaxed", what);

@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use super::control::control_settings;
-use super::file::{Entry, Source, TEXT, Word};
+use super::file::{Entry, Source, TEXT};
 use super::plane::{POSITION, Plane};
 use super::section::Section;
 use super::targets::targets;
@@ -310,25 +310,25 @@ fn planner(mut section: Section) -> PlannerFields {
         kind: section.choice(
             "kind",
             &[
-                ("space-time", Word::Means(PlannerKind::SpaceTime)),
-                ("path-time", Word::Means(PlannerKind::PathTime)),
-                ("optimal-control", Word::Means(PlannerKind::OptimalControl)),
+                ("space-time", PlannerKind::SpaceTime),
+                ("path-time", PlannerKind::PathTime),
+                ("optimal-control", PlannerKind::OptimalControl),
             ],
         ),
         objective: objective(&mut section),
         search: section.choice(
             "search",
             &[
-                ("a-star", Word::Means(SearchKind::AStar)),
-                ("dijkstra", Word::Means(SearchKind::Dijkstra)),
+                ("a-star", SearchKind::AStar),
+                ("dijkstra", SearchKind::Dijkstra),
             ],
         ),
         compliance: section.choice(
             "compliance",
             &[
-                ("none", Word::Means(Compliance::None)),
-                ("shape", Word::Means(Compliance::Shape)),
-                ("rules", Word::NotBuilt),
+                ("none", Compliance::None),
+                ("shape", Compliance::Shape),
+                ("rules", Compliance::Rules),
             ],
         ),
         time_weight: section.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
@@ -345,10 +345,10 @@ fn objective(section: &mut Section) -> Option<Objective> {
     let objective = section.choice(
         "objective",
         &[
-            ("space-time-error", Word::Means(Objective::SpaceTimeError)),
-            ("time", Word::Means(Objective::Time)),
-            ("length", Word::Means(Objective::Length)),
-            ("length-risk", Word::Means(weighed)),
+            ("space-time-error", Objective::SpaceTimeError),
+            ("time", Objective::Time),
+            ("length", Objective::Length),
+            ("length-risk", weighed),
         ],
     );
     if objective == Some(weighed) {

@@ -1,6 +1,6 @@
 //! The table `[planner.optimal_control]`.
 
-use super::file::{Entry, Range, Word};
+use super::file::{Entry, Range};
 use super::limits;
 use super::section::Section;
 use crate::planner::ControlSettings;
@@ -12,7 +12,7 @@ pub(super) fn control_settings(planner: &mut Section) -> Option<ControlSettings>
         return Some(ControlSettings::of(VesselKind::CyberShip2));
     };
     let mut section = entry.section("a table")?;
-    let words = VesselKind::ALL.map(|kind| (kind.word(), Word::Means(kind)));
+    let words = VesselKind::ALL.map(|kind| (kind.word(), kind));
     let vessel = if section.has("vessel") {
         section.choice("vessel", &words)
     } else {

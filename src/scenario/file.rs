@@ -71,15 +71,6 @@ impl Display for Range {
     }
 }
 
-/// What a word in a file stands for.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Word<T> {
-    /// This.
-    Means(T),
-    /// Something that the program cannot do.
-    NotBuilt,
-}
-
 /// Where the lines of a file are, and what is wrong with it so far.
 #[derive(Debug)]
 pub(super) struct Source {
@@ -178,25 +169,13 @@ impl<'a, 'i> Entry<'a, 'i> {
     }
 
     /// One of these words.
-    pub(super) fn choice<T: Copy>(&self, words: &[(&str, Word<T>)]) -> Option<T> {
+    pub(super) fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let found = self.value.get_ref().as_str();
-        if let Some((_, Word::Means(meaning))) = words.iter().find(|(w, _)| Some(*w) == found) {
+        if let Some((_, meaning)) = words.iter().find(|(w, _)| Some(*w) == found) {
             return Some(*meaning);
         }
-        let quoted = |built: bool| {
-            words
-                .iter()
-                .filter(|(_, word)| matches!(word, Word::Means(_)) == built)
-                .map(|(w, _)| format!("\"{w}\""))
-                .collect::<Vec<_>>()
-                .join(", ")
-        };
-        let (built, unbuilt) = (quoted(true), quoted(false));
-        if unbuilt.is_empty() {
-            self.refuse(built)
-        } else {
-            self.refuse(format_args!("{built} (not built yet: {unbuilt})"))
-        }
+        let allowed: Vec<String> = words.iter().map(|(w, _)| format!("\"{w}\"")).collect();
+        self.refuse(allowed.join(", "))
     }
 
     /// The values of a list that has at least `least`.

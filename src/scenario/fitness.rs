@@ -1,6 +1,6 @@
 //! What each planner asks of a scenario beyond what the fields say.
 
-use super::{Fault, Land, Scenario};
+use super::{Compliance, Fault, Land, Scenario};
 use crate::frame::{Vector, heading_of, wrap};
 use crate::planner::{Objective, PlannerKind};
 use crate::tolerance;
@@ -9,11 +9,19 @@ use crate::vessel::ALIKE;
 
 /// Every fault, by the paths of the fields.
 pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
-    match scenario.planner {
-        PlannerKind::SpaceTime => for_space_time(scenario),
+    let mut faults = match scenario.planner {
+        PlannerKind::SpaceTime => return for_space_time(scenario),
         PlannerKind::PathTime => for_path_time(scenario),
         PlannerKind::OptimalControl => for_optimal_control(scenario),
+    };
+    if scenario.compliance == Compliance::Rules {
+        faults.push(fault(
+            "planner.compliance",
+            format!("\"rules\" for the {} planner", scenario.planner.word()),
+            "\"shape\" or \"none\", or the space-time planner: it alone keeps to the rules",
+        ));
     }
+    faults
 }
 
 fn fault(path: &str, found: String, allowed: &str) -> Fault {

@@ -25,13 +25,15 @@ use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
-/// Which sets a plan keeps out of.
+/// How far a plan follows the rules of the road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compliance {
     /// The hard sets alone.
     None,
     /// The shaped sets, so that the cheapest plan follows the rules of the road.
     Shape,
+    /// The shaped sets, and what they do not achieve by filters: only alterations that are readily apparent, to the right side.
+    Rules,
 }
 
 /// A checked scenario, SI and east-north.
@@ -125,6 +127,15 @@ impl Compliance {
         match self {
             Self::None => "none",
             Self::Shape => "shape",
+            Self::Rules => "rules",
+        }
+    }
+
+    /// True where the shaped sets are kept out of.
+    pub fn shapes(self) -> bool {
+        match self {
+            Self::None => false,
+            Self::Shape | Self::Rules => true,
         }
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use toml::de::DeTable;
 
-use super::file::{Entry, Range, Source, Word};
+use super::file::{Entry, Range, Source};
 use super::limits;
 use crate::frame::mps_from_knots;
 
@@ -85,7 +85,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// One of these words, or nothing.
-    pub(super) fn choice<T: Copy>(&mut self, key: &str, words: &[(&str, Word<T>)]) -> Option<T> {
+    pub(super) fn choice<T: Copy>(&mut self, key: &str, words: &[(&str, T)]) -> Option<T> {
         self.take(key)?.choice(words)
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::check::{hull, pose};
 use super::explicit_sets;
-use super::file::{Entry, TEXT, Word};
+use super::file::{Entry, TEXT};
 use super::limits;
 use super::plane::Plane;
 use super::section::Section;
@@ -56,8 +56,8 @@ fn known(section: &mut Section, plane: &Plane) -> Option<Known> {
     let asked = section.take("representation");
     let representation = asked.as_ref().map(|entry| {
         entry.choice(&[
-            ("polytope", Word::Means(Representation::Polytope)),
-            ("ellipsoid", Word::Means(Representation::Ellipsoid)),
+            ("polytope", Representation::Polytope),
+            ("ellipsoid", Representation::Ellipsoid),
         ])
     });
     let explicit = ["initial_set", "velocity_set", "velocity_sets"].map(|key| section.has(key));
@@ -119,9 +119,9 @@ fn ship(section: &mut Section, plane: &Plane) -> Option<ShipTrack> {
 fn domain(entry: &Entry) -> Option<DomainKind> {
     if !entry.is_table() {
         return entry.choice(&[
-            ("colregs", Word::Means(DomainKind::Colregs)),
-            ("paper", Word::Means(DomainKind::Paper)),
-            ("hull", Word::Means(DomainKind::Hull)),
+            ("colregs", DomainKind::Colregs),
+            ("paper", DomainKind::Paper),
+            ("hull", DomainKind::Hull),
         ]);
     }
     let mut section = entry.section("a table")?;

@@ -55,25 +55,29 @@ fn every_fault_of_a_file_is_reported_at_once() {
 }
 
 #[test]
-fn what_is_not_built_is_refused_by_name() {
+fn rules_are_kept_by_the_space_time_planner_alone() {
     let folder = tempfile::tempdir().expect("a folder");
-    let cases = [(
+    let ruled = HEAD_ON.replacen(
         "[mission]",
         "[planner]\ncompliance = \"rules\"\n[mission]",
-        "planner.compliance",
-    )];
-    for (from, to, path) in cases {
-        assert!(HEAD_ON.contains(from));
-        let file = write(folder.path(), "unbuilt.toml", HEAD_ON.replacen(from, to, 1));
-        searoom(&["plan", &file])
-            .code(2)
-            .stdout(is_empty())
-            .stderr(contains(path).and(contains("not built yet")));
-    }
-    searoom(&["suite", "--compliance", "rules"])
+        1,
+    );
+    let file = write(folder.path(), "ruled.toml", ruled.clone());
+    searoom(&["plan", &file])
+        .code(0)
+        .stdout(contains("relaxed").not());
+    searoom(&["plan", &file, "--planner", "path-time"])
         .code(2)
         .stdout(is_empty())
-        .stderr(contains("rules").and(contains("not built yet")));
+        .stderr(contains("planner.compliance").and(contains("path-time")));
+    let unknown = write(
+        folder.path(),
+        "unknown.toml",
+        ruled.replacen("rules", "rule", 1),
+    );
+    searoom(&["plan", &unknown])
+        .code(2)
+        .stderr(contains("planner.compliance").and(contains("\"none\", \"shape\", \"rules\"")));
 }
 
 /// What the path-time planner cannot plan, and what other planners cannot, by field and line.

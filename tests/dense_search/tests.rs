@@ -42,6 +42,7 @@ fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a>
         search: SearchKind::AStar,
         deadline: Duration::from_secs(60),
         first_turn: None,
+        encountered: &[],
     }
 }
 

@@ -140,6 +140,7 @@ pub fn problem<'a>(
         search: SearchKind::AStar,
         deadline: Duration::from_secs(600),
         first_turn: None,
+        encountered: &[],
     }
 }
 

@@ -275,6 +275,7 @@ mod tests {
                 search: SearchKind::AStar,
                 deadline: Duration::from_secs(1),
                 first_turn: None,
+                encountered: &[],
             };
             let recovery = Recovery::new(&problem).expect("an open path");
             let length = desired.length();

@@ -138,12 +138,14 @@ fn additions(scene: &Scene, base: &Seed) -> Option<Vec<Addition>> {
     let first = full.outline.sailed.runs;
     let mut found = Vec::new();
     let turn = first_turn(&base.template);
+    let is_seen = !scene.problem.duty().is_none();
     for gap in first..=free {
         let beside = [gap.checked_sub(1), Some(gap)];
         let beside = beside.map(|i| i.and_then(|i| base.template.slots.get(i)));
         for slot in kinds(scene) {
             let swings_out = turn.is_some_and(|(at, side)| {
-                gap <= at && matches!(slot, Slot::Arc { side: other, .. } if other != side)
+                gap <= at
+                    && matches!(slot, Slot::Arc { side: other, .. } if other != side || is_seen && gap < at)
             });
             if swings_out || beside.contains(&Some(&slot)) {
                 continue;

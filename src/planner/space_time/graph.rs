@@ -8,7 +8,7 @@ use std::cell::Cell;
 use super::aims::Aims;
 use super::ashore;
 use super::chain::Chain;
-use super::departure::{leave_for, until};
+use super::departure::{apparent_turns, leave_for, until, ways_out};
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::heuristic::Heuristic;
 use super::interception::{Chase, Limits};
@@ -203,14 +203,8 @@ impl<'a> Graph<'a> {
     /// Ways to a first vertex from several places of the undisturbed motion, and those that never leave
     /// the route. A departure is no node: it costs nothing and decides nothing.
     fn departures(&self, from: &State, out: &mut Vec<(State, f64)>) {
-        self.push(
-            out,
-            NodeKind::End,
-            Ending::Follow,
-            self.undisturbed.to_vec(),
-            0,
-            from,
-        );
+        let undisturbed = self.undisturbed.to_vec();
+        self.push(out, NodeKind::End, Ending::Follow, undisturbed, 0, from);
         if self.contacts.is_empty() {
             return;
         }
@@ -227,7 +221,14 @@ impl<'a> Graph<'a> {
             self.paced(from, out);
         }
         for &time in &times {
-            self.interceptions(from, &until(self.undisturbed, time), out);
+            let before = until(self.undisturbed, time);
+            let along = before.len();
+            for (motion, least_turn) in ways_out(self.problem, self.route, &before) {
+                self.interceptions(from, &motion, least_turn, out);
+            }
+            for motion in apparent_turns(self.problem, from, &before, HOLDS_S[0]) {
+                self.push(out, NodeKind::Held, Ending::Follow, motion, along, from);
+            }
         }
     }
 
@@ -297,8 +298,14 @@ impl<'a> Graph<'a> {
     }
 
     /// Ways to the vertices at which a line only just touches, from a node or from where a motion `before`
-    /// along the route ends.
-    fn interceptions(&self, from: &State, before: &[Segment], out: &mut Vec<(State, f64)>) {
+    /// along the route ends. The first turn of a way is no less than `least_turn`, radians.
+    fn interceptions(
+        &self,
+        from: &State,
+        before: &[Segment],
+        least_turn: f64,
+        out: &mut Vec<(State, f64)>,
+    ) {
         let radius = self.problem.own.turning_radius;
         let (pose, time) = before
             .last()
@@ -308,6 +315,7 @@ impl<'a> Graph<'a> {
             time: (time + MAX_CHASE_S).min(self.problem.horizon),
         };
         let chases = Side::BOTH.map(|side| Chase::new(&pose, time, 1.0, radius, side));
+        let duty = self.problem.duty();
         let mut scratch = Vec::new();
         let first = out.len();
         for aims in &self.aims {
@@ -332,6 +340,10 @@ impl<'a> Graph<'a> {
             };
             aims.touched(chases, limits, &mut scratch, |aim| {
                 if aim.kind == from.kind || aim.meeting.time < 0.0 {
+                    return;
+                }
+                let apparent = duty.sides().contains(&aim.side) && aim.meeting.turn >= least_turn;
+                if from.kind == NodeKind::Start && !apparent {
                     return;
                 }
                 let mut chain = Chain::new(pose, time, aim.speed, radius);
@@ -430,7 +442,7 @@ impl Space for Graph<'_> {
             NodeKind::Start => self.departures(state, out),
             NodeKind::Vertex { .. } => {
                 if state.chain < MAX_CHAIN {
-                    self.interceptions(state, &[], out);
+                    self.interceptions(state, &[], 0.0, out);
                 }
                 self.returns(state, out);
                 self.onward(state, out);

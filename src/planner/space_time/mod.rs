@@ -12,10 +12,12 @@
 mod active_set;
 mod addition;
 mod aims;
+mod apparent;
 mod approach;
 mod ashore;
 mod chain;
 mod closer;
+mod compliance;
 mod departure;
 mod factor;
 mod graph;
@@ -159,7 +161,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
         blocks: &blocks,
         chord: FINE_CHORD_RAD,
     };
-    let mut selection = Selection::new(scene);
+    let mut selection = Selection::new(scene, &undisturbed);
     let mut budget = MAX_EXPANDED;
     let mut timed_out = false;
     let mut optimum = None;
@@ -168,11 +170,14 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
             Stop::Goal(goal) => {
                 optimum.get_or_insert(search.counts());
                 let way = node::way_to(&search, goal);
-                selection.offer(search.nodes()[goal].cost, &way.iter().collect::<Vec<_>>());
-                if way.len() == 1 {
+                let is_plan =
+                    selection.offer(search.nodes()[goal].cost, &way.iter().collect::<Vec<_>>());
+                if is_plan && way.len() == 1 {
                     break;
                 }
-                budget = budget.min(search.counts().expanded + FURTHER_EXPANDED);
+                if is_plan {
+                    budget = budget.min(search.counts().expanded + FURTHER_EXPANDED);
+                }
             }
             Stop::Exhausted | Stop::Budget => break,
             Stop::Time => {

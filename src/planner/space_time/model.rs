@@ -265,6 +265,7 @@ pub(crate) mod tests {
             search: SearchKind::AStar,
             deadline: std::time::Duration::from_secs(5),
             first_turn: None,
+            encountered: &[],
         };
         let route = Route::new(&problem).expect("a route");
         let parts = parts(&obstacles, problem.horizon);

@@ -1,5 +1,6 @@
 //! Finds the lengths of a manoeuvre: sequential quadratic programming with an L1 merit.
 
+use super::apparent::Apparent;
 use super::approach::FINE_CHORD_RAD;
 use super::model::Model;
 use super::outline::{Outline, Scene};
@@ -80,6 +81,8 @@ pub(crate) struct Refinement {
     template: Template,
     lengths: Row,
     model: Model,
+    /// Which turn others have to see; `None` where none.
+    apparent: Option<Apparent>,
     /// What its costs are multiplied by where it is ranked among others.
     handicap: f64,
     best: Option<Refined>,
@@ -129,14 +132,20 @@ impl Refinement {
         None
     }
 
-    /// `None` when the seed's ending does not fit.
-    fn new(scene: &Scene, seed: Seed) -> Option<Self> {
+    /// `None` when the seed's ending does not fit, or its first turn is not what the rules ask for.
+    fn new(scene: &Scene, mut seed: Seed) -> Option<Self> {
+        let apparent = if scene.problem.duty().is_none() {
+            None
+        } else {
+            Some(Apparent::in_seed(&mut seed, scene.problem)?)
+        };
         let model = scene.model(&seed.template, &seed.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
         let first = first_turn(&seed);
         let wanted = scene.problem.first_turn;
         let against = wanted.is_some_and(|side| first.is_some_and(|first| first != side));
         let mut refinement = Self {
+            apparent,
             handicap: if against {
                 1.0 + AGAINST_THE_RULES
             } else {
@@ -242,7 +251,8 @@ impl Refinement {
             if clear || !close || !worth {
                 return;
             }
-            let (low, high) = (self.lengths.map(|l| -l), [LARGEST_RADIUS_M; MAX_VARIABLES]);
+            let (mut low, mut high) = (self.lengths.map(|l| -l), [LARGEST_RADIUS_M; MAX_VARIABLES]);
+            self.keep_apparent(&self.lengths, &mut low, &mut high);
             let programme = Programme {
                 size: n,
                 hessian: &identity,
@@ -284,6 +294,13 @@ impl Refinement {
         self.restore(scene);
     }
 
+    /// Narrows a box of steps so that what others have to see stays so.
+    fn keep_apparent(&self, lengths: &Row, low: &mut Row, high: &mut Row) {
+        if let Some(apparent) = &self.apparent {
+            apparent.narrow(lengths, low, high);
+        }
+    }
+
     /// One step.
     pub(crate) fn step(&mut self, scene: &Scene) {
         self.steps += 1;
@@ -307,12 +324,15 @@ impl Refinement {
         if outline.violation <= CLEAR_ENOUGH_M {
             return None;
         }
+        let mut low = trial.map(|l| (-self.radius).max(-l));
+        let mut high = [self.radius; MAX_VARIABLES];
+        self.keep_apparent(trial, &mut low, &mut high);
         let programme = Programme {
             size: self.template.free(),
             hessian: &self.model.hessian,
             gradient: &[0.0; MAX_VARIABLES],
-            low: &trial.map(|l| (-self.radius).max(-l)),
-            high: &[self.radius; MAX_VARIABLES],
+            low: &low,
+            high: &high,
             rows: &scene.rows(&self.template, outline),
         };
         let solution = programme.solve()?;
@@ -335,6 +355,7 @@ impl Refinement {
                 high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
             }
         }
+        self.keep_apparent(&self.lengths, &mut low, &mut high);
         let mut rows = Vec::with_capacity(self.model.rows.len());
         for row in &self.model.rows {
             let (mut reach, mut least) = (0.0, 0.0);

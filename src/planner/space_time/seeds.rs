@@ -1,11 +1,13 @@
 //! Manoeuvres from which the refinement begins: the graph's plans, and canonical ones on both sides.
 
+use super::compliance::{slow, visibly_slow};
 use super::hazard::Hazard;
 use super::node::State;
 use super::quadratic::{MAX_VARIABLES, Row};
 use super::refinement::Seed;
 use super::route::Route;
 use super::template::{Ending, Slot, Template};
+use crate::colregs::APPARENT_TIME;
 use crate::frame::{Side, to_port};
 use crate::planner::Problem;
 use crate::trajectory::Segment;
@@ -131,6 +133,10 @@ const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 /// Radians.
 const WAITING_TURN: f64 = 0.6;
 
+/// Radians of the turns, and metres of the way out, of a manoeuvre that only slows down on the route.
+const SLOWING_TURN: f64 = 0.2;
+const SLOWING_OUT_M: f64 = 20.0;
+
 /// Metres by which own ship goes on beyond the route behind a target that she let pass, and radians at which she
 /// comes back.
 const OVERSHOOT_M: f64 = 20.0;
@@ -236,7 +242,10 @@ impl Canonical {
         let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
         // two arcs alone reach twice the versine
         let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
-        let turn = self.turn.min(needed.max(0.1));
+        let turn = self
+            .turn
+            .min(needed.max(0.1))
+            .max(problem.duty().least_turn());
         let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
         let arc = turn * radius;
         let way_out = (2.0 * arc + out) / if self.slow { paces.normal } else { fast };
@@ -333,6 +342,37 @@ pub(crate) fn waiting(
     draft.seed(Ending::Return { leg, speed: fast })
 }
 
+/// A manoeuvre that slows down on the route until the target is past, then goes a little to the side and back, or not at all.
+pub(crate) fn slowing(
+    problem: &Problem,
+    side: Side,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (lag, due) = conflict.astern;
+    let spell = (lag / (paces.normal - paces.slow)).max(APPARENT_TIME);
+    let begin = (due - spell).max(0.0);
+    // negated on purpose: a NaN is no seed
+    if !(problem.duty().may_slow && paces.slow <= slow(problem) && spell < 2.0 * due) {
+        return None;
+    }
+    let radius = problem.own.turning_radius;
+    let arc = SLOWING_TURN * radius;
+    let back = side.opposite();
+    let mut draft = Draft::default();
+    draft.runs(&paces, begin * paces.normal, 0.0, spell * paces.slow);
+    draft.turn(side, &[(paces.slow, arc), (paces.fast, 0.0)]);
+    draft.line(&[(paces.slow, 0.0), (paces.fast, SLOWING_OUT_M)]);
+    draft.turn(back, &[(paces.fast, arc)]);
+    draft.line(&[(paces.slow, 0.0), (paces.fast, 0.0)]);
+    draft.turn(back, &[(paces.fast, arc)]);
+    draft.seed(Ending::Return {
+        leg,
+        speed: paces.fast,
+    })
+}
+
 /// A manoeuvre that passes ahead of the target: own ship rushes as early as will do, turns to the side halfway through
 /// the contact for what is missing, and loses her lead on a slow way back.
 pub(crate) fn ahead(
@@ -376,7 +416,8 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
     }
     let mut draft = Draft::default();
     let along: f64 = departure.motion.iter().map(Segment::length).sum();
-    draft.runs(&paces, along, 0.0, 0.0);
+    let slow = visibly_slow(problem, &departure.motion);
+    draft.runs(&paces, along - slow, 0.0, slow);
     let mut side = None;
     let mut turns = 0;
     for vertex in vertices {

@@ -3,11 +3,12 @@
 use super::addition::{enriched, tidied};
 use super::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
 use super::ashore;
+use super::compliance::complies;
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::node::State;
 use super::outline::Scene;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
-use super::seeds::{Canonical, Conflict, ahead, from_graph, waiting};
+use super::seeds::{Canonical, Conflict, ahead, from_graph, slowing, waiting};
 use crate::frame::{Side, cross};
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
@@ -137,6 +138,8 @@ struct Candidate {
 #[derive(Debug)]
 pub(crate) struct Selection<'a> {
     scene: Scene<'a>,
+    /// The route on schedule.
+    undisturbed: &'a [Segment],
     signatures: Vec<Vec<bool>>,
     seeds: Vec<Seed>,
     best: Option<Candidate>,
@@ -144,9 +147,10 @@ pub(crate) struct Selection<'a> {
 }
 
 impl<'a> Selection<'a> {
-    pub(crate) fn new(scene: Scene<'a>) -> Self {
+    pub(crate) fn new(scene: Scene<'a>, undisturbed: &'a [Segment]) -> Self {
         Self {
             scene,
+            undisturbed,
             signatures: Vec::new(),
             seeds: Vec::new(),
             best: None,
@@ -164,17 +168,21 @@ impl<'a> Selection<'a> {
         self.graph_cost
     }
 
-    /// Takes a plan of the graph: the states after the root, already tested.
-    pub(crate) fn offer(&mut self, cost: f64, way: &[&State]) {
+    /// Takes a plan of the graph, the states after the root, already tested; false where it does not comply with the rules.
+    pub(crate) fn offer(&mut self, cost: f64, way: &[&State]) -> bool {
         let motion: Vec<Segment> = way.iter().flat_map(|s| s.motion.iter().copied()).collect();
+        if !complies(&self.scene, self.undisturbed, &motion) {
+            return false;
+        }
         let signature = self.signature(&motion);
         self.graph_cost.get_or_insert(cost);
         if self.signatures.contains(&signature) {
-            return;
+            return true;
         }
         self.signatures.push(signature);
         self.seeds.extend(from_graph(self.scene.problem, way));
         self.consider(motion);
+        true
     }
 
     /// On which side each target is passed: the sign of its relative bearing rate at the least distance
@@ -207,25 +215,35 @@ impl<'a> Selection<'a> {
         let (problem, route) = (scene.problem, scene.route);
         let mut seeds = std::mem::take(&mut self.seeds);
         let leg = problem.desired.legs().len() - 1;
+        let duty = problem.duty();
+        let sides = duty.sides();
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
             if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
                 for across in [false, true] {
                     seeds.extend(
-                        Side::BOTH
-                            .into_iter()
-                            .filter_map(|side| waiting(problem, side, across, conflict, leg)),
+                        sides
+                            .iter()
+                            .filter_map(|side| waiting(problem, *side, across, conflict, leg)),
                     );
                 }
             }
-            if conflict.ahead.0 < WORTH_RUSHING * conflict.nearest_offset() {
+            if !duty.is_none() {
+                let slower = sides.iter();
+                seeds.extend(slower.filter_map(|side| slowing(problem, *side, conflict, leg)));
+            }
+            if duty.is_none() && conflict.ahead.0 < WORTH_RUSHING * conflict.nearest_offset() {
                 let both = Side::BOTH.into_iter();
                 seeds.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
             }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
-            for side in Side::BOTH {
+            for &side in sides {
                 let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
-                let tried = if far { &manoeuvres[..1] } else { manoeuvres };
+                let tried = if far && sides.len() > 1 {
+                    &manoeuvres[..1]
+                } else {
+                    manoeuvres
+                };
                 seeds.extend(
                     tried
                         .iter()
@@ -353,6 +371,7 @@ impl<'a> Selection<'a> {
             .is_some_and(|s| s.end_time() <= problem.horizon);
         let clear = in_time
             && cost.is_finite()
+            && complies(&self.scene, self.undisturbed, &motion)
             && first_met(self.scene.hazards, &motion).is_none()
             && !ashore::meets(problem.coast, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {

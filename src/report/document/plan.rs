@@ -182,6 +182,12 @@ fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
             amount: *amount,
             unit: "1".to_owned(),
         },
+        Relaxation::Compliance { target, .. } => RelaxationDocument {
+            kind: "compliance".to_owned(),
+            target: target.clone(),
+            amount: 1.0,
+            unit: "1".to_owned(),
+        },
     }
 }
 
