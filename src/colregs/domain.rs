@@ -20,6 +20,8 @@ pub struct Shapes {
     pub hard: ConvexPolygon,
     /// `hard` and the domain around it; contains `hard`.
     pub shaped: ConvexPolygon,
+    /// The same before it was drawn back to let own ship start outside.
+    pub full: ConvexPolygon,
     /// Metres by which the shape was drawn back to let own ship start outside: the largest distance
     /// of a point of the full shape from the one used. 0 when it was not.
     pub reduced: f64,
@@ -53,6 +55,7 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
     if target.domain == DomainKind::Hull {
         return Shapes {
             shaped: hard.clone(),
+            full: hard.clone(),
             hard,
             reduced: 0.0,
             reach: 0.0,
@@ -74,6 +77,7 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
     if shaped.signed_distance(start) > 0.0 || hard.contains(start) {
         return Shapes {
             hard,
+            full: shaped.clone(),
             shaped,
             reduced: 0.0,
             reach,
@@ -88,7 +92,22 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
         hard,
         reduced: beyond(&shaped, &used),
         shaped: used,
+        full: shaped,
         reach,
+    }
+}
+
+impl Shapes {
+    /// What is left of the shape when it is drawn back toward the hard set, all around at once: `kept` of 1 is
+    /// `shaped`, 0 is `hard`. Convex, nested and between the two. O(n + m).
+    pub fn drawn_back(&self, kept: f64) -> ConvexPolygon {
+        let (hard, shaped) = (self.hard.scaled(1.0 - kept), self.shaped.scaled(kept));
+        hard.minkowski_sum(&shaped)
+    }
+
+    /// Metres by which a set is short of the full shape: the largest distance of a point of that from it.
+    pub fn cut(&self, used: &ConvexPolygon) -> f64 {
+        beyond(&self.full, used)
     }
 }
 

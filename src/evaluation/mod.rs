@@ -25,7 +25,7 @@ use moving_ellipse::MovingEllipse;
 use moving_slabs::MovingSlabs;
 use piece::Piece;
 use shore::least_land_distance;
-use space_time_set::MovingSet;
+use space_time_set::{MovingSet, since};
 use turn::{Turn, least_while_turning, turns};
 
 use crate::frame::{Side, Vector, relative_bearing};
@@ -194,7 +194,7 @@ pub fn least_margins(request: &Request) -> Vec<f64> {
         }
     };
     let sets = request.sets.iter();
-    sets.map(|set| proven(set.shape.least_distance(request.segments)))
+    sets.map(|set| proven(set.least_distance(request.segments)))
         .collect()
 }
 
@@ -210,7 +210,7 @@ fn meetings<P: Piece>(
         .sets
         .iter()
         .map(|set| {
-            let least = set.shape.least_distance(pieces);
+            let least = set.least_distance(pieces);
             if judged {
                 let label = format!("set of '{}'", set.name);
                 violations.extend(collision(&label, &least, set.shape.has_interior()));
@@ -221,12 +221,14 @@ fn meetings<P: Piece>(
     let mut passages = Vec::with_capacity(request.targets.len());
     for target in request.targets {
         let mut margin = Least::new();
+        let mut from: f64 = 0.0;
         for (set, least) in request.sets.iter().zip(&margins) {
             if set.name == target.name {
                 margin.see(least.value, least.time);
+                from = from.max(set.from);
             }
         }
-        let (passage, clearance) = passage(request, pieces, turns, target, &margin);
+        let (passage, clearance) = passage(request, pieces, turns, target, &margin, from);
         // explicit sets are judged above, as sets
         if judged && target.ship().is_some() {
             let label = format!("hull of '{}'", target.name);
@@ -325,19 +327,20 @@ fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<Velocity
 }
 
 /// How a target is met, and the least clearance that has to be kept: to every hull she may have at the accepted
-/// risk.
+/// risk, from the time on at which her set is in force.
 fn passage<P: Piece>(
     request: &Request,
     pieces: &[P],
     turns: &[Turn],
     target: &Target,
     margin: &Least,
+    from: f64,
 ) -> (Passage, Least) {
     let (closest, worst, kept) = match &target.motion {
         Motion::Ship(ship) => {
             let body = Body::hull(&request.own.hull);
             let hull = ship.hull.polygon(&ship.pose);
-            let along = |slabs: &MovingSlabs| {
+            let along = |slabs: &MovingSlabs, pieces: &[P], turns: &[Turn]| {
                 let mut least = slabs.least_distance(pieces, body);
                 let turning = least_while_turning(turns, body, slabs);
                 least.see(turning.value, turning.time);
@@ -352,14 +355,17 @@ fn passage<P: Piece>(
             let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
             let initial = hull.minkowski_sum(&unknown);
             let spells = ship.outer_velocity_spells(ship.turn_rate, request.horizon);
-            let worst = along(&MovingSlabs::new(&initial, &spells));
-            let kept = if request.max_risk > 0.0 {
+            let worst = along(&MovingSlabs::new(&initial, &spells), pieces, turns);
+            let kept = if from > 0.0 || request.max_risk > 0.0 {
                 let spells = at_risk(&spells, target, request.max_risk);
-                along(&MovingSlabs::new(&initial, &spells))
+                let later = turns.iter().filter(|turn| turn.time >= from).copied();
+                let later: Vec<Turn> = later.collect();
+                let slabs = MovingSlabs::new(&initial, &spells);
+                along(&slabs, &since(pieces, from, 0.0), &later)
             } else {
                 worst
             };
-            (along(&nominal), worst, kept)
+            (along(&nominal, pieces, turns), worst, kept)
         }
         Motion::Sets { initial, velocity } => {
             let set = MovingSet::new(initial, velocity);

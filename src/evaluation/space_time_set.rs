@@ -14,6 +14,8 @@ use crate::target::VelocitySpell;
 pub struct SpaceTimeSet {
     /// The target's name.
     pub name: String,
+    /// Seconds: before, nothing is claimed; its clock starts then.
+    pub from: f64,
     /// What it is made of.
     pub shape: SetShape,
 }
@@ -51,12 +53,37 @@ impl SpaceTimeSet {
         };
         Self {
             name: name.into(),
+            from: 0.0,
             shape: SetShape::Polygons {
                 initial,
                 spells: vec![spell],
             },
         }
     }
+}
+
+impl SpaceTimeSet {
+    /// The least signed distance of own ship's position along what of a chain of pieces is sailed while the set is in force;
+    /// infinite where nothing is.
+    pub(super) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
+        if self.from == 0.0 {
+            return self.shape.least_distance(pieces);
+        }
+        let mut least = self
+            .shape
+            .least_distance(&since(pieces, self.from, self.from));
+        least.time += self.from;
+        least
+    }
+}
+
+/// What of a chain is sailed from a time on, by a clock that starts at `zero`. A NaN keeps all of it.
+pub(super) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
+    // negated on purpose: a NaN is before
+    let later = pieces.iter().filter(|piece| !(piece.end_time() <= from));
+    later
+        .map(|piece| piece.part(piece.start_time().max(from), piece.end_time(), zero))
+        .collect()
 }
 
 impl SetShape {

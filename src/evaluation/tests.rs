@@ -380,6 +380,7 @@ fn line(from: Vector, heading: f64, duration: f64) -> Segment {
 
 fn round(initial: Ellipse, velocity: Ellipse) -> SpaceTimeSet {
     SpaceTimeSet {
+        from: 0.0,
         name: "round".to_owned(),
         shape: SetShape::Ellipses { initial, velocity },
     }
@@ -473,6 +474,7 @@ fn slabs_are_judged_within_their_time() {
     };
     let judged = |until: f64| {
         let set = SpaceTimeSet {
+            from: 0.0,
             name: "slabs".to_owned(),
             shape: SetShape::Polygons {
                 initial: square.clone(),

@@ -2,12 +2,14 @@
 
 use super::cpa::ClosestApproach;
 use super::risk::PeakRisk;
+use super::slabs::Slab;
 use super::{
     EllipsoidObstacle, PolytopeObstacle, Section, SlabObstacle, SpaceTimeObstacle, Support,
     VelocityObstacle,
 };
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::target::VelocitySpell;
 use crate::trajectory::Segment;
 
 /// Sides of the polygon that stands for a section that is an ellipse.
@@ -65,6 +67,36 @@ impl Obstacle {
         match self.section(time) {
             Section::Polygon(polygon) => polygon,
             Section::Ellipse(ellipse) => ellipse.outer_polygon(SECTION_SIDES),
+        }
+    }
+
+    /// The same set from a time in seconds on, by a clock that starts then: exact for polytopes and slabs; the ellipses
+    /// around a section that is an ellipse contain the set. A time below 0, or that is not a number, is 0.
+    pub fn remainder(&self, time: f64) -> Self {
+        // negated on purpose: a NaN is no time
+        if !(time > 0.0) {
+            return self.clone();
+        }
+        match self {
+            Self::Polytope(o) => {
+                PolytopeObstacle::new(o.name(), o.section(time), o.velocity().clone()).into()
+            }
+            Self::Ellipsoid(o) => {
+                EllipsoidObstacle::new(o.name(), o.outer_section(time), *o.velocity()).into()
+            }
+            Self::Slabs(o) => {
+                let ends = o.slabs().iter().map(Slab::end).zip(o.spells());
+                let later = ends.filter(|(end, _)| *end > time);
+                let spells = later.map(|(end, spell)| VelocitySpell {
+                    until: end - time,
+                    velocities: spell.velocities.clone(),
+                });
+                // the last slab has no end, so there is one, and they go on in order
+                match SlabObstacle::new(o.name(), o.section(time), spells.collect()) {
+                    Ok(rest) => rest.into(),
+                    Err(_) => self.clone(),
+                }
+            }
         }
     }
 

@@ -43,19 +43,3 @@ fn asking<'a>(
         asks.then_some((sets, Encountered { role, ship, length }))
     })
 }
-
-/// The shapes that were drawn back, the largest cut first.
-pub(super) fn relaxations(
-    sets: &[TargetSets],
-    cut: impl Fn(&TargetSets) -> f64,
-) -> Vec<Relaxation> {
-    let mut drawn: Vec<&TargetSets> = sets.iter().filter(|s| cut(s) > 0.0).collect();
-    drawn.sort_by(|a, b| cut(b).total_cmp(&cut(a)));
-    drawn
-        .into_iter()
-        .map(|s| Relaxation::Domain {
-            target: s.shaped.name().to_owned(),
-            amount: cut(s),
-        })
-        .collect()
-}

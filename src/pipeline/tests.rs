@@ -3,9 +3,12 @@
 use super::*;
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector};
-use crate::planner::{ControlSettings, SearchKind};
-use crate::target::{DomainKind, ShipTrack};
-use crate::trajectory::{DesiredTrajectory, Segment};
+use crate::obstacle::PolytopeObstacle;
+use crate::planner::{ControlSettings, Objective, SearchKind};
+use crate::scenario::Compliance;
+use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
+use crate::tolerance;
+use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{Hull, OwnShip, VesselKind};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -126,17 +129,199 @@ fn the_judge_sees_the_undisturbed_trajectory_hit_the_set() {
 }
 
 /// Own ship starts at the edge of a shape that then grows over her: no plan is clear of it, one is clear of
-/// the hard set, and the run says what was given up.
+/// what is left of it, which contains the hard set, and the run says what was given up.
 #[test]
-fn where_no_plan_clears_the_shapes_one_that_clears_the_hard_sets_is_relaxed() {
+fn where_no_plan_clears_the_shapes_they_are_drawn_back_as_far_as_the_plan_needs() {
     use crate::simulation::{EncounterKind, Placement, random_encounter};
     let drawn = random_encounter(EncounterKind::GiveWay, 104, Placement::Origin);
     let run = run(drawn.expect("drawn").scenario);
-    assert!(run.sets[0].shape_reduced > 0.0 && run.planned.outcome.plan().is_some());
-    assert_eq!(run.obstacles[0], run.sets[0].hard);
+    let sets = &run.sets[0];
+    assert!(sets.shape_reduced > 0.0 && run.rung == Rung::Domains);
+    let initial = |set: &Obstacle| polytope(set).initial().clone();
+    let (kept, hard) = (initial(&run.obstacles[0]), initial(&sets.hard));
+    for corner in hard.vertices() {
+        assert!(kept.signed_distance(*corner) < tolerance::LENGTH_M);
+    }
     let [Relaxation::Domain { amount, .. }] = &run.relaxations[..] else {
         panic!("{:?}", run.relaxations);
     };
-    assert!(*amount > run.sets[0].shape_reduced);
+    assert!(*amount > sets.shape_reduced && *amount <= sets.shape_reach);
     assert!(run.evaluation.is_some_and(|e| e.verified()));
+}
+
+/// A ship that comes to meet own ship in a channel of ships that stand still: no way around.
+fn in_a_channel(spread: f64) -> Scenario {
+    let mut scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
+    let wide = |x: f64, y: f64| {
+        ConvexPolygon::hull(&[
+            Vector::new(x, y),
+            Vector::new(x + 2400.0, y),
+            Vector::new(x + 2400.0, y + 3000.0),
+            Vector::new(x, y + 3000.0),
+        ])
+        .expect("a box")
+    };
+    let at_rest = ConvexPolygon::point(Vector::zeros());
+    for (name, y) in [("north", 60.0), ("south", -3160.0)] {
+        scenario.targets.push(Target {
+            name: name.to_owned(),
+            motion: Motion::Sets {
+                initial: wide(-400.0, y),
+                velocity: at_rest.clone(),
+            },
+            representation: Representation::Polytope,
+        });
+    }
+    let lateral = |v: f64| Vector::new(-5.0, v);
+    scenario.targets[0].motion = Motion::Sets {
+        initial: ConvexPolygon::hull(
+            &[
+                (1480.0, 20.0),
+                (1520.0, 20.0),
+                (1520.0, 60.0),
+                (1480.0, 60.0),
+            ]
+            .map(|(x, y)| Vector::new(x, y)),
+        )
+        .expect("a box"),
+        velocity: ConvexPolygon::hull(&[lateral(spread), lateral(-spread)]).expect("a segment"),
+    };
+    scenario
+}
+
+/// The ship ahead may drift across the channel: only at a risk is there a way past her. It is the least, to a step: at one that is
+/// two steps less the planner finds none, and at what was found it does.
+#[test]
+fn without_a_way_clear_of_the_hard_sets_the_least_risk_is_taken_and_said() {
+    assert_eq!(run(in_a_channel(0.1)).rung, Rung::Compliant);
+    let scenario = in_a_channel(2.0);
+    let run = run(scenario.clone());
+    assert_eq!(run.rung, Rung::Risk);
+    assert!(
+        run.max_risk > 2.0 * RISK_STEP && run.evaluation.as_ref().is_some_and(|e| e.verified())
+    );
+    let [
+        Relaxation::Risk {
+            target,
+            amount,
+            until: None,
+        },
+    ] = &run.relaxations[..]
+    else {
+        panic!("{:?}", run.relaxations);
+    };
+    assert!(
+        target == "other" && *amount <= run.max_risk && *amount > run.max_risk - 2.0 * RISK_STEP
+    );
+    let at = |max_risk: f64| {
+        super::run(Scenario {
+            max_risk,
+            ..scenario.clone()
+        })
+        .rung
+    };
+    assert_eq!(at(run.max_risk - 2.0 * RISK_STEP), Rung::Risk);
+    assert_eq!(at(run.max_risk), Rung::Compliant);
+}
+
+/// Nothing that own ship can steer takes her out of the set earlier, to the second; from then on she is clear of it; a set that she
+/// does not start in she is clear of all along.
+#[test]
+fn from_within_a_hard_set_own_ship_leaves_it_soonest_and_claims_begin_then() {
+    use rand::{Rng, SeedableRng};
+    let mut scenario = scenario(track(70.0, 20.0, 0.4, 3.0), Compliance::Shape);
+    scenario.own_ship.safety_margin = 80.0;
+    let mut beside = scenario.targets[0].clone();
+    beside.name = "beside".to_owned();
+    beside.motion = Motion::Ship(track(0.0, -260.0, 0.0, 4.0));
+    scenario.targets.push(beside);
+    let run = run(scenario);
+    assert_eq!(run.rung, Rung::Inside);
+    let [Some(until), None] = run.released[..] else {
+        panic!("{:?}", run.released);
+    };
+    let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
+    let hard = &run.sets[0].hard;
+    let depth = |at: Vector, t: f64| -hard.signed_distance(at, t).distance;
+    for t in trajectory.sample_times(0.1, 10_000) {
+        let deep = depth(trajectory.pose_at(t).position, t);
+        assert!(
+            if t < until { deep > -1e-6 } else { deep < 1e-6 },
+            "{deep} at {t}"
+        );
+    }
+    assert!(
+        matches!(&run.relaxations[0], Relaxation::Risk { target, amount, until: Some(_) } if target == "other" && *amount == 1.0)
+    );
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+    let own = &run.scenario.own_ship;
+    for _ in 0..2000 {
+        let (mut pose, mut t) = (own.pose, 0.0);
+        let speed = own.speeds[rng.random_range(0..own.speeds.len())];
+        let mut bend = 0.0;
+        while depth(pose.position, t) > 0.0 {
+            if rng.random_bool(0.1) {
+                bend = f64::from(rng.random_range(-1..=1));
+            }
+            let step = Segment {
+                start: pose,
+                start_time: t,
+                duration: 0.5,
+                speed,
+                turn_rate: bend * speed / own.turning_radius,
+            };
+            (pose, t) = (step.end(), t + 0.5);
+            if t > until {
+                break;
+            }
+        }
+        assert!(t > until - 1.0, "out at {t}, the plan at {until}");
+    }
+    assert!(run.evaluation.expect("judged").verified());
+}
+
+/// One end of the ladder: boxed in for good, she holds on, and nothing is claimed of what she runs into.
+#[test]
+fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
+    let mut scenario = in_a_channel(0.0);
+    let around = [
+        (-900.0, -900.0),
+        (900.0, -900.0),
+        (900.0, 900.0),
+        (-900.0, 900.0),
+    ];
+    scenario.targets[0].motion = Motion::Sets {
+        initial: ConvexPolygon::hull(&around.map(|(x, y)| Vector::new(x, y))).expect("a box"),
+        velocity: ConvexPolygon::point(Vector::new(5.0, 0.0)),
+    };
+    for planner in [PlannerKind::SpaceTime, PlannerKind::PathTime] {
+        let run = run(Scenario {
+            planner,
+            ..scenario.clone()
+        });
+        assert_eq!(run.rung, Rung::Inside, "{planner:?}");
+        let end = run
+            .planned
+            .outcome
+            .plan()
+            .expect("a plan")
+            .trajectory
+            .end_time();
+        assert_eq!(run.released, [Some(end), None, None], "{planner:?}");
+        assert!(run.evaluation.expect("judged").verified());
+    }
+}
+
+/// Out of time before anything was found: what is known is said, as what it is.
+#[test]
+fn out_of_time_there_is_still_an_answer() {
+    let mut scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
+    scenario.deadline = 0.0;
+    let run = run(scenario);
+    assert!(matches!(run.planned.outcome, Outcome::Deadline(Some(_))));
+    assert!(run.evaluation.is_some_and(|e| e.verified()));
+    assert!(matches!(
+        run.relaxations[0],
+        Relaxation::Risk { until: Some(_), .. }
+    ));
 }

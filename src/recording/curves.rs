@@ -204,7 +204,7 @@ fn log_risks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> 
 /// The risks that the plan document reports, against the sets that were planned against; beside them those against the
 /// hard sets where these differ.
 pub fn risk_curves(scene: &Scene, times: &[f64]) -> Vec<Series> {
-    let both = scene.run.whole_sets().zip(scene.sets).enumerate();
+    let both = scene.run.whole.iter().zip(scene.sets).enumerate();
     let mut series = Vec::new();
     for (index, (kept_out_of, sets)) in both {
         let name = sets.hard.name();
@@ -225,7 +225,7 @@ pub fn risk_curves(scene: &Scene, times: &[f64]) -> Vec<Series> {
         name: "accepted".to_owned(),
         color: style::alarm(),
         width: 1.0,
-        values: vec![scene.scenario.max_risk; times.len()],
+        values: vec![scene.run.max_risk; times.len()],
     });
     series
 }

@@ -133,7 +133,7 @@ impl<'a> Judge<'a> {
         let sets = &run.sets[obstacle];
         let is_hard = |s: &Segment| sets.hard.first_contact(s, tolerance::DEPTH_M).is_some();
         let ship = run.scenario.targets[obstacle].ship();
-        let limit = if run.shaped && sets.hard != sets.shaped && !edge.iter().any(is_hard) {
+        let limit = if run.whole[obstacle] != sets.hard && !edge.iter().any(is_hard) {
             let role = sets.encounter.role;
             let rule = role.rule().map_or(String::new(), |n| format!(", Rule {n}"));
             format!("the shape about her ({}{rule})", role.name())

@@ -185,8 +185,20 @@ fn relaxation(relaxation: &Relaxation) -> String {
             "- **Relaxed:** the shape around {target} was drawn back by {amount:.1} m: own ship starts \
              inside it, or no plan is clear of it."
         ),
-        Relaxation::Risk { target, amount } => format!(
-            "- **Relaxed:** the set of {target} is entered, at a risk of up to {amount:.3}, which was accepted."
+        Relaxation::Risk {
+            target,
+            amount,
+            until: None,
+        } => format!(
+            "- **Relaxed:** the set of {target} is entered, at a risk of up to {amount:.3}."
+        ),
+        Relaxation::Risk {
+            target,
+            amount,
+            until: Some(time),
+        } => format!(
+            "- **Relaxed:** the set of {target} is entered, at a risk of up to {amount:.3}; the plan is clear of it \
+             only from {time:.1} s on."
         ),
         Relaxation::Compliance { target, role } => format!(
             "- **Relaxed:** no plan complies with the rules as {} to {target}.",

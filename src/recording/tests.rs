@@ -401,7 +401,7 @@ fn the_largest_risk_of_the_curves_is_the_one_that_is_reported() {
     let [peak] = run.risks[..] else {
         panic!("one target");
     };
-    assert!(run.shaped && peak.risk > 0.1, "{peak:?}");
+    assert!(run.is_shaped() && peak.risk > 0.1, "{peak:?}");
     let scene = Scene::new(&run);
     let curves = curves::risk_curves(&scene, &curves::risk_times(&scene));
     let largest = |name: &str| {

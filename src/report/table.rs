@@ -7,7 +7,7 @@ use super::summary::{Meeting, Summary, Verdict};
 use super::words;
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
-use crate::pipeline::{Relaxation, Run};
+use crate::pipeline::{Relaxation, Run, Rung};
 use crate::planner::Outcome;
 use crate::planner::optimal_control::ControlReport;
 
@@ -213,8 +213,8 @@ fn passing(meeting: &Meeting) -> String {
 /// The largest risk, and whose and when where there is one.
 fn risk_text(run: &Run, largest: f64) -> String {
     let mut text = format!("{largest:.3} at most");
-    if run.scenario.max_risk > 0.0 {
-        text.push_str(&format!(" ({} accepted)", run.scenario.max_risk));
+    if run.max_risk > 0.0 {
+        text.push_str(&format!(" ({} accepted)", run.max_risk));
     }
     for (sets, peak) in run.sets.iter().zip(&run.risks) {
         if peak.risk > 0.0 {
@@ -260,7 +260,7 @@ fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
     let feasible = report.starts.iter().filter(|start| start.feasible).count();
     let steps: usize = report.starts.iter().map(|start| start.iterations).sum();
     // of two passes, with the domains and without, one is told of
-    let pass = if run.scenario.compliance.shapes() && !run.shaped {
+    let pass = if run.rung == Rung::Domains {
         "without the domains, "
     } else {
         ""
@@ -329,21 +329,23 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
     let head = format!("{}: {}{verified}", summary.title, summary.verdict.word());
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     let mut say = |name: &'static str, value: String| lines.push((name, value));
-    match &run.planned.outcome {
-        Outcome::Infeasible(reason) => say("reason", reason.to_string()),
-        Outcome::Deadline(_) => say(
-            "reason",
-            format!("the budget of {} s ran out", run.scenario.deadline),
-        ),
-        Outcome::Solved(_) => {}
+    if let Some(reason) = run.reason() {
+        say("reason", reason);
     }
     for given_up in &run.relaxations {
         let what = match given_up {
             Relaxation::Domain { target, amount } => {
                 format!("the domain of '{target}' was drawn back by {amount:.1} m")
             }
-            Relaxation::Risk { target, amount } => {
-                format!("the set of '{target}' is entered, at a risk of up to {amount:.3}")
+            Relaxation::Risk {
+                target,
+                amount,
+                until,
+            } => {
+                let until = until.map_or(String::new(), |time| {
+                    format!("; clear of it only from {time:.1} s on")
+                });
+                format!("the set of '{target}' is entered, at a risk of up to {amount:.3}{until}")
             }
             Relaxation::Compliance { target, role } => {
                 format!(

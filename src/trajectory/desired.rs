@@ -7,6 +7,9 @@ use crate::tolerance;
 /// Relative: more than the rounding of a squared distance.
 const ROUNDING: f64 = 1e-12;
 
+/// Metres that are left of a desired trajectory at least: a path is needed to end on.
+const LAST_STRETCH_M: f64 = 1.0;
+
 /// One leg of the desired trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesiredLeg {
@@ -145,6 +148,19 @@ impl DesiredTrajectory {
             .min(self.legs.len() - 1);
         let leg = &self.legs[index];
         leg.start + leg.direction * ((time - leg.start_time) * leg.speed).clamp(0.0, leg.length)
+    }
+
+    /// What is left of it at `time`, by a clock that starts then; once it is over, or as good as over, a last stretch of
+    /// [`LAST_STRETCH_M`] at the end of the path.
+    pub fn remaining(&self, time: f64) -> Self {
+        let last = &self.legs[self.legs.len() - 1];
+        let latest = self.duration() - LAST_STRETCH_M.min(last.length) / last.speed;
+        let time = if time > 0.0 { time.min(latest) } else { 0.0 };
+        let left = || self.legs.iter().filter(|leg| leg.end_time() > time);
+        let mut waypoints = vec![self.position_at(time)];
+        waypoints.extend(left().map(DesiredLeg::end));
+        let speeds: Vec<f64> = left().map(|leg| leg.speed).collect();
+        Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
     /// The same motion with fewer legs: waypoints within [`tolerance::LENGTH_M`] of the line from one that is kept to the

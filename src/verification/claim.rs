@@ -129,7 +129,7 @@ impl Claim {
             .enumerate()
             .map(|(index, t)| target(&format!("targets[{index}]"), t))
             .collect::<Result<Vec<_>, _>>()?;
-        let (sets, mut faults) = sets::read(&file.obstacles, file.horizon_s)?;
+        let (sets, mut faults) = sets::read(&file.obstacles, &file.relaxations, file.horizon_s)?;
         let land = file
             .land
             .iter()

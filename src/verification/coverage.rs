@@ -6,6 +6,7 @@
 //! sets are first scaled back about their centres.
 
 use super::claim::Claim;
+use super::reached;
 use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
 use crate::frame::{Vector, direction};
 use crate::geometry::{ConvexPolygon, Ellipse};
@@ -17,14 +18,14 @@ const INITIAL: &str = "the initial set, m";
 const VELOCITY: &str = "the velocity set, m/s";
 
 /// Standard deviations of the position that a set covers.
-const POSITION_SIGMAS: f64 = 3.0;
+pub(super) const POSITION_SIGMAS: f64 = 3.0;
 
 /// Radians, a quarter of a degree: half the angle between tangents of the faster arc. What they cut off beyond the arc is a
 /// hundred-thousandth of the speed.
 const TANGENT_SPACING: f64 = std::f64::consts::PI / 720.0;
 
 /// Directions in which an ellipse is compared with an ellipse.
-const SAMPLED_DIRECTIONS: usize = 720;
+pub(super) const SAMPLED_DIRECTIONS: usize = 720;
 
 /// Every target without a set of her own, or with one that is too small; every set of nobody.
 pub(super) fn check(claim: &Claim) -> Vec<Violation> {
@@ -61,7 +62,7 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
     let enclosed = claim.file.optimal_control.is_some();
     // the ellipse around a polygon that was scaled has a centre of its own: it cannot be scaled back
     let velocities_known = level == 1.0 || !enclosed;
-    let whole = Whole::of(&set.shape, level);
+    let whole = Whole::of(&set.shape, level, set.from);
     let mut lacks = Vec::new();
     let mut need = |what: &str, short: f64, time: f64| {
         // negated on purpose: a NaN is too small
@@ -69,6 +70,14 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
             lacks.push((format!("too small for {what}: by {short:.3e}"), time));
         }
     };
+    if set.from > 0.0 {
+        need(
+            "where she may be when it has been left, m",
+            reached::short(claim, target, &whole.initial, set.from),
+            set.from,
+        );
+    }
+    let at_start = set.from == 0.0;
     match &target.motion {
         Motion::Ship(ship) => {
             let reach = claim.own.hull.half_diagonal()
@@ -79,11 +88,13 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
                 .vertices()
                 .iter()
                 .map(|p| whole.initial.distance(*p) + reach);
-            need(
-                "the hull, the margin and the uncertainty, m",
-                largest(outside),
-                0.0,
-            );
+            if at_start {
+                need(
+                    "the hull, the margin and the uncertainty, m",
+                    largest(outside),
+                    0.0,
+                );
+            }
             if velocities_known {
                 for spell in &whole.spells {
                     let short = spell
@@ -94,7 +105,9 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
             }
         }
         Motion::Sets { initial, velocity } => {
-            need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
+            if at_start {
+                need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
+            }
             if velocities_known {
                 for spell in &whole.spells {
                     need(VELOCITY, spell.set.beyond_polygon(velocity), spell.start);
@@ -102,7 +115,9 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
             }
         }
         Motion::Ellipses { initial, velocity } => {
-            need(INITIAL, whole.initial.beyond_ellipse(initial), 0.0);
+            if at_start {
+                need(INITIAL, whole.initial.beyond_ellipse(initial), 0.0);
+            }
             if velocities_known {
                 for spell in &whole.spells {
                     need(VELOCITY, spell.set.beyond_ellipse(velocity), spell.start);
@@ -110,7 +125,9 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
             }
         }
         Motion::Spells { initial, spells } => {
-            need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
+            if at_start {
+                need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
+            }
             if velocities_known {
                 for spell in &whole.spells {
                     for known in
@@ -130,7 +147,7 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
 }
 
 /// The largest, NaN if any is.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, |most, v| {
         if v > most || v.is_nan() { v } else { most }
     })
@@ -162,7 +179,8 @@ struct Spell {
 }
 
 impl Whole {
-    fn of(shape: &SetShape, level: f64) -> Self {
+    /// Times are those of the document: the clock of the set starts at `from`.
+    fn of(shape: &SetShape, level: f64, from: f64) -> Self {
         match shape {
             SetShape::Polygons { initial, spells } => {
                 let starts = std::iter::once(0.0).chain(spells.iter().map(|s| s.until));
@@ -171,8 +189,8 @@ impl Whole {
                     spells: starts
                         .zip(spells)
                         .map(|(start, spell)| Spell {
-                            start,
-                            until: spell.until,
+                            start: from + start,
+                            until: from + spell.until,
                             set: Bounded::Polygon(about_centroid(&spell.velocities, level.recip())),
                         })
                         .collect(),
@@ -181,7 +199,7 @@ impl Whole {
             SetShape::Ellipses { initial, velocity } => Self {
                 initial: Bounded::Ellipse(*initial),
                 spells: vec![Spell {
-                    start: 0.0,
+                    start: from,
                     until: f64::INFINITY,
                     set: Bounded::Ellipse(velocity.scaled_about_center(level.recip())),
                 }],
@@ -196,7 +214,7 @@ pub(super) fn about_centroid(set: &ConvexPolygon, factor: f64) -> ConvexPolygon 
     set.translated(-center).scaled(factor).translated(center)
 }
 
-enum Bounded {
+pub(super) enum Bounded {
     Polygon(ConvexPolygon),
     Ellipse(Ellipse),
 }
@@ -240,7 +258,7 @@ impl Bounded {
 }
 
 /// Every velocity with a speed and a course within bounds.
-struct Sector {
+pub(super) struct Sector {
     slow: f64,
     fast: f64,
     heading: f64,
@@ -249,7 +267,7 @@ struct Sector {
 }
 
 impl Sector {
-    fn of(ship: &ShipTrack, until: f64) -> Self {
+    pub fn of(ship: &ShipTrack, until: f64) -> Self {
         Self {
             slow: (ship.speed - ship.speed_spread).max(0.0),
             fast: ship.speed + ship.speed_spread,
@@ -259,7 +277,7 @@ impl Sector {
     }
 
     /// In closed form: the course within the spread that is nearest to the direction.
-    fn support(&self, n: Vector) -> f64 {
+    pub fn support(&self, n: Vector) -> f64 {
         let off = crate::frame::wrap(crate::frame::heading_of(n) - self.heading).abs();
         let along = (off - self.spread).max(0.0).cos();
         (self.fast * along).max(self.slow * along)

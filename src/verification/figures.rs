@@ -130,7 +130,9 @@ fn words(value: Option<f64>) -> String {
 
 /// A largest risk of `r` means: nowhere inside the level set of `r`, and no more was accepted.
 fn risk(claim: &Claim, said: f64, request: &Request) -> Option<Violation> {
-    let accepted = claim.file.max_risk;
+    // of sets that are entered and left all may be taken
+    let released = claim.sets.iter().any(|set| set.from > 0.0);
+    let accepted = if released { 1.0 } else { claim.file.max_risk };
     if !(said >= 0.0 && said <= accepted + tolerance::FIGURE) {
         return Some(untrue(
             "cost.max_risk",
@@ -139,7 +141,7 @@ fn risk(claim: &Claim, said: f64, request: &Request) -> Option<Violation> {
         ));
     }
     // ellipses around sets that were scaled cannot be scaled again; without risk the sets themselves are the level sets
-    if claim.file.optimal_control.is_some() || accepted == 0.0 {
+    if claim.file.optimal_control.is_some() || released || accepted == 0.0 {
         return None;
     }
     // a little above what is said: a set is closed, and risk falls to none beyond its edge
@@ -181,6 +183,7 @@ fn scaled(set: &SpaceTimeSet, factor: f64) -> SpaceTimeSet {
     };
     SpaceTimeSet {
         name: set.name.clone(),
+        from: set.from,
         shape,
     }
 }

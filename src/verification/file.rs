@@ -19,6 +19,7 @@ pub(super) struct PlanFile {
     pub land: Vec<Vec<[f64; 2]>>,
     pub targets: Vec<TargetFile>,
     pub obstacles: Vec<ObstacleFile>,
+    pub relaxations: Vec<RelaxationFile>,
     pub cost: Option<CostFile>,
     pub trajectory: Option<TrajectoryFile>,
     pub encounters: Vec<EncounterFile>,
@@ -104,6 +105,15 @@ pub(super) struct ObstacleFile {
     pub valid_s: [f64; 2],
     pub initial_set: SetFile,
     pub velocity_set: SetFile,
+}
+
+/// Something that was given up: what of it bears on what is claimed.
+#[derive(Debug, Deserialize)]
+pub(super) struct RelaxationFile {
+    pub kind: String,
+    pub target: String,
+    pub amount: f64,
+    pub until_s: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -16,9 +16,11 @@
 mod claim;
 mod coverage;
 mod encounters;
+mod entered;
 mod figures;
 mod file;
 mod motion;
+mod reached;
 mod samples;
 mod sets;
 
@@ -96,6 +98,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         ),
     });
     violations.extend(coverage::check(&claim));
+    violations.extend(entered::check(&claim));
     if let (Some(evaluation), Some(motion)) = (&evaluation, &claim.motion) {
         violations.extend(evaluation.violations.iter().cloned());
         if motion.is_sound() {

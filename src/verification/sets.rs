@@ -1,16 +1,17 @@
 //! The sets of a document, put together again where velocity sets follow one another.
 
 use super::claim::{ClaimError, PlaneSet, fault, plane_set};
-use super::file::ObstacleFile;
+use super::file::{ObstacleFile, RelaxationFile};
 use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
 use crate::geometry::ConvexPolygon;
 use crate::target::VelocitySpell;
 use crate::tolerance;
 
 /// The sets, and what is wrong between entries of one name: each holds until the next one starts, with the section that
-/// is reached then, and the last one until the horizon.
+/// is reached then, and the last one until the horizon. The first one starts at 0, or when the set that is entered has been left.
 pub(super) fn read(
     entries: &[ObstacleFile],
+    relaxations: &[RelaxationFile],
     horizon: f64,
 ) -> Result<(Vec<SpaceTimeSet>, Vec<Violation>), ClaimError> {
     let mut sets: Vec<SpaceTimeSet> = Vec::new();
@@ -20,7 +21,11 @@ pub(super) fn read(
     for (index, entry) in entries.iter().enumerate() {
         let path = format!("obstacles[{index}]");
         let [from, to] = entry.valid_s;
-        if !(from < to) {
+        let follows = index > 0 && entries[index - 1].name == entry.name;
+        let released = released(relaxations, &entry.name);
+        // a set that is not left before the horizon is in force no more
+        let never = released.is_some() && from == to && from == horizon;
+        if !(from < to || never) {
             let found = format!("{from} to {to}");
             return Err(fault(
                 &format!("{path}.valid_s"),
@@ -28,12 +33,15 @@ pub(super) fn read(
                 "a start before an end",
             ));
         }
-        let follows = index > 0 && entries[index - 1].name == entry.name;
         let mut note = |what: String, time: f64| {
             let what = format!("set of '{}': {what}", entry.name);
             faults.push(Violation { what, time });
         };
-        let starts = if follows { until } else { 0.0 };
+        let starts = if follows {
+            until
+        } else {
+            released.unwrap_or(0.0).min(horizon)
+        };
         if !((from - starts).abs() <= tolerance::TIME_S * (1.0 + horizon)) {
             note(
                 format!("valid from {from} s, expected {starts} s"),
@@ -62,7 +70,11 @@ pub(super) fn read(
                 }
                 section = Some(initial.minkowski_sum(&velocities.scaled(to - from)));
                 let spell = VelocitySpell {
-                    until: if last { f64::INFINITY } else { to },
+                    until: if last {
+                        f64::INFINITY
+                    } else {
+                        to - released.unwrap_or(0.0)
+                    },
                     velocities,
                 };
                 if let (
@@ -99,10 +111,17 @@ pub(super) fn read(
         until = to;
         sets.push(SpaceTimeSet {
             name: entry.name.clone(),
+            from: released.unwrap_or(0.0),
             shape,
         });
     }
     Ok((sets, faults))
+}
+
+/// Seconds from which on something is claimed of a set that is entered.
+pub(super) fn released(relaxations: &[RelaxationFile], name: &str) -> Option<f64> {
+    let mut own = relaxations.iter().filter(|r| r.target == name);
+    own.find_map(|r| r.until_s)
 }
 
 /// Each contains the other, to [`tolerance::DEPTH_M`].

@@ -404,7 +404,7 @@ fn no_plan_is_an_answer() {
         "late.toml",
         HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 40.0"),
     );
-    for file in [&inside, &late] {
+    for file in [&late] {
         let plan = document(&searoom(&["plan", file, "--json"]).code(1));
         assert_eq!(plan["outcome"], "infeasible");
         assert!(plan["cost"].is_null() && plan["trajectory"].is_null());
@@ -415,9 +415,50 @@ fn no_plan_is_an_answer() {
             .code(1)
             .stdout(contains("infeasible"));
     }
-    searoom(&["suite", &inside, "scenarios/colregs/head-on.toml"])
+    searoom(&["suite", &late, "scenarios/colregs/head-on.toml"])
         .code(1)
         .stdout(contains("2 scenarios: 1 solved, 1 infeasible; 1 verified"));
+    // from within a set there is a way out, and it is not said to be more
+    let plan = searoom(&["plan", &inside, "--json"]).code(1);
+    let text = stdout(&plan);
+    let plan = document(&plan);
+    assert_eq!(plan["outcome"], "relaxed");
+    let given_up = &plan["relaxation"];
+    assert_eq!(
+        (&given_up["kind"], given_up["amount"].as_f64()),
+        (&Value::from("risk"), Some(1.0))
+    );
+    let until = given_up["until_s"].as_f64().expect("when it is left");
+    let valid = &plan["obstacles"][0]["valid_s"];
+    assert_eq!(valid[0].as_f64(), Some(until));
+    assert!(
+        plan["reason"]
+            .as_str()
+            .is_some_and(|r| r.contains("starts inside"))
+    );
+    let check = |text: &str| {
+        let file = write(folder.path(), "plan.json", text);
+        searoom(&["verify", &file])
+    };
+    check(&text).success();
+    // claimed from too early, not claimed at all, owned up to nowhere, or of a set that has shrunk meanwhile
+    let earlier = text.replace(&until.to_string(), &(until - 1.0).to_string());
+    check(&earlier).code(1).stdout(contains("set of"));
+    let never = text.replace(&until.to_string(), "1000000");
+    check(&never).code(2).stderr(contains("valid_s"));
+    check(&text.replace("\"relaxed\"", "\"solved\""))
+        .code(1)
+        .stdout(contains("outcome"));
+    let mut small = plan.clone();
+    for p in small["obstacles"][0]["initial_set"]["vertices_m"]
+        .as_array_mut()
+        .expect("vertices")
+    {
+        p[0] = Value::from(p[0].as_f64().expect("a number") + 1.0);
+    }
+    check(&small.to_string())
+        .code(1)
+        .stdout(contains("where she may be"));
 }
 
 #[test]

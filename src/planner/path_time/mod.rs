@@ -16,9 +16,11 @@ mod profile;
 mod rays;
 mod recovery;
 mod scene;
+mod undisturbed;
 mod weighing;
 
 pub use diagram::{DiagramCorner, DiagramLeg, DiagramObstacle, PathTimeDiagram};
+pub use undisturbed::undisturbed;
 pub use weighing::plan_weighing_risk;
 
 use std::time::Instant;

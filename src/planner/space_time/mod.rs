@@ -19,6 +19,7 @@ mod chain;
 mod closer;
 mod compliance;
 mod departure;
+mod escape;
 mod factor;
 mod graph;
 mod hazard;
@@ -41,6 +42,8 @@ mod selection;
 mod stages;
 mod tail;
 mod template;
+
+pub use escape::escape;
 
 use super::clock::Clock;
 use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};

@@ -59,6 +59,9 @@ pub struct RelaxationDocument {
     pub target: String,
     pub amount: f64,
     pub unit: String,
+    /// Of a set that is entered and left: nothing is claimed before. Absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until_s: Option<f64>,
 }
 
 /// Something that the independent checker found.

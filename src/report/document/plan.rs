@@ -56,7 +56,7 @@ pub struct PlanDocument {
     pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
     pub outcome: String,
-    /// Why there is no plan, or none that was finished.
+    /// Why there is no plan, or none that was finished or keeps all that was asked.
     pub reason: Option<String>,
     pub relaxation: Option<RelaxationDocument>,
     /// All of what was given up, the most important first.
@@ -98,7 +98,7 @@ impl PlanDocument {
                 _ => None,
             },
             time_weight_m2_per_s2: scenario.time_weight,
-            max_risk: scenario.max_risk,
+            max_risk: run.max_risk,
             horizon_s: scenario.horizon,
             own_ship: own_ship(run),
             mission: mission(run),
@@ -128,7 +128,8 @@ impl PlanDocument {
             obstacles: run
                 .obstacles
                 .iter()
-                .flat_map(|set| obstacles(set, scenario.horizon))
+                .zip(&run.released)
+                .flat_map(|(set, from)| obstacles(set, from.unwrap_or(0.0), scenario.horizon))
                 .collect(),
             encounters: encounters(run),
             path_time: (run.planned.path_time.as_deref())
@@ -175,18 +176,25 @@ fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
             target: target.clone(),
             amount: *amount,
             unit: "m".to_owned(),
+            until_s: None,
         },
-        Relaxation::Risk { target, amount } => RelaxationDocument {
+        Relaxation::Risk {
+            target,
+            amount,
+            until,
+        } => RelaxationDocument {
             kind: "risk".to_owned(),
             target: target.clone(),
             amount: *amount,
             unit: "1".to_owned(),
+            until_s: *until,
         },
         Relaxation::Compliance { target, .. } => RelaxationDocument {
             kind: "compliance".to_owned(),
             target: target.clone(),
             amount: 1.0,
             unit: "1".to_owned(),
+            until_s: None,
         },
     }
 }
@@ -320,8 +328,12 @@ fn course(motion: &Steered, time: f64) -> f64 {
     }
 }
 
-/// One entry, or one per slab: its initial set is the section at its start, and its time counts from there.
-fn obstacles(set: &Obstacle, horizon: f64) -> Vec<ObstacleDocument> {
+/// One entry, or one per slab: its initial set is the section at its start, and its time counts from there. Of a set that the
+/// plan enters, what is left of it from when it has left it.
+fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
+    let from = from.min(horizon);
+    let set = &set.remainder(from);
+    let left = horizon - from;
     let entry = |valid_s, initial_set, velocity_set| ObstacleDocument {
         name: set.name().to_owned(),
         valid_s,
@@ -340,17 +352,20 @@ fn obstacles(set: &Obstacle, horizon: f64) -> Vec<ObstacleDocument> {
         )
     };
     match set {
-        Obstacle::Polytope(o) => vec![polytope(o, [0.0, horizon])],
+        Obstacle::Polytope(o) => vec![polytope(o, [from, horizon])],
         Obstacle::Ellipsoid(o) => vec![entry(
-            [0.0, horizon],
+            [from, horizon],
             ellipse(o.initial()),
             velocity_ellipse(o.velocity()),
         )],
         Obstacle::Slabs(o) => o
             .slabs()
             .iter()
-            .filter(|slab| slab.start() < horizon)
-            .map(|slab| polytope(slab.obstacle(), [slab.start(), slab.end().min(horizon)]))
+            .filter(|slab| slab.start() < left || slab.start() == 0.0)
+            .map(|slab| {
+                let times = [slab.start(), slab.end().min(left)];
+                polytope(slab.obstacle(), times.map(|time| from + time))
+            })
             .collect(),
     }
 }

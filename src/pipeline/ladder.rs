@@ -1,0 +1,441 @@
+//! The ladder: what is given up, step by step, so that there is always an answer.
+//!
+//! ```text
+//! compliant ─► shapes, but not the rules ─► shapes drawn back ─► hard sets at the least risk ─► a set entered, and left as soon as may be
+//! ```
+//!
+//! Each rung is tried when those above gave no plan. A planner may find a way out of a larger set that it misses for the
+//! smaller one, so a rung takes over what keeps clear of more than it asks.
+
+use std::time::{Duration, Instant};
+
+use super::duty::{encountered, first_turn};
+use super::inside;
+use super::sets::TargetSets;
+use crate::obstacle::{Coast, Obstacle, SpaceTimeObstacle};
+use crate::planner::optimal_control::{self, ControlReport, Controlled};
+use crate::planner::{
+    NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time,
+};
+use crate::scenario::{Compliance, Scenario};
+use crate::trajectory::Trajectory;
+
+/// How much of what was asked a plan keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rung {
+    /// All that compliance asks: the rules, and the sets as it shapes them, as far as own ship's start lets them be.
+    Compliant,
+    /// Clear of the shapes, but not by the rules.
+    Shapes,
+    /// Clear of the hard sets, and of what is left of the shapes.
+    Domains,
+    /// Clear of the level sets of the least risk that was found to leave a way.
+    Risk,
+    /// A hard set is entered or left, and nothing is claimed of it before.
+    Inside,
+}
+
+/// Shares of the shapes that are tried where no plan was found for the shapes, or for the hard sets, alone.
+const BELOW_SHAPES: [f64; 2] = [0.0, 0.5];
+const ABOVE_HARD_SETS: [f64; 2] = [1.0, 0.5];
+
+/// Halvings of the share of the shapes that a plan keeps, between what one keeps and what none was found for.
+const SHARE_HALVINGS: usize = 2;
+
+/// Halvings within which the share of one shape is found that a given plan is clear of.
+const KEPT_HALVINGS: usize = 10;
+
+/// Dimensionless. The least risk is sought to this, and no plan is asked for at a greater one than 1 less this.
+pub const RISK_STEP: f64 = 1.0 / 64.0;
+
+/// Metres. A plan may touch what it is said to keep clear of; deeper than this it meets it. A tenth of what a checker
+/// rejects.
+pub(super) const TOUCH_M: f64 = 0.1 * crate::tolerance::DEPTH_M;
+
+/// An answer of a planner, and to what.
+#[derive(Debug, Clone)]
+pub(super) struct Attempt {
+    pub rung: Rung,
+    /// The sets that were kept, in the order of the targets.
+    pub whole: Vec<Obstacle>,
+    /// Metres that each shape was drawn back.
+    pub cuts: Vec<f64>,
+    /// The level sets of them that were planned against.
+    pub obstacles: Vec<Obstacle>,
+    /// The accepted risk.
+    pub risk: f64,
+    /// Seconds, per target: before, nothing is claimed of her set.
+    pub released: Vec<Option<f64>>,
+    pub planned: Planned,
+    pub control: Option<ControlReport>,
+    /// Why the rungs above have no plan.
+    pub why: Option<NoPlan>,
+}
+
+impl Attempt {
+    pub fn trajectory(&self) -> Option<&Trajectory> {
+        self.planned.outcome.plan().map(|plan| &plan.trajectory)
+    }
+}
+
+/// What is asked of the planner at most, and how long it may take.
+pub(super) struct Ladder<'a> {
+    pub scenario: &'a Scenario,
+    pub sets: &'a [TargetSets],
+    pub coast: &'a Coast,
+    pub begun: Instant,
+}
+
+impl Ladder<'_> {
+    /// The answer of the highest rung that has one. Without any, that of the first.
+    pub fn answer(&self) -> Attempt {
+        let shaped = self.scenario.compliance.shapes();
+        let top = if shaped { 1.0 } else { 0.0 };
+        let first = self.attempt(Rung::Compliant, &self.shares(top), self.scenario.max_risk);
+        if self.scenario.planner == PlannerKind::OptimalControl {
+            return self.under_forces(first, shaped);
+        }
+        let why = match &first.planned.outcome {
+            Outcome::Solved(_) | Outcome::Deadline(Some(_)) => return first,
+            Outcome::Deadline(None) => return self.at_worst(first),
+            Outcome::Infeasible(reason) => reason.clone(),
+        };
+        let lower = self.lower_than(first, &why, shaped);
+        let why = (lower.rung > Rung::Compliant).then_some(why);
+        Attempt { why, ..lower }
+    }
+
+    /// The answer of the highest rung below the first that has one.
+    fn lower_than(&self, first: Attempt, why: &NoPlan, shaped: bool) -> Attempt {
+        if matches!(
+            why,
+            NoPlan::StartInside { .. } | NoPlan::StartCovered { .. }
+        ) {
+            return self.at_worst(first);
+        }
+        if !why.is_for_the_sets() {
+            return first;
+        }
+        let lower = [
+            Self::clear_of_shapes,
+            Self::clear_of_hard_sets,
+            Self::at_least_risk,
+        ];
+        for rung in lower {
+            if let Some(found) = rung(self, shaped) {
+                return match found.planned.outcome {
+                    Outcome::Deadline(None) => self.at_worst(found),
+                    _ => found,
+                };
+            }
+        }
+        self.at_worst(first)
+    }
+
+    /// So much of every shape.
+    fn shares(&self, share: f64) -> Vec<f64> {
+        vec![share; self.sets.len()]
+    }
+
+    fn left(&self) -> Duration {
+        let budget = Duration::try_from_secs_f64(self.scenario.deadline);
+        budget
+            .unwrap_or(Duration::MAX)
+            .saturating_sub(self.begun.elapsed())
+    }
+
+    /// What is asked of the planner, against these sets.
+    fn problem<'b>(&'b self, obstacles: &'b [Obstacle]) -> Problem<'b> {
+        let shaped = self.scenario.compliance.shapes();
+        Problem {
+            deadline: self.left(),
+            first_turn: shaped.then(|| first_turn(self.sets)).flatten(),
+            ..super::problem(self.scenario, obstacles, self.coast)
+        }
+    }
+
+    /// Plans against so much of each shape at a risk.
+    fn attempt(&self, rung: Rung, shares: &[f64], risk: f64) -> Attempt {
+        let kept = self.sets.iter().zip(&self.scenario.targets).zip(shares);
+        let kept = kept.map(|((sets, target), share)| sets.kept(self.scenario, target, *share));
+        let (whole, cuts): (Vec<Obstacle>, Vec<f64>) = kept.map(|k| (k.obstacle, k.cut)).unzip();
+        let obstacles = level_sets(&whole, risk);
+        let forces = self.scenario.planner == PlannerKind::OptimalControl;
+        let obstacles = if forces {
+            optimal_control::outer_sets(&obstacles)
+        } else {
+            obstacles
+        };
+        let mut problem = self.problem(&obstacles);
+        let asking = match (rung, self.scenario.compliance) {
+            (Rung::Compliant, Compliance::Rules) => encountered(self.scenario, self.sets),
+            _ => Vec::new(),
+        };
+        problem.encountered = &asking;
+        let mut control = None;
+        let planned = match (self.scenario.planner, self.scenario.objective) {
+            (PlannerKind::SpaceTime, _) => space_time::plan(&problem),
+            (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
+                let problem = Problem {
+                    obstacles: &whole,
+                    ..problem
+                };
+                path_time::plan_weighing_risk(&problem, weight, risk)
+            }
+            (PlannerKind::PathTime, _) => path_time::plan(&problem),
+            (PlannerKind::OptimalControl, _) => {
+                let Controlled { planned, report } =
+                    optimal_control::plan(&problem, &self.scenario.control);
+                control = Some(report);
+                planned
+            }
+        };
+        Attempt {
+            rung,
+            released: vec![None; whole.len()],
+            whole,
+            // shapes that nobody asked for are not given up
+            cuts: match self.scenario.compliance {
+                Compliance::Shape | Compliance::Rules => cuts,
+                Compliance::None => vec![0.0; self.sets.len()],
+            },
+            obstacles,
+            risk,
+            planned,
+            control,
+            why: None,
+        }
+    }
+
+    /// A plan that is clear of the shapes, where the rules were asked for as well. `None` where none was found; an attempt
+    /// without a plan where the time ran out.
+    fn clear_of_shapes(&self, _: bool) -> Option<Attempt> {
+        if self.scenario.compliance != Compliance::Rules
+            || encountered(self.scenario, self.sets).is_empty()
+        {
+            return None;
+        }
+        let found = self.attempt(Rung::Shapes, &self.shares(1.0), self.scenario.max_risk);
+        match found.planned.outcome {
+            Outcome::Solved(_) | Outcome::Deadline(_) => Some(found),
+            Outcome::Infeasible(_) => None,
+        }
+    }
+
+    /// A plan that is clear of the hard sets and, where shapes are asked for, of as much of them as was found. `None` where
+    /// none was found in time that is left; an attempt without a plan where the time ran out.
+    fn clear_of_hard_sets(&self, shaped: bool) -> Option<Attempt> {
+        if !self.sets.iter().any(TargetSets::has_shape) {
+            return None;
+        }
+        let risk = self.scenario.max_risk;
+        let tried = if shaped {
+            BELOW_SHAPES
+        } else {
+            ABOVE_HARD_SETS
+        };
+        // along paths what is found for the larger set is found for the smaller one
+        let monotone = self.scenario.planner == PlannerKind::PathTime;
+        let tried = match (shaped, monotone) {
+            (true, true) => &tried[..1],
+            (false, true) => &[],
+            _ => &tried[..],
+        };
+        let mut found = None;
+        for share in tried {
+            let attempt = self.attempt(Rung::Domains, &self.shares(*share), risk);
+            match attempt.planned.outcome {
+                Outcome::Solved(_) | Outcome::Deadline(_) => {
+                    found = Some(attempt);
+                    break;
+                }
+                Outcome::Infeasible(_) => {}
+            }
+        }
+        let found = found?;
+        let Some(trajectory) = found.trajectory() else {
+            return Some(found);
+        };
+        if !shaped {
+            return Some(self.clear_of(&found, &self.shares(0.0), Rung::Compliant));
+        }
+        let kept = self.kept_along(trajectory, risk);
+        Some(self.with_more_kept(self.clear_of(&found, &kept, Rung::Domains), &kept))
+    }
+
+    /// The same plan, said to be clear of so much of each shape.
+    fn clear_of(&self, attempt: &Attempt, shares: &[f64], rung: Rung) -> Attempt {
+        let kept = self.sets.iter().zip(&self.scenario.targets).zip(shares);
+        let kept = kept.map(|((sets, target), share)| sets.kept(self.scenario, target, *share));
+        let (whole, cuts): (Vec<Obstacle>, Vec<f64>) = kept.map(|k| (k.obstacle, k.cut)).unzip();
+        Attempt {
+            rung,
+            obstacles: level_sets(&whole, attempt.risk),
+            whole,
+            cuts: match self.scenario.compliance {
+                Compliance::Shape | Compliance::Rules => cuts,
+                Compliance::None => attempt.cuts.clone(),
+            },
+            ..attempt.clone()
+        }
+    }
+
+    /// Share of each shape that a motion is clear of.
+    fn kept_along(&self, trajectory: &Trajectory, risk: f64) -> Vec<f64> {
+        let all = self.sets.iter().zip(&self.scenario.targets);
+        all.map(|(sets, target)| {
+            let clear = |share: f64| {
+                let set = sets.kept(self.scenario, target, share).obstacle;
+                let set = if risk > 0.0 { set.at_risk(risk) } else { set };
+                let enters = |s| set.first_contact(s, TOUCH_M).is_some();
+                !trajectory.segments().iter().any(enters)
+            };
+            if !sets.has_shape() || clear(1.0) {
+                return 1.0;
+            }
+            let (mut kept, mut entered) = (0.0, 1.0);
+            for _ in 0..KEPT_HALVINGS {
+                let share = 0.5 * (kept + entered);
+                if clear(share) {
+                    kept = share;
+                } else {
+                    entered = share;
+                }
+            }
+            kept
+        })
+        .collect()
+    }
+
+    /// Looks for plans that keep more of the shapes, between what one keeps and all.
+    fn with_more_kept(&self, found: Attempt, kept: &[f64]) -> Attempt {
+        let least = |kept: &[f64]| kept.iter().copied().fold(1.0, f64::min);
+        let (mut best, mut low, mut high) = (found, least(kept), 1.0);
+        if self.scenario.planner != PlannerKind::SpaceTime {
+            return best;
+        }
+        for _ in 0..SHARE_HALVINGS {
+            let share = 0.5 * (low + high);
+            let tried = self.attempt(Rung::Domains, &self.shares(share), best.risk);
+            let Some(trajectory) = tried.trajectory() else {
+                high = share;
+                if matches!(tried.planned.outcome, Outcome::Deadline(_)) {
+                    return out_of_time(best);
+                }
+                continue;
+            };
+            let kept = self.kept_along(trajectory, best.risk);
+            low = least(&kept).max(share);
+            best = self.clear_of(&tried, &kept, Rung::Domains);
+        }
+        best
+    }
+
+    /// The plan at the least risk that was found to leave a way, to [`RISK_STEP`].
+    fn at_least_risk(&self, _: bool) -> Option<Attempt> {
+        let none = self.shares(0.0);
+        let at = |risk: f64| self.attempt(Rung::Risk, &none, risk);
+        let mut low = self.scenario.max_risk;
+        let mut high = 1.0 - RISK_STEP;
+        if low >= high {
+            return None;
+        }
+        let mut best = at(high);
+        if best.trajectory().is_none() {
+            let timed_out = matches!(best.planned.outcome, Outcome::Deadline(_));
+            return timed_out.then_some(best);
+        }
+        while high - low > RISK_STEP {
+            let risk = 0.5 * (low + high);
+            let tried = at(risk);
+            match tried.planned.outcome {
+                Outcome::Infeasible(_) => low = risk,
+                Outcome::Deadline(None) => return Some(out_of_time(best)),
+                Outcome::Solved(_) | Outcome::Deadline(Some(_)) => {
+                    best = tried;
+                    high = risk;
+                }
+            }
+        }
+        Some(best)
+    }
+
+    /// The motion that leaves every set soonest for good, or holds on where none was found; without a motion the attempt as
+    /// it is.
+    fn at_worst(&self, attempt: Attempt) -> Attempt {
+        let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
+        let problem = self.problem(&hard);
+        let Some(planned) = inside::motion(self.scenario.planner, &problem) else {
+            return attempt;
+        };
+        let Some(plan) = planned.outcome.plan() else {
+            return attempt;
+        };
+        let left = |set| inside::left_for_good(set, &plan.trajectory);
+        let released = hard.iter().map(left).collect();
+        let timed_out = matches!(attempt.planned.outcome, Outcome::Deadline(_));
+        let outcome = if timed_out {
+            Outcome::Deadline(Some(plan.clone()))
+        } else {
+            planned.outcome
+        };
+        let cuts = match self.scenario.compliance {
+            Compliance::Shape | Compliance::Rules => {
+                self.sets.iter().map(|s| s.shape_reach).collect()
+            }
+            Compliance::None => attempt.cuts,
+        };
+        Attempt {
+            rung: Rung::Inside,
+            obstacles: hard.clone(),
+            whole: hard,
+            cuts,
+            risk: 0.0,
+            released,
+            planned: Planned {
+                outcome,
+                path_time: planned.path_time,
+                ..attempt.planned
+            },
+            control: None,
+            why: attempt.why,
+        }
+    }
+
+    /// Under forces there are two rungs: the shapes, and none of them.
+    fn under_forces(&self, mut first: Attempt, shaped: bool) -> Attempt {
+        let stuck = match &first.planned.outcome {
+            // the ellipse around a shape may hold own ship where the shape does not
+            Outcome::Infeasible(NoPlan::StartInside { .. }) => true,
+            Outcome::Infeasible(reason) => reason.is_for_the_sets(),
+            Outcome::Solved(_) | Outcome::Deadline(_) => false,
+        };
+        if !(shaped && stuck && self.sets.iter().any(|s| s.shape_reach > 0.0)) {
+            return first;
+        }
+        let again = self.attempt(Rung::Domains, &self.shares(0.0), self.scenario.max_risk);
+        // starts and sets are those of the pass that ended so
+        if !matches!(again.planned.outcome, Outcome::Infeasible(_)) {
+            first = again;
+        }
+        first
+    }
+}
+
+/// The level sets of a risk.
+fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
+    if risk > 0.0 {
+        whole.iter().map(|set| set.at_risk(risk)).collect()
+    } else {
+        whole.to_vec()
+    }
+}
+
+/// A plan that might have become better.
+fn out_of_time(mut attempt: Attempt) -> Attempt {
+    attempt.planned.outcome = match attempt.planned.outcome {
+        Outcome::Solved(plan) => Outcome::Deadline(Some(plan)),
+        other => other,
+    };
+    attempt
+}
