@@ -8,7 +8,6 @@ use super::words;
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{Relaxation, Run, Rung};
-use crate::planner::Outcome;
 use crate::planner::optimal_control::ControlReport;
 
 /// Targets of one scenario that a row names; the rest is counted.
