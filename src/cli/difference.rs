@@ -53,7 +53,7 @@ pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<
     let document = |r: &Recorded| -> Value {
         let text = r.document().or_else(|| r.comparison());
         let mut value: Value = text
-            .and_then(|t| serde_json::from_str(&t).ok())
+            .and_then(|t| serde_json::from_str(t).ok())
             .unwrap_or_default();
         forget_times(&mut value);
         value

@@ -63,7 +63,7 @@ fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
             path.display()
         );
     }
-    recorded.document().with_context(|| {
+    recorded.document().map(str::to_owned).with_context(|| {
         format!(
             "{}: holds no plan document: it was cut short, or written by a Searoom that kept none",
             path.display()
@@ -230,11 +230,11 @@ impl Contents {
     fn of(file: &Path, recorded: &Recorded) -> Self {
         let document: Value = recorded
             .document()
-            .and_then(|text| serde_json::from_str(&text).ok())
+            .and_then(|text| serde_json::from_str(text).ok())
             .unwrap_or_default();
         let compared: Value = recorded
             .comparison()
-            .and_then(|text| serde_json::from_str(&text).ok())
+            .and_then(|text| serde_json::from_str(text).ok())
             .unwrap_or_default();
         let comparison = compared["comparisons"][0].clone();
         let scenario = [&document, &comparison]
@@ -369,7 +369,8 @@ impl Contents {
         for target in &self.targets {
             let dcpa = target["dcpa_m"].as_f64().map_or(String::new(), |d| {
                 format!(
-                    ", passed at {d:.1} m after {:.1} s",
+                    ", passed at {:.1} m after {:.1} s",
+                    tenths(d),
                     target["tcpa_s"].as_f64().unwrap_or(0.0)
                 )
             });
@@ -395,10 +396,16 @@ fn costs(cost: &Value) -> String {
         ("max_risk", "largest risk", ""),
     ] {
         if let Some(value) = cost[key].as_f64() {
-            costs.push(format!("{name} {value:.1} {unit}").trim_end().to_owned());
+            let value = format!("{name} {:.1} {unit}", tenths(value));
+            costs.push(value.trim_end().to_owned());
         }
     }
     costs.join(", ")
+}
+
+/// Rounded to one decimal; what rounds to zero has no sign.
+fn tenths(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0 + 0.0
 }
 
 fn list(texts: &[String]) -> String {

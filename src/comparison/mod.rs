@@ -32,6 +32,26 @@ pub struct Contender {
 }
 
 /// What one contender came to.
+///
+/// ```
+/// use searoom::comparison::{self, Contender, Entry, Inapplicable, Look, Method, Methods, Sailed};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// let Methods { methods, inapplicable } = comparison::methods(&scenario);
+/// assert!(methods.contains(&Method::HoldCourse));
+/// let reasons: Vec<&String> = inapplicable.iter().map(|i: &Inapplicable| &i.reason).collect();
+/// assert_eq!(reasons.len(), 1, "optimal control does not apply");
+///
+/// let contender = Contender { method: Method::HoldCourse, max_risk: 0.0 };
+/// let entry: Entry = contender.run(&scenario);
+/// let Sailed::Baseline(held) = &entry.result else {
+///     panic!("a baseline");
+/// };
+/// assert!(held.arrived && !held.evaluation.verified(), "she runs into the other");
+/// assert!(Look::of(entry.contender.method).dashed);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Entry {
     /// Who, and at which risk.

@@ -15,6 +15,20 @@ pub const LAND: &str = "land";
 ///
 /// A block is a space-time polytope with one velocity, zero, so that a plan treats it like any other. Pieces of one
 /// land touch, their blocks overlap by twice the radius: what slips between two pieces is inside both blocks.
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::Coast;
+///
+/// let quay = [(0.0, 0.0), (100.0, 0.0), (100.0, 20.0), (0.0, 20.0)];
+/// let quay = ConvexPolygon::hull(&quay.map(|(x, y)| Vector::new(x, y)))?;
+/// let coast = Coast::around([&quay], 15.0);
+/// assert!(coast.depth(Vector::new(50.0, 30.0)).is_some(), "5 m too near");
+/// assert!(coast.depth(Vector::new(50.0, 40.0)).is_none());
+/// assert!(Coast::none().is_empty());
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Coast {
     blocks: Vec<PolytopeObstacle>,

@@ -24,6 +24,44 @@ pub struct Support {
 ///
 /// Fails closed: a position or velocity that is not a number is inside, at distance NaN, at risk 1. Before
 /// t = 0 there is no obstacle.
+///
+/// ```
+/// use searoom::frame::{Pose, Vector};
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{PolytopeObstacle, SpaceTimeObstacle};
+/// use searoom::trajectory::Segment;
+///
+/// let square = [(-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0)];
+/// let square = square.map(|(x, y)| Vector::new(200.0 + x, y));
+/// let initial = ConvexPolygon::hull(&square)?;
+/// let velocity = ConvexPolygon::hull(&[Vector::new(-2.0, 0.0), Vector::new(-3.0, 0.0)])?;
+/// let set = PolytopeObstacle::new("ferry", initial, velocity);
+///
+/// // after 10 s it reaches from 160 m to 190 m east
+/// assert!(set.contains(Vector::new(161.0, 0.0), 10.0));
+/// assert!(!set.contains(Vector::new(159.0, 0.0), 10.0));
+/// assert_eq!(set.moving_vertices().len(), set.faces().len());
+/// let slack = set.slack(Vector::new(150.0, 0.0), 10.0);
+/// assert!((slack.value - 10.0).abs() < 1e-9);
+/// assert!(set.faces()[slack.face].normal.x < 0.0);
+/// let east = set.support(Vector::new(1.0, 0.0), 10.0);
+/// assert_eq!((east.value, east.rate), (190.0, -2.0));
+///
+/// // own ship at 5 m/s against it
+/// let ahead = Segment {
+///     start: Pose::new(Vector::zeros(), 0.0),
+///     start_time: 0.0,
+///     duration: 60.0,
+///     speed: 5.0,
+///     turn_rate: 0.0,
+/// };
+/// let contact = set.first_contact(&ahead, 0.0).expect("they meet");
+/// assert!((contact - 190.0 / 8.0).abs() < 1e-9);
+/// assert!(set.peak_risk(&ahead).risk > 0.9);
+/// let approach = set.closest_approach(Vector::new(0.0, 50.0), Vector::new(5.0, 0.0), 60.0);
+/// assert!((approach.distance - 40.0).abs() < 1e-6);
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 pub trait SpaceTimeObstacle {
     /// The target's name.
     fn name(&self) -> &str;

@@ -18,6 +18,24 @@ pub struct HalfPlane {
 ///
 /// `V ⊕ (O_0 - x) / T ⊕ cone(O_0 - x)`: exact for a finite horizon `T`. For an infinite one it is the closure,
 /// which adds the velocities that come arbitrarily near and never touch.
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{PolytopeObstacle, VelocityObstacle};
+///
+/// let square = [(190.0, -10.0), (210.0, -10.0), (210.0, 10.0), (190.0, 10.0)];
+/// let initial = ConvexPolygon::hull(&square.map(|(x, y)| Vector::new(x, y)))?;
+/// let set = PolytopeObstacle::new("buoy", initial, ConvexPolygon::point(Vector::zeros()));
+/// let region = VelocityObstacle::new(&set, Vector::zeros(), 60.0);
+/// assert!(region.contains(Vector::new(5.0, 0.0)));
+/// // too slow to be there within 60 s, and past it
+/// assert!(!region.contains(Vector::new(3.0, 0.0)));
+/// assert!(!region.contains(Vector::new(5.0, 2.0)));
+/// let outside = |v: Vector| region.half_planes().iter().any(|h| h.normal.dot(&v) > h.offset);
+/// assert!(outside(Vector::new(5.0, 2.0)));
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocityObstacle {
     half_planes: Vec<HalfPlane>,

@@ -359,6 +359,30 @@ impl Outcome {
 }
 
 /// The answer of a planner with what led to it.
+///
+/// ```
+/// use searoom::evaluation::{Evaluation, Passage};
+/// use searoom::obstacle::SpaceTimeObstacle;
+/// use searoom::pipeline::{self, Run, TargetSets};
+/// use searoom::planner::{Outcome, Plan, SearchStats};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run: Run = pipeline::run(scenario);
+/// let sets: &TargetSets = &run.sets[0];
+/// assert_eq!(sets.hard.name(), "target");
+/// let Outcome::Solved(Plan { trajectory, cost, .. }) = &run.planned.outcome else {
+///     panic!("there is room");
+/// };
+/// assert!(trajectory.end_time() > 300.0 && *cost > 0.0);
+/// let SearchStats { expanded, generated, .. } = run.planned.stats;
+/// assert!(expanded <= generated);
+/// let judged: &Evaluation = run.evaluation.as_ref().expect("every plan is judged");
+/// assert!(judged.verified() && judged.violations.is_empty());
+/// let passage: &Passage = &judged.passages[0];
+/// assert!(passage.dcpa >= passage.min_clearance);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Planned {
     /// The verdict.

@@ -5,7 +5,7 @@ use rerun::blueprint::{
     Spatial3DView, TextDocumentView, TimePanel, TimeSeriesView, Vertical,
 };
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
-use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
+use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind, TimelineName};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis,
     VisibleTimeRanges, VisualBounds2D,
@@ -13,6 +13,7 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
 };
+use rerun::log::{Chunk, ChunkError};
 use rerun::{
     AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult,
 };
@@ -29,6 +30,9 @@ use crate::frame::{Vector, knots_from_mps, to_starboard};
 
 /// Seconds in which the whole run is played.
 const PLAY_S: f64 = 25.0;
+
+/// The timeline of the store that the layout is in: what a user changes comes later on it.
+const LAYOUT_TIMELINE: &str = "blueprint";
 
 /// Metres that a plot of distances shows at least, or half of the sea that is shown.
 const LEAST_RANGE_M: f64 = 50.0;
@@ -382,7 +386,8 @@ fn send(
         .into_iter()
         .filter(|m| m.store_id().kind() == StoreKind::Blueprint)
         .filter(|m| !matches!(m, LogMsg::BlueprintActivationCommand(_)))
-        .collect();
+        .map(without_clock)
+        .collect::<Result<_, _>>()?;
     let Some(id) = messages.first().map(|m| m.store_id().clone()) else {
         return Ok(());
     };
@@ -393,7 +398,7 @@ fn send(
         .memory()?;
     extra.set_log_time_enabled(false);
     extra.set_log_tick_enabled(false);
-    extra.set_time_sequence("blueprint", 0);
+    extra.set_time_sequence(LAYOUT_TIMELINE, 0);
     for (path, property) in properties {
         extra.log(path.as_str(), property.as_ref())?;
     }
@@ -408,4 +413,14 @@ fn send(
         },
     );
     Ok(())
+}
+
+/// A part of the layout without the time of day that the library writes beside it.
+fn without_clock(message: LogMsg) -> Result<LogMsg, ChunkError> {
+    let LogMsg::ArrowMsg(store, data) = message else {
+        return Ok(message);
+    };
+    let kept = [TimelineName::from(LAYOUT_TIMELINE)].into_iter().collect();
+    let chunk = Chunk::from_arrow_msg(&data)?.timelines_sliced(&kept);
+    Ok(LogMsg::ArrowMsg(store, chunk.to_arrow_msg()?))
 }

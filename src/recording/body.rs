@@ -36,6 +36,8 @@ pub struct Stretch {
     vertices: Vec<MovingVertex>,
     /// Of the side from the vertex before to each vertex: its normal, and how fast it moves outward.
     sides: Vec<(Vector, f64)>,
+    /// The sides are chords of a surface without edges.
+    round: bool,
 }
 
 impl Stretch {
@@ -50,6 +52,7 @@ impl Stretch {
             to,
             vertices: moving_vertices(set).into_iter().map(by_the_clock).collect(),
             sides: faces.map(|f| (f.normal, f.velocity_support)).collect(),
+            round: false,
         }
     }
 
@@ -75,6 +78,7 @@ impl Stretch {
             to,
             vertices: vertices.collect(),
             sides: sides.collect(),
+            round: true,
         }
     }
 
@@ -139,39 +143,92 @@ fn extreme(set: &ConvexPolygon, along: Vector) -> Vector {
         .unwrap_or_else(Vector::zeros)
 }
 
-/// The body from t = 0 to the scene's end: one flat side per face and stretch, and the last section on top. Every
-/// side has its own corners, so that its normal is flat.
-pub fn mesh(stage: &Stage, stretches: &[Stretch]) -> Mesh3D {
-    let mut corners: Vec<[f32; 3]> = Vec::new();
-    let mut normals: Vec<[f32; 3]> = Vec::new();
-    let mut triangles: Vec<[u32; 3]> = Vec::new();
-    for stretch in stretches {
+/// A surface as it grows.
+#[derive(Debug, Default)]
+struct Surface {
+    corners: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Surface {
+    /// One flat side per face: every side has its own corners.
+    fn add_flat(&mut self, stage: &Stage, stretch: &Stretch) {
         let vertices = &stretch.vertices;
         let count = vertices.len();
-        for (i, (outward, speed)) in stretch.sides.iter().enumerate() {
+        for (i, side) in stretch.sides.iter().enumerate() {
             let ends = [vertices[(i + count - 1) % count], vertices[i]];
-            let base = corners.len() as u32;
+            let base = self.corners.len() as u32;
             for time in [stretch.from, stretch.to] {
-                corners.extend(ends.map(|v| stage.lifted(v.at(time), time)));
+                let ends = ends.map(|v| stage.lifted(v.at(time), time));
+                self.corners.extend(ends);
             }
-            let rise = -speed / stage.metres_per_second;
-            let length = (1.0 + rise * rise).sqrt();
-            let normal = [outward.x, outward.y, rise].map(|n| (n / length) as f32);
-            normals.extend([normal; 4]);
-            triangles.extend([[base, base + 1, base + 3], [base, base + 3, base + 2]]);
+            self.normals.extend([upward(stage, *side); 4]);
+            let sides = [[base, base + 1, base + 3], [base, base + 3, base + 2]];
+            self.triangles.extend(sides);
+        }
+    }
+
+    /// Neighbours share their corners.
+    fn add_round(&mut self, stage: &Stage, stretch: &Stretch) {
+        let count = stretch.vertices.len();
+        let base = self.corners.len() as u32;
+        for time in [stretch.from, stretch.to] {
+            for (i, vertex) in stretch.vertices.iter().enumerate() {
+                self.corners.push(stage.lifted(vertex.at(time), time));
+                let (before, after) = (stretch.sides[i], stretch.sides[(i + 1) % count]);
+                let outward = (before.0 + after.0).normalize();
+                let side = (outward, 0.5 * (before.1 + after.1));
+                self.normals.push(upward(stage, side));
+            }
+        }
+        let count = count as u32;
+        for i in 0..count {
+            let (here, next) = (base + i, base + (i + 1) % count);
+            let sides = [
+                [here, next, next + count],
+                [here, next + count, here + count],
+            ];
+            self.triangles.extend(sides);
+        }
+    }
+
+    fn add_top(&mut self, stage: &Stage, stretch: &Stretch) {
+        let base = self.corners.len() as u32;
+        let top = stretch.vertices.iter();
+        let top = top.map(|v| stage.lifted(v.at(stretch.to), stretch.to));
+        self.corners.extend(top);
+        let count = stretch.vertices.len();
+        self.normals
+            .extend(std::iter::repeat_n([0.0, 0.0, 1.0], count));
+        let fan = (2..count as u32).map(|i| [base, base + i - 1, base + i]);
+        self.triangles.extend(fan);
+    }
+}
+
+/// The normal in the volume of a side that moves outward at a speed.
+fn upward(stage: &Stage, (outward, speed): (Vector, f64)) -> [f32; 3] {
+    let rise = -speed / stage.metres_per_second;
+    let length = (1.0 + rise * rise).sqrt();
+    [outward.x, outward.y, rise].map(|n| (n / length) as f32)
+}
+
+/// The body from t = 0 to the scene's end, and the last section on top.
+pub fn mesh(stage: &Stage, stretches: &[Stretch]) -> Mesh3D {
+    let mut surface = Surface::default();
+    for stretch in stretches {
+        if stretch.round {
+            surface.add_round(stage, stretch);
+        } else {
+            surface.add_flat(stage, stretch);
         }
     }
     if let Some(last) = stretches.last() {
-        let base = corners.len() as u32;
-        let top = last.vertices.iter();
-        corners.extend(top.map(|v| stage.lifted(v.at(last.to), last.to)));
-        let count = last.vertices.len();
-        normals.extend(std::iter::repeat_n([0.0, 0.0, 1.0], count));
-        triangles.extend((2..count as u32).map(|i| [base, base + i - 1, base + i]));
+        surface.add_top(stage, last);
     }
-    Mesh3D::new(corners)
-        .with_vertex_normals(normals)
-        .with_triangle_indices(triangles)
+    Mesh3D::new(surface.corners)
+        .with_vertex_normals(surface.normals)
+        .with_triangle_indices(surface.triangles)
 }
 
 #[cfg(test)]

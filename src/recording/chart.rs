@@ -4,7 +4,7 @@ use rerun::{
     AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult,
 };
 
-use super::scene::{Bounds, Motion, Scene, Stage, desired_leg, flat, round_down};
+use super::scene::{Bounds, Hues, Motion, Scene, Stage, desired_leg, flat, round_down};
 use super::style::{self, Pace};
 use super::{MAP, path};
 use crate::frame::Vector;
@@ -126,15 +126,20 @@ fn plan_legend(scene: &Scene) -> Vec<Key> {
 /// The sets, the land and the grid.
 pub fn waters_legend(stage: &Stage) -> Vec<Key> {
     let mut entries: Vec<Key> = Vec::new();
+    // those who sail may each keep out of sets of their own
+    let whose = match stage.hues {
+        Hues::Targets => "",
+        Hues::OwnShips => ", the scenario's",
+    };
     if let Some(set) = stage.sets.first() {
         entries.push((
-            "hard set".into(),
+            format!("hard set{whose}"),
             stage.target_color(0),
             super::movers::HARD_RADIUS,
         ));
         if set.hard != set.shaped {
             entries.push((
-                "shaped set".into(),
+                format!("shaped set{whose}"),
                 super::movers::shaped_color(stage, 0),
                 super::movers::SHAPED_RADIUS,
             ));

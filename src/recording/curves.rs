@@ -3,6 +3,7 @@
 use rerun::components::{AggregationPolicy, InterpolationMode};
 use rerun::{EntityPath, RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
+use super::columns::log_columns;
 use super::scene::{Motion, Scene, Stage, desired_leg};
 use super::{TIMELINE, path, style};
 use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap};
@@ -20,6 +21,12 @@ pub const RISK: &str = "curves/risk";
 pub const SPEED: &str = "curves/speed_kn";
 /// Course, continuous: it may leave 0..360 rather than jump.
 pub const COURSE: &str = "curves/course_deg";
+
+/// Of the range of a curve: how far it may be drawn from its samples, less than half a pixel.
+const OFF: f64 = 3e-4;
+
+/// Metres, degrees, shares: what varies by less is drawn as if it did not vary.
+const LEAST_RANGE: f64 = 1e-3;
 
 /// All curves, at most some hundred samples each.
 pub fn log_curves(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
@@ -58,19 +65,63 @@ pub fn log_plot(
         .with_interpolation_mode(between)
         // averaging neighbours would show speeds and depths that are not there
         .with_aggregation_policy(AggregationPolicy::Off);
-    rec.log_static(entity.clone(), &look)?;
-    let rows = 0..times.len();
-    let values = rows.flat_map(|row| series.iter().map(move |s| s.values[row]));
-    rec.send_columns(
-        entity,
-        [TimeColumn::new_duration_secs(
-            TIMELINE,
-            times.iter().copied(),
-        )],
-        Scalars::update_fields()
-            .with_scalars(values)
-            .columns(vec![series.len(); times.len()])?,
-    )
+    let rows = if between == InterpolationMode::Linear {
+        bends(times, series)
+    } else {
+        (0..times.len()).collect()
+    };
+    let values = rows
+        .iter()
+        .flat_map(|&row| series.iter().map(move |s| s.values[row]));
+    let columns = Scalars::update_fields()
+        .with_scalars(values)
+        .columns(vec![series.len(); rows.len()])?;
+    let times = TimeColumn::new_duration_secs(TIMELINE, rows.iter().map(|&row| times[row]));
+    log_columns(rec, entity, times, &look, columns)
+}
+
+/// The rows that draw the same curves: the first and the last, those of least and greatest values, and as many between
+/// them that no curve is off by more than [`OFF`] of its range. O(rows log rows) as a rule.
+fn bends(times: &[f64], series: &[Series]) -> Vec<usize> {
+    let Some(last) = times.len().checked_sub(1) else {
+        return Vec::new();
+    };
+    let mut kept = vec![0, last];
+    let mut allowed = Vec::new();
+    for curve in series {
+        let by_value = |a: &usize, b: &usize| curve.values[*a].total_cmp(&curve.values[*b]);
+        let (low, high) = ((0..=last).min_by(by_value), (0..=last).max_by(by_value));
+        let (low, high) = (low.unwrap_or(0), high.unwrap_or(0));
+        kept.extend([low, high]);
+        let range = curve.values[high] - curve.values[low];
+        allowed.push(OFF * range.max(LEAST_RANGE));
+    }
+    kept.sort_unstable();
+    kept.dedup();
+    let mut stretches: Vec<(usize, usize)> = kept.windows(2).map(|w| (w[0], w[1])).collect();
+    while let Some((from, to)) = stretches.pop() {
+        let worst = (from + 1..to)
+            .map(|row| {
+                let share = (times[row] - times[from]) / (times[to] - times[from]);
+                let off = series.iter().zip(&allowed).map(|(curve, allowed)| {
+                    let v = &curve.values;
+                    let off = (v[from] + share * (v[to] - v[from]) - v[row]).abs();
+                    if off > *allowed {
+                        off / allowed.max(f64::MIN_POSITIVE)
+                    } else {
+                        0.0
+                    }
+                });
+                (row, off.fold(0.0, f64::max))
+            })
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((row, _)) = worst.filter(|w| w.1 > 0.0) {
+            kept.push(row);
+            stretches.extend([(from, row), (row, to)]);
+        }
+    }
+    kept.sort_unstable();
+    kept
 }
 
 fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {

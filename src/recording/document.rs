@@ -1,12 +1,30 @@
 //! The plan or comparison document in a recording: all of it but the time that planning took, which lies in a store of its own, so that
-//! recordings of one scenario compare equal.
+//! recordings of one scenario compare equal. It is compressed: as text it would be most of a long run's recording.
 
+use std::io::{Read, Write};
+
+use rerun::components::{Blob, MediaType};
+use rerun::external::arrow::array::{Array, AsArray};
+use rerun::external::arrow::datatypes::UInt8Type;
 use rerun::external::re_log_types::LogMsg;
+use rerun::log::Chunk;
 use rerun::{
-    MediaType, RecordingStream, RecordingStreamBuilder, RecordingStreamResult, TextDocument,
+    DynamicArchetype, RecordingStream, RecordingStreamBuilder, RecordingStreamResult, TextDocument,
 };
 
 use super::{APPLICATION, TIMING};
+
+/// What the document is in the recording.
+const ARCHETYPE: &str = "Document";
+const BLOB: &str = "blob";
+const MEDIA_TYPE: &str = "media_type";
+const ZSTANDARD: &str = "application/zstd";
+
+/// Of twenty-two: those behind it gain little and take long.
+const LEVEL: i32 = 9;
+
+/// Bytes, 1 GiB: more is no document of ours.
+const DOCUMENT_BYTES: u64 = 1 << 30;
 
 /// What stands before the time in the text of a document.
 const KEY: &str = "\"plan_s\": ";
@@ -56,12 +74,46 @@ pub(super) fn log_document(
     rec: &RecordingStream,
     entity: &str,
     document: &str,
-) -> RecordingStreamResult<()> {
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     // what is logged before is then in messages before
     let _ = rec.flush_blocking();
-    let json = MediaType("application/json".into());
-    let text = Parted::of(document).text;
-    rec.log_static(entity, &TextDocument::new(text).with_media_type(json))
+    let bytes = packed(&Parted::of(document).text)?;
+    Ok(rec.log_static(entity, &archetype(bytes))?)
+}
+
+fn archetype(bytes: Vec<u8>) -> DynamicArchetype {
+    DynamicArchetype::new(ARCHETYPE)
+        .with_component::<Blob>(BLOB, [bytes])
+        .with_component::<MediaType>(MEDIA_TYPE, [ZSTANDARD])
+}
+
+/// With a checksum: the file has none.
+fn packed(text: &str) -> std::io::Result<Vec<u8>> {
+    let mut encoder = zstd::Encoder::new(Vec::new(), LEVEL)?;
+    encoder.include_checksum(true)?;
+    encoder.write_all(text.as_bytes())?;
+    encoder.finish()
+}
+
+/// The text of a document without its times; an error in words where its bytes are not what was written.
+pub(super) fn unpacked(chunks: &[Chunk]) -> Result<String, String> {
+    let missing = || "the document has no bytes".to_owned();
+    let chunk = chunks.last().ok_or_else(missing)?;
+    let mut identifiers = chunk.components_identifiers();
+    let blob = identifiers
+        .find(|c| c.as_str() == format!("{ARCHETYPE}:{BLOB}"))
+        .and_then(|c| chunk.components().get_array(c))
+        .filter(|rows| !rows.is_empty())
+        .map(|rows| rows.value(0))
+        .ok_or_else(missing)?;
+    let bytes = blob.as_list_opt::<i32>().filter(|l| !l.is_empty());
+    let bytes = bytes.map(|l| l.value(0)).ok_or_else(missing)?;
+    let bytes = bytes.as_primitive_opt::<UInt8Type>().ok_or_else(missing)?;
+    let mut text = String::new();
+    zstd::Decoder::new(bytes.values().as_ref())
+        .and_then(|decoder| decoder.take(DOCUMENT_BYTES).read_to_string(&mut text))
+        .map_err(|error| format!("the document is damaged: {error}"))?;
+    Ok(text)
 }
 
 /// The time in a store of the kind that is not compared, nor shown unless it is made active.
@@ -78,6 +130,9 @@ pub(super) fn timing(document: &str) -> RecordingStreamResult<Vec<LogMsg>> {
 
 #[cfg(test)]
 mod tests {
+    use rerun::AsComponents;
+
+    use super::super::DOCUMENT;
     use super::*;
 
     #[test]
@@ -93,5 +148,31 @@ mod tests {
             assert_eq!(joined(&parted.text, Some(&parted.times)), text);
         }
         assert_eq!(joined("{\"plan_s\": null}", None), "{\"plan_s\": null}");
+    }
+
+    #[test]
+    fn a_damaged_document_is_an_error() {
+        let text = "[0.1234, 5.678]\n".repeat(500);
+        let whole = packed(&text).expect("packs");
+        assert!(whole.len() < text.len() / 20, "{}", whole.len());
+        let chunk = |bytes: &[u8]| {
+            let blob = archetype(bytes.to_vec()).as_serialized_batches();
+            let columns = blob.into_iter().map(|batch| {
+                let column = batch.partitioned([1]).expect("one row");
+                (column.descriptor, column.list_array)
+            });
+            let (id, path) = (rerun::log::ChunkId::new(), DOCUMENT.into());
+            let columns = columns.collect();
+            Chunk::from_auto_row_ids(id, path, Default::default(), columns).expect("a chunk")
+        };
+        assert_eq!(unpacked(&[chunk(&whole)]), Ok(text));
+        let mut changed = whole.clone();
+        let last = changed.len() - 6;
+        changed[last] ^= 1;
+        for bytes in [&whole[..whole.len() - 5], &changed, b"", b"a text"] {
+            let found = unpacked(&[chunk(bytes)]);
+            assert!(found.is_err_and(|e| e.contains("damaged")), "{bytes:?}");
+        }
+        assert!(unpacked(&[]).is_err());
     }
 }

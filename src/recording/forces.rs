@@ -3,8 +3,9 @@
 use rerun::components::{AggregationPolicy, InterpolationMode};
 use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
+use super::columns::log_columns;
 use super::scene::{Motion, Scene};
-use super::{TIMELINE, style};
+use super::{TIMELINE, path, style};
 use crate::frame::clockwise_deg_per_s;
 use crate::trajectory::{Node, Steered};
 
@@ -66,16 +67,10 @@ fn log(
         .with_widths([2.0; 3])
         .with_interpolation_mode(between)
         .with_aggregation_policy(AggregationPolicy::Off);
-    rec.log_static(entity, &look)?;
     let nodes = motion.nodes();
-    rec.send_columns(
-        entity,
-        [TimeColumn::new_duration_secs(
-            TIMELINE,
-            nodes.iter().map(|n| n.time),
-        )],
-        Scalars::update_fields()
-            .with_scalars(nodes.iter().flat_map(values))
-            .columns(vec![3; nodes.len()])?,
-    )
+    let times = TimeColumn::new_duration_secs(TIMELINE, nodes.iter().map(|n| n.time));
+    let columns = Scalars::update_fields()
+        .with_scalars(nodes.iter().flat_map(values))
+        .columns(vec![3; nodes.len()])?;
+    log_columns(rec, path(&[entity]), times, &look, columns)
 }

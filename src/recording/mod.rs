@@ -7,7 +7,7 @@
 //! | entity | what it is |
 //! | --- | --- |
 //! | `summary` | verdict, manoeuvre, encounters, costs, claims, as markdown |
-//! | `plan_document` | the plan document as JSON, but for the time that planning took: that is in a store of its own |
+//! | `plan_document` | the plan document as JSON, compressed, but for the time that planning took: that is in a store of its own |
 //! | `chart/map` | turns north up (views of Rerun are y-down); everything below is east, north |
 //! | `chart/map/grid`, `legend` | scale, north, line styles |
 //! | `chart/map/land` | outlines of the land, where there is a map |
@@ -48,7 +48,7 @@
 //! | entity | what it is |
 //! | --- | --- |
 //! | `summary` | the table of the comparison, as markdown |
-//! | `comparison_document` | its JSON document |
+//! | `comparison_document` | its JSON document, compressed |
 //! | `chart/map/methods/<method>/way`, `space_time/methods/<method>/way` | her motion, in the colour that the method has in figures |
 //! | `chart/map/methods/<method>/own_ship`, `own_ship/hull` | her place, hull and speed vector at the cursor |
 //! | `…/methods/<method>/explored/free`, `blocked` | edges that the search tested; hidden until asked for |
@@ -57,13 +57,14 @@
 //!
 //! Edges in `blocked` carry as labels what they meet, when, and by which rule or limit.
 //!
-//! A plot is one entity; its curves are the scalars of each row, named in `SeriesLines:names`.
+//! What holds from the first moment on, colours and names, is in the first row of what moves. A plot is one entity; its curves are the scalars of each row, named in `SeriesLines:names`.
 //! The blueprint, a store of its own in the same file, lays this out. Two recordings of one run differ
 //! in their bytes (row ids are clock readings) and compare equal with `rerun rrd compare`.
 
 mod blueprint;
 mod body;
 mod chart;
+mod columns;
 mod comparison;
 mod curves;
 mod document;
@@ -73,6 +74,7 @@ mod forces;
 mod frames;
 mod land;
 mod movers;
+mod packing;
 mod path_time;
 mod reading;
 mod scene;
@@ -89,7 +91,6 @@ pub use table::{Columns, EntityRow, EntityTable};
 
 use std::path::{Path, PathBuf};
 
-use rerun::external::re_log_encoding::Encoder;
 use rerun::{
     EntityPath, EntityPathPart, RecordingStream, RecordingStreamBuilder, RecordingStreamResult,
 };
@@ -136,8 +137,7 @@ pub enum RecordingError {
 
 /// Writes `run` as a recording with its blueprint to `path`, in full or not at all: to a temporary name
 /// in the same folder first, then renamed. Missing parent folders are made, an older file is replaced.
-/// One target makes about 250 kB, every
-/// further one about 60 kB more. `document`, the text of the plan document, is kept in it: [`Recorded::document`] gives it back.
+/// One target makes about 200 kB; more sets have longer steps of the cursor, so that 300 kB are hardly ever exceeded. `document`, the text of the plan document, is kept in it: [`Recorded::document`] gives it back.
 pub fn write(run: &Run, document: Option<&str>, path: &Path) -> Result<(), RecordingError> {
     let document = document.map(|text| (DOCUMENT, text));
     put(path, &run.scenario.title, document, |rec| {
@@ -180,15 +180,8 @@ fn encode(
         document::log_document(&rec, entity, document)?;
         timing = document::timing(document)?;
     }
-    // the footer is an index into files too large to be read whole; here it would be 40 % of the file
-    let mut encoder = Encoder::local()?;
-    encoder.do_not_emit_footer();
-
     // the document stays last
-    encoder.extend(timing.into_iter().map(Ok))?;
-    encoder.extend(store.take().into_iter().map(Ok))?;
-    encoder.finish()?;
-    Ok(encoder.into_inner()?)
+    packing::packed(timing.into_iter().chain(store.take()))
 }
 
 fn log_run(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {

@@ -6,6 +6,7 @@ use rerun::{
 };
 
 use super::chart::{Lines, Strip};
+use super::columns::{log_columns, sparse};
 use super::scene::{Motion, Scene, Stage, flat, round_down};
 use super::{MAP, TIMELINE, TRAILS, path, style};
 use crate::frame::{Pose, Vector};
@@ -89,7 +90,6 @@ fn log_sections(
     let look = LineStrips2D::update_fields()
         .with_colors([color])
         .with_radii([radius]);
-    rec.log_static(entity.clone(), &look)?;
     let outlines = stage
         .moments
         .iter()
@@ -97,7 +97,7 @@ fn log_sections(
     let columns = LineStrips2D::update_fields()
         .with_strips(outlines)
         .columns_of_unit_batches()?;
-    rec.send_columns(entity, [stage.moment_column()], columns)
+    log_columns(rec, entity, stage.moment_column(), &look, columns)
 }
 
 /// The closed boundary of a polygon.
@@ -129,9 +129,8 @@ fn log_target(
     }
     let lines = lines.archetype();
     let parts: [&dyn AsComponents; 2] = [&lines, &label(stage, color, &target.name)];
-    rec.log_static(entity.clone(), &parts)?;
     let places = stage.moments.iter().map(|&t| target.position_at(t));
-    log_places(rec, stage, entity, places)
+    log_places(rec, stage, entity, &parts, places)
 }
 
 /// Her place and name, and below it her hull and her speed vector; the name is always shown where `named`.
@@ -143,34 +142,26 @@ pub fn log_own_ship(
     named: bool,
 ) -> RecordingStreamResult<()> {
     let name = label(stage, own.color, &own.name).with_show_labels(named);
-    rec.log_static(entity.clone(), &name)?;
-    let poses = stage.moments.iter().map(|&t| own.motion.pose_at(t));
-    log_places(
-        rec,
-        stage,
-        entity.clone(),
-        poses.clone().map(|p| p.position),
-    )?;
-
-    let hull = entity.join(&EntityPath::from("hull"));
-    let turns = Transform3D::update_fields()
-        .with_many_quaternion(poses.map(|p| rotation(p.heading)))
-        .columns_of_unit_batches()?;
-    rec.send_columns(hull.clone(), [stage.moment_column()], turns)?;
-    log_own_outline(rec, stage, hull, own)
+    let places = stage
+        .moments
+        .iter()
+        .map(|&t| own.motion.pose_at(t).position);
+    log_places(rec, stage, entity.clone(), &name, places)?;
+    log_own_hull(rec, stage, entity.join(&EntityPath::from("hull")), own)
 }
 
 fn log_places(
     rec: &RecordingStream,
     stage: &Stage,
     entity: rerun::EntityPath,
+    look: &dyn AsComponents,
     places: impl Iterator<Item = Vector>,
 ) -> RecordingStreamResult<()> {
     let raised = places.map(|p| [p.x as f32, p.y as f32, 0.0]);
     let columns = Transform3D::update_fields()
         .with_many_translation(raised)
         .columns_of_unit_batches()?;
-    rec.send_columns(entity, [stage.moment_column()], columns)
+    log_columns(rec, entity, stage.moment_column(), look, columns)
 }
 
 /// A dot per ship and moment; the blueprint shows those up to the cursor. The last one marks the ship
@@ -187,7 +178,6 @@ pub fn log_trails(
     let look = Points2D::update_fields()
         .with_colors(colors)
         .with_radii([style::points(2.4)]);
-    rec.log_static(entity.clone(), &look)?;
     let mut dots = Vec::new();
     for &time in &stage.moments {
         let own = own.iter().map(|o| o.motion.pose_at(time).position);
@@ -195,17 +185,14 @@ pub fn log_trails(
         dots.extend(all.map(flat));
     }
     let lengths = vec![own.len() + targets.len(); stage.moments.len()];
-    rec.send_columns(
-        entity,
-        [stage.moment_column()],
-        Points2D::update_fields()
-            .with_positions(dots)
-            .columns(lengths)?,
-    )
+    let columns = Points2D::update_fields()
+        .with_positions(dots)
+        .columns(lengths)?;
+    log_columns(rec, entity, stage.moment_column(), &look, columns)
 }
 
-/// Own ship's hull and speed vector in her own frame, logged where the speed changes.
-fn log_own_outline(
+/// Own ship's hull and speed vector, which turn with her; drawn anew where the speed changes.
+fn log_own_hull(
     rec: &RecordingStream,
     stage: &Stage,
     entity: EntityPath,
@@ -214,34 +201,40 @@ fn log_own_outline(
     let look = LineStrips2D::update_fields()
         .with_colors([own.color])
         .with_radii([style::points(1.2), style::points(0.8)]);
-    rec.log_static(entity.clone(), &look)?;
-    let mut times = match own.motion {
+    let changes = match own.motion {
         Motion::Planned(trajectory) => trajectory.joints(),
         Motion::Undisturbed(desired) => desired.legs().iter().map(|l| l.start_time).collect(),
     };
-    dedup_increasing(&mut times);
+    let mut times = [&changes[..], &stage.moments].concat();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
     let hull = stage.scenario.own_ship.hull;
     let hull = outline(&hull.polygon(&Pose::new(Vector::zeros(), 0.0)));
-    let strips = times.iter().flat_map(|&t| {
-        let tip = own.motion.speed_at(t) * vector_seconds(stage);
-        [hull.clone(), vec![[0.0, 0.0], [tip as f32, 0.0]]]
-    });
-    let columns = LineStrips2D::update_fields()
-        .with_strips(strips)
-        .columns(vec![2; times.len()])?;
-    rec.send_columns(
-        entity,
-        [TimeColumn::new_duration_secs(
-            TIMELINE,
-            times.iter().copied(),
-        )],
-        columns,
-    )
-}
-
-/// Segments of no duration share their start with the next.
-fn dedup_increasing(times: &mut Vec<f64>) {
-    times.dedup_by(|later, earlier| *later <= *earlier);
+    let mut strips = Vec::new();
+    let mut drawn = None;
+    let lengths: Vec<Option<usize>> = times
+        .iter()
+        .map(|&t| {
+            let tip = (own.motion.speed_at(t) * vector_seconds(stage)) as f32;
+            let is_new = drawn.replace(tip) != Some(tip);
+            is_new.then(|| {
+                strips.extend([hull.clone(), vec![[0.0, 0.0], [tip, 0.0]]]);
+                2
+            })
+        })
+        .collect();
+    let drawn = LineStrips2D::update_fields().with_strips(strips);
+    let drawn = drawn.as_serialized_batches().into_iter();
+    let turns = Transform3D::update_fields()
+        .with_many_quaternion(
+            times
+                .iter()
+                .map(|&t| rotation(own.motion.pose_at(t).heading)),
+        )
+        .columns_of_unit_batches()?;
+    let columns = drawn.map(|batch| sparse(batch, &lengths)).chain(turns);
+    let times = TimeColumn::new_duration_secs(TIMELINE, times.iter().copied());
+    log_columns(rec, entity, times, &look, columns)
 }
 
 /// Seconds that a speed vector reaches ahead.

@@ -5,6 +5,7 @@ use rerun::{
 };
 
 use super::chart::{Lines, multiples};
+use super::columns::log_columns;
 use super::scene::{Scene, round_down};
 use super::{PATH_TIME_PLANE, path, style};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
@@ -159,14 +160,13 @@ fn log_now(
     let look = LineStrips2D::update_fields()
         .with_colors([style::chart_text()])
         .with_radii([style::points(0.8)]);
-    rec.log_static(entity.clone(), &look)?;
     let lines = times
         .iter()
         .map(|&time| [0.0, frame.length].map(|distance| frame.point(&PathTime { distance, time })));
     let columns = LineStrips2D::update_fields()
         .with_strips(lines)
         .columns_of_unit_batches()?;
-    rec.send_columns(entity, [scene.moment_column()], columns)?;
+    log_columns(rec, entity, scene.moment_column(), &look, columns)?;
     if diagram.profile.len() < 2 {
         return Ok(());
     }
@@ -174,7 +174,6 @@ fn log_now(
     let look = Points2D::update_fields()
         .with_colors([style::own_ship()])
         .with_radii([style::points(5.0)]);
-    rec.log_static(entity.clone(), &look)?;
     let places: Vec<[f32; 2]> = times
         .iter()
         .map(|time| frame.point(&on_profile(&diagram.profile, *time)))
@@ -182,7 +181,7 @@ fn log_now(
     let columns = Points2D::update_fields()
         .with_positions(places)
         .columns_of_unit_batches()?;
-    rec.send_columns(entity, [scene.moment_column()], columns)
+    log_columns(rec, entity, scene.moment_column(), &look, columns)
 }
 
 /// Where own ship is on her profile, resting at its end.

@@ -8,7 +8,7 @@ use rerun::external::re_log_encoding::DecoderApp;
 use rerun::external::re_log_types::{LogMsg, TimeType};
 use rerun::log::Chunk;
 
-use super::document::joined;
+use super::document::{joined, unpacked};
 use super::table::{EntityTable, text_of};
 use super::{APPLICATION, COMPARISON, DOCUMENT, TIMING, frames};
 
@@ -50,8 +50,9 @@ pub struct Recorded {
     pub bytes: u64,
     /// By their paths.
     chunks: BTreeMap<String, Vec<Chunk>>,
-    /// As the plan document has it.
-    timing: Option<String>,
+    /// That of a plan or of a comparison.
+    document: Option<String>,
+    comparison: Option<String>,
 }
 
 /// What one entity holds.
@@ -116,8 +117,10 @@ impl Recorded {
             version: None,
             bytes: bytes.len() as u64,
             chunks: BTreeMap::new(),
-            timing: None,
+            document: None,
+            comparison: None,
         };
+        let mut timing = None;
         for message in DecoderApp::decode_lazy(bytes) {
             match message.map_err(|e| e.to_string())? {
                 LogMsg::SetStoreInfo(info) if info.info.store_id.is_recording() => {
@@ -130,7 +133,7 @@ impl Recorded {
                     if store.is_recording() {
                         read.chunks.entry(path).or_default().push(chunk);
                     } else if path == format!("/{TIMING}") {
-                        read.timing = text_of(&[chunk]);
+                        timing = text_of(&[chunk]);
                     }
                 }
                 LogMsg::SetStoreInfo(_) | LogMsg::BlueprintActivationCommand(_) => {}
@@ -139,6 +142,14 @@ impl Recorded {
         // the order of writing, which row ids keep, whatever the order in the file
         for chunks in read.chunks.values_mut() {
             chunks.sort_by_key(Chunk::row_id_range);
+        }
+        if read.is_ours() {
+            let document = |entity: &str| {
+                let chunks = read.chunks.get(&format!("/{entity}"));
+                let text = chunks.map(|chunks| unpacked(chunks)).transpose()?;
+                Ok::<_, String>(text.map(|text| joined(&text, timing.as_deref())))
+            };
+            (read.document, read.comparison) = (document(DOCUMENT)?, document(COMPARISON)?);
         }
         Ok(read)
     }
@@ -149,24 +160,13 @@ impl Recorded {
     }
 
     /// The plan document as `plan --json` wrote it; `None` in another program's recording, and in one that was cut short.
-    pub fn document(&self) -> Option<String> {
-        if !self.is_ours() {
-            return None;
-        }
-        self.document_at(DOCUMENT)
+    pub fn document(&self) -> Option<&str> {
+        self.document.as_deref()
     }
 
     /// The document of a comparison: that of `compare --json` for its one scenario; `None` in a recording of anything else.
-    pub fn comparison(&self) -> Option<String> {
-        if !self.is_ours() {
-            return None;
-        }
-        self.document_at(COMPARISON)
-    }
-
-    fn document_at(&self, entity: &str) -> Option<String> {
-        let text = text_of(self.chunks.get(&format!("/{entity}"))?)?;
-        Some(joined(&text, self.timing.as_deref()))
+    pub fn comparison(&self) -> Option<&str> {
+        self.comparison.as_deref()
     }
 
     /// Every entity, sorted by path.

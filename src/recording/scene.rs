@@ -11,14 +11,20 @@ use crate::scenario::Scenario;
 use crate::tolerance;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
 
-/// Bytes that the moving sections of all sets may take; the step of the cursor follows.
-const SECTION_BYTES: f64 = 96e3;
+/// Bytes that everything that moves may take; the step of the cursor follows.
+const MOVING_BYTES: f64 = 72e3;
 
-/// Seconds between two moments of the cursor, at least and at most.
-const MOMENT_STEP_S: (f64, f64) = (2.0, 10.0);
+/// Bytes at a moment: a corner of a section, what a row has beside its values, a target with her velocity obstacle, own ship.
+const CORNER_BYTES: usize = 8;
+const ROW_BYTES: usize = 25;
+const TARGET_BYTES: usize = 140;
+const OWN_BYTES: usize = 190;
 
-/// Most moments, as far as the largest step allows.
-const MOMENTS: f64 = 120.0;
+/// Seconds between two moments of the cursor, at least.
+const MOMENT_STEP_S: f64 = 2.0;
+
+/// Moments, at least and at most.
+const MOMENTS: (f64, f64) = (45.0, 120.0);
 
 /// Most samples of one curve.
 const CURVE_SAMPLES: f64 = 400.0;
@@ -117,6 +123,10 @@ impl Bounds {
             low: self.low.add_scalar(-by),
             high: self.high.add_scalar(by),
         }
+    }
+
+    pub fn contains(&self, p: &Vector) -> bool {
+        p.x > self.low.x && p.x < self.high.x && p.y > self.low.y && p.y < self.high.y
     }
 
     pub fn size(&self) -> Vector {
@@ -286,21 +296,20 @@ fn steps(end: f64, step: f64) -> Vec<f64> {
     times
 }
 
-/// Of the last section that is drawn.
-fn corners(set: &Obstacle, end: f64) -> usize {
-    set.outer_section(end).vertices().len()
+/// Bytes of a section as the last one is.
+fn section_bytes(set: &Obstacle, end: f64) -> usize {
+    CORNER_BYTES * set.outer_section(end).vertices().len() + ROW_BYTES
 }
 
+/// Seconds from moment to moment.
 fn moment_step(sets: &[TargetSets], end: f64) -> f64 {
-    let each: usize = sets
-        .iter()
-        .map(|s| corners(&s.hard, end) + corners(&s.shaped, end) + 2)
-        .sum();
-    let rows = (SECTION_BYTES / (8.0 * each.max(1) as f64)).min(MOMENTS);
-    (end / rows)
-        .ceil()
-        .clamp(MOMENT_STEP_S.0, MOMENT_STEP_S.1)
-        .max(end / 1000.0)
+    let of_target = |s: &TargetSets| {
+        let shaped = (s.shaped != s.hard).then(|| section_bytes(&s.shaped, end));
+        TARGET_BYTES + section_bytes(&s.hard, end) + shaped.unwrap_or(0)
+    };
+    let each = OWN_BYTES + sets.iter().map(of_target).sum::<usize>();
+    let moments = (MOVING_BYTES / each as f64).clamp(MOMENTS.0, MOMENTS.1);
+    (end / moments).ceil().max(MOMENT_STEP_S)
 }
 
 /// The desired trajectory, the motions, and every target while it is near one of them.

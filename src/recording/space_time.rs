@@ -7,6 +7,7 @@ use rerun::{
 
 use super::body::{mesh, stretches};
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
+use super::columns::log_columns;
 use super::movers::OwnShip;
 use super::scene::{Bounds, Scene, Stage};
 use super::{VOLUME, path, style};
@@ -228,8 +229,7 @@ pub fn log_now(rec: &RecordingStream, stage: &Stage, own: &[OwnShip]) -> Recordi
         // names of several own ships would lie on one another: they are shown when one is pointed at
         .with_show_labels(own.len() <= 1);
     let entity = path(&[VOLUME, "now"]);
-    let parts: [&dyn AsComponents; 2] = [&frame, &ships];
-    rec.log_static(entity.clone(), &parts)?;
+    let look: [&dyn AsComponents; 2] = [&frame, &ships];
 
     let plane = |time: f64| stage.lifted(Vector::zeros(), time);
     let rises = Transform3D::update_fields()
@@ -245,5 +245,6 @@ pub fn log_now(rec: &RecordingStream, stage: &Stage, own: &[OwnShip]) -> Recordi
     let moves = Points3D::update_fields()
         .with_positions(places)
         .columns(lengths)?;
-    rec.send_columns(entity, [stage.moment_column()], rises.chain(moves))
+    let columns = rises.chain(moves);
+    log_columns(rec, entity, stage.moment_column(), &look, columns)
 }

@@ -14,6 +14,7 @@ use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Relaxation;
 use crate::planner::{Outcome, Plan};
 use crate::scenario::Compliance;
+use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
 
 /// Writes the text once, for all times.
@@ -232,8 +233,8 @@ fn targets_table(scene: &Scene) -> String {
                 " {} | {} | {:.1} m | {:.1} m |",
                 approach(p.dcpa, p.tcpa),
                 p.passing_side,
-                p.min_clearance,
-                p.min_margin
+                tenths(p.min_clearance),
+                tenths(p.min_margin)
             ),
             None => write!(table, " – | – | – | – |"),
         };
@@ -248,13 +249,18 @@ fn targets_table(scene: &Scene) -> String {
     table
 }
 
-/// A closest approach: metres between the hulls, negative in overlap, and seconds.
+/// A closest approach: metres between the hulls, negative in overlap, and seconds. Touching is no collision.
 fn approach(distance: f64, time: f64) -> String {
-    if distance < 0.0 {
+    if distance < -tolerance::DEPTH_M {
         format!("collision at {time:.0} s")
     } else {
-        format!("{distance:.0} m at {time:.0} s")
+        format!("{:.0} m at {time:.0} s", distance.max(0.0))
     }
+}
+
+/// Rounded to one decimal; what rounds to zero has no sign.
+fn tenths(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0 + 0.0
 }
 
 fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
@@ -262,7 +268,7 @@ fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
         .graph_cost
         .map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
     let delay = if evaluation.delay.is_finite() {
-        format!("{:+.1} s", evaluation.delay)
+        format!("{:+.1} s", tenths(evaluation.delay))
     } else {
         "–".to_owned()
     };
@@ -274,7 +280,7 @@ fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
         evaluation.arc_length_error,
         evaluation.duration,
         evaluation.length,
-        evaluation.min_clearance,
+        tenths(evaluation.min_clearance),
     )
 }
 
@@ -331,4 +337,19 @@ fn key(scene: &Scene) -> String {
         vector_seconds(scene),
         super::chart::mark_step(scene)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn touching_is_no_collision_and_zero_has_no_sign() {
+        assert_eq!(approach(-1e-8, 600.0), "0 m at 600 s");
+        assert_eq!(approach(-1e-5, 600.0), "collision at 600 s");
+        assert_eq!(approach(0.6, 12.0), "1 m at 12 s");
+        assert_eq!(format!("{:.1}", tenths(-0.04)), "0.0");
+        assert_eq!(format!("{:+.1}", tenths(-0.04)), "+0.0");
+        assert_eq!(format!("{:.1}", tenths(-0.06)), "-0.1");
+    }
 }

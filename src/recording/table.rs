@@ -173,8 +173,16 @@ impl EntityTable {
         } else {
             timed
         };
+        // so is what the first row alone has
+        let is_look = |c: usize| {
+            let has = |row: &&EntityRow| !row.values[c].is_null();
+            rows.len() > 1 && has(&rows[0]) && !rows[1..].iter().any(|row| has(row))
+        };
         // how many instances, and how many numbers in each
         let shape = |c: usize| -> (usize, usize) {
+            if is_look(c) {
+                return (0, 0);
+            }
             let cells = rows.iter().filter_map(|r| r.values[c].as_array());
             cells.fold((0, 0), |(n, d), instances| {
                 let inner = instances.iter().filter_map(Value::as_array);

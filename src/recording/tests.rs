@@ -189,21 +189,6 @@ fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
 }
 
 #[test]
-fn every_scenario_of_the_suite_stays_small() {
-    let folder = tempfile::tempdir().expect("folder");
-    let suite = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/colregs");
-    let files = std::fs::read_dir(suite).expect("lists");
-    for file in files {
-        let file = file.expect("entry").path();
-        let run = pipeline::run(Scenario::read(&file).expect("valid"));
-        let path = folder.path().join("one.rrd");
-        write(&run, None, &path).expect("writes");
-        let size = std::fs::metadata(&path).expect("exists").len();
-        assert!(size < 300_000, "{}: {size} bytes", file.display());
-    }
-}
-
-#[test]
 fn nothing_is_said_of_the_margin_after_arrival() {
     let mut run = run();
     let late = run.scenario.desired.duration() + 50.0;
@@ -222,8 +207,10 @@ fn nothing_is_said_of_the_margin_after_arrival() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("early.rrd");
     write(&run, None, &path).expect("writes");
-    assert_eq!(read(&path)["/curves/margin_m"].0, before as u64 + 1);
     let recorded = Recorded::read(&path).expect("whole");
+    let drawn = recorded.table("curves/margin_m").expect("there");
+    let last = drawn.rows.last().expect("rows").times[0].expect("a time");
+    assert!((last - scene.samples[before - 1]).abs() < 1e-6, "{last}");
     let speeds = recorded.table(curves::SPEED).expect("there");
     let last = &speeds.rows.last().expect("rows").values;
     let scalars = speeds
@@ -297,7 +284,7 @@ fn a_comparison_is_one_recording_with_every_motion() {
     let path = folder.path().join("compared.rrd");
     let recorded = recorded_comparison(&scenario, &path);
     assert_eq!(
-        recorded.comparison().as_deref(),
+        recorded.comparison(),
         Some("{\"plan_s\": 0.25, \"more\": [{\"plan_s\": 3}]}")
     );
     assert_eq!(recorded.document(), None);
@@ -381,8 +368,7 @@ fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
     let entities = read(&path);
     let nodes = run.control.as_ref().expect("forces").intervals as u64 + 1;
     for entity in ["/curves/states", "/curves/forces"] {
-        // and the look of the curves
-        assert!(entities[entity].0 > nodes, "{entity}");
+        assert_eq!(entities[entity].0, nodes, "{entity}");
     }
     for entity in [
         "/chart/map/planned",
@@ -455,4 +441,47 @@ fn a_path_time_plan_has_its_diagram() {
             .keys()
             .any(|entity| entity.starts_with("/path_time"))
     );
+}
+
+/// Where a curve is drawn, a column of its table; a look is in the first row alone.
+#[test]
+fn fewer_rows_draw_the_same_curves() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("one.rrd");
+    let run = run();
+    write(&run, None, &path).expect("writes");
+    let scene = Scene::new(&run);
+    let drawn = Recorded::read(&path).expect("whole");
+    let columns = drawn.table(curves::CLEARANCE).expect("there").columns();
+    assert_eq!(columns.header, ["sim_time_s", NAME, "safety margin"]);
+    let rows: Vec<Vec<f64>> = columns
+        .rows
+        .iter()
+        .map(|row| row.iter().map(|c| c.parse().expect("a number")).collect())
+        .collect();
+    let whole = curves::clearances(&scene, &scene.motion, &run.scenario.targets[0]);
+    assert!(
+        rows.len() < whole.len() / 2 && rows.len() > 10,
+        "{}",
+        rows.len()
+    );
+    let [least, greatest] = [f64::min, f64::max].map(|of| whole.iter().copied().reduce(of));
+    let (least, greatest) = (least.expect("some"), greatest.expect("some"));
+    // the extremes to the last digit
+    assert!(rows.iter().any(|r| r[1] == least) && rows.iter().any(|r| r[1] == greatest));
+    for (time, clearance) in scene.samples.iter().zip(&whole) {
+        let after = rows
+            .iter()
+            .position(|r| r[0] >= time - 1e-6)
+            .expect("covered");
+        let (a, b) = (&rows[after.saturating_sub(1)], &rows[after]);
+        let share = if b[0] > a[0] {
+            (time - a[0]) / (b[0] - a[0])
+        } else {
+            0.0
+        };
+        let shown = a[1] + share * (b[1] - a[1]);
+        let off = (shown - clearance).abs();
+        assert!(off < 4e-4 * (greatest - least), "{off} m at {time} s");
+    }
 }

@@ -5,6 +5,7 @@ use rerun::{
 };
 
 use super::chart::{Lines, Strip};
+use super::columns::log_columns;
 use super::movers::{HARD_RADIUS, outline};
 use super::scene::{Scene, flat};
 use super::{PLANE, path, style};
@@ -37,7 +38,6 @@ pub fn log_velocities(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
         let look = LineStrips2D::update_fields()
             .with_colors([style::target(index)])
             .with_radii([HARD_RADIUS]);
-        rec.log_static(entity.clone(), &look)?;
         let outlines = scene
             .moments
             .iter()
@@ -45,7 +45,7 @@ pub fn log_velocities(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
         let columns = LineStrips2D::update_fields()
             .with_strips(outlines)
             .columns_of_unit_batches()?;
-        rec.send_columns(entity, [scene.moment_column()], columns)?;
+        log_columns(rec, entity, scene.moment_column(), &look, columns)?;
     }
     let entity = path(&[PLANE, "own_ship"]);
     let look = Points2D::update_fields()
@@ -53,7 +53,6 @@ pub fn log_velocities(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
         .with_radii([style::points(4.0)])
         .with_labels(["Own ship"])
         .with_show_labels(true);
-    rec.log_static(entity.clone(), &look)?;
     let own = scene.moments.iter().map(|&t| {
         let pose = scene.motion.pose_at(t);
         [flat(pose.ahead() * scene.motion.speed_at(t))]
@@ -62,7 +61,7 @@ pub fn log_velocities(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
     let columns = Points2D::update_fields()
         .with_positions(places)
         .columns_of_unit_batches()?;
-    rec.send_columns(entity, [scene.moment_column()], columns)
+    log_columns(rec, entity, scene.moment_column(), &look, columns)
 }
 
 /// The axes, and a circle for each of own ship's speeds.

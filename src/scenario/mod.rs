@@ -37,6 +37,18 @@ pub enum Compliance {
 }
 
 /// A checked scenario, SI and east-north.
+///
+/// ```
+/// use searoom::scenario::{Compliance, Fault, Scenario, ScenarioError};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// assert_eq!((scenario.title.as_str(), scenario.targets.len()), ("Head-on", 1));
+/// assert_eq!(scenario.compliance, Compliance::Shape);
+/// // every fault of a file at once
+/// let faults: Vec<Fault> = Scenario::parse("title = 3").expect_err("much is missing");
+/// assert!(faults.iter().any(|fault| fault.path == "title"), "{faults:?}");
+/// # Ok::<(), ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// The scenario's title.

@@ -9,6 +9,39 @@ use std::collections::BinaryHeap;
 use ordered_float::OrderedFloat;
 
 /// A graph for [`Search`].
+///
+/// ```
+/// use searoom::search::{Counts, Fate, Search, Space, Stop};
+///
+/// /// Whole numbers, from each one on or twice as far.
+/// struct Numbers;
+///
+/// impl Space for Numbers {
+///     type State = u32;
+///     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
+///         out.extend([(state + 1, 1.0), (state * 2, 1.0)]);
+///     }
+///     fn bound(&mut self, _: &u32) -> f64 {
+///         0.0
+///     }
+///     fn is_goal(&self, state: &u32) -> bool {
+///         *state == 10
+///     }
+///     fn admits(&mut self, state: &u32) -> bool {
+///         *state <= 10
+///     }
+/// }
+///
+/// let mut search = Search::new(1);
+/// let Stop::Goal(goal) = search.next_goal(&mut Numbers, 1000) else {
+///     panic!("10 can be reached");
+/// };
+/// let way: Vec<u32> = search.way_to(goal).iter().map(|&n| search.nodes()[n].state).collect();
+/// assert_eq!((way.first(), way.last(), way.len()), (Some(&1), Some(&10), 5));
+/// assert_eq!(search.nodes()[goal].fate, Fate::Goal);
+/// let Counts { expanded, .. } = search.counts();
+/// assert!(expanded > 3);
+/// ```
 pub trait Space {
     /// What a node is.
     type State;

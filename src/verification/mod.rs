@@ -37,6 +37,25 @@ use crate::trajectory::Segment;
 pub const FORMAT: &str = "searoom-plan/1";
 
 /// What became of a plan document.
+///
+/// ```
+/// use searoom::pipeline;
+/// use searoom::report::document::PlanDocument;
+/// use searoom::scenario::Scenario;
+/// use searoom::verification::{ClaimError, Verification, verify};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref()).expect("no faults");
+/// let document = PlanDocument::of(&pipeline::run(scenario));
+/// let document = serde_json::to_string_pretty(&document).expect("JSON");
+/// let found: Verification = verify(&document)?;
+/// assert!(found.verified());
+/// // a figure that the motion does not bear out
+/// let mut altered: serde_json::Value = serde_json::from_str(&document).expect("JSON");
+/// altered["cost"]["length_m"] = 1600.0.into();
+/// assert!(!verify(&altered.to_string())?.verified());
+/// assert!(verify("{}").is_err());
+/// # Ok::<(), ClaimError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verification {
     /// Title of the scenario.

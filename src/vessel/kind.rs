@@ -20,6 +20,21 @@ const MODEL_FORCE_WEIGHTS: ForceVector = ForceVector::new(0.1, 0.1, 0.1);
 pub const ALIKE: f64 = 1.5;
 
 /// A ship that can be planned for by her forces.
+///
+/// ```
+/// use searoom::vessel::{CyberShip2, ForceVector, FroudeScaled, Manoeuvring, StateVector, VesselKind};
+///
+/// let model = CyberShip2::EXACT;
+/// let full = FroudeScaled::new(CyberShip2::EXACT, 70.0);
+/// assert_eq!(VesselKind::CyberShip2Full.length(), VesselKind::CyberShip2.length() * 70.0);
+/// // at rest without force she stays
+/// let rest = StateVector::zeros();
+/// assert_eq!(model.rates(&rest, &ForceVector::zeros()), rest);
+/// // Froude's law: seventy times the length, 70³ times the force at the same Froude number
+/// let force = |ship: &dyn Manoeuvring, speed: f64| ship.steady(speed).x;
+/// let ratio = force(&full, 0.2 * 70f64.sqrt()) / force(&model, 0.2);
+/// assert!((ratio / 70f64.powi(3) - 1.0).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VesselKind {
     /// CyberShip II, 1.255 m long.
