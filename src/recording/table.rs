@@ -176,7 +176,7 @@ impl EntityTable {
         // so is what the first row alone has
         let is_look = |c: usize| {
             let has = |row: &&EntityRow| !row.values[c].is_null();
-            rows.len() > 1 && has(&rows[0]) && !rows[1..].iter().any(|row| has(row))
+            rows.len() > 1 && has(&rows[0]) && !rows[1..].iter().any(has)
         };
         // how many instances, and how many numbers in each
         let shape = |c: usize| -> (usize, usize) {
