@@ -2,6 +2,7 @@
 
 mod optimal_control_scenes;
 
+use std::cell::Cell;
 use std::time::Duration;
 
 use optimal_control_scenes as scenes;
@@ -572,10 +573,41 @@ fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
         if found.planned.outcome.plan().is_some() {
             break found;
         }
+        // nothing to bring to a finer grid: all of the budget goes into the starts
+        assert!(found.plan_time >= Duration::from_secs_f64(budget));
         budget *= 1.3;
         assert!(budget < 300.0);
     };
     assert!(best.evaluation.as_ref().is_some_and(Evaluation::verified));
+}
+
+/// A step may need many trial points.
+#[test]
+fn the_clock_is_read_between_the_trial_points_of_a_step() {
+    let (desired, keep_outs) = (scenes::desired(), scenes::figure_9());
+    let task = scenes::task(&desired, &keep_outs, 50);
+    let problem = task.transcription();
+    let guess = scenes::straight(&task);
+    // how often the clock was read, and how it ended, where it strikes at the n-th reading
+    let until = |strikes: usize| {
+        let mut at = Iterate::guess(guess.states.clone(), guess.forces.clone());
+        let mut work = Workspace::new(&problem);
+        let readings = Cell::new(0);
+        let keep_going = || {
+            readings.set(readings.get() + 1);
+            readings.get() < strikes
+        };
+        let settings = Settings::default();
+        let report = solve(&problem, &mut at, &mut work, &settings, &keep_going);
+        (readings.get(), report)
+    };
+    let (all, report) = until(usize::MAX);
+    assert_eq!(report.status, Status::Solved);
+    assert!(all > report.iterations + 1, "{all} {report:?}");
+    for strikes in 1..=all {
+        let (readings, report) = until(strikes);
+        assert_eq!((readings, report.status), (strikes, Status::OutOfTime));
+    }
 }
 
 /// Gauss–Newton steps get nowhere where hardly anything but the forces costs.

@@ -465,3 +465,6 @@ fn classes(starts: &[StartReport]) -> Vec<HomotopyClass> {
     classes.sort_by(|a, b| a.objective.total_cmp(&b.objective));
     classes
 }
+
+#[cfg(test)]
+mod tests;

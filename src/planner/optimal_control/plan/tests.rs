@@ -1,0 +1,46 @@
+//! What is answered once the time is up.
+
+use std::time::Duration;
+
+use super::super::defect::largest_defect;
+use super::*;
+use crate::obstacle::Coast;
+use crate::pipeline;
+use crate::scenario::Scenario;
+
+const FIGURE_9: &str = include_str!("../../../../scenarios/paper/figure_9.toml");
+
+#[test]
+fn once_the_time_is_up_a_dearer_plan_whose_grid_is_fine_enough_is_the_answer() {
+    let scenario = Scenario::parse(FIGURE_9).expect("valid");
+    let sets = pipeline::sets(&scenario);
+    let obstacles: Vec<Obstacle> = sets.into_iter().map(|s| s.hard).collect();
+    let problem = Problem {
+        deadline: Duration::ZERO,
+        ..pipeline::problem(&scenario, &obstacles, Coast::none())
+    };
+    let exact = CyberShip2::EXACT;
+    let planner = Planner::new(&problem, &scenario.control, CyberShip2::SMOOTH, exact);
+    let task = planner.task(planner.intervals);
+    let attempts: Vec<Attempt> = family(&task)
+        .into_iter()
+        .map(|(_, guess)| attempt(&task, &guess, &Settings::default(), &|| true))
+        .collect();
+    let is_fine =
+        |a: &Attempt| largest_defect(&exact, &a.profile, task.step()) <= tolerance::DEFECT;
+    let ordered = cheapest_first(&attempts);
+    assert!(!is_fine(ordered[0]));
+    let fine = ordered.iter().find(|a| is_fine(a)).expect("one of many");
+    let mut report = planner.plan().report;
+    let Outcome::Solved(plan) = planner.finest(&attempts, &mut report) else {
+        panic!("no plan");
+    };
+    assert_eq!(plan.cost, fine.objective);
+    assert!(report.intervals == planner.intervals && report.defect <= tolerance::DEFECT);
+    // that one has to be brought to a finer grid, and there is no time
+    let coarse: Vec<Attempt> = ordered.into_iter().take(1).cloned().collect();
+    assert!(matches!(
+        planner.finest(&coarse, &mut report),
+        Outcome::Infeasible(NoPlan::Coarse { .. })
+    ));
+}
