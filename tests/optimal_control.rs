@@ -21,7 +21,7 @@ use searoom::planner::optimal_control::solver::{
 use searoom::planner::optimal_control::task::{Controls, Task};
 use searoom::planner::optimal_control::transcription::{Transcription, Weights};
 use searoom::planner::optimal_control::{KeepOut, Measured, RecedingHorizon, plan};
-use searoom::planner::{ControlSettings, NoPlan, Outcome};
+use searoom::planner::{ControlSettings, NoPlan, Outcome, Problem};
 use searoom::report::document::PlanDocument;
 use searoom::report::figure::plan_figure;
 use searoom::report::plan_text;
@@ -542,6 +542,54 @@ fn what_cannot_be_planned_is_said_with_the_place() {
     let away = (end - Vector::new(20.0, 10.0)).norm();
     assert!(found.evaluation.as_ref().is_some_and(Evaluation::verified));
     assert!(away > 2.9 && away < 4.5, "{away}");
+}
+
+/// Scenario files are read more strictly; the library is given anything.
+#[test]
+fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
+    let (own, desired) = (scenes::own_ship(), scenes::desired());
+    let obstacles: Vec<Obstacle> = scenes::figure_9()
+        .iter()
+        .map(|k| k.set().clone().into())
+        .collect();
+    let problem = Problem {
+        deadline: Duration::from_secs(5),
+        ..scenes::problem(&own, &desired, &obstacles)
+    };
+    let usual = ControlSettings::of(VesselKind::CyberShip2);
+    let limits = |surge: f64| ControlSettings {
+        force_limits: ForceVector::new(surge, 1.5, 1.5),
+        ..usual
+    };
+    let no_interval = ControlSettings {
+        intervals: 0,
+        ..usual
+    };
+    for (settings, why) in [
+        (no_interval, "no interval"),
+        (limits(0.0), "no force to choose"),
+        (limits(-2.0), "no force to choose"),
+        (limits(f64::NAN), "no force to choose"),
+    ] {
+        match plan(&problem, &settings).planned.outcome {
+            Outcome::Infeasible(NoPlan::Unsolved { why: said, .. }) => {
+                assert!(said.contains(why), "{said}");
+            }
+            other => panic!("{settings:?}: {other:?}"),
+        }
+    }
+    // nothing costs anything, or less than nothing: whatever comes of it, no plan that costs what is no number
+    for weight in [0.0, -1.0, f64::NAN] {
+        let settings = ControlSettings {
+            state_weights: StateVector::repeat(weight),
+            force_weights: ForceVector::repeat(weight),
+            ..usual
+        };
+        let begun = std::time::Instant::now();
+        let found = plan(&problem, &settings).planned.outcome;
+        assert!(found.plan().is_none_or(|p| p.cost.is_finite()), "{weight}");
+        assert!(begun.elapsed() < Duration::from_secs(20));
+    }
 }
 
 #[test]

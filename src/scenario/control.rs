@@ -164,6 +164,8 @@ kind = "optimal-control"
         assert_eq!(full, ControlSettings::of(VesselKind::CyberShip2Full));
         assert!((full.force_limits[0] - 2.0 * 343e3).abs() < 1e-6);
         assert!((full.force_limits[2] - 1.5 * 343e3 * 70.0).abs() < 1e-3);
+        assert!((full.state_weights[0] * 4900.0 - 0.05).abs() < 1e-12);
+        assert!((full.force_weights[0] * 343e3 * 343e3 - 0.1).abs() < 1e-12);
         let given = "intervals = 80\nforce_limits = { surge_n = 1, sway_n = 0.5, yaw_nm = 0.25 }\n\
                      state_weights = [1, 2, 3, 4, 5, 6]\ncontrol_weights = [7, 8, 9]";
         let given = settings(given).expect("valid");

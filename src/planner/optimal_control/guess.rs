@@ -73,7 +73,8 @@ pub fn profile_along<V: Manoeuvring>(task: &Task<V>, positions: &[Vector]) -> Pr
     let forces = (0..n)
         .map(|k| {
             let held = task.vessel.steady(states[k + 1][3]);
-            ForceVector::from_fn(|i, _| held[i].clamp(-limits[i], limits[i]))
+            // limits the wrong way round are for the solver to refuse
+            ForceVector::from_fn(|i, _| held[i].max(-limits[i]).min(limits[i]))
         })
         .collect();
     Profile { states, forces }
