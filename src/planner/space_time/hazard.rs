@@ -73,6 +73,19 @@ impl<'a> Hazard<'a> {
         }
     }
 
+    /// A disc around it at a time, metres; `None` while it is not in force.
+    pub(crate) fn disc_at(&self, time: f64) -> Option<(Vector, f64)> {
+        let is_over = |w: Window| !(time >= w.start && time <= w.end);
+        if self.window.is_some_and(is_over) {
+            return None;
+        }
+        let time = time - self.start();
+        Some((
+            self.centre + self.drift * time,
+            self.radius + self.growth * time,
+        ))
+    }
+
     /// An upper bound of how fast any of it moves, m/s.
     pub(crate) fn speed(&self) -> f64 {
         self.drift.norm() + self.growth

@@ -66,7 +66,9 @@ impl KeepOut {
                 .map(|f| Face::new(by_the_clock(f, hazard.start()), leg, kappa))
                 .collect();
             let mut contact = None;
-            for (k, least) in least.iter_mut().enumerate() {
+            let steps = inside(&faces).map(|time| (time / STEP_S).clamp(0.0, least.len() as f64));
+            let (first, last) = (steps[0].floor() as usize, steps[1].ceil() as usize + 1);
+            for (k, least) in least.iter_mut().enumerate().take(last).skip(first) {
                 let time = STEP_S * k as f64;
                 if hazard
                     .window
@@ -140,6 +142,22 @@ impl KeepOut {
         let after = self.to_come.get(before).copied().unwrap_or(0.0);
         (self.cost_from(from) - after).max(0.0)
     }
+}
+
+/// Seconds between which the point on schedule is behind every face; the first is the greater where it never is.
+fn inside(faces: &[Face]) -> [f64; 2] {
+    let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+    for face in faces {
+        let root = -face.depth / face.rate;
+        if face.rate > 0.0 {
+            from = from.max(root);
+        } else if face.rate < 0.0 {
+            to = to.min(root);
+        } else if face.depth <= 0.0 {
+            to = f64::NEG_INFINITY;
+        }
+    }
+    [from, to]
 }
 
 /// A face whose clock starts at a time, by the scenario's clock.

@@ -37,6 +37,7 @@ mod refinement;
 mod returning;
 mod route;
 mod sailed;
+mod scale;
 mod seeds;
 mod selection;
 mod stages;
@@ -58,6 +59,7 @@ use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact};
 use outline::Scene;
 use part::parts;
 use route::Route;
+use scale::Scale;
 use seeds::Conflict;
 use selection::Selection;
 
@@ -83,9 +85,23 @@ pub fn plan(problem: &Problem) -> Planned {
         desired: &desired,
         ..*problem
     };
+    let clock = Clock::new(problem.deadline);
     let parts = parts(problem.obstacles, problem.horizon);
     let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
-    plan_clear_of(problem, &hazards)
+    plan_at_scale(problem, &hazards, clock)
+        .unwrap_or_else(|| plan_clear_of(problem, &hazards, clock))
+}
+
+/// Planned at a usual size; `None` where the problem is of one, and where the plan, at its own size again, touches a set.
+fn plan_at_scale(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Option<Planned> {
+    let scale = Scale::of(problem, hazards)?;
+    let shrunk = scale.shrink(problem)?;
+    let shrunk = shrunk.problem(problem);
+    let parts = parts(shrunk.obstacles, shrunk.horizon);
+    let shrunken: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
+    let planned = scale.restored(plan_clear_of(&shrunk, &shrunken, clock));
+    let touches = |plan: &Plan| first_contact(hazards, plan.trajectory.segments()).is_some();
+    (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
 
 /// Own ship starts at the last waypoint: she has arrived.
@@ -110,8 +126,7 @@ fn already_there(problem: &Problem) -> Planned {
     }
 }
 
-fn plan_clear_of(problem: &Problem, hazards: &[Hazard]) -> Planned {
-    let clock = Clock::new(problem.deadline);
+fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned {
     let refuse = |reason| Planned {
         outcome: Outcome::Infeasible(reason),
         stats: SearchStats::default(),
