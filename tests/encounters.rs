@@ -20,17 +20,17 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use searoom::colregs::Role;
-use searoom::frame::{Side, Vector, direction};
+use searoom::frame::{Pose, Side, Vector, direction};
 use searoom::geometry::ConvexPolygon;
-use searoom::obstacle::{Coast, Obstacle};
+use searoom::obstacle::{Coast, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::pipeline::{self, problem};
-use searoom::planner::{Outcome, Problem, SearchKind};
+use searoom::planner::{Outcome, Planned, Problem, SearchKind, space_time};
 use searoom::scenario::Scenario;
 use searoom::simulation::{
     Behaviour, Drawn, EncounterKind, Placement, Signal, random_encounter, random_traffic,
 };
 use searoom::target::ShipTrack;
-use searoom::trajectory::{Segment, Trajectory};
+use searoom::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use searoom::vessel::OwnShip;
 use statistics::{failure_bound, quantile};
 
@@ -492,6 +492,78 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
 
 /// The bound is admissible on real graphs: with it and without it the cheapest plan on the graph costs the
 /// same, and with it no more nodes are expanded.
+/// An encounter with every length times a factor and every speed as it is.
+fn larger(scenario: &Scenario, factor: f64) -> Planned {
+    let own = &scenario.own_ship;
+    let polygon = |set: &ConvexPolygon, factor: f64| {
+        let vertices: Vec<Vector> = set.vertices().iter().map(|v| v * factor).collect();
+        ConvexPolygon::hull(&vertices).expect("finite")
+    };
+    let obstacles: Vec<Obstacle> = pipeline::sets(scenario)
+        .iter()
+        .map(|sets| {
+            let set = sets.shaped.as_polytope().expect("a polytope");
+            let initial = polygon(set.initial(), factor);
+            PolytopeObstacle::new("x", initial, polygon(set.velocity(), 1.0)).into()
+        })
+        .collect();
+    let own = OwnShip {
+        pose: Pose::new(own.pose.position * factor, own.pose.heading),
+        turning_radius: own.turning_radius * factor,
+        ..own.clone()
+    };
+    let waypoints: Vec<Vector> = scenario.desired.waypoints();
+    let waypoints: Vec<Vector> = waypoints.iter().map(|w| w * factor).collect();
+    let speeds: Vec<f64> = scenario.desired.legs().iter().map(|l| l.speed).collect();
+    let desired = DesiredTrajectory::new(&waypoints, &speeds).expect("valid");
+    let problem = Problem {
+        own: &own,
+        desired: &desired,
+        horizon: scenario.horizon * factor,
+        ..problem(scenario, &obstacles, Coast::none())
+    };
+    let planned = space_time::plan(&problem);
+    let plan = planned.outcome.plan().expect("a plan");
+    for segment in plan.trajectory.segments() {
+        for obstacle in &obstacles {
+            assert_eq!(obstacle.first_contact(segment, 1e-6), None);
+        }
+    }
+    planned
+}
+
+/// Far from the usual size plans are alike to the last digit where sizes are powers of two apart.
+#[test]
+fn plans_of_another_size_are_the_same_plans() {
+    for kind in EncounterKind::ALL {
+        for seed in 0..5 {
+            let drawn = random_encounter(kind, seed, Placement::Origin).expect("drawn");
+            for (small, large) in [
+                (1.0 / 256.0, 1.0 / 32.0),
+                (64.0, 512.0),
+                (1.0 / 64.0, 1024.0),
+            ] {
+                let ratio: f64 = large / small;
+                let [a, b] = [small, large].map(|factor| larger(&drawn.scenario, factor));
+                let [p, q] = [&a, &b].map(|planned| planned.outcome.plan().expect("a plan"));
+                assert_eq!(p.cost * ratio * ratio, q.cost);
+                let alike = |s: &Segment, t: &Segment| {
+                    s.start.position * ratio == t.start.position
+                        && s.start.heading == t.start.heading
+                        && s.start_time * ratio == t.start_time
+                        && s.duration * ratio == t.duration
+                        && s.speed == t.speed
+                };
+                let (s, t) = (p.trajectory.segments(), q.trajectory.segments());
+                assert_eq!(s.len(), t.len());
+                assert!(s.iter().zip(t).all(|(s, t)| alike(s, t)), "{kind:?} {seed}");
+                let [a, b] = [&a, &b].map(|planned| planned.explored.node_count());
+                assert_eq!(a, b);
+            }
+        }
+    }
+}
+
 #[test]
 fn a_star_finds_what_dijkstra_finds() {
     let alone = EncounterKind::ALL.into_iter().flat_map(|kind| {

@@ -48,16 +48,22 @@ pub(crate) struct Scaled {
 
 impl Scale {
     /// Of a problem: from the set that own ship, on schedule, meets first, as large as it is then. `None` where that is of a
-    /// usual size, and where there is land.
+    /// usual size, and where there is land or a rule to comply with: those are not scaled.
     pub(crate) fn of(problem: &Problem, hazards: &[Hazard]) -> Option<Self> {
-        if !problem.coast.is_empty() {
+        if !problem.coast.is_empty() || !problem.encountered.is_empty() {
             return None;
         }
         let radius = Self::radius_met(problem.desired, hazards)?;
         if !(radius.is_finite() && radius > 0.0) || (SMALLEST_M..=LARGEST_M).contains(&radius) {
             return None;
         }
-        let power = |ratio: f64| ratio.log2().round().clamp(-MOST_DOUBLINGS, MOST_DOUBLINGS).exp2();
+        let power = |ratio: f64| {
+            ratio
+                .log2()
+                .round()
+                .clamp(-MOST_DOUBLINGS, MOST_DOUBLINGS)
+                .exp2()
+        };
         let length = power(radius / USUAL_M);
         let speed = problem.desired.length() / problem.desired.duration();
         let time = length * power(USUAL_MPS / speed);
