@@ -94,6 +94,9 @@ pub struct PlanArgs {
     pub shared: Shared,
     #[command(flatten)]
     pub assumed: AssumedArgs,
+    /// Also seek the last moment at which a plan clear of every hard set exists (space-time planner)
+    #[arg(long)]
+    pub no_return: bool,
 }
 
 #[derive(Debug, Args)]

@@ -1,9 +1,9 @@
 //! `searoom plan`: one scenario.
 
-use searoom::pipeline::Run;
+use searoom::pipeline::{NoReturn, Run};
 use searoom::report::document::PlanDocument;
 use searoom::report::page::Report;
-use searoom::report::plan_text;
+use searoom::report::{no_return_line, plan_text};
 
 use super::args::PlanArgs;
 use super::files::Found;
@@ -57,10 +57,14 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
                 for note in notes {
                     output.note(&note);
                 }
+                let no_return = args.no_return.then(|| run.no_return()).flatten();
                 let shown = if args.shared.json {
-                    output.document(&PlanDocument::of(&run))
+                    let mut document = PlanDocument::of(&run);
+                    document.time_of_no_return_s = no_return.map(NoReturn::time);
+                    output.document(&document)
                 } else {
-                    output.result(&plan_text(&run))
+                    let said = no_return.map(|found| format!("\n{}", no_return_line(found)));
+                    output.result(&format!("{}{}", plan_text(&run), said.unwrap_or_default()))
                 };
                 let written = match write(&products, &scene.found, &run) {
                     Ok(()) => Status::Good,

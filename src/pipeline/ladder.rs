@@ -15,7 +15,8 @@ use super::sets::TargetSets;
 use crate::obstacle::{Coast, Obstacle, SpaceTimeObstacle};
 use crate::planner::optimal_control::{self, ControlReport, Controlled};
 use crate::planner::{
-    NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time,
+    ExploredGraph, NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, SearchStats,
+    path_time, space_time,
 };
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
@@ -119,6 +120,7 @@ impl Ladder<'_> {
         let lower = [
             Self::clear_of_shapes,
             Self::clear_of_hard_sets,
+            Self::around_hard_sets,
             Self::at_least_risk,
         ];
         for rung in lower {
@@ -261,6 +263,44 @@ impl Ladder<'_> {
         }
         let kept = self.kept_along(trajectory, risk);
         Some(self.with_more_kept(self.clear_of(&found, &kept, Rung::Domains), &kept))
+    }
+
+    /// A wide way around the hard sets: the planner proper stays near the path. `None` where none was found.
+    fn around_hard_sets(&self, shaped: bool) -> Option<Attempt> {
+        if self.scenario.planner != PlannerKind::SpaceTime {
+            return None;
+        }
+        let risk = self.scenario.max_risk;
+        let whole: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
+        let obstacles = level_sets(&whole, risk);
+        let plan = space_time::detour(&self.problem(&obstacles))?;
+        let kept = if shaped {
+            self.kept_along(&plan.trajectory, risk)
+        } else {
+            self.shares(0.0)
+        };
+        let rung = if shaped {
+            Rung::Domains
+        } else {
+            Rung::Compliant
+        };
+        let found = Attempt {
+            rung,
+            cuts: vec![0.0; whole.len()],
+            released: vec![None; whole.len()],
+            whole,
+            obstacles,
+            risk,
+            planned: Planned {
+                outcome: Outcome::Solved(plan),
+                stats: SearchStats::default(),
+                explored: ExploredGraph::new(),
+                path_time: None,
+            },
+            control: None,
+            why: None,
+        };
+        Some(self.clear_of(&found, &kept, rung))
     }
 
     /// The same plan, said to be clear of so much of each shape.

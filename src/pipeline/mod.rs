@@ -5,6 +5,7 @@ mod duty;
 mod inside;
 mod judge;
 mod ladder;
+mod no_return;
 mod relaxation;
 mod risk;
 mod sets;
@@ -12,6 +13,7 @@ mod shore;
 
 pub use judge::{judge, judge_free};
 pub use ladder::{RISK_STEP, Rung};
+pub use no_return::{NO_RETURN_STEP_S, NoReturn};
 pub use relaxation::Relaxation;
 pub use risk::peak_risk;
 pub use sets::{TargetSets, sets};

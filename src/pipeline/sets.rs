@@ -39,6 +39,11 @@ impl TargetSets {
         if shaped { &self.shaped } else { &self.hard }
     }
 
+    /// The hard set, of its own.
+    pub(super) fn hard_set(&self) -> Obstacle {
+        self.hard.clone()
+    }
+
     /// True where the shape is more than the hard set.
     pub(super) fn has_shape(&self) -> bool {
         self.shapes.is_some()

@@ -8,6 +8,7 @@ mod conduct;
 pub mod document;
 pub mod figure;
 mod lint;
+mod no_return;
 pub mod page;
 mod summary;
 mod table;
@@ -20,6 +21,7 @@ pub use comparison::{
     COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_markdown, comparison_table,
 };
 pub use lint::lint_text;
+pub use no_return::no_return_line;
 pub use summary::{Meeting, Summary, Turn, Verdict};
 pub use table::{Row, plan_text, suite_table};
 pub use verification::verification_text;

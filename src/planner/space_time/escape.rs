@@ -45,26 +45,36 @@ pub fn escape(problem: &Problem) -> Option<Plan> {
                 break;
             }
             let away = cut(&way.motion, way.out + hold);
-            let found = onward(problem, &away, |rest| {
-                let planned = super::plan(rest);
-                let plan = planned.outcome.plan()?;
-                Some(plan.trajectory.segments().to_vec())
-            });
+            let found = onward(problem, &away, planned);
             if found.is_some() {
                 return found;
             }
         }
     }
-    let followed = |rest: &Problem| {
-        let route = Route::new(rest)?;
-        let mut motion = Vec::new();
-        route.follow(0.0, 0.0, &mut motion);
-        let arrival = motion.last()?.end_time();
-        (arrival <= rest.horizon).then_some(motion)
-    };
     let away = ways.first().map(|way| cut(&way.motion, way.out));
-    let out = away.and_then(|away| onward(problem, &away, followed));
-    out.or_else(|| onward(problem, &[], followed))
+    let out = away.and_then(|away| onward(problem, &away, undisturbed));
+    out.or_else(|| onward(problem, &[], undisturbed))
+}
+
+/// The motion along the path as if nobody else were there; `None` where it is not at the end before the horizon.
+pub fn undisturbed(problem: &Problem) -> Option<Vec<Segment>> {
+    let route = Route::new(problem)?;
+    let mut motion = Vec::new();
+    route.follow(0.0, 0.0, &mut motion);
+    let arrival = motion.last()?.end_time();
+    (arrival <= problem.horizon).then_some(motion)
+}
+
+/// A plan that holds a motion until a time, and is clear of every set from then on.
+pub fn after_holding(problem: &Problem, motion: &[Segment], until: f64) -> Option<Plan> {
+    onward(problem, &cut(motion, until), planned)
+}
+
+/// Asks the planner.
+fn planned(problem: &Problem) -> Option<Vec<Segment>> {
+    let planned = super::plan(problem);
+    let plan = planned.outcome.plan()?;
+    Some(plan.trajectory.segments().to_vec())
 }
 
 /// A motion that is out of the sets at a time, for as long as it is held.

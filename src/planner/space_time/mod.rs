@@ -19,8 +19,10 @@ mod chain;
 mod closer;
 mod compliance;
 mod departure;
+mod detour;
 mod escape;
 mod factor;
+mod future;
 mod graph;
 mod hazard;
 mod heuristic;
@@ -44,7 +46,8 @@ mod stages;
 mod tail;
 mod template;
 
-pub use escape::escape;
+pub use detour::detour;
+pub use escape::{after_holding, escape, undisturbed};
 
 use super::clock::Clock;
 use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};

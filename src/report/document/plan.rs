@@ -62,6 +62,9 @@ pub struct PlanDocument {
     /// All of what was given up, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
+    /// Where it was asked for: null where nothing is met, or nothing was found even from the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_of_no_return_s: Option<Option<f64>>,
     /// What the independent checker found wrong.
     pub violations: Vec<ViolationDocument>,
     pub cost: Option<CostDocument>,
@@ -111,6 +114,7 @@ impl PlanDocument {
             },
             relaxations,
             verified: verified(run),
+            time_of_no_return_s: None,
             violations: run
                 .evaluation
                 .iter()

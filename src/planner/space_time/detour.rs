@@ -1,0 +1,273 @@
+//! Wide ways: where the graph and its refinement find none, because the way out is far from the path, fast from the beginning on,
+//! or late.
+//!
+//! Turns and lines of about the length of a grid's cell, one after another, best first by cost plus what the grid says is still to
+//! come ([`Future`]); from each of them also a turn and a line straight to the end.
+
+use std::cmp::Ordering;
+use std::collections::{BinaryHeap, HashSet};
+
+use super::ashore;
+use super::future::Future;
+use super::hazard::{Hazard, first_met};
+use super::part::parts;
+use crate::frame::{Pose, Side, Vector, heading_of, to_port, wrap};
+use crate::planner::clock::Clock;
+use crate::planner::cost::space_time_error;
+use crate::planner::{Plan, Problem};
+use crate::tolerance;
+use crate::trajectory::{Segment, Trajectory};
+
+/// Radians of the turns that begin a piece.
+const TURNS_RAD: [f64; 7] = [0.0, 0.25, -0.25, 0.6, -0.6, 1.4, -1.4];
+
+/// Cells of way in a piece.
+const WAY: f64 = 1.5;
+
+/// Courses that are told apart in one place at one time.
+const COURSES: f64 = 12.0;
+
+/// Pieces that are followed at most: the bound on time and memory.
+const MAX_EXPANDED: usize = 3_000;
+
+/// Metres. A centre of a turn this near to a point has no line to it.
+const NEAR_M: f64 = 1e-6;
+
+/// A state that has been reached, or the end of the path.
+#[derive(Debug)]
+struct Reached {
+    pose: Pose,
+    time: f64,
+    cost: f64,
+    from: Option<usize>,
+    motion: Vec<Segment>,
+    is_end: bool,
+}
+
+/// In the queue: the least first, of equals the older.
+#[derive(Debug, PartialEq)]
+struct Open {
+    total: f64,
+    index: usize,
+}
+
+impl Eq for Open {}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_total = other.total.total_cmp(&self.total);
+        by_total.then(other.index.cmp(&self.index))
+    }
+}
+
+/// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
+/// its budget. Not refined: of use where nothing else is found. Some tens to some hundreds of milliseconds.
+pub fn detour(problem: &Problem) -> Option<Plan> {
+    let clock = Clock::new(problem.deadline);
+    let parts = parts(problem.obstacles, problem.horizon);
+    let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
+    let future = Future::of(problem, &hazards)?;
+    let mut search = Detour {
+        problem,
+        hazards: &hazards,
+        future,
+        reached: Vec::new(),
+        open: BinaryHeap::new(),
+        seen: HashSet::new(),
+    };
+    let end = search.run(clock)?;
+    let mut motion = Vec::new();
+    let mut at = Some(end);
+    while let Some(index) = at {
+        motion.extend(search.reached[index].motion.iter().rev());
+        at = search.reached[index].from;
+    }
+    motion.reverse();
+    let cost = search.reached[end].cost;
+    let trajectory = Trajectory::new(motion).ok()?;
+    Some(Plan {
+        trajectory,
+        cost,
+        graph_cost: None,
+    })
+}
+
+struct Detour<'a> {
+    problem: &'a Problem<'a>,
+    hazards: &'a [Hazard<'a>],
+    future: Future,
+    reached: Vec<Reached>,
+    open: BinaryHeap<Open>,
+    seen: HashSet<[i64; 4]>,
+}
+
+impl Detour<'_> {
+    /// The state at the end of the path.
+    fn run(&mut self, clock: Clock) -> Option<usize> {
+        self.reach(self.problem.own.pose, 0.0, 0.0, None, Vec::new(), false);
+        for _ in 0..MAX_EXPANDED {
+            if clock.is_up() {
+                return None;
+            }
+            let index = loop {
+                let index = self.open.pop()?.index;
+                if self.reached[index].is_end {
+                    return Some(index);
+                }
+                let key = self.key(&self.reached[index]);
+                if self.seen.insert(key) {
+                    break index;
+                }
+            };
+            self.expand(index);
+        }
+        None
+    }
+
+    fn key(&self, state: &Reached) -> [i64; 4] {
+        let place = state.pose.position / self.future.cell;
+        let course = wrap(state.pose.heading) / std::f64::consts::TAU * COURSES;
+        let time = state.time / self.future.step;
+        [place.x, place.y, course, time].map(|v| (2.0 * v).round() as i64)
+    }
+
+    fn expand(&mut self, index: usize) {
+        let own = self.problem.own;
+        let (pose, time, cost) = {
+            let state = &self.reached[index];
+            (state.pose, state.time, state.cost)
+        };
+        let way = WAY * self.future.cell;
+        let end = self.problem.desired.end();
+        for speed in own.speeds.iter().copied() {
+            if speed == 0.0 {
+                let wait = Segment {
+                    start: pose,
+                    start_time: time,
+                    duration: self.future.step,
+                    speed,
+                    turn_rate: 0.0,
+                };
+                self.offer(index, cost, vec![wait], false);
+                continue;
+            }
+            for turn in TURNS_RAD {
+                let line = (way - turn.abs() * own.turning_radius).max(0.0);
+                let motion = bent(&pose, time, speed, own.turning_radius, turn, line);
+                self.offer(index, cost, motion, false);
+            }
+            for side in [Side::Starboard, Side::Port] {
+                if let Some((turn, line)) = toward(&pose, own.turning_radius, side, end) {
+                    let motion = bent(&pose, time, speed, own.turning_radius, turn, line);
+                    self.offer(index, cost, motion, true);
+                }
+            }
+        }
+    }
+
+    /// Takes a way on where it is clear and in time, and leads on.
+    fn offer(&mut self, from: usize, cost: f64, motion: Vec<Segment>, is_end: bool) {
+        let problem = self.problem;
+        let Some(last) = motion.last() else {
+            return;
+        };
+        let (pose, time) = (last.end(), last.end_time());
+        // negated on purpose: a NaN is too late
+        if !(time <= problem.horizon) {
+            return;
+        }
+        if !is_end && !self.future.from(pose.position, time).is_finite() {
+            return;
+        }
+        if first_met(self.hazards, &motion).is_some() || ashore::meets(problem.coast, &motion) {
+            return;
+        }
+        let more = |s| space_time_error(problem.desired, s, problem.time_weight);
+        let cost = cost + motion.iter().map(more).sum::<f64>();
+        self.reach(pose, time, cost, Some(from), motion, is_end);
+    }
+
+    fn reach(
+        &mut self,
+        pose: Pose,
+        time: f64,
+        cost: f64,
+        from: Option<usize>,
+        motion: Vec<Segment>,
+        is_end: bool,
+    ) {
+        let to_go = if is_end {
+            0.0
+        } else {
+            self.future.from(pose.position, time)
+        };
+        let index = self.reached.len();
+        self.open.push(Open {
+            total: cost + to_go,
+            index,
+        });
+        self.reached.push(Reached {
+            pose,
+            time,
+            cost,
+            from,
+            motion,
+            is_end,
+        });
+    }
+}
+
+/// An arc of so many radians to port and a line.
+fn bent(pose: &Pose, time: f64, speed: f64, radius: f64, turn: f64, line: f64) -> Vec<Segment> {
+    let mut motion = Vec::with_capacity(2);
+    let arc = Segment {
+        start: *pose,
+        start_time: time,
+        duration: turn.abs() * radius / speed,
+        speed,
+        turn_rate: turn.signum() * speed / radius,
+    };
+    let (after, then) = if turn == 0.0 {
+        (*pose, time)
+    } else {
+        motion.push(arc);
+        (arc.end(), arc.end_time())
+    };
+    if line > tolerance::LENGTH_M {
+        motion.push(Segment {
+            start: after,
+            start_time: then,
+            duration: line / speed,
+            speed,
+            turn_rate: 0.0,
+        });
+    }
+    motion
+}
+
+/// The turn to a side (radians to port) and the line after it that end at a point; `None` for one within the circle.
+fn toward(pose: &Pose, radius: f64, side: Side, point: Vector) -> Option<(f64, f64)> {
+    let sign = side.turn_sign();
+    let center = pose.position + to_port(pose.ahead()) * (sign * radius);
+    let away = point - center;
+    let far = away.norm();
+    // negated on purpose: a NaN is within
+    if !(far > radius + NEAR_M) {
+        return None;
+    }
+    let line = (far * far - radius * radius).sqrt();
+    // the course of the tangent: that to the point, turned by what the circle is seen under
+    let heading = heading_of(away) + sign * (radius / far).asin();
+    let mut turn = sign * wrap(heading - pose.heading);
+    if turn < -tolerance::JOINT_RAD {
+        turn += std::f64::consts::TAU;
+    }
+    let turn = sign * turn.max(0.0);
+    Some((turn, line))
+}
