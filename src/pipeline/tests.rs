@@ -325,3 +325,34 @@ fn out_of_time_there_is_still_an_answer() {
         Relaxation::Risk { until: Some(_), .. }
     ));
 }
+
+/// Three ships leave no way that stays near the path: a wide one is found, clear of every hard set.
+#[test]
+fn a_wide_way_is_found_where_there_is_none_near_the_path() {
+    use crate::scenario::formats::{Assumed, Contents};
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("benchmarks/dnv/traffic_situation_47.json");
+    let assumed = Assumed::default();
+    let contents = Contents::read(&file, &assumed).expect("readable");
+    let Contents::Situations { situations, .. } = contents else {
+        panic!("a situation");
+    };
+    let situation = situations.into_iter().next().expect("one").expect("sound");
+    let mut scenario = situation.scenario(&assumed).expect("no faults").scenario;
+    scenario.deadline = 60.0;
+    let run = run(scenario);
+    assert!(run.rung < Rung::Risk && run.max_risk == 0.0);
+    assert!(run.risks.iter().all(|peak| peak.risk == 0.0));
+    assert!(run.evaluation.is_some_and(|e| e.verified()));
+}
+
+#[test]
+fn the_time_of_no_return_is_between_the_start_and_the_first_contact() {
+    let at = |x: f64, y: f64| run(scenario(track(x, y, PI, 5.0), Compliance::Shape)).no_return();
+    let Some(NoReturn::At(time)) = at(1500.0, 0.0) else {
+        panic!("there is a time");
+    };
+    assert!(time > 60.0 && time < 145.0, "{time}");
+    assert_eq!(at(1500.0, 5000.0), Some(NoReturn::Never));
+    assert_eq!(at(60.0, 0.0), Some(NoReturn::Past));
+}

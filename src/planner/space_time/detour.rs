@@ -21,14 +21,33 @@ use crate::trajectory::{Segment, Trajectory};
 /// Radians of the turns that begin a piece.
 const TURNS_RAD: [f64; 7] = [0.0, 0.25, -0.25, 0.6, -0.6, 1.4, -1.4];
 
-/// Cells of way in a piece.
-const WAY: f64 = 1.5;
-
 /// Courses that are told apart in one place at one time.
 const COURSES: f64 = 12.0;
 
-/// Pieces that are followed at most: the bound on time and memory.
-const MAX_EXPANDED: usize = 3_000;
+/// How finely is searched.
+#[derive(Debug, Clone, Copy)]
+struct Fineness {
+    /// Cells of way in a piece.
+    way: f64,
+    /// Places, courses and times that are told apart, per cell and instant.
+    apart: f64,
+    /// Pieces that are followed at most: the bound on time and memory.
+    most: usize,
+}
+
+/// Coarse first, then finer.
+const FINENESSES: [Fineness; 2] = [
+    Fineness {
+        way: 1.5,
+        apart: 2.0,
+        most: 3_000,
+    },
+    Fineness {
+        way: 0.75,
+        apart: 3.0,
+        most: 10_000,
+    },
+];
 
 /// Metres. A centre of a turn this near to a point has no line to it.
 const NEAR_M: f64 = 1e-6;
@@ -73,15 +92,23 @@ pub fn detour(problem: &Problem) -> Option<Plan> {
     let parts = parts(problem.obstacles, problem.horizon);
     let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
     let future = Future::of(problem, &hazards)?;
-    let mut search = Detour {
-        problem,
-        hazards: &hazards,
-        future,
-        reached: Vec::new(),
-        open: BinaryHeap::new(),
-        seen: HashSet::new(),
-    };
-    let end = search.run(clock)?;
+    FINENESSES.into_iter().find_map(|fineness| {
+        let mut search = Detour {
+            problem,
+            hazards: &hazards,
+            future: &future,
+            fineness,
+            reached: Vec::new(),
+            open: BinaryHeap::new(),
+            seen: HashSet::new(),
+        };
+        let end = search.run(clock)?;
+        plan_to(&search, end)
+    })
+}
+
+/// The way to a state as a plan.
+fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
     let mut motion = Vec::new();
     let mut at = Some(end);
     while let Some(index) = at {
@@ -101,7 +128,8 @@ pub fn detour(problem: &Problem) -> Option<Plan> {
 struct Detour<'a> {
     problem: &'a Problem<'a>,
     hazards: &'a [Hazard<'a>],
-    future: Future,
+    future: &'a Future,
+    fineness: Fineness,
     reached: Vec<Reached>,
     open: BinaryHeap<Open>,
     seen: HashSet<[i64; 4]>,
@@ -111,7 +139,7 @@ impl Detour<'_> {
     /// The state at the end of the path.
     fn run(&mut self, clock: Clock) -> Option<usize> {
         self.reach(self.problem.own.pose, 0.0, 0.0, None, Vec::new(), false);
-        for _ in 0..MAX_EXPANDED {
+        for _ in 0..self.fineness.most {
             if clock.is_up() {
                 return None;
             }
@@ -134,7 +162,7 @@ impl Detour<'_> {
         let place = state.pose.position / self.future.cell;
         let course = wrap(state.pose.heading) / std::f64::consts::TAU * COURSES;
         let time = state.time / self.future.step;
-        [place.x, place.y, course, time].map(|v| (2.0 * v).round() as i64)
+        [place.x, place.y, course, time].map(|v| (self.fineness.apart * v).round() as i64)
     }
 
     fn expand(&mut self, index: usize) {
@@ -143,7 +171,7 @@ impl Detour<'_> {
             let state = &self.reached[index];
             (state.pose, state.time, state.cost)
         };
-        let way = WAY * self.future.cell;
+        let way = self.fineness.way * self.future.cell;
         let end = self.problem.desired.end();
         for speed in own.speeds.iter().copied() {
             if speed == 0.0 {
