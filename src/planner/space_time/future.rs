@@ -69,9 +69,9 @@ impl Future {
             for hazard in hazards {
                 future.block(&mut blocked, hazard, time);
             }
-            for k in 0..CELLS * CELLS {
+            for (k, is_blocked) in blocked.into_iter().enumerate() {
                 let here = future.middle(k);
-                if blocked[k] {
+                if is_blocked {
                     continue;
                 }
                 let at = layer * CELLS * CELLS + k;
