@@ -35,6 +35,9 @@ const NEARLY_ALL: f64 = 0.99;
 /// overtaking 99 % of 750.
 const RARELY_GIVEN_UP: f64 = 0.94;
 
+/// The same for a stand-on ship that turns nowhere to port, whether there is another escape or not.
+const STANDS_ON: f64 = 0.99;
+
 fn count() -> u64 {
     let text = std::env::var("SEAROOM_ENCOUNTERS").unwrap_or_default();
     if text.is_empty() {
@@ -116,6 +119,10 @@ struct Seen {
     off_the_bow: bool,
     /// No first turn to port, and no course to port of the first before the other has passed.
     no_port: bool,
+    /// On the desired trajectory until the escape begins, which is to starboard or by less speed; none where nothing is to be escaped.
+    holds: bool,
+    /// Seconds from the end of the hold to the undisturbed closest approach.
+    to_spare: Option<f64>,
     /// The rules broken, by the first judge.
     breaches: Vec<&'static str>,
     cost: f64,
@@ -140,10 +147,40 @@ fn seen(run: &Run) -> Seen {
         port_to_port: evaluation.passages[0].passing_side == Side::Port,
         off_the_bow: !crosses_ahead(&plan.trajectory, ship),
         no_port: turn < ALTERATION && to_port(&plan.trajectory, ship) <= ALTERATION + 1e-6,
+        holds: holds(run, &plan.trajectory),
+        to_spare: run
+            .planned
+            .escape
+            .map(|e| run.sets[0].encounter.undisturbed_tcpa - e.latest),
         breaches: breaches.iter().map(|b| b.rule).collect(),
         cost: plan.cost,
         milliseconds: run.plan_time.as_secs_f64() * 1e3,
     }
+}
+
+/// Metres off the desired trajectory that are rounding.
+const ON_TRACK: f64 = 1e-6;
+
+fn holds(run: &Run, plan: &Trajectory) -> bool {
+    let desired = &run.scenario.desired;
+    let Some(escape) = run.planned.escape else {
+        return plan.segments().iter().all(|s| s.turn_rate == 0.0);
+    };
+    let off = |t: f64| (plan.pose_at(t).position - desired.position_at(t)).norm();
+    let times = plan.sample_times(0.5, u32::MAX);
+    let held = times.into_iter().filter(|t| *t <= escape.latest);
+    let begins = plan
+        .segments()
+        .iter()
+        .find(|s| s.end_time() > escape.latest + 1e-6);
+    let first = begins.expect("an escape");
+    let turn = first.turn_rate * first.duration;
+    let apparent = if turn == 0.0 {
+        first.speed <= APPARENT_SPEED * run.scenario.own_ship.speed + 1e-9
+    } else {
+        turn <= 1e-6 - APPARENT_TURN
+    };
+    apparent && held.map(off).all(|off| off <= ON_TRACK)
 }
 
 /// Prints in how many of them something holds, with its lower bound, 95 %; the seeds where it does not.
@@ -195,6 +232,18 @@ fn plans_keep_to_the_rules() {
                 });
             }
             EncounterKind::StandOn => {
+                asked("what complies: holds, then escapes", 1.0, &|s| {
+                    !s.complies || s.holds
+                });
+                asked("first turn not to port", STANDS_ON, &|s| s.no_port);
+                let spare: Vec<f64> = all.iter().filter_map(|s| s.to_spare).collect();
+                let of = |p| quantile(&spare, p);
+                println!(
+                    "  held until, before the closest    5 % {:.0} s, median {:.0} s, 95 % {:.0} s",
+                    of(0.05),
+                    of(0.5),
+                    of(0.95)
+                );
                 asked("what complies: nothing to port", 1.0, &|s| {
                     !s.complies || s.no_port
                 });

@@ -172,6 +172,7 @@ pub(super) mod tests {
     use crate::frame::{direction, heading_of};
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use std::cmp::Ordering::{Greater, Less};
     use std::f64::consts::{FRAC_PI_2, PI};
 
     pub fn ship(x: f64, y: f64, heading: f64, speed: f64) -> SteadyShip {
@@ -227,10 +228,82 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn the_fixtures_have_their_roles_wherever_they_lie() {
+        let mut rng = ChaCha8Rng::seed_from_u64(17);
+        let own = ship(0.0, 0.0, 0.0, 6.0);
+        for (other, role, in_the_mirror) in fixtures() {
+            for _ in 0..1_000 {
+                let turn = rng.random_range(-PI..PI);
+                let far = Vector::new(rng.random_range(-1e6..1e6), rng.random_range(-1e6..1e6));
+                let moved = |s: &SteadyShip| {
+                    let p = direction(turn) * s.pose.position.x
+                        + crate::frame::to_port(direction(turn)) * s.pose.position.y;
+                    ship(p.x + far.x, p.y + far.y, s.pose.heading + turn, s.speed)
+                };
+                let mirror = mirrored(&other);
+                assert_eq!(raw_role(&moved(&own), &moved(&other)), Some(role));
+                assert_eq!(raw_role(&moved(&own), &moved(&mirror)), Some(in_the_mirror));
+            }
+        }
+    }
+
+    fn every_role() -> [Role; 9] {
+        [
+            Role::HeadOn,
+            Role::GiveWay,
+            Role::StandOn,
+            Role::Overtaking,
+            Role::Overtaken,
+            Role::BothGiveWay,
+            Role::PortToPort,
+            Role::Static,
+            Role::None,
+        ]
+    }
+
+    /// Each role by a condition of its own, in no order: `colregs.md` 1.3 once more, from angles found another way.
+    fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {
+        let seen = |from: &SteadyShip, of: &SteadyShip| {
+            let p = of.pose.position - from.pose.position;
+            let (ahead, abeam) = (
+                from.pose.ahead(),
+                crate::frame::to_starboard(from.pose.ahead()),
+            );
+            abeam.dot(&p).atan2(ahead.dot(&p))
+        };
+        let (beta, alpha) = (seen(own, other), seen(other, own));
+        let offset = other.pose.position - own.pose.position;
+        let closes = (own.velocity() - other.velocity()).dot(&offset) > 0.1 * offset.norm();
+        let (rests, idle) = (other.speed < 0.2, own.speed < 0.2);
+        let abaft = 112.5_f64.to_radians();
+        let from_astern = closes && alpha.abs() > abaft;
+        let to_ahead = closes && beta.abs() > abaft;
+        let lead = (own.speed, alpha.abs()).partial_cmp(&(other.speed, beta.abs()));
+        let (faster, slower) = (lead == Some(Greater), lead == Some(Less));
+        let moves = !rests && !idle;
+        let meets = moves && !from_astern && !to_ahead;
+        let ahead = beta.abs() <= 10.0_f64.to_radians() && alpha.abs() <= 10.0_f64.to_radians();
+        let starboard =
+            |angle: f64, else_by: f64| angle > SIDE || angle.abs() <= SIDE && else_by < 0.0;
+        let (b, a) = (starboard(beta, alpha), starboard(alpha, beta));
+        match role {
+            Role::Static => rests,
+            Role::None => !rests && (idle || from_astern && to_ahead && !faster && !slower),
+            Role::Overtaking => moves && from_astern && (!to_ahead || faster),
+            Role::Overtaken => moves && to_ahead && (!from_astern || slower),
+            Role::HeadOn => meets && ahead,
+            Role::GiveWay => meets && !ahead && b && !a,
+            Role::StandOn => meets && !ahead && !b && a,
+            Role::BothGiveWay => meets && !ahead && b && a,
+            Role::PortToPort => meets && !ahead && !b && !a,
+        }
+    }
+
+    #[test]
     fn every_state_has_one_role_and_both_ships_agree() {
         let mut rng = ChaCha8Rng::seed_from_u64(13);
         let mut seen = std::collections::BTreeSet::new();
-        for i in 0..100_000 {
+        for i in 0..1_000_000 {
             let grid = i % 2 == 0;
             let mut angle = || {
                 let a: f64 = rng.random_range(-PI..PI);
@@ -245,6 +318,8 @@ pub(super) mod tests {
             let own = ship(0.0, 0.0, own_heading, rng.random_range(0.0..12.0));
             let other = ship(p.x, p.y, heading, rng.random_range(0.0..12.0));
             let here = raw_role(&own, &other).expect("finite");
+            let described = every_role().into_iter().filter(|r| is(*r, &own, &other));
+            assert_eq!(described.collect::<Vec<_>>(), [here], "{own:?} {other:?}");
             let there = raw_role(&other, &own).expect("finite");
             seen.insert(here);
             let pair = if here <= there {

@@ -4,12 +4,27 @@ use super::{Relaxation, TargetSets};
 use crate::colregs::{Duty, Encountered, Role, SteadyShip};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
-use crate::scenario::Scenario;
+use crate::scenario::{Compliance, Scenario};
 
 /// Rules 14 and 15 in open water: to starboard where own ship meets head-on or gives way.
 pub(super) fn first_turn(sets: &[TargetSets]) -> Option<Side> {
     let alters = |s: &TargetSets| matches!(s.encounter.role, Role::HeadOn | Role::GiveWay);
     sets.iter().any(alters).then_some(Side::Starboard)
+}
+
+/// The sets where own ship stands on and gives way to none: of those who are to give way the hard ones alone. She keeps course and speed
+/// as long as these can be kept clear of (`colregs.md` 3.6).
+pub(super) fn without_shapes_stood_on_for(
+    scenario: &Scenario,
+    mut sets: Vec<TargetSets>,
+) -> Vec<TargetSets> {
+    let roles = sets.iter().map(|s| s.encounter.role);
+    if scenario.compliance == Compliance::Rules && Duty::of(roles).stands_on {
+        for set in sets.iter_mut().filter(|s| s.encounter.role.stands_on()) {
+            set.give_up_shape();
+        }
+    }
+    sets
 }
 
 /// The targets that the rules ask something about.

@@ -1,5 +1,6 @@
 //! The sets of every target, own ship's footprint folded in.
 
+use super::duty::without_shapes_stood_on_for;
 use crate::colregs::{self, Encounter, Shapes};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
@@ -49,6 +50,13 @@ impl TargetSets {
         self.shapes.is_some()
     }
 
+    /// Leaves the hard set alone.
+    pub(super) fn give_up_shape(&mut self) {
+        self.shaped = self.hard.clone();
+        (self.shape_reduced, self.shape_reach) = (0.0, 0.0);
+        self.shapes = None;
+    }
+
     /// The set with so much of the shape, from 0 to 1, of what own ship's start lets be.
     pub(super) fn kept(&self, scenario: &Scenario, target: &Target, share: f64) -> Kept {
         match (&self.shapes, &target.motion) {
@@ -73,11 +81,8 @@ impl TargetSets {
 
 /// The sets and the encounter of every target, in the scenario's order.
 pub fn sets(scenario: &Scenario) -> Vec<TargetSets> {
-    scenario
-        .targets
-        .iter()
-        .map(|target| target_sets(scenario, target))
-        .collect()
+    let of = |target| target_sets(scenario, target);
+    without_shapes_stood_on_for(scenario, scenario.targets.iter().map(of).collect())
 }
 
 fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {

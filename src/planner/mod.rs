@@ -144,6 +144,17 @@ pub struct Plan {
     pub graph_cost: Option<f64>,
 }
 
+/// What ends the hold of a ship that stands on: the plan is to hold course and speed until then, and this escape after it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Escape {
+    /// Seconds: the latest time at which an escape is known to be clear.
+    pub latest: f64,
+    /// Radians of its first turn, to port positive; 0 where it is by less speed.
+    pub turn: f64,
+    /// m/s of its beginning.
+    pub speed: f64,
+}
+
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoPlan {
@@ -393,4 +404,6 @@ pub struct Planned {
     pub explored: ExploredGraph,
     /// The diagram that the path-time planner planned in; boxed, as most plans have none.
     pub path_time: Option<Box<path_time::PathTimeDiagram>>,
+    /// Where own ship stands on (Rule 17).
+    pub escape: Option<Escape>,
 }

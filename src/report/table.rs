@@ -355,6 +355,9 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
         };
         say("relaxed", what);
     }
+    if let Some(escape) = &run.planned.escape {
+        say("stands on", words::stand_on(escape));
+    }
     if summary.meetings.is_empty() {
         say("encounter", "none".to_owned());
     }

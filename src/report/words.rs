@@ -1,8 +1,8 @@
 //! The words of the contract for what the program computes.
 
-use crate::frame::Side;
+use crate::frame::{Side, clockwise_deg};
 use crate::planner::path_time::PathTimeDiagram;
-use crate::planner::{PlannerKind, SearchKind};
+use crate::planner::{Escape, PlannerKind, SearchKind};
 use crate::scenario::Scenario;
 
 /// What the planner minimises.
@@ -18,6 +18,24 @@ pub(super) fn search(kind: SearchKind) -> &'static str {
         SearchKind::AStar => "a-star",
         SearchKind::Dijkstra => "dijkstra",
     }
+}
+
+/// Until when course and speed are held, and what then.
+pub(super) fn stand_on(escape: &Escape) -> String {
+    let until = format!(
+        "course and speed are held until {:.1} s, the latest time at which an escape is known to be clear: ",
+        escape.latest
+    );
+    let then = match Side::of_turn(escape.turn) {
+        Some(to) => format!(
+            "a turn of {:.0}° to {} at {:.2} m/s",
+            clockwise_deg(escape.turn).abs(),
+            side(to),
+            escape.speed
+        ),
+        None => format!("{:.2} m/s", escape.speed),
+    };
+    until + &then
 }
 
 /// What a path is called: 0 is the main one.

@@ -195,6 +195,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
                 stats: SearchStats::default(),
                 explored: ExploredGraph::new(),
                 path_time: None,
+                escape: None,
             },
             report,
         }

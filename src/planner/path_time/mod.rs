@@ -61,6 +61,7 @@ pub fn plan(problem: &Problem) -> Planned {
         stats: SearchStats::default(),
         explored: ExploredGraph::new(),
         path_time: None,
+        escape: None,
     };
     let first = problem.desired.legs()[0].start;
     let away = (problem.own.pose.position - first).norm();
@@ -80,6 +81,7 @@ pub fn plan(problem: &Problem) -> Planned {
     if !(earliest <= problem.horizon + tolerance::TIME_S) {
         return Planned {
             path_time: diagram(&idle),
+            escape: None,
             ..refuse(NoPlan::PathTooLong {
                 earliest,
                 horizon: problem.horizon,
@@ -89,6 +91,7 @@ pub fn plan(problem: &Problem) -> Planned {
     if let Some(reason) = starts_inside(problem, &scene) {
         return Planned {
             path_time: diagram(&idle),
+            escape: None,
             ..refuse(reason)
         };
     }
@@ -163,6 +166,7 @@ pub fn plan(problem: &Problem) -> Planned {
         stats,
         explored: explored(&graph, search),
         path_time: diagram(found.as_ref().unwrap_or(&idle)),
+        escape: None,
     }
 }
 

@@ -43,6 +43,7 @@ mod scale;
 mod seeds;
 mod selection;
 mod stages;
+mod stand_on;
 mod tail;
 mod template;
 
@@ -126,6 +127,7 @@ fn already_there(problem: &Problem) -> Planned {
         stats: SearchStats::default(),
         explored: ExploredGraph::new(),
         path_time: None,
+        escape: None,
     }
 }
 
@@ -135,6 +137,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         stats: SearchStats::default(),
         explored: ExploredGraph::new(),
         path_time: None,
+        escape: None,
     };
     let own = problem.own;
     for hazard in hazards {
@@ -172,8 +175,6 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
             horizon: problem.horizon,
         });
     }
-    let mut graph = Graph::new(problem, hazards, &route, &undisturbed, clock);
-    let mut search = Search::new(graph.root());
     let blocks = ashore::hazards(problem);
     let scene = Scene {
         problem,
@@ -182,6 +183,20 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         blocks: &blocks,
         chord: FINE_CHORD_RAD,
     };
+    let contact = first_contact(hazards, &undisturbed);
+    let grounding = ashore::first_contact(problem.coast, &undisturbed);
+    if problem.duty().stands_on
+        && let Some(end) = contact
+            .map(|c| c.1)
+            .into_iter()
+            .chain(grounding)
+            .reduce(f64::min)
+        && let Some(held) = stand_on::hold(&scene, &undisturbed, end, clock)
+    {
+        return held.planned();
+    }
+    let mut graph = Graph::new(problem, hazards, &route, &undisturbed, clock);
+    let mut search = Search::new(graph.root());
     let mut selection = Selection::new(scene, &undisturbed);
     let mut budget = MAX_EXPANDED;
     let mut timed_out = false;
@@ -207,8 +222,6 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
             }
         }
     }
-    let contact = first_contact(hazards, &undisturbed);
-    let grounding = ashore::first_contact(problem.coast, &undisturbed);
     let mut conflicts: Vec<Conflict> = Vec::new();
     if contact.is_some() || grounding.is_some() {
         conflicts = by_obstacle(hazards)
@@ -255,6 +268,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         stats,
         explored: node::explored(search),
         path_time: None,
+        escape: None,
     }
 }
 

@@ -64,6 +64,17 @@ pub struct RelaxationDocument {
     pub until_s: Option<f64>,
 }
 
+/// How the hold of a ship that stands on ends.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct EscapeDocument {
+    pub policy: String,
+    pub latest_s: f64,
+    pub first_segment: usize,
+    pub turn_deg: f64,
+    pub speed_mps: f64,
+}
+
 /// Something that the independent checker found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]

@@ -5,16 +5,18 @@ use serde::{Deserialize, Serialize};
 use super::conduct::ConductDocument;
 use super::control::{ControlDocument, control};
 use super::parts::{
-    CostDocument, EncounterDocument, InitialSetDocument, MissionDocument, NodeDocument,
-    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
-    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
-    VelocitySetDocument, ViolationDocument,
+    CostDocument, EncounterDocument, EscapeDocument, InitialSetDocument, MissionDocument,
+    NodeDocument, ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument,
+    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument,
+    TrajectoryDocument, VelocitySetDocument, ViolationDocument,
 };
 use super::path_time::{PathTimeDocument, path_time_document};
 use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
 use crate::colregs::conduct::Thresholds;
 use crate::evaluation::Evaluation;
-use crate::frame::{Pose, Vector, clockwise_deg_per_s, course_deg_from_heading, heading_of};
+use crate::frame::{
+    Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
+};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run};
@@ -22,7 +24,7 @@ use crate::planner::{Objective, Plan};
 use crate::report::summary::Verdict;
 use crate::report::words;
 use crate::tolerance;
-use crate::trajectory::{Steered, Trajectory};
+use crate::trajectory::{Segment, Steered, Trajectory};
 
 /// The name of the plan document's format.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
@@ -71,6 +73,9 @@ pub struct PlanDocument {
     pub search_stats: SearchStatsDocument,
     pub timing: TimingDocument,
     pub trajectory: Option<TrajectoryDocument>,
+    /// Where own ship stands on; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub escape: Option<EscapeDocument>,
     /// As the scenario has them: what the sets have to contain.
     pub targets: Vec<TargetDocument>,
     pub obstacles: Vec<ObstacleDocument>,
@@ -128,6 +133,7 @@ impl PlanDocument {
             search_stats: stats(run),
             timing: timing(run),
             trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
+            escape: escape(run),
             targets: scenario.targets.iter().map(target).collect(),
             obstacles: run
                 .obstacles
@@ -201,6 +207,18 @@ fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
             until_s: None,
         },
     }
+}
+
+fn escape(run: &Run) -> Option<EscapeDocument> {
+    let (escape, plan) = (run.planned.escape?, run.planned.outcome.plan()?);
+    let held = |s: &&Segment| s.start_time < escape.latest - tolerance::TIME_S;
+    Some(EscapeDocument {
+        policy: "stand-on-hold".to_owned(),
+        latest_s: escape.latest,
+        first_segment: plan.trajectory.segments().iter().take_while(held).count(),
+        turn_deg: clockwise_deg(escape.turn),
+        speed_mps: escape.speed,
+    })
 }
 
 fn own_ship(run: &Run) -> OwnShipDocument {
