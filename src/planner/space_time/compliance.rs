@@ -14,6 +14,9 @@ use crate::trajectory::Segment;
 /// Instants of a segment at which the other ship is looked at.
 const ARC_SAMPLES: u32 = 32;
 
+/// Seconds after the closest approach of the centres at which a target has passed: that of the hulls may be later.
+const PASSED_S: f64 = 2.0;
+
 /// m/s. Below this relative speed the distance does not change.
 const NO_RELATIVE_SPEED: f64 = 1e-9;
 
@@ -47,7 +50,7 @@ pub(crate) fn complies(scene: &Scene, undisturbed: &[Segment], motion: &[Segment
             let nearest = Nearest::of(&encountered.ship, motion);
             let passes = nearest.drifts_to_port || !role.passes_port_to_port();
             let heads = !role.bars_port_until_passed()
-                || departure.keeps_off_port(problem, motion, nearest.time);
+                || departure.keeps_off_port(problem, motion, nearest.time + PASSED_S);
             let plain =
                 !role.keeps_clear() || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
             passes && heads && plain && keeps_off_bow(encountered, motion)
