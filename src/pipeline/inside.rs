@@ -20,6 +20,7 @@ pub(super) fn motion(kind: PlannerKind, problem: &Problem) -> Option<Planned> {
                 stats: crate::planner::SearchStats::default(),
                 explored: crate::planner::ExploredGraph::new(),
                 path_time: None,
+                escape: None,
             })
         }
         PlannerKind::PathTime => {

@@ -48,6 +48,7 @@ pub fn undisturbed(problem: &Problem, hurrying: bool) -> Option<Planned> {
     };
     Some(Planned {
         path_time: Some(Box::new(profile.diagram(&scene, problem.own.pose))),
+        escape: None,
         outcome: Outcome::Solved(Plan {
             trajectory,
             cost,

@@ -185,12 +185,10 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     };
     let contact = first_contact(hazards, &undisturbed);
     let grounding = ashore::first_contact(problem.coast, &undisturbed);
+    let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
+    let first_conflict = first_conflict.reduce(f64::min);
     if problem.duty().stands_on
-        && let Some(end) = contact
-            .map(|c| c.1)
-            .into_iter()
-            .chain(grounding)
-            .reduce(f64::min)
+        && let Some(end) = first_conflict
         && let Some(held) = stand_on::hold(&scene, &undisturbed, end, clock)
     {
         return held.planned();
@@ -238,6 +236,15 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         && (stages::are_several(&conflicts) || is_bent && !selection.has_plan())
         && let Some(motion) =
             stages::one_after_another(problem, hazards, &route, &undisturbed, clock)
+    {
+        selection.consider(motion);
+        timed_out = clock.is_up();
+    }
+    if !timed_out
+        && !selection.has_plan()
+        && !problem.duty().is_none()
+        && let Some(end) = first_conflict
+        && let Some(motion) = stand_on::cheapest(&scene, &undisturbed, end, clock)
     {
         selection.consider(motion);
         timed_out = clock.is_up();

@@ -30,6 +30,9 @@ const RETURN_ANGLES: [f64; 3] = [0.3, 0.6, 1.0];
 const SCAN: usize = 40;
 const HALVINGS: usize = 7;
 
+/// Instants from which one is looked for that need not hold.
+const FEW: usize = 10;
+
 /// A motion that holds and escapes.
 #[derive(Debug, Clone)]
 pub(crate) struct Held {
@@ -64,7 +67,11 @@ pub(crate) fn hold(
     contact: f64,
     clock: Clock,
 ) -> Option<Held> {
-    let search = Escapes { scene, undisturbed };
+    let search = Escapes {
+        scene,
+        undisturbed,
+        sides: &[Side::Starboard],
+    };
     let step = contact / SCAN as f64;
     let scanned = (0..=SCAN).rev().map(|k| step * k as f64);
     let mut latest = scanned
@@ -85,10 +92,34 @@ pub(crate) fn hold(
     search.from(latest).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
+/// The cheapest of such motions from a few times on, to any side that complies with the rules: where the graph and its refinement
+/// find none.
+pub(crate) fn cheapest(
+    scene: &Scene,
+    undisturbed: &[Segment],
+    contact: f64,
+    clock: Clock,
+) -> Option<Vec<Segment>> {
+    let search = Escapes {
+        scene,
+        undisturbed,
+        sides: scene.problem.duty().sides(),
+    };
+    let step = contact / FEW as f64;
+    let times = (0..=FEW).map(|k| step * k as f64);
+    let found = times
+        .take_while(|_| !clock.is_up())
+        .filter_map(|t| search.from(t).min_by(|a, b| a.cost.total_cmp(&b.cost)));
+    let best = found.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    best.map(|held| held.motion)
+}
+
 /// All escapes from a time on.
 struct Escapes<'s, 'a> {
     scene: &'s Scene<'a>,
     undisturbed: &'s [Segment],
+    /// Of the first turn.
+    sides: &'static [Side],
 }
 
 /// Where and when own ship leaves the route.
@@ -120,19 +151,21 @@ impl<'s> Escapes<'s, '_> {
         let turning = TURNS
             .into_iter()
             .flat_map(move |turn| speeds().map(move |u| (turn * APPARENT_TURN, u)))
-            .flat_map(move |(turn, speed)| self.by_turn(&start, turn, speed));
+            .flat_map(move |turn| self.sides.iter().map(move |side| (*side, turn)))
+            .flat_map(move |(side, (turn, speed))| self.by_turn(&start, side, turn, speed));
         let slower = speeds()
             .filter(|u| *u <= slow(self.problem()))
             .flat_map(move |speed| self.by_speed(&again, speed));
         turning.chain(slower)
     }
 
-    fn by_turn(&self, start: &Start, turn: f64, speed: f64) -> Vec<Held> {
+    fn by_turn(&self, start: &Start, side: Side, turn: f64, speed: f64) -> Vec<Held> {
         let problem = self.problem();
         let radius = problem.own.turning_radius;
         let pose = start.before.last().map_or(problem.own.pose, Segment::end);
         let mut out = Chain::new(pose, start.time, speed, radius);
-        out.arc(turn * radius * Side::Starboard.turn_sign());
+        let turn = turn * side.turn_sign();
+        out.arc(turn * radius);
         let mut found = Vec::new();
         let mut held = 0.0;
         for hold in HOLDS_S {
@@ -171,7 +204,7 @@ impl<'s> Escapes<'s, '_> {
             let mut escape = out.segments.clone();
             escape.extend(chain.segments);
             let speed = out.segments.first().map_or(0.0, |s| s.speed);
-            self.held(start, escape, -turn, speed)
+            self.held(start, escape, turn, speed)
         });
         held.collect()
     }
