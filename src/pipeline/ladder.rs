@@ -296,6 +296,7 @@ impl Ladder<'_> {
                 stats: SearchStats::default(),
                 explored: ExploredGraph::new(),
                 path_time: None,
+                escape: None,
             },
             control: None,
             why: None,

@@ -167,7 +167,7 @@ impl DesiredTrajectory {
     }
 
     /// What is left of it at `time`, by a clock that starts then; once it is over, or as good as over, a last stretch of
-    /// [`LAST_STRETCH_M`] at the end of the path.
+    /// `LAST_STRETCH_M` at the end of the path.
     pub fn remaining(&self, time: f64) -> Self {
         let last = &self.legs[self.legs.len() - 1];
         let latest = self.duration() - LAST_STRETCH_M.min(last.length) / last.speed;
