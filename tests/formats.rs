@@ -85,7 +85,7 @@ fn every_case_of_imazu_meets_where_it_is_said_to() {
         assert_eq!((own.hull.length, own.hull.beam), (100.0, 20.0));
         assert_eq!((own.turning_radius, own.safety_margin), (250.0, 100.0));
         assert!(
-            (scenario.horizon - 1.5 * 3600.0).abs() < 0.1,
+            (scenario.horizon - 2.0 * 3600.0).abs() < 0.1,
             "{}",
             scenario.horizon
         );

@@ -21,8 +21,8 @@ pub(super) const USUAL_HULL: Hull = Hull {
 /// resolution MSC.137(76) allows.
 pub(super) const TURNING_LENGTHS: f64 = 2.5;
 
-/// The horizon, in durations of own ship's route.
-pub(super) const HORIZON_ROUTES: f64 = 1.5;
+/// The horizon, in durations of own ship's route: room to let a slower ship go ahead all the way.
+pub(super) const HORIZON_ROUTES: f64 = 2.0;
 
 /// What foreign files do not say and a scenario needs. The default is that of `docs/formats.md`.
 #[derive(Debug, Clone, PartialEq)]
