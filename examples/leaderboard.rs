@@ -1,0 +1,152 @@
+//! The table of docs/benchmarks.md, to standard output: how the space-time planner fares on encounters of others and on random ones.
+//!
+//! ```text
+//! cargo run --release --no-default-features --example leaderboard > docs/benchmarks.md
+//! ```
+//!
+//! Everything but the milliseconds is the same wherever it runs.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use searoom::colregs::conduct::{Conduct, Thresholds};
+use searoom::pipeline::{self, Run};
+use searoom::planner::Outcome;
+use searoom::scenario::formats::{Assumed, Assumption, Contents};
+use searoom::scenario::{Compliance, Scenario};
+use searoom::simulation::{EncounterKind, Placement, random_encounter};
+
+/// Random encounters of each kind, seeds from 0.
+const RANDOM: u64 = 250;
+
+/// Metres between the hulls in Imazu's cases, which name none.
+const IMAZU_MARGIN: f64 = 500.0;
+
+/// Seconds. Outcomes must not depend on the clock.
+const DEADLINE: f64 = 60.0;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let thresholds = Thresholds::standard().ok_or("no thresholds")?;
+    let assumed = Assumed::default();
+    let wide = assumed.clone().with(Assumption::SafetyMargin, IMAZU_MARGIN);
+    let mut suites = vec![
+        ("Imazu, margin 500 m".to_owned(), foreign("imazu", &wide)?),
+        ("DNV, margin 122 m".to_owned(), foreign("dnv", &assumed)?),
+        (
+            "CommonOcean samples".to_owned(),
+            foreign("commonocean", &assumed)?,
+        ),
+    ];
+    for kind in EncounterKind::ALL {
+        let drawn = (0..RANDOM).map(|seed| random_encounter(kind, seed, Placement::Origin));
+        let scenes: Result<Vec<_>, _> = drawn.collect();
+        let scenes = scenes?.into_iter().map(|d| d.scenario).collect();
+        suites.push((
+            format!("random, {}, seeds 0 to {}", kind.name(), RANDOM - 1),
+            scenes,
+        ));
+    }
+    println!("# Benchmarks\n");
+    println!(
+        "Searoom {}, the space-time planner, ±0.5 m/s and ±5° on every target of foreign files. Made by\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    println!(
+        "```text\ncargo run --release --no-default-features --example leaderboard > docs/benchmarks.md\n```\n"
+    );
+    println!(
+        "*Clear*: a plan that enters no set that is declared, verified. *Relaxed*: of those, with shapes drawn back or not by the rules. *Complies*: neither judge of \
+         [rules.md](rules.md) finds a rule broken, thresholds of the profile `searoom`. *Score*: the mean over targets of the least of the scores. Milliseconds of planning on one core, \
+         of this run; all else is the same everywhere.\n"
+    );
+    println!(
+        "| suite | `compliance` | scenes | clear | relaxed | complies | score | J, median, m² | ms, median | ms, 99 % | ms, worst |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    for (name, scenes) in suites {
+        for compliance in [Compliance::Shape, Compliance::Rules] {
+            println!(
+                "| {name} | `{}` | {} |",
+                compliance.word(),
+                row(&scenes, compliance, thresholds)
+            );
+        }
+    }
+    Ok(())
+}
+
+/// The scenarios of a folder below `benchmarks/`, in order of the files' names.
+fn foreign(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Error>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("benchmarks")
+        .join(folder);
+    let entries = std::fs::read_dir(folder)?.map(|entry| entry.map(|e| e.path()));
+    let mut files: Vec<PathBuf> = entries.collect::<Result<_, _>>()?;
+    files.retain(|f| f.extension().is_some_and(|e| e == "json" || e == "xml"));
+    files.sort();
+    let mut scenes = Vec::new();
+    for file in files {
+        let Contents::Situations { situations, .. } = Contents::read(&file, assumed)? else {
+            return Err(format!("{}: no encounters", file.display()).into());
+        };
+        for situation in situations {
+            let fault = |faults| format!("{}: {faults:?}", file.display());
+            scenes.push(
+                situation
+                    .map_err(fault)?
+                    .scenario(assumed)
+                    .map_err(fault)?
+                    .scenario,
+            );
+        }
+    }
+    Ok(scenes)
+}
+
+/// The cells of one row after the first.
+fn row(scenes: &[Scenario], compliance: Compliance, thresholds: &Thresholds) -> String {
+    let (mut clear, mut relaxed, mut complies) = (0, 0, 0);
+    let (mut scores, mut costs, mut times) = (Vec::new(), Vec::new(), Vec::new());
+    for scene in scenes {
+        let run = pipeline::run(Scenario {
+            compliance,
+            deadline: DEADLINE,
+            ..scene.clone()
+        });
+        times.push(run.plan_time.as_secs_f64() * 1e3);
+        let conduct: Vec<Conduct> = run.conduct(thresholds).into_iter().flatten().collect();
+        scores.extend(conduct.iter().map(|c| c.scores.least()));
+        if is_clear(&run) {
+            clear += 1;
+            relaxed += usize::from(!run.relaxations.is_empty());
+            complies += usize::from(conduct.iter().all(Conduct::complies));
+            costs.extend(run.planned.outcome.plan().map(|plan| plan.cost));
+        }
+    }
+    let mean = scores.iter().sum::<f64>() / scores.len().max(1) as f64;
+    format!(
+        "{} | {clear} | {relaxed} | {complies} | {mean:.2} | {:.0} | {:.1} | {:.1} | {:.1}",
+        scenes.len(),
+        quantile(&mut costs, 0.5),
+        quantile(&mut times, 0.5),
+        quantile(&mut times, 0.99),
+        quantile(&mut times, 1.0)
+    )
+}
+
+fn is_clear(run: &Run) -> bool {
+    matches!(run.planned.outcome, Outcome::Solved(_))
+        && run.max_risk == 0.0
+        && run.released.iter().all(Option::is_none)
+        && run.evaluation.as_ref().is_some_and(|e| e.verified())
+}
+
+/// NaN of nothing.
+fn quantile(values: &mut [f64], share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1) as f64;
+    values
+        .get((last * share).round() as usize)
+        .copied()
+        .unwrap_or(f64::NAN)
+}
