@@ -1,7 +1,7 @@
 //! The ladder: what is given up, step by step, so that there is always an answer.
 //!
 //! ```text
-//! compliant ─► shapes, but not the rules ─► shapes drawn back ─► hard sets at the least risk ─► a set entered, and left as soon as may be
+//! compliant ─► the rules, shapes drawn back ─► shapes, but not the rules ─► shapes drawn back ─► hard sets at the least risk ─► a set entered, and left as soon as may be
 //! ```
 //!
 //! Each rung is tried when those above gave no plan. A planner may find a way out of a larger set that it misses for the
@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::duty::{encountered, first_turn};
 use super::inside;
+use super::rung::Rung;
 use super::sets::TargetSets;
 use crate::obstacle::{Coast, Obstacle, SpaceTimeObstacle};
 use crate::planner::optimal_control::{self, ControlReport, Controlled};
@@ -21,23 +22,9 @@ use crate::planner::{
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
-/// How much of what was asked a plan keeps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rung {
-    /// All that compliance asks: the rules, and the sets as it shapes them, as far as own ship's start lets them be.
-    Compliant,
-    /// Clear of the shapes, but not by the rules.
-    Shapes,
-    /// Clear of the hard sets, and of what is left of the shapes.
-    Domains,
-    /// Clear of the level sets of the least risk that was found to leave a way.
-    Risk,
-    /// A hard set is entered or left, and nothing is claimed of it before.
-    Inside,
-}
-
 /// Shares of the shapes that are tried where no plan was found for the shapes, or for the hard sets, alone.
 const BELOW_SHAPES: [f64; 2] = [0.0, 0.5];
+const BY_THE_RULES: [f64; 2] = [0.5, 0.0];
 const ABOVE_HARD_SETS: [f64; 2] = [1.0, 0.5];
 
 /// Halvings of the share of the shapes that a plan keeps, between what one keeps and what none was found for.
@@ -118,6 +105,7 @@ impl Ladder<'_> {
             return first;
         }
         let lower = [
+            Self::by_the_rules,
             Self::clear_of_shapes,
             Self::clear_of_hard_sets,
             Self::around_hard_sets,
@@ -170,7 +158,9 @@ impl Ladder<'_> {
         };
         let mut problem = self.problem(&obstacles);
         let asking = match (rung, self.scenario.compliance) {
-            (Rung::Compliant, Compliance::Rules) => encountered(self.scenario, self.sets),
+            (Rung::Compliant | Rung::Rules, Compliance::Rules) => {
+                encountered(self.scenario, self.sets)
+            }
             _ => Vec::new(),
         };
         problem.encountered = &asking;
@@ -209,12 +199,30 @@ impl Ladder<'_> {
         }
     }
 
+    /// True where the rules ask something of own ship.
+    fn are_rules_asked(&self) -> bool {
+        self.scenario.compliance == Compliance::Rules
+            && !encountered(self.scenario, self.sets).is_empty()
+    }
+
+    /// A plan by the rules that is clear of the hard sets, and of as much of the shapes as it happens to be. `None` where none was
+    /// found.
+    fn by_the_rules(&self, _: bool) -> Option<Attempt> {
+        if !self.are_rules_asked() || !self.sets.iter().any(TargetSets::has_shape) {
+            return None;
+        }
+        let risk = self.scenario.max_risk;
+        BY_THE_RULES.into_iter().find_map(|share| {
+            let found = self.attempt(Rung::Rules, &self.shares(share), risk);
+            let kept = self.kept_along(found.trajectory()?, risk);
+            Some(self.clear_of(&found, &kept, Rung::Rules))
+        })
+    }
+
     /// A plan that is clear of the shapes, where the rules were asked for as well. `None` where none was found; an attempt
     /// without a plan where the time ran out.
     fn clear_of_shapes(&self, _: bool) -> Option<Attempt> {
-        if self.scenario.compliance != Compliance::Rules
-            || encountered(self.scenario, self.sets).is_empty()
-        {
+        if !self.are_rules_asked() {
             return None;
         }
         let found = self.attempt(Rung::Shapes, &self.shares(1.0), self.scenario.max_risk);

@@ -8,14 +8,16 @@ mod ladder;
 mod no_return;
 mod relaxation;
 mod risk;
+mod rung;
 mod sets;
 mod shore;
 
 pub use judge::{judge, judge_free};
-pub use ladder::{RISK_STEP, Rung};
+pub use ladder::RISK_STEP;
 pub use no_return::{NO_RETURN_STEP_S, NoReturn};
 pub use relaxation::Relaxation;
 pub use risk::peak_risk;
+pub use rung::Rung;
 pub use sets::{TargetSets, sets};
 pub use shore::{coast, land_within_reach};
 
@@ -150,7 +152,7 @@ pub fn run(scenario: Scenario) -> Run {
             .collect()
     });
     let mut relaxations = relaxation::relaxations(&sets, &answer.cuts, &risks, &answer.released);
-    if scenario.compliance == Compliance::Rules && answer.rung > Rung::Compliant {
+    if scenario.compliance == Compliance::Rules && answer.rung > Rung::Rules {
         relaxations.extend(rules_given_up(&scenario, &sets));
     }
     let forces = scenario.planner == PlannerKind::OptimalControl;

@@ -46,8 +46,10 @@ pub fn undisturbed(problem: &Problem, hurrying: bool) -> Option<Planned> {
         // all of the risk is taken
         Objective::LengthRisk { weight } => trajectory.length() + weight,
     };
+    // the diagram has the sets that this motion is not clear of
+    let barred = Scene::new(problem, &network);
     Some(Planned {
-        path_time: Some(Box::new(profile.diagram(&scene, problem.own.pose))),
+        path_time: Some(Box::new(profile.diagram(&barred, problem.own.pose))),
         escape: None,
         outcome: Outcome::Solved(Plan {
             trajectory,
