@@ -6,8 +6,10 @@
 //! SEAROOM_ENCOUNTERS=12000 cargo test --release --no-default-features --test compliance -- --nocapture
 //! ```
 
+mod passing;
 mod statistics;
 
+use passing::crosses_ahead;
 use rayon::prelude::*;
 use searoom::colregs::conduct::{Conduct, Meeting, Thresholds};
 use searoom::frame::{Side, wrap};
@@ -77,18 +79,6 @@ fn slowed_for(plan: &Trajectory, desired: f64) -> f64 {
     let straight = plan.segments().iter().take_while(|s| s.turn_rate == 0.0);
     let slower = straight.filter(|s| s.speed <= slow);
     slower.map(|s| s.duration).sum()
-}
-
-/// True when own ship crosses the target's course line ahead of her.
-fn crosses_ahead(plan: &Trajectory, ship: &ShipTrack) -> bool {
-    let seen: Vec<_> = plan
-        .sample_times(0.5, u32::MAX)
-        .into_iter()
-        .map(|t| ship.pose_at(t).body_coordinates(plan.pose_at(t).position))
-        .collect();
-    seen.windows(2)
-        .find(|w| (w[0].y > 0.0) != (w[1].y > 0.0))
-        .is_some_and(|w| w[0].x > 0.0)
 }
 
 /// The greatest heading to port of the first, before the centres are nearest, radians.

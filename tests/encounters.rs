@@ -13,9 +13,11 @@
 //! whose velocity stays in their velocity set.
 
 mod dense_search;
+mod passing;
 mod statistics;
 
 use dense_search::{Answer, DenseSearch, recheck};
+use passing::crosses_ahead;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -205,18 +207,6 @@ fn first_turn(plan: &Trajectory) -> Option<Side> {
         .iter()
         .find(|s| (s.turn_rate * s.duration).abs() > ALTERATION)?;
     Side::of_turn(turn.turn_rate)
-}
-
-/// True when own ship, seen from the target's estimate, crosses its course line ahead of it.
-fn crosses_ahead(plan: &Trajectory, ship: &ShipTrack) -> bool {
-    let seen: Vec<Vector> = plan
-        .sample_times(0.5, u32::MAX)
-        .into_iter()
-        .map(|t| ship.pose_at(t).body_coordinates(plan.pose_at(t).position))
-        .collect();
-    seen.windows(2)
-        .find(|w| (w[0].y > 0.0) != (w[1].y > 0.0))
-        .is_some_and(|w| w[0].x > 0.0)
 }
 
 fn claims_of(record: &Record, least: f64) -> Vec<String> {
