@@ -75,10 +75,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The scenarios of a folder below `benchmarks/`, in order of the files' names.
+/// The scenarios of a folder below `scenarios/`, in order of the files' names.
 fn foreign(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("benchmarks")
+        .join("scenarios")
         .join(folder);
     let entries = std::fs::read_dir(folder)?.map(|entry| entry.map(|e| e.path()));
     let mut files: Vec<PathBuf> = entries.collect::<Result<_, _>>()?;

@@ -5,8 +5,8 @@ use searoom::scenario::formats::{Assumed, Assumption, Contents, Format, Imported
 use searoom::scenario::{Fault, Scenario};
 use searoom::target::Motion;
 
-const HEAD_ON: &str = include_str!("../benchmarks/commonocean/sample-head-on.xml");
-const FAIRWAY: &str = include_str!("../benchmarks/commonocean/sample-fairway.xml");
+const HEAD_ON: &str = include_str!("../scenarios/commonocean/sample-head-on.xml");
+const FAIRWAY: &str = include_str!("../scenarios/commonocean/sample-fairway.xml");
 
 fn read(text: &str) -> Result<Vec<Result<Situation, Vec<Fault>>>, Vec<Fault>> {
     match Contents::parse(text, &Assumed::default())? {

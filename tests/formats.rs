@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 fn benchmark(name: &str) -> Vec<Situation> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("benchmarks")
+        .join("scenarios")
         .join(name);
     situations(Contents::read(&file, &Assumed::default().with_variants(true)).expect("readable"))
 }
@@ -28,7 +28,7 @@ fn situations(contents: Contents) -> Vec<Situation> {
 }
 
 fn dnv_files() -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benchmarks/dnv");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/dnv");
     let entries = std::fs::read_dir(folder).expect("a folder");
     let mut names: Vec<String> = entries
         .map(|entry| {
@@ -173,7 +173,7 @@ fn an_assumption_out_of_range_changes_nothing() {
 }
 
 fn dnv_01() -> Value {
-    serde_json::from_str(include_str!("../benchmarks/dnv/traffic_situation_01.json")).expect("JSON")
+    serde_json::from_str(include_str!("../scenarios/dnv/traffic_situation_01.json")).expect("JSON")
 }
 
 /// The same with one value replaced, or taken away.
@@ -365,7 +365,7 @@ fn every_fault_of_a_file_is_named_at_once() {
 
 #[test]
 fn a_broken_case_of_imazu_costs_itself_alone() {
-    let text = include_str!("../benchmarks/imazu/imazu.json");
+    let text = include_str!("../scenarios/imazu/imazu.json");
     let broken = text.replacen("\"course_deg\": 270.0", "\"course_deg\": \"west\"", 1);
     let Ok(Contents::Situations { format, situations }) =
         Contents::parse(&broken, &Assumed::default())
@@ -383,7 +383,7 @@ fn a_broken_case_of_imazu_costs_itself_alone() {
 
 #[test]
 fn keys_that_are_there_twice_and_json_that_is_none_are_refused() {
-    let text = include_str!("../benchmarks/dnv/traffic_situation_01.json");
+    let text = include_str!("../scenarios/dnv/traffic_situation_01.json");
     let twice = text.replacen(
         "\"title\": \"HO\",",
         "\"title\": \"HO\", \"title\": \"OT\",",

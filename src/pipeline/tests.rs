@@ -331,7 +331,7 @@ fn out_of_time_there_is_still_an_answer() {
 fn a_wide_way_is_found_where_there_is_none_near_the_path() {
     use crate::scenario::formats::{Assumed, Contents};
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("benchmarks/dnv/traffic_situation_47.json");
+        .join("scenarios/dnv/traffic_situation_47.json");
     let assumed = Assumed::default();
     let contents = Contents::read(&file, &assumed).expect("readable");
     let Contents::Situations { situations, .. } = contents else {

@@ -7,8 +7,8 @@ use super::program::{HEAD_ON, document, searoom, stderr, text, untimed, write};
 use predicates::str::contains;
 use serde_json::Value;
 
-const IMAZU: &str = include_str!("../../benchmarks/imazu/imazu.json");
-const DNV: &str = include_str!("../../benchmarks/dnv/traffic_situation_01.json");
+const IMAZU: &str = include_str!("../../scenarios/imazu/imazu.json");
+const DNV: &str = include_str!("../../scenarios/dnv/traffic_situation_01.json");
 
 /// Three formats and every kind of fault in one folder: an error each, with file and place, and the rest runs.
 #[test]
@@ -111,10 +111,10 @@ fn options_say_what_foreign_files_do_not() {
 
 #[test]
 fn one_plan_is_of_one_situation() {
-    searoom(&["plan", "benchmarks/imazu/imazu.json"])
+    searoom(&["plan", "scenarios/imazu/imazu.json"])
         .code(2)
         .stderr(contains("22 situations; `searoom suite` runs them"));
-    searoom(&["check", "benchmarks/imazu/imazu.json", "--variants"])
+    searoom(&["check", "scenarios/imazu/imazu.json", "--variants"])
         .success()
         .stdout(contains("imazu.json: imazu-12-mixed: ok"))
         .stderr(contains(
@@ -135,7 +135,7 @@ fn a_format_is_told_by_what_is_in_the_file() {
 fn imported_files_run_as_their_originals() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("scenarios");
-    let sources = ["benchmarks/imazu/imazu.json", "benchmarks/commonocean"];
+    let sources = ["scenarios/imazu/imazu.json", "scenarios/commonocean"];
     let options = ["--safety-margin-m", "300", "--course-spread-deg", "3"];
     let assert = searoom(&[&["import"], &sources[..], &options, &["--out", text(&out)]].concat());
     assert.success().stdout(contains("imazu-22.toml"));
@@ -190,7 +190,7 @@ fn findings(document: &Value, scenario: &str) -> Vec<String> {
 
 #[test]
 fn a_lint_says_what_is_odd_about_the_published_cases() {
-    let imazu = lint("benchmarks/imazu/imazu.json");
+    let imazu = lint("scenarios/imazu/imazu.json");
     assert_eq!(imazu["summary"]["scenarios"], 22);
     assert_eq!(imazu["summary"]["targets"], 50);
     assert_eq!(
@@ -209,7 +209,7 @@ fn a_lint_says_what_is_odd_about_the_published_cases() {
             assert_eq!(target["matters"], "meets");
         }
     }
-    let dnv = lint("benchmarks/dnv");
+    let dnv = lint("scenarios/dnv");
     assert_eq!(dnv["summary"]["targets"], 71);
     for scenario in dnv["scenarios"].as_array().expect("scenarios") {
         for finding in scenario["findings"].as_array().expect("a list") {
@@ -225,7 +225,7 @@ fn a_lint_says_what_is_odd_about_the_published_cases() {
 #[test]
 fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
     let folder = tempfile::tempdir().expect("a folder");
-    let crossing = include_str!("../../benchmarks/dnv/traffic_situation_03.json");
+    let crossing = include_str!("../../scenarios/dnv/traffic_situation_03.json");
     write(folder.path(), "a.json", crossing);
     // port and starboard exchanged about own ship's meridian
     let mut mirror: Value = serde_json::from_str(crossing).expect("JSON");

@@ -11,10 +11,16 @@ use serde_json::Value;
 
 #[test]
 fn the_scenarios_of_the_project_are_good() {
-    searoom(&["check", "scenarios"])
+    let checked = searoom(&["check", "scenarios"])
         .success()
-        .stderr(is_empty())
-        .stdout(contains("scenarios/colregs/head-on.toml: ok"));
+        .stdout(contains("scenarios/colregs/head-on.toml: ok"))
+        .stdout(contains("scenarios/imazu/imazu.json: imazu-22: ok"));
+    // what foreign files do not say is told, and nothing else
+    let messages = String::from_utf8_lossy(&checked.get_output().stderr).into_owned();
+    let foreign = ["dnv", "imazu", "commonocean"].map(|f| format!("note: scenarios/{f}/"));
+    for line in messages.lines() {
+        assert!(foreign.iter().any(|f| line.starts_with(f)), "{line}");
+    }
 }
 
 #[test]
@@ -483,7 +489,11 @@ fn recordings_need_their_feature() {
 #[test]
 fn recordings_are_named_after_their_scenarios() {
     let folder = tempfile::tempdir().expect("a folder");
-    searoom(&["suite", "scenarios", "--rrd", text(folder.path())]).success();
+    // the parent of the folder named is where names begin
+    let below = folder.path().join("scenes");
+    fs::create_dir_all(below.join("colregs")).expect("a folder");
+    write(&below.join("colregs"), "head-on.toml", HEAD_ON);
+    searoom(&["suite", text(&below), "--rrd", text(folder.path())]).success();
     let recording = folder.path().join("colregs__head-on.rrd");
     assert!(fs::metadata(recording).expect("a recording").len() > 1000);
     let file = folder.path().join("one.rrd");
