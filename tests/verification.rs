@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use searoom::frame::Vector;
 use searoom::pipeline;
 use searoom::planner::Objective;
 use searoom::report::document::PlanDocument;
-use searoom::scenario::Scenario;
-use searoom::target::Representation;
+use searoom::scenario::{Compliance, Scenario};
+use searoom::target::{Motion, Representation};
 use searoom::verification::{Verification, verify};
 use serde_json::{Value, json};
 
@@ -32,7 +33,50 @@ fn checked(document: &Value) -> Verification {
     verify(&document.to_string()).expect("a plan document")
 }
 
-/// One of every kind: space-time, with land, with slabs, with ellipses, at an accepted risk, path-time, forces.
+/// Own ship stands on, holds course and speed, and escapes.
+fn stand_on() -> Value {
+    let mut scenario = scenario("colregs/stand-on.toml");
+    scenario.compliance = Compliance::Rules;
+    document(scenario)
+}
+
+/// Own ship starts within the set of a ship that she is to keep clear of, and leaves it.
+fn inside() -> Value {
+    let text = std::fs::read_to_string(file("colregs/head-on.toml")).expect("a scenario");
+    let mut scenario = Scenario::parse(&text).expect("a scenario");
+    scenario.own_ship.safety_margin = 80.0;
+    let Motion::Ship(ship) = &mut scenario.targets[0].motion else {
+        panic!("a ship");
+    };
+    ship.pose.position = Vector::new(70.0, 20.0);
+    ship.pose.heading = 0.4;
+    ship.speed = 3.0;
+    document(scenario)
+}
+
+/// The way is barred by a ship that crosses it and may be early or late: the path is run through her set.
+fn barred() -> Value {
+    let text = r#"
+        title = "barred"
+        horizon_s = 300.0
+        own_ship = { position = { east_m = 0.0, north_m = 0.0 }, course_deg = 90.0, speed_mps = 5.0, length_m = 30.0,
+            beam_m = 8.0, turning_radius_m = 100.0, safety_margin_m = 10.0 }
+        mission = { waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1000.0, north_m = 0.0 }] }
+        planner = { kind = "path-time" }
+        [[targets]]
+        name = "at the end"
+        initial_set = { vertices_m = [[980.0, -2.0], [1080.0, -2.0], [1080.0, 2.0], [980.0, 2.0]] }
+        velocity_set = { vertices_mps = [[0.3, -0.3], [0.3, 0.3], [-0.3, 0.3], [-0.3, -0.3]] }
+        [[targets]]
+        name = "beside"
+        initial_set = { vertices_m = [[480.0, 60.0], [520.0, 60.0], [520.0, 70.0], [480.0, 70.0]] }
+        velocity_set = { vertices_mps = [[0.0, 0.0], [0.1, -2.0], [-0.1, -2.0]] }
+    "#;
+    document(Scenario::parse(text).expect("a scenario"))
+}
+
+/// One of every kind: space-time, with land, with slabs, with ellipses, at an accepted risk, path-time, forces, stand-on, from
+/// within a set.
 fn documents() -> Vec<(&'static str, Value)> {
     let mut risky = scenario("colregs/give-way.toml");
     risky.max_risk = 0.4;
@@ -54,6 +98,8 @@ fn documents() -> Vec<(&'static str, Value)> {
         ("quick ferry", document(quick)),
         ("figure 9", document(scenario("paper/figure_9.toml"))),
         ("one ellipsoid", document(one)),
+        ("stand-on", stand_on()),
+        ("inside", inside()),
     ]
 }
 
@@ -172,7 +218,7 @@ fn is_said_only(pointer: &str) -> bool {
     [
         "/search_stats",
         "/timing",
-        "/relaxation",
+        "/relaxation/",
         "/optimal_control/intervals",
         "/optimal_control/start_intervals",
         "/optimal_control/defect",
@@ -194,7 +240,8 @@ fn is_said_only(pointer: &str) -> bool {
     .iter()
     .any(|part| pointer.starts_with(part))
         || pointer.contains("undisturbed")
-        || pointer.contains("max_risk")
+        // the largest risk may last
+        || pointer.contains("max_risk_t_s")
         || ["roles", "scores", "breaches", "monitors"]
             .iter()
             .any(|judged| pointer.contains(&format!("/{judged}")))
@@ -260,12 +307,16 @@ fn every_number_of_the_motion_and_its_figures_is_held() {
                     .any(|k| pointer.ends_with(k));
             // the barge is touched for a while: any time of that while is one of the closest approach
             let lasting = name == "canal" && pointer == "/encounters/0/tcpa_s";
+            // by how much a shape was drawn back
+            let drawn = pointer.strip_suffix("/amount").is_some_and(|given_up| {
+                document.pointer(&format!("{given_up}/kind")) != Some(&json!("risk"))
+            });
             // who waits is where she is at any time of the while
             let waiting = pointer.strip_suffix("/t_s").is_some_and(|sample| {
                 sample.starts_with("/trajectory/samples/")
                     && document.pointer(&format!("{sample}/speed_mps")) == Some(&json!(0.0))
             });
-            !(is_said_only(pointer) || one_sided || loose || lasting || waiting)
+            !(is_said_only(pointer) || one_sided || loose || lasting || drawn || waiting)
         };
         let mut pointers = Vec::new();
         numbers(&document, "", &mut pointers);
@@ -1004,6 +1055,188 @@ fn what_only_some_plans_have_is_held_too() {
                 Err(error) => assert!(word.is_empty(), "{name}, {what}: {error}"),
             }
         }
+    }
+}
+
+/// The hold of a ship that stands on, what ends it, and what follows.
+#[test]
+fn an_escape_is_what_it_is_said_to_be() {
+    let original = stand_on();
+    assert!(!is_caught(&original));
+    let latest = original["escape"]["latest_s"].as_f64().expect("a time");
+    assert!(latest > 60.0 && original["escape"]["turn_deg"].as_f64() >= Some(30.0));
+    let cases: Vec<Alteration> = vec![
+        (
+            "later",
+            |d| add(at(d, "/escape/latest_s"), 1.0),
+            "escape.latest_s",
+        ),
+        (
+            "earlier",
+            |d| add(at(d, "/escape/latest_s"), -1.0),
+            "escape.latest_s",
+        ),
+        (
+            "another segment",
+            |d| *at(d, "/escape/first_segment") = json!(2),
+            "escape.latest_s",
+        ),
+        (
+            "a segment that is not there",
+            |d| *at(d, "/escape/first_segment") = json!(99),
+            "no segment",
+        ),
+        (
+            "a turn later, said so consistently",
+            |d| {
+                let next = at(d, "/trajectory/segments/2/start/t_s").clone();
+                *at(d, "/escape/first_segment") = json!(2);
+                *at(d, "/escape/latest_s") = next;
+            },
+            "course and speed are held",
+        ),
+        (
+            "another turn",
+            |d| scale(at(d, "/escape/turn_deg"), 1.01),
+            "escape.turn_deg",
+        ),
+        (
+            "another speed",
+            |d| scale(at(d, "/escape/speed_mps"), 1.01),
+            "escape.speed_mps",
+        ),
+        (
+            "by less speed, which it is not",
+            |d| *at(d, "/escape/turn_deg") = json!(0.0),
+            "at most",
+        ),
+        (
+            "another policy",
+            |d| *at(d, "/escape/policy") = json!("hope"),
+            "escape.policy",
+        ),
+        (
+            "no rules to stand on by",
+            |d| *at(d, "/compliance") = json!("shape"),
+            "compliance",
+        ),
+        (
+            "a set over the escape",
+            |d| {
+                let corners = list(d, "/obstacles/0/initial_set/vertices_m");
+                let count = corners.len() as f64;
+                for axis in [0, 1] {
+                    let all = corners.iter().map(|v| v[axis].as_f64().expect("m"));
+                    let middle = all.sum::<f64>() / count;
+                    for v in corners.iter_mut() {
+                        let grown = middle + 1.3 * (v[axis].as_f64().expect("m") - middle);
+                        v[axis] = json!(grown);
+                    }
+                }
+            },
+            "escape: the document says clear",
+        ),
+        (
+            "a target that is nowhere near",
+            |d| {
+                for v in list(d, "/obstacles/0/initial_set/vertices_m") {
+                    add(&mut v[1], 9000.0);
+                }
+            },
+            "needless",
+        ),
+        (
+            "a set that is in force after the escape alone",
+            |d| {
+                let late = at(d, "/escape/latest_s").as_f64().expect("a time") + 10.0;
+                let target = at(d, "/targets/0/name").clone();
+                *at(d, "/relaxations") = json!([
+                    { "kind": "risk", "target": target, "amount": 1.0, "unit": "1", "until_s": late }
+                ]);
+            },
+            "escape: the document says clear from",
+        ),
+    ];
+    for (what, alter, word) in cases {
+        let mut document = original.clone();
+        alter(&mut document);
+        let found = checked(&document);
+        assert!(!found.verified(), "{what}");
+        assert!(
+            found.violations.iter().any(|v| v.what.contains(word)),
+            "{what}: {:#?}",
+            found.violations
+        );
+    }
+    // as little as a turn of a tenth of a degree to either side and back within the hold
+    let mut swerving = original.clone();
+    segments(&mut swerving)[0]["turn_rate_deg_per_s"] = json!(1e-3);
+    let found = checked(&swerving);
+    assert!(
+        found.violations.iter().any(|v| v.what.contains("are held")),
+        "{:#?}",
+        found.violations
+    );
+}
+
+/// A risk told alike wherever it stands, but told wrongly: the level sets tell.
+#[test]
+fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
+    let risky = documents().swap_remove(1).1;
+    for (name, original, index) in [
+        ("at a risk", risky, 0),
+        ("inside", inside(), 0),
+        ("barred", barred(), 0),
+        ("barred, the other", barred(), 1),
+    ] {
+        assert!(!is_caught(&original), "{name}");
+        let encounter = format!("/encounters/{index}");
+        let risk = |d: &Value| {
+            d.pointer(&format!("{encounter}/max_risk"))
+                .and_then(Value::as_f64)
+        };
+        let (said, target) = (
+            risk(&original).expect("a risk"),
+            original.pointer(&format!("{encounter}/target")).cloned(),
+        );
+        let tell = |risk: f64| {
+            let mut document = original.clone();
+            *at(&mut document, &format!("{encounter}/max_risk")) = json!(risk);
+            for given_up in list(&mut document, "/relaxations") {
+                if given_up.get("target") == target.as_ref() {
+                    given_up["amount"] = json!(risk);
+                }
+            }
+            let all = list(&mut document, "/encounters").iter();
+            let most = all
+                .filter_map(|e| e["max_risk"].as_f64())
+                .fold(0.0, f64::max);
+            *at(&mut document, "/cost/max_risk") = json!(most);
+            document
+        };
+        if said == 0.0 {
+            continue;
+        }
+        assert!(!is_caught(&tell(said)), "{name}");
+        for wrong in [said * 0.999, said * 0.5, (said * 1.001).min(1.0)] {
+            if wrong != said {
+                assert!(is_caught(&tell(wrong)), "{name}: {wrong} instead of {said}");
+            }
+        }
+        let mut late = original.clone();
+        let time = format!("{encounter}/max_risk_t_s");
+        let end = original["cost"]["duration_s"].as_f64().expect("s");
+        let early = at(&mut late, &time).as_f64().expect("s") < 0.5 * end;
+        *at(&mut late, &time) = json!(if early { end } else { 0.0 });
+        assert!(is_caught(&late), "{name}: at another time");
+        *at(&mut late, &time) = Value::Null;
+        assert!(is_caught(&late), "{name}: at no time");
+        let mut kept = original.clone();
+        list(&mut kept, "/relaxations").retain(|r| r["kind"] != "risk");
+        assert!(is_caught(&kept), "{name}: nothing given up");
+        let mut clear = original.clone();
+        *at(&mut clear, &format!("{encounter}/max_risk")) = Value::Null;
+        assert!(is_caught(&clear), "{name}: no risk");
     }
 }
 

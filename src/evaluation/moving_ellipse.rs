@@ -8,8 +8,11 @@ use crate::geometry::Ellipse;
 /// Directions among which the best one is looked for first.
 const DIRECTIONS: usize = 64;
 
-/// Sections of its neighbourhood by the golden ratio: a direction to 1e-11, so a distance to its last digits.
-const GOLDEN_STEPS: usize = 44;
+/// Radians between two of them.
+const STEP: f64 = std::f64::consts::TAU / DIRECTIONS as f64;
+
+/// Sections of its neighbourhood by the golden ratio: a direction to 4e-8, so a distance to 1e-15 of the set's size.
+const GOLDEN_STEPS: usize = 32;
 
 /// Every position in the ellipse of least trace around `O_0 + t V`, formulas section 3, by its support function
 ///
@@ -24,6 +27,8 @@ pub(super) struct MovingEllipse {
     velocity: Ellipse,
     /// Metres, and m/s.
     roots: [f64; 2],
+    /// Those looked at first, evenly spaced.
+    directions: [Vector; DIRECTIONS],
 }
 
 /// Where the supporting line of a direction is, and how fast it moves outward.
@@ -43,6 +48,7 @@ impl MovingEllipse {
             initial: *initial,
             velocity: *velocity,
             roots: [root(initial), root(velocity)],
+            directions: std::array::from_fn(|k| direction(STEP * k as f64)),
         }
     }
 
@@ -118,22 +124,16 @@ impl MovingEllipse {
                 lower: f64::NAN,
             };
         }
-        let beyond = |angle: f64| {
-            let normal = direction(angle);
-            normal.dot(&position) - self.line(normal, time).support
-        };
-        let step = std::f64::consts::TAU / DIRECTIONS as f64;
-        let mut sampled = [0.0; DIRECTIONS];
-        for (k, value) in sampled.iter_mut().enumerate() {
-            *value = beyond(step * k as f64);
-        }
+        let beyond = |normal: Vector| normal.dot(&position) - self.line(normal, time).support;
+        let sampled = self.directions.map(beyond);
         // inside there may be several local maxima
         let (mut angle, mut best) = (0.0, f64::NEG_INFINITY);
         for (k, here) in sampled.iter().enumerate() {
             let before = sampled[(k + DIRECTIONS - 1) % DIRECTIONS];
             let after = sampled[(k + 1) % DIRECTIONS];
             if *here >= before && *here >= after {
-                let (other, found) = golden_maximum(step * k as f64, step, beyond);
+                let (other, found) =
+                    golden_maximum(STEP * k as f64, STEP, |a| beyond(direction(a)));
                 if found > best {
                     (angle, best) = (other, found);
                 }

@@ -41,21 +41,29 @@ pub(super) fn least_land_distance<P: Piece>(
             .enumerate()
             .map(|(index, e)| ((nearest_on(*e, middle) - middle).norm() - radius, index))
             .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (bound, index) in near {
-            // a NaN on either side is looked at
-            if bound >= least.value {
-                break;
-            }
+        let look = |least: &mut Least, index: usize| {
             let (a, b) = edges[index];
             let set = MovingSet::new(
                 &ConvexPolygon::from_ccw(vec![a, b]),
                 &ConvexPolygon::point(Vector::zeros()),
             );
-            let here = least_distance_below(least, std::slice::from_ref(s), own, &set);
+            let here = least_distance_below(*least, std::slice::from_ref(s), own, &set);
             least.see(here.value, here.time);
             least.certified &= here.certified;
             least.probes += here.probes;
+        };
+        let by_bound = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        // after the nearest few of the others are left to sort
+        if let Some(&(_, first)) = near.iter().min_by(|a, b| by_bound(a, b)) {
+            look(&mut least, first);
+            // negated on purpose: a NaN on either side is looked at
+            near.retain(|&(bound, index)| index != first && !(bound >= least.value));
+        }
+        near.sort_unstable_by(by_bound);
+        for (bound, index) in near {
+            if !(bound >= least.value) {
+                look(&mut least, index);
+            }
         }
     }
     least

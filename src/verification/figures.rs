@@ -1,16 +1,13 @@
 //! Are the figures of a document those of its motion?
 
 use super::claim::{Claim, ClaimedMotion};
-use super::coverage::about_centroid;
 use super::untrue;
-use crate::evaluation::{
-    Evaluation, Request, SetShape, SpaceTimeSet, Steering, Violation, least_margins, stage_cost,
-};
+use crate::evaluation::{Evaluation, Steering, Violation, stage_cost};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Costs, the mission's own figures, the largest risk and the path-time profile.
-pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -> Vec<Violation> {
+/// Costs, the mission's own figures and the path-time profile.
+pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;
     let mut same = |what: &str, said: Option<f64>, so: f64| {
@@ -94,7 +91,6 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
     if cost.min_land_distance_m.is_none() && land.is_finite() {
         found.push(untrue("cost.min_land_distance_m", "nothing", land));
     }
-    found.extend(risk(claim, cost.max_risk, request));
     found.extend(profile(claim));
     found
 }
@@ -126,66 +122,6 @@ pub(super) fn near(said: f64, so: f64) -> bool {
 
 fn words(value: Option<f64>) -> String {
     value.map_or_else(|| "nothing".to_owned(), |v| format!("{v}"))
-}
-
-/// A largest risk of `r` means: nowhere inside the level set of `r`, and no more was accepted.
-fn risk(claim: &Claim, said: f64, request: &Request) -> Option<Violation> {
-    // of sets that are entered and left all may be taken
-    let released = claim.sets.iter().any(|set| set.from > 0.0);
-    let accepted = if released { 1.0 } else { claim.file.max_risk };
-    if !(said >= 0.0 && said <= accepted + tolerance::FIGURE) {
-        return Some(untrue(
-            "cost.max_risk",
-            said,
-            format!("from 0 to {accepted}"),
-        ));
-    }
-    // ellipses around sets that were scaled cannot be scaled again; without risk the sets themselves are the level sets
-    if claim.file.optimal_control.is_some() || released || accepted == 0.0 {
-        return None;
-    }
-    // a little above what is said: a set is closed, and risk falls to none beyond its edge
-    let factor = (1.0 - said - tolerance::FIGURE).max(0.0) / (1.0 - accepted);
-    let sets: Vec<SpaceTimeSet> = claim.sets.iter().map(|set| scaled(set, factor)).collect();
-    let least = least_margins(&Request {
-        sets: &sets,
-        ..request.clone()
-    });
-    let entered = sets
-        .iter()
-        .zip(least)
-        .find(|(_, margin)| !(*margin >= -tolerance::DEPTH_M));
-    entered.map(|(set, _)| {
-        untrue(
-            "cost.max_risk",
-            said,
-            format!("more: that of '{}'", set.name),
-        )
-    })
-}
-
-fn scaled(set: &SpaceTimeSet, factor: f64) -> SpaceTimeSet {
-    let shape = match &set.shape {
-        SetShape::Polygons { initial, spells } => SetShape::Polygons {
-            initial: initial.clone(),
-            spells: spells
-                .iter()
-                .map(|spell| crate::target::VelocitySpell {
-                    until: spell.until,
-                    velocities: about_centroid(&spell.velocities, factor),
-                })
-                .collect(),
-        },
-        SetShape::Ellipses { initial, velocity } => SetShape::Ellipses {
-            initial: *initial,
-            velocity: velocity.scaled_about_center(factor),
-        },
-    };
-    SpaceTimeSet {
-        name: set.name.clone(),
-        from: set.from,
-        shape,
-    }
 }
 
 /// Metres along the profile at a time; `None` where it does not reach.

@@ -9,6 +9,7 @@ pub(super) struct PlanFile {
     pub format: String,
     pub scenario: String,
     pub planner: String,
+    pub compliance: String,
     pub outcome: String,
     pub time_weight_m2_per_s2: f64,
     pub max_risk: f64,
@@ -22,6 +23,7 @@ pub(super) struct PlanFile {
     pub relaxations: Vec<RelaxationFile>,
     pub cost: Option<CostFile>,
     pub trajectory: Option<TrajectoryFile>,
+    pub escape: Option<EscapeFile>,
     pub encounters: Vec<EncounterFile>,
     pub path_time: Option<PathTimeFile>,
     pub optimal_control: Option<ControlFile>,
@@ -175,6 +177,18 @@ pub(super) struct EncounterFile {
     pub dcpa_m: Option<f64>,
     pub tcpa_s: Option<f64>,
     pub passing_side: Option<String>,
+    pub max_risk: Option<f64>,
+    pub max_risk_t_s: Option<f64>,
+}
+
+/// What follows the hold of a ship that stands on.
+#[derive(Debug, Deserialize)]
+pub(super) struct EscapeFile {
+    pub policy: String,
+    pub latest_s: f64,
+    pub first_segment: usize,
+    pub turn_deg: f64,
+    pub speed_mps: f64,
 }
 
 #[derive(Debug, Deserialize)]

@@ -9,7 +9,8 @@
 //!   certified distances ([`crate::evaluation`]);
 //! - that the sets are not too small: each contains the target's hull, the margin and the uncertainty, and every velocity
 //!   that she may take;
-//! - that what the document says of the motion is true of it: costs, samples, encounters, path-time profile.
+//! - that what the document says of the motion is true of it: costs, risks, samples, encounters, path-time profile, the hold and the
+//!   escape of a ship that stands on.
 //!
 //! Nothing here is shared with the planners, their sets or their contact tests; the document is read by a mirror of its own.
 
@@ -17,10 +18,12 @@ mod claim;
 mod coverage;
 mod encounters;
 mod entered;
+mod escape;
 mod figures;
 mod file;
 mod motion;
 mod reached;
+mod risk;
 mod samples;
 mod sets;
 
@@ -121,7 +124,9 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
     if let (Some(evaluation), Some(motion)) = (&evaluation, &claim.motion) {
         violations.extend(evaluation.violations.iter().cloned());
         if motion.is_sound() {
-            violations.extend(figures::check(&claim, evaluation, &request));
+            violations.extend(figures::check(&claim, evaluation));
+            violations.extend(risk::check(&claim, &request));
+            violations.extend(escape::check(&claim, evaluation, &request));
             violations.extend(samples::check(&claim, motion));
             violations.extend(encounters::check(&claim, motion, evaluation));
         }

@@ -1,0 +1,229 @@
+//! Are the risks of a document those of its motion?
+//!
+//! A motion takes the risk `r` of a set where it comes into the level set of `r`, the one whose velocities are scaled by `1 - r`
+//! about their centre, and into that of no greater risk. So what is said is looked at from both sides: a little above it
+//! the motion is clear of the level set, a little below it is not, at the very time that is named.
+
+use super::claim::{Claim, ClaimedMotion};
+use super::coverage::{about_centroid, largest};
+use super::figures::near;
+use super::file::EncounterFile;
+use super::motion::around;
+use super::untrue;
+use crate::evaluation::{Request, SetShape, SpaceTimeSet, Violation, least_margins};
+use crate::frame::direction;
+use crate::geometry::ConvexPolygon;
+use crate::target::VelocitySpell;
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// What was given up where risk is taken.
+const KIND: &str = "risk";
+
+/// The risk with each target and when, the largest of all, and what is said to have been given up.
+pub(super) fn check(claim: &Claim, request: &Request) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let encounters = &claim.file.encounters;
+    let said = |encounter: &EncounterFile| encounter.max_risk.unwrap_or(f64::NAN);
+    let most = largest(encounters.iter().map(said)).max(0.0);
+    if let Some(cost) = &claim.file.cost
+        && !near(cost.max_risk, most)
+    {
+        let so = format!("{most}, the largest of the encounters");
+        found.push(untrue("cost.max_risk", cost.max_risk, so));
+    }
+    for encounter in encounters {
+        found.extend(bounds(claim, encounter, said(encounter)));
+        found.extend(given_up(claim, encounter, said(encounter)));
+        if let Some(ClaimedMotion::Segments(segments)) = &claim.motion {
+            found.extend(taken(claim, encounter, segments, request));
+        }
+    }
+    found
+}
+
+fn label(encounter: &EncounterFile, key: &str) -> String {
+    format!("encounter with '{}', {key}", encounter.target)
+}
+
+/// No more than was accepted; of sets that are entered and left all may be taken.
+fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
+    let mut sets = claim.sets.iter();
+    let released = sets.any(|set| set.name == encounter.target && set.from > 0.0);
+    let accepted = if released { 1.0 } else { claim.file.max_risk };
+    let within = said >= 0.0 && said <= accepted + tolerance::FIGURE;
+    (!within).then(|| {
+        untrue(
+            &label(encounter, "max_risk"),
+            said,
+            format!("from 0 to {accepted}"),
+        )
+    })
+}
+
+/// Whoever's risk is taken is named among what was given up, with that risk.
+fn given_up(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
+    let mut named = claim.file.relaxations.iter();
+    let amount = named
+        .find(|r| r.kind == KIND && r.target == encounter.target)
+        .map(|r| r.amount);
+    let what = format!("relaxation of '{}', amount", encounter.target);
+    match amount {
+        Some(amount) if !near(amount, said) => Some(untrue(&what, amount, said)),
+        None if said > 0.0 => Some(untrue(&what, "nothing", said)),
+        _ => None,
+    }
+}
+
+/// The risk along lines and arcs, from both sides.
+fn taken(
+    claim: &Claim,
+    encounter: &EncounterFile,
+    segments: &[Segment],
+    request: &Request,
+) -> Option<Violation> {
+    let said = encounter.max_risk?;
+    let set = claim.sets.iter().find(|s| s.name == encounter.target)?;
+    let accepted = claim.file.max_risk;
+    // what is clear of the whole set, as every set is judged to be, takes no risk
+    if accepted == 0.0 && set.from == 0.0 {
+        return None;
+    }
+    let whole = before_release(set)?;
+    let margin = |risk: f64, segments: &[Segment]| {
+        let sets = [scaled(&whole, (1.0 - risk).max(0.0) / (1.0 - accepted))];
+        let least = least_margins(&Request {
+            segments,
+            sets: &sets,
+            ..request.clone()
+        });
+        least.first().copied().unwrap_or(f64::NAN)
+    };
+    let what = label(encounter, "max_risk");
+    // a set is closed, and risk falls to none beyond its edge; there is none above 1
+    let above = said + tolerance::FIGURE;
+    if above < 1.0 && !(margin(above, segments) >= -tolerance::DEPTH_M) {
+        return Some(untrue(&what, said, "more"));
+    }
+    let Some(time) = encounter.max_risk_t_s else {
+        return (said > 0.0)
+            .then(|| untrue(&label(encounter, "max_risk_t_s"), "nothing", "a time"));
+    };
+    if said == 0.0 {
+        return Some(untrue(&label(encounter, "max_risk_t_s"), time, "nothing"));
+    }
+    let below = said - tolerance::FIGURE;
+    let then: Vec<Segment> = around(segments, time)
+        .map(|s| s.between(time.max(s.start_time), time.min(s.end_time())))
+        .collect();
+    // negated on purpose: a NaN is not in the set
+    if below > 0.0 && !(margin(below, &then) <= tolerance::DEPTH_M) {
+        let so = format!("less at {time} s");
+        return Some(Violation {
+            time,
+            ..untrue(&what, said, so)
+        });
+    }
+    None
+}
+
+/// The set from the start on, of which a document has what is left when it has been left. A vertex of the section is one of the
+/// initial set that has moved with the extreme velocity of the same direction. `None` for ellipses and for several velocity sets one
+/// after another: of these it cannot be told.
+fn before_release(set: &SpaceTimeSet) -> Option<SpaceTimeSet> {
+    if set.from == 0.0 {
+        return Some(set.clone());
+    }
+    let SetShape::Polygons { initial, spells } = &set.shape else {
+        return None;
+    };
+    let [only] = &spells[..] else {
+        return None;
+    };
+    let normals = initial.normals();
+    let extreme = |along: crate::frame::Vector, of: &ConvexPolygon| {
+        let mut best = of.vertices()[0];
+        for p in of.vertices() {
+            if along.dot(p) > along.dot(&best) {
+                best = *p;
+            }
+        }
+        best
+    };
+    let headings: Vec<f64> = normals.iter().map(|n| n.y.atan2(n.x)).collect();
+    let begun: Vec<_> = (0..headings.len())
+        .map(|k| {
+            let (here, next) = (headings[k], headings[(k + 1) % headings.len()]);
+            let turn = (next - here).rem_euclid(std::f64::consts::TAU);
+            let along = direction(here + 0.5 * turn);
+            extreme(along, initial) - extreme(along, &only.velocities) * set.from
+        })
+        .collect();
+    Some(SpaceTimeSet::polytope(
+        set.name.clone(),
+        ConvexPolygon::hull(&begun).ok()?,
+        only.velocities.clone(),
+    ))
+}
+
+fn scaled(set: &SpaceTimeSet, factor: f64) -> SpaceTimeSet {
+    let shape = match &set.shape {
+        SetShape::Polygons { initial, spells } => SetShape::Polygons {
+            initial: initial.clone(),
+            spells: spells
+                .iter()
+                .map(|spell| VelocitySpell {
+                    until: spell.until,
+                    velocities: about_centroid(&spell.velocities, factor),
+                })
+                .collect(),
+        },
+        SetShape::Ellipses { initial, velocity } => SetShape::Ellipses {
+            initial: *initial,
+            velocity: velocity.scaled_about_center(factor),
+        },
+    };
+    SpaceTimeSet {
+        name: set.name.clone(),
+        from: set.from,
+        shape,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Vector;
+
+    #[test]
+    fn a_set_is_what_it_was_before_it_was_left() {
+        let polygon = |points: &[(f64, f64)]| {
+            let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+            ConvexPolygon::hull(&points).expect("finite")
+        };
+        let hull = polygon(&[(0.0, 0.0), (40.0, 3.0), (40.0, 10.0), (0.0, 10.0)]);
+        let velocities = polygon(&[(4.0, -0.5), (5.0, -0.6), (5.0, 0.6), (4.0, 0.5)]);
+        let point = polygon(&[(3.0, 1.0)]);
+        let time = 60.0;
+        for (initial, velocity) in [
+            (&hull, &velocities),
+            (&hull, &point),
+            (&point, &velocities),
+            (&velocities, &hull),
+        ] {
+            let section = initial.minkowski_sum(&velocity.scaled(time));
+            let left = SpaceTimeSet {
+                from: time,
+                ..SpaceTimeSet::polytope("t", section, velocity.clone())
+            };
+            let whole = before_release(&left).expect("one velocity set");
+            let SetShape::Polygons { initial: found, .. } = whole.shape else {
+                panic!("polygons");
+            };
+            for k in 0..90 {
+                let n = direction(0.07 * f64::from(k));
+                assert!((found.support(n) - initial.support(n)).abs() < 1e-9, "{n}");
+            }
+        }
+    }
+}
