@@ -15,10 +15,10 @@ use std::time::Instant;
 use criterion::{Criterion, criterion_group, criterion_main};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use searoom::planner::optimal_control::attempt::{Attempt, attempt};
-use searoom::planner::optimal_control::guess::family;
-use searoom::planner::optimal_control::solver::{Iterate, Status, Workspace, solve};
-use searoom::planner::optimal_control::{KeepOut, Measured, RecedingHorizon};
+use searoom::planner::optimal_control::solver::{Iterate, Workspace, solve};
+use searoom::planner::optimal_control::{
+    Attempt, KeepOut, Measured, RecedingHorizon, Status, attempt, family,
+};
 use searoom::vessel::StateVector;
 
 /// The best of the starts that need no other planner.

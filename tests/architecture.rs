@@ -1,11 +1,15 @@
-//! Holds the borders of the house: who may import whom, and what is named in one place only.
+//! Holds the borders of the house: who may import whom, what is named in one place only, and that every public type
+//! shows how it is used.
 //!
 //! Reads the sources as token trees, so comments, strings and formatting do not count. Unit tests inside a
 //! file (`#[cfg(test)] mod …`) may use anything, but count for the file's length.
 
+mod public_types;
+
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use public_types::{Sources, without_example};
 
 /// What a room may use of the crate; itself is always allowed. House, section 2.
 const MAY_USE: &[(&str, &[&str])] = &[
@@ -416,13 +420,74 @@ fn the_sources_keep_the_borders() {
     assert!(files.len() > 20, "{files:?}");
     let faults: Vec<String> = files
         .iter()
-        .flat_map(|file| {
-            let path = file.strip_prefix(&root).expect("below src");
-            let path = path.to_string_lossy().replace('\\', "/");
-            faults(&path, &std::fs::read_to_string(file).expect("text"))
-        })
+        .flat_map(|file| faults(&below(&root, file), &text_of(file)))
         .collect();
     assert!(faults.is_empty(), "{faults:#?}");
+}
+
+/// The path of a file below a folder, with forward slashes.
+fn below(root: &Path, file: &Path) -> String {
+    let path = file.strip_prefix(root).expect("below the folder");
+    path.to_string_lossy().replace('\\', "/")
+}
+
+fn text_of(file: &Path) -> String {
+    std::fs::read_to_string(file).expect("text")
+}
+
+#[test]
+fn every_public_type_has_an_example() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    let sources: Sources = files
+        .iter()
+        .map(|file| (below(&root, file), text_of(file)))
+        .filter(|(path, _)| !path.starts_with("cli/") && path != "main.rs")
+        .collect();
+    let lacking = without_example(&sources);
+    assert!(lacking.is_empty(), "no example that names it: {lacking:#?}");
+}
+
+#[test]
+fn a_type_without_an_example_is_found_wherever_it_is_public() {
+    let lib = "pub mod a; mod b; pub use b::{c::Far, Handed}; pub use crate::b::d::*;";
+    let with = "/// A.\n///\n/// ```\n/// let a: A = made();\n/// ```\npub struct A { b: u8 }";
+    let lacking = |a: &str| {
+        let files = [
+            ("lib.rs", lib),
+            ("a.rs", a),
+            (
+                "b/mod.rs",
+                "pub mod c; pub mod d; pub struct Handed(u8); pub struct Kept;",
+            ),
+            ("b/c.rs", "pub enum Far { A }"),
+            ("b/d.rs", "#[derive(Debug)] pub trait All { fn f(); }"),
+        ];
+        without_example(
+            &files
+                .map(|(path, text)| (path.to_owned(), text.to_owned()))
+                .into(),
+        )
+    };
+    let handed_on = ["b::Handed", "b::c::Far", "b::d::All"];
+    assert_eq!(lacking(with), handed_on);
+    for bare in [
+        with.replace("```\n/// let", "```text\n/// let"),
+        with.replace("/// let a: A", "/// # let a: A"),
+        with.replace("a: A", "a: Another"),
+        with.replace("/// A.", "/// A. `A`").replace("```", ""),
+        "pub struct A;".to_owned(),
+    ] {
+        assert_eq!(
+            lacking(&bare).first().map(String::as_str),
+            Some("a::A"),
+            "{bare}"
+        );
+    }
+    let private =
+        "pub(crate) struct A; struct B; mod c { pub struct D; } #[doc(hidden)] pub struct E;";
+    assert_eq!(lacking(private), handed_on);
 }
 
 #[test]

@@ -12,15 +12,15 @@ use searoom::evaluation::{Evaluation, Steering};
 use searoom::frame::Vector;
 use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
 use searoom::pipeline::{self, Run};
-use searoom::planner::optimal_control::attempt::{Attempt, attempt};
-use searoom::planner::optimal_control::guess::family;
 use searoom::planner::optimal_control::solver::{
-    Derivatives, Iterate, Multipliers, Point, Settings, StageProblem, Status, Triple, Values,
-    Vector as Column, Workspace, solve,
+    Derivatives, Iterate, Multipliers, Point, StageProblem, Triple, Values, Vector as Column,
+    Workspace, solve,
 };
-use searoom::planner::optimal_control::task::{Controls, Profile, Task};
-use searoom::planner::optimal_control::transcription::{Transcription, Weights};
-use searoom::planner::optimal_control::{KeepOut, Measured, RecedingHorizon, plan};
+use searoom::planner::optimal_control::transcription::Transcription;
+use searoom::planner::optimal_control::{
+    Attempt, Controls, KeepOut, Measured, Profile, RecedingHorizon, Settings, Status, Task,
+    Weights, attempt, family, plan,
+};
 use searoom::planner::{ControlSettings, NoPlan, Outcome, Problem};
 use searoom::report::document::PlanDocument;
 use searoom::report::figure::plan_figure;

@@ -6,7 +6,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use optimal_control_scenes as scenes;
-use searoom::planner::optimal_control::solver::{Iterate, Settings, Workspace, solve};
+use searoom::planner::optimal_control::Settings;
+use searoom::planner::optimal_control::solver::{Iterate, Workspace, solve};
 
 struct Counting;
 

@@ -5,6 +5,16 @@ use crate::frame::Vector;
 use crate::obstacle::{Obstacle, Section, SpaceTimeObstacle};
 
 /// A position at a time.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::SpaceTimePoint;
+/// use searoom::frame::Vector;
+///
+/// let buoy_in_five_minutes = SpaceTimePoint { position: Vector::new(750.0, 0.0), time: 300.0 };
+/// assert_eq!(buoy_in_five_minutes.position.x, 750.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpaceTimePoint {
     /// Metres.
@@ -14,6 +24,21 @@ pub struct SpaceTimePoint {
 }
 
 /// What is asked beside holding course and the alteration.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::{Query, SpaceTimePoint};
+/// use searoom::frame::Vector;
+///
+/// // no velocities: of these nothing is asked
+/// let query = Query {
+///     sections: vec![60.0],
+///     points: vec![SpaceTimePoint { position: Vector::new(750.0, 0.0), time: 150.0 }],
+///     ..Query::default()
+/// };
+/// assert!(query.velocities.is_empty());
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Query {
     /// Times of the sections, seconds, not negative.
@@ -25,6 +50,30 @@ pub struct Query {
 }
 
 /// Where a target may be.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::{Query, Situation, TargetSections, assess};
+/// use searoom::obstacle::Obstacle;
+/// use searoom::pipeline::sets;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
+/// let own = &scenario.own_ship;
+/// let situation = Situation {
+///     pose: own.pose,
+///     speed: own.speed,
+///     max_speed: own.max_speed(),
+///     horizon: scenario.horizon,
+///     obstacles: &obstacles,
+/// };
+/// let query = Query { sections: vec![0.0, 60.0], ..Query::default() };
+/// let ferry: &TargetSections = &assess(&situation, &query).targets[0];
+/// assert_eq!((ferry.name.as_str(), ferry.representation, ferry.sections.len()), ("target", "polytope", 2));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetSections {
     /// Her name.
@@ -36,6 +85,33 @@ pub struct TargetSections {
 }
 
 /// Risk at a point.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::{PointRisk, Query, Situation, SpaceTimePoint, assess};
+/// use searoom::obstacle::Obstacle;
+/// use searoom::pipeline::sets;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
+/// let own = &scenario.own_ship;
+/// let situation = Situation {
+///     pose: own.pose,
+///     speed: own.speed,
+///     max_speed: own.max_speed(),
+///     horizon: scenario.horizon,
+///     obstacles: &obstacles,
+/// };
+/// use searoom::frame::Vector;
+/// let point = SpaceTimePoint { position: Vector::new(750.0, 0.0), time: 150.0 };
+/// let query = Query { points: vec![point], ..Query::default() };
+/// let PointRisk { inside, alpha, risk } = assess(&situation, &query).points[0].targets[0];
+/// // where she is expected at that time
+/// assert!(inside && alpha == 0.0 && risk == 1.0);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointRisk {
     /// In the closed set.
@@ -47,6 +123,33 @@ pub struct PointRisk {
 }
 
 /// One point against every target, in their order.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::{PointAssessment, Query, Situation, SpaceTimePoint, assess};
+/// use searoom::obstacle::Obstacle;
+/// use searoom::pipeline::sets;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
+/// let own = &scenario.own_ship;
+/// let situation = Situation {
+///     pose: own.pose,
+///     speed: own.speed,
+///     max_speed: own.max_speed(),
+///     horizon: scenario.horizon,
+///     obstacles: &obstacles,
+/// };
+/// use searoom::frame::Vector;
+/// let point = SpaceTimePoint { position: Vector::new(750.0, 0.0), time: 150.0 };
+/// let query = Query { points: vec![point], ..Query::default() };
+/// let answers = assess(&situation, &query);
+/// let answer: &PointAssessment = &answers.points[0];
+/// assert_eq!((answer.point.time, answer.targets.len()), (150.0, 1));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointAssessment {
     /// Where and when.
@@ -56,6 +159,30 @@ pub struct PointAssessment {
 }
 
 /// How near own ship comes to one target.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::{Approach, Query, Situation, assess};
+/// use searoom::obstacle::Obstacle;
+/// use searoom::pipeline::sets;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
+/// let own = &scenario.own_ship;
+/// let situation = Situation {
+///     pose: own.pose,
+///     speed: own.speed,
+///     max_speed: own.max_speed(),
+///     horizon: scenario.horizon,
+///     obstacles: &obstacles,
+/// };
+/// let held = assess(&situation, &Query::default()).hold_course.remove(0);
+/// let Approach { dcpa, tcpa, in_velocity_obstacle } = held.approach;
+/// assert!(in_velocity_obstacle && dcpa == 0.0 && (120.0..150.0).contains(&tcpa));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
     /// Metres; 0 in contact.
@@ -67,6 +194,32 @@ pub struct Approach {
 }
 
 /// One velocity against every target, in their order.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::{Query, Situation, VelocityAssessment, assess};
+/// use searoom::obstacle::Obstacle;
+/// use searoom::pipeline::sets;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
+/// let own = &scenario.own_ship;
+/// let situation = Situation {
+///     pose: own.pose,
+///     speed: own.speed,
+///     max_speed: own.max_speed(),
+///     horizon: scenario.horizon,
+///     obstacles: &obstacles,
+/// };
+/// use searoom::frame::Vector;
+/// let query = Query { velocities: vec![Vector::new(4.8, -1.4)], ..Query::default() };
+/// let answers = assess(&situation, &query);
+/// let slightly_to_starboard: &VelocityAssessment = &answers.velocities[0];
+/// assert!(!slightly_to_starboard.targets[0].in_velocity_obstacle);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocityAssessment {
     /// m/s.
@@ -76,6 +229,29 @@ pub struct VelocityAssessment {
 }
 
 /// What holding course and speed comes to with one target.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::{HoldCourse, Query, Situation, assess};
+/// use searoom::obstacle::Obstacle;
+/// use searoom::pipeline::sets;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
+/// let own = &scenario.own_ship;
+/// let situation = Situation {
+///     pose: own.pose,
+///     speed: own.speed,
+///     max_speed: own.max_speed(),
+///     horizon: scenario.horizon,
+///     obstacles: &obstacles,
+/// };
+/// let held: HoldCourse = assess(&situation, &Query::default()).hold_course.remove(0);
+/// assert_eq!(held.max_risk, 1.0);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoldCourse {
     /// Closest approach.
@@ -85,6 +261,30 @@ pub struct HoldCourse {
 }
 
 /// The answers; every list per target is in the order of the situation's obstacles.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::assessment::{Assessment, Query, Situation, assess};
+/// use searoom::obstacle::Obstacle;
+/// use searoom::pipeline::sets;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
+/// let own = &scenario.own_ship;
+/// let situation = Situation {
+///     pose: own.pose,
+///     speed: own.speed,
+///     max_speed: own.max_speed(),
+///     horizon: scenario.horizon,
+///     obstacles: &obstacles,
+/// };
+/// let answers: Assessment = assess(&situation, &Query::default());
+/// assert!(answers.hold_course[0].approach.in_velocity_obstacle);
+/// assert!(answers.alteration.starboard.is_some());
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assessment {
     /// One per target.

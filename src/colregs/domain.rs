@@ -14,6 +14,22 @@ use crate::vessel::OwnShip;
 const POSITION_SIGMAS: f64 = 3.0;
 
 /// The two initial sets of one target, for own ship's centre, metres.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::{Shapes, first_risk, shapes};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let ferry = scenario.targets[0].ship().expect("a ship");
+/// let risk = first_risk(&scenario.own_ship, &scenario.desired, ferry, scenario.horizon);
+/// let Shapes { hard, shaped, .. } = shapes(&scenario.own_ship, ferry, risk.as_ref());
+/// // the shape holds the hard set and what the rules add to it
+/// assert!(hard.vertices().iter().all(|v| shaped.signed_distance(*v) < 1e-6));
+/// assert!(shaped.area() > 2.0 * hard.area());
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shapes {
     /// Hull, own ship on any heading, safety margin, position uncertainty: safety is claimed on this.

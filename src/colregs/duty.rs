@@ -70,6 +70,21 @@ impl Role {
 }
 
 /// A target as the rules see her: on a nominal track that does not bend.
+///
+/// # Examples
+///
+/// ```
+/// use std::f64::consts::{FRAC_PI_2, PI};
+/// use searoom::colregs::{Encountered, Role, SteadyShip};
+/// use searoom::frame::{Pose, Vector};
+///
+/// let own = SteadyShip { pose: Pose::new(Vector::zeros(), FRAC_PI_2), speed: 5.0 };
+/// // westwards from starboard
+/// let other = SteadyShip { pose: Pose::new(Vector::new(750.0, 750.0), PI), speed: 5.0 };
+/// let ferry = Encountered { role: Role::GiveWay, ship: other, length: 60.0 };
+/// assert!(ferry.bow_room() > 60.0, "metres ahead of her that are not to be crossed");
+/// assert!(ferry.role.keeps_clear() && ferry.role.bars_port());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Encountered {
     /// Own ship's role toward her.

@@ -10,6 +10,19 @@ use crate::vessel::OwnShip;
 const NO_RELATIVE_SPEED: f64 = 1e-9;
 
 /// A target as own ship meets it, judged from two motions.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::{Encounter, Role, encounter};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let met: Encounter = encounter(&scenario.own_ship, &scenario.desired, &scenario.targets[0], scenario.horizon);
+/// assert_eq!(met.role, Role::GiveWay);
+/// assert!((met.undisturbed_tcpa - 150.0).abs() < 1e-3 && met.undisturbed_dcpa < 0.0, "the hulls would meet");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Encounter {
     /// Own ship's role.
@@ -21,6 +34,20 @@ pub struct Encounter {
 }
 
 /// The first instant at which Rule 7 sees risk.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::{Risk, Role, first_risk, risk_distance};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let ferry = scenario.targets[0].ship().expect("a ship");
+/// let risk: Risk = first_risk(&scenario.own_ship, &scenario.desired, ferry, scenario.horizon).expect("a collision");
+/// assert_eq!((risk.role, risk.time), (Role::GiveWay, 0.0));
+/// assert!(risk_distance(&scenario.own_ship, ferry) >= 2.0 * 60.0);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Risk {
     /// Own ship's role then; never [`Role::None`] unless she is at rest.

@@ -9,8 +9,9 @@ mod role;
 mod sweep;
 
 pub use domain::{Shapes, shapes};
+pub(crate) use duty::Duty;
 pub use duty::{
-    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Duty, Encountered, MOST_SMALL_TURNS, ON_COURSE,
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, MOST_SMALL_TURNS, ON_COURSE,
     SMALL_TURN,
 };
 pub use encounter::{Encounter, Risk, encounter, first_risk, risk_distance};

@@ -3,6 +3,21 @@
 use crate::frame::{Pose, Vector, relative_bearing};
 
 /// By what numbers roles are told apart.
+///
+/// # Examples
+///
+/// ```
+/// use std::f64::consts::{FRAC_PI_2, PI};
+/// use searoom::colregs::{Role, Sectors, SteadyShip, role_within};
+/// use searoom::frame::{Pose, Vector};
+///
+/// let north = SteadyShip { pose: Pose::new(Vector::zeros(), FRAC_PI_2), speed: 5.0 };
+/// // on the opposite course but for 8 degrees
+/// let south = SteadyShip { pose: Pose::new(Vector::new(0.0, 1000.0), -FRAC_PI_2 - 0.14), speed: 5.0 };
+/// let narrow = Sectors { head_on: PI / 36.0, ..Sectors::default() };
+/// assert_eq!(role_within(&north, &south, &Sectors::default()), Some(Role::HeadOn));
+/// assert_ne!(role_within(&north, &south, &narrow), Some(Role::HeadOn));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sectors {
     /// Radians. Both relative bearings within this of ahead: head-on.
@@ -31,6 +46,21 @@ impl Default for Sectors {
 const SIDE: f64 = 1e-9;
 
 /// What own ship is to a target.
+///
+/// # Examples
+///
+/// ```
+/// use std::f64::consts::{FRAC_PI_2, PI};
+/// use searoom::colregs::{Role, SteadyShip, raw_role};
+/// use searoom::frame::{Pose, Vector};
+///
+/// let own = SteadyShip { pose: Pose::new(Vector::zeros(), FRAC_PI_2), speed: 5.0 };
+/// // westwards from starboard
+/// let other = SteadyShip { pose: Pose::new(Vector::new(750.0, 750.0), PI), speed: 5.0 };
+/// assert_eq!(raw_role(&own, &other), Some(Role::GiveWay));
+/// assert_eq!(raw_role(&other, &own), Some(Role::StandOn));
+/// assert_eq!((Role::GiveWay.name(), Role::GiveWay.rule()), ("give-way", Some(15)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Role {
     /// Rule 14.
@@ -83,6 +113,17 @@ impl Role {
 }
 
 /// A ship on a steady course: the sectors of the rules are taken on the heading, and there is no drift.
+///
+/// # Examples
+///
+/// ```
+/// use std::f64::consts::FRAC_PI_2;
+/// use searoom::colregs::SteadyShip;
+/// use searoom::frame::{Pose, Vector};
+///
+/// let north = SteadyShip { pose: Pose::new(Vector::zeros(), FRAC_PI_2), speed: 5.0 };
+/// assert!((north.velocity() - Vector::new(0.0, 5.0)).norm() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteadyShip {
     /// Hull centre and heading.

@@ -6,6 +6,20 @@ use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, Target};
 
 /// A method that a scenario has no use for.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::comparison::{Inapplicable, methods};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let left_out: Vec<Inapplicable> = methods(&scenario).inapplicable;
+/// // a ship of 30 m is no model of 1.255 m
+/// assert_eq!(left_out.len(), 1);
+/// assert!(left_out[0].reason.starts_with("own_ship.length_m: 30 m"));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inapplicable {
     /// Which.
@@ -15,6 +29,18 @@ pub struct Inapplicable {
 }
 
 /// What applies, in the order of the rows, and what does not.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::comparison::{Method, Methods, methods};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let Methods { methods, inapplicable } = methods(&scenario);
+/// assert_eq!((methods.last(), inapplicable.len()), (Some(&Method::ConstantVelocity), 1));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Methods {
     /// These can be run.

@@ -60,11 +60,13 @@ impl Look {
     }
 
     /// True for a line that often lies under another.
+    #[cfg(feature = "recording")]
     pub fn is_wide(&self) -> bool {
         self.width >= WIDE
     }
 
     /// Red, green and blue.
+    #[cfg(any(test, feature = "recording"))]
     pub fn rgb(&self) -> [u8; 3] {
         // a colour that cannot be read would be black: the tests read all of them
         [1, 3, 5].map(|at| {

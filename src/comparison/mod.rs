@@ -11,7 +11,7 @@ mod method;
 
 pub use applies::{Inapplicable, Methods, methods};
 pub use baseline::{Baseline, constant_velocity, hold_course};
-pub use look::Look;
+pub(crate) use look::Look;
 pub use method::Method;
 
 use crate::evaluation::Evaluation;
@@ -23,6 +23,19 @@ use crate::scenario::Scenario;
 use crate::trajectory::Trajectory;
 
 /// One method at one accepted risk, before it is run.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::comparison::{Contender, Method, contenders};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// // holding course asks for no risk: it runs once
+/// let all: Vec<Contender> = contenders(&[Method::HoldCourse], &[0.0, 0.1]);
+/// assert_eq!(all, [Contender { method: Method::HoldCourse, max_risk: 0.0 }]);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contender {
     /// Who.
@@ -34,7 +47,7 @@ pub struct Contender {
 /// What one contender came to.
 ///
 /// ```
-/// use searoom::comparison::{self, Contender, Entry, Inapplicable, Look, Method, Methods, Sailed};
+/// use searoom::comparison::{self, Contender, Entry, Inapplicable, Method, Methods, Sailed};
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
@@ -49,7 +62,6 @@ pub struct Contender {
 ///     panic!("a baseline");
 /// };
 /// assert!(held.arrived && !held.evaluation.verified(), "she runs into the other");
-/// assert!(Look::of(entry.contender.method).dashed);
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -61,6 +73,22 @@ pub struct Entry {
 }
 
 /// What is sailed.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::comparison::{Contender, Method, Sailed};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let held = Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario);
+/// match held.result {
+///     Sailed::Baseline(baseline) => assert!(baseline.arrived),
+///     Sailed::Planned(run) => panic!("planned: {}", run.scenario.title),
+///     Sailed::Nothing(why) => panic!("{why}"),
+/// }
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub enum Sailed {
     /// By a planner, or nothing.

@@ -9,14 +9,16 @@ mod moving_ellipse;
 mod moving_slabs;
 mod piece;
 mod quadrature;
+mod request;
 mod shore;
 mod space_time_set;
 mod stage_cost;
 mod steered;
 mod turn;
 
+pub use request::{Freedom, Request};
 pub use space_time_set::{SetShape, SpaceTimeSet};
-pub use stage_cost::{StageWeights, stage_cost};
+pub(crate) use stage_cost::{StageWeights, stage_cost};
 pub use steered::{Steering, evaluate_steered};
 
 use clearance::{Body, least_distance};
@@ -28,17 +30,46 @@ use shore::least_land_distance;
 use space_time_set::{MovingSet, since};
 use turn::{Turn, least_while_turning, turns};
 
-use crate::frame::{Side, Vector, relative_bearing};
-use crate::geometry::{ConvexPolygon, Polygon, outer_disc, outer_enclosing_ellipse};
+use crate::frame::{Side, relative_bearing};
+use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
-use crate::trajectory::{DesiredTrajectory, Segment};
-use crate::vessel::OwnShip;
+use crate::trajectory::Segment;
 
 /// Standard deviations of the position that the worst-case hull covers.
 const POSITION_SIGMAS: f64 = 3.0;
 
 /// One violated requirement.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::evaluation::{Freedom, Request, Violation, evaluate};
+/// use searoom::scenario::Scenario;
+/// use searoom::trajectory::Segment;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// // own ship holds course and speed
+/// let start = scenario.own_ship.pose;
+/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
+/// let request = Request {
+///     segments: &held,
+///     own: &scenario.own_ship,
+///     freedom: Freedom::Limits,
+///     desired: &scenario.desired,
+///     targets: &scenario.targets,
+///     sets: &[],
+///     land: &[],
+///     land_margin: 0.0,
+///     horizon: scenario.horizon,
+///     time_weight: scenario.time_weight,
+///     max_risk: 0.0,
+/// };
+/// let found = evaluate(&request);
+/// let violation: &Violation = found.violations.first().expect("she runs into the ferry");
+/// assert!(violation.what.contains("target") && violation.time > 0.0);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Violation {
     /// What is violated, in words: the quantity, what was found, what is allowed.
@@ -48,6 +79,37 @@ pub struct Violation {
 }
 
 /// A target as it was met along the plan.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::evaluation::{Freedom, Passage, Request, evaluate};
+/// use searoom::scenario::Scenario;
+/// use searoom::trajectory::Segment;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// // own ship holds course and speed
+/// let start = scenario.own_ship.pose;
+/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
+/// let request = Request {
+///     segments: &held,
+///     own: &scenario.own_ship,
+///     freedom: Freedom::Limits,
+///     desired: &scenario.desired,
+///     targets: &scenario.targets,
+///     sets: &[],
+///     land: &[],
+///     land_margin: 0.0,
+///     horizon: scenario.horizon,
+///     time_weight: scenario.time_weight,
+///     max_risk: 0.0,
+/// };
+/// let found = evaluate(&request);
+/// let Passage { dcpa, tcpa, min_clearance, .. } = found.passages[0];
+/// assert!(dcpa < 0.0 && (tcpa - 150.0).abs() < 1.0, "the hulls meet half-way");
+/// assert!(min_clearance <= dcpa, "and the worst that the ferry may do is worse");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {
     /// Least distance between own hull and the target's nominal hull, metres; negative in overlap.
@@ -68,6 +130,37 @@ pub struct Passage {
 }
 
 /// The figures of a plan that do not depend on how it was found.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::evaluation::{Evaluation, Freedom, Request, evaluate};
+/// use searoom::scenario::Scenario;
+/// use searoom::trajectory::Segment;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// // own ship holds course and speed
+/// let start = scenario.own_ship.pose;
+/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
+/// let request = Request {
+///     segments: &held,
+///     own: &scenario.own_ship,
+///     freedom: Freedom::Limits,
+///     desired: &scenario.desired,
+///     targets: &scenario.targets,
+///     sets: &[],
+///     land: &[],
+///     land_margin: 0.0,
+///     horizon: scenario.horizon,
+///     time_weight: scenario.time_weight,
+///     max_risk: 0.0,
+/// };
+/// let found = evaluate(&request);
+/// let found: Evaluation = found;
+/// assert!(!found.verified() && found.min_clearance < 0.0);
+/// assert_eq!((found.duration, found.length, found.delay), (300.0, 1500.0, 0.0));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     /// Everything that is wrong; a plan is verified when this is empty.
@@ -97,47 +190,6 @@ impl Evaluation {
     pub fn verified(&self) -> bool {
         self.violations.is_empty()
     }
-}
-
-/// How own ship may move.
-#[derive(Debug, Clone, Copy)]
-pub enum Freedom<'a> {
-    /// Anywhere, on lines and arcs of at least her turning radius, at the speeds of her finite set.
-    Limits,
-    /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest, turning on the spot where she
-    /// moves off along another leg.
-    Paths(&'a [Vec<Vector>]),
-    /// Anywhere at any speed and radius, on any course from the start on, and nowhere in particular: what is no plan, to be compared
-    /// with plans.
-    Any,
-}
-
-/// What is to be judged, and by what.
-#[derive(Debug, Clone)]
-pub struct Request<'a> {
-    /// The trajectory's segments as they are, right or wrong.
-    pub segments: &'a [Segment],
-    /// Own ship and her limits; of no size where the sets already contain her.
-    pub own: &'a OwnShip,
-    /// How she may move.
-    pub freedom: Freedom<'a>,
-    /// Where she was meant to be, and when.
-    pub desired: &'a DesiredTrajectory,
-    /// The others.
-    pub targets: &'a [Target],
-    /// The sets that the plan was made against; several may bear one target's name.
-    pub sets: &'a [SpaceTimeSet],
-    /// Land, which may overlap itself.
-    pub land: &'a [Polygon],
-    /// Kept between own hull and land, metres.
-    pub land_margin: f64,
-    /// Seconds: arrival must not be later.
-    pub horizon: f64,
-    /// `q` of eq. (30), m²/s².
-    pub time_weight: f64,
-    /// The risk of eq. (25) that was accepted, in `[0, 1)`: the sets are those of it already, the hulls are judged
-    /// with velocities that are scaled about their centre by what is left of 1.
-    pub max_risk: f64,
 }
 
 /// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in continuous time,

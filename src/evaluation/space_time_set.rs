@@ -10,6 +10,41 @@ use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::VelocitySpell;
 
 /// A set that a plan was made against.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::evaluation::{Freedom, Request, SpaceTimeSet, evaluate};
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::scenario::Scenario;
+/// use searoom::trajectory::Segment;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// // own ship holds course and speed
+/// let start = scenario.own_ship.pose;
+/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
+/// let request = Request {
+///     segments: &held,
+///     own: &scenario.own_ship,
+///     freedom: Freedom::Limits,
+///     desired: &scenario.desired,
+///     targets: &scenario.targets,
+///     sets: &[],
+///     land: &[],
+///     land_margin: 0.0,
+///     horizon: scenario.horizon,
+///     time_weight: scenario.time_weight,
+///     max_risk: 0.0,
+/// };
+/// let found = evaluate(&request);
+/// let shoal = ConvexPolygon::hull(&[(700.0, -10.0), (800.0, -10.0), (750.0, 10.0)].map(|(x, y)| Vector::new(x, y)));
+/// let still = ConvexPolygon::point(Vector::zeros());
+/// let sets = [SpaceTimeSet::polytope("shoal", shoal.expect("a triangle"), still)];
+/// let found = evaluate(&Request { sets: &sets, targets: &[], ..request });
+/// assert!(found.violations.iter().any(|v| v.what.contains("shoal")));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpaceTimeSet {
     /// The target's name.
@@ -21,6 +56,20 @@ pub struct SpaceTimeSet {
 }
 
 /// What a set is made of.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::evaluation::{SetShape, SpaceTimeSet};
+/// use searoom::frame::Vector;
+/// use searoom::geometry::Ellipse;
+///
+/// let around = |x: f64| Ellipse::point(Vector::new(x, 0.0));
+/// let shape = SetShape::Ellipses { initial: around(500.0), velocity: around(-5.0) };
+/// // nothing is claimed of it in the first minute
+/// let set = SpaceTimeSet { name: "ferry".to_owned(), from: 60.0, shape };
+/// assert!(matches!(set.shape, SetShape::Ellipses { .. }));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum SetShape {
     /// Every position that is reached from `O_0` (metres) with the velocity sets (m/s), one after another; the last

@@ -19,6 +19,29 @@ const AGREED: f64 = 1e-9;
 const PARTS: usize = 4;
 
 /// A motion under forces and the ship that is to make it.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::evaluation::Steering;
+/// use searoom::pipeline;
+/// use searoom::scenario::Scenario;
+/// use searoom::vessel::VesselKind;
+///
+/// let scenario = Scenario::read("scenarios/paper/figure_9.toml".as_ref())?;
+/// let planned = pipeline::run(scenario).planned;
+/// let trajectory = &planned.outcome.plan().expect("a way").trajectory;
+/// let vessel = VesselKind::CyberShip2;
+/// let exact = vessel.exact();
+/// let steering = Steering {
+///     motion: trajectory.steered().expect("a plan of forces"),
+///     vessel: exact.as_ref(),
+///     force_limits: vessel.force_limits(),
+/// };
+/// let within = |force: f64, limit: f64| force.abs() <= limit + 1e-9;
+/// assert!(steering.motion.nodes().iter().all(|node| within(node.force.x, steering.force_limits.x)));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Steering<'a> {
     /// Nodes with forces.

@@ -4,7 +4,9 @@ use super::*;
 use crate::frame::{Pose, Vector};
 use crate::geometry::Ellipse;
 use crate::target::{DomainKind, Representation, ShipTrack};
+use crate::trajectory::DesiredTrajectory;
 use crate::vessel::Hull;
+use crate::vessel::OwnShip;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -7,16 +7,6 @@ use super::ConvexPolygon;
 use crate::frame::Vector;
 
 /// An upright box.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{BoxIndex, Window};
-///
-/// let boxes = [0.0, 100.0].map(|east| Window::at(Vector::new(east, 0.0)).grown(10.0));
-/// let index = BoxIndex::new(boxes);
-/// let here = Window::at(Vector::new(95.0, 5.0));
-/// assert_eq!(index.meeting(&here).collect::<Vec<_>>(), [1]);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// South-western corner.

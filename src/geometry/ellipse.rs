@@ -10,6 +10,18 @@ use crate::tolerance;
 const MAX_STEPS: usize = 60;
 
 /// Why a centre and a matrix do not make an ellipse.
+///
+/// # Examples
+///
+/// ```
+/// use nalgebra::Matrix2;
+/// use searoom::frame::Vector;
+/// use searoom::geometry::{Ellipse, ShapeError};
+///
+/// let saddle = Matrix2::new(1.0, 0.0, 0.0, -1.0);
+/// let refused = Ellipse::new(Vector::zeros(), saddle);
+/// assert!(matches!(refused, Err(ShapeError::NotPositiveSemidefinite { eigenvalue }) if eigenvalue < 0.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// A number of the centre that is not finite.
@@ -50,6 +62,20 @@ pub enum ShapeError {
 }
 
 /// How far a point is from a set, and which way.
+///
+/// # Examples
+///
+/// ```
+/// use nalgebra::Matrix2;
+/// use searoom::frame::Vector;
+/// use searoom::geometry::{Ellipse, ShapeError, SignedDistance};
+///
+/// let ellipse = Ellipse::new(Vector::zeros(), Matrix2::new(9.0, 0.0, 0.0, 4.0))?;
+/// let SignedDistance { distance, normal } = ellipse.signed_distance(Vector::new(5.0, 0.0));
+/// assert!((distance - 2.0).abs() < 1e-9 && (normal - Vector::new(1.0, 0.0)).norm() < 1e-9);
+/// assert!(ellipse.signed_distance(Vector::zeros()).distance < -1.9);
+/// # Ok::<(), ShapeError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignedDistance {
     /// Euclidean distance, negative inside: minus the distance to the boundary.
@@ -335,157 +361,4 @@ fn distance_in_quadrant(z0: f64, z1: f64, e0: f64, e1: f64) -> (f64, [f64; 2]) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use rand::{Rng, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
-
-    pub fn random_ellipse(rng: &mut ChaCha8Rng) -> Ellipse {
-        let mut vector = || Vector::new(rng.random_range(-5.0..5.0), rng.random_range(-5.0..5.0));
-        let (center, a, b) = (vector(), vector(), vector());
-        let thin = [1.0, 1.0, 1e-3, 1e-7, 0.0][rng.random_range(0..5)];
-        Ellipse::from_axes(center, [a, b * thin])
-    }
-
-    /// Definition: the largest signed distance of a supporting line outside, the least inside.
-    fn searched(e: &Ellipse, p: Vector) -> f64 {
-        let at = |angle: f64| {
-            let n = direction(angle);
-            n.dot(&p) - e.support(n)
-        };
-        // uniform in the angle, and in the parameter of the boundary, which resolves a thin end
-        let [a, b] = e.semi_axes();
-        let mut angles: Vec<f64> = (0..1000)
-            .flat_map(|i| {
-                let angle = std::f64::consts::TAU * f64::from(i) / 1000.0 - 3.2;
-                let z = direction(angle);
-                let normal = a * (z.x * b.norm()) + b * (z.y * a.norm_squared() / b.norm());
-                let other = crate::frame::heading_of(normal);
-                [angle, angle + 6.0, other, other + std::f64::consts::TAU]
-            })
-            .filter(|angle| angle.is_finite())
-            .collect();
-        angles.sort_by(f64::total_cmp);
-        let refined = |i: usize| {
-            let (mut low, mut high) = (angles[i - 1], angles[i + 1]);
-            for _ in 0..100 {
-                let (a, b) = (low + (high - low) * 0.382, low + (high - low) * 0.618);
-                if at(a) > at(b) {
-                    high = b;
-                } else {
-                    low = a;
-                }
-            }
-            at(0.5 * (low + high))
-        };
-        (1..angles.len() - 1)
-            .filter(|&i| at(angles[i]) >= at(angles[i - 1]).max(at(angles[i + 1])))
-            .map(refined)
-            .fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    #[test]
-    fn distance_matches_a_search_over_supporting_lines() {
-        let mut rng = ChaCha8Rng::seed_from_u64(11);
-        let mut inside = 0;
-        for _ in 0..2000 {
-            let e = random_ellipse(&mut rng);
-            let p = if rng.random_bool(0.3) {
-                // near the axes, where the nearest point is not unique
-                let [a, b] = e.semi_axes();
-                let (s, t) = (rng.random_range(-1.5..1.5), rng.random_range(-1e-6..1e-6));
-                e.center() + a * s + b * t
-            } else {
-                Vector::new(rng.random_range(-9.0..9.0), rng.random_range(-9.0..9.0))
-            };
-            let found = e.signed_distance(p);
-            let slow = searched(&e, p);
-            assert!(
-                (found.distance - slow).abs() < 1e-9,
-                "{e:?} {p:?} {slow} {found:?}"
-            );
-            assert!((found.normal.norm() - 1.0).abs() < 1e-12);
-            let n = found.normal;
-            let by_normal = n.dot(&p) - e.support(n);
-            assert!((by_normal - slow).abs() < 1e-9, "{e:?} {p:?}");
-            if slow.abs() > 1e-9 {
-                assert_eq!(e.contains(p), slow < 0.0, "{e:?} {p:?}");
-            }
-            inside += usize::from(slow < 0.0);
-        }
-        assert!(inside > 300);
-    }
-
-    #[test]
-    fn matrices_that_are_no_shape_are_refused_by_what_is_found() {
-        let at = Vector::new(1.0, 2.0);
-        let found = |a, b, c, d| Ellipse::new(at, Matrix2::new(a, b, c, d));
-        assert!(matches!(
-            found(1.0, 0.5, 0.4, 1.0),
-            Err(ShapeError::NotSymmetric { .. })
-        ));
-        assert!(matches!(
-            found(1.0, 2.0, 2.0, 1.0),
-            Err(ShapeError::NotPositiveSemidefinite { eigenvalue }) if (eigenvalue + 1.0).abs() < 1e-12
-        ));
-        assert!(matches!(
-            found(1.0, f64::NAN, 0.0, 1.0),
-            Err(ShapeError::NotFinite {
-                row: 0,
-                column: 1,
-                ..
-            })
-        ));
-        assert!(matches!(
-            Ellipse::new(Vector::new(0.0, f64::INFINITY), Matrix2::identity()),
-            Err(ShapeError::CenterNotFinite { index: 1, .. })
-        ));
-        for singular in [[1.0, 1.0, 1.0], [4.0, 0.0, 0.0], [0.0, 0.0, 0.0]] {
-            let [a, b, c] = singular;
-            let e = found(a, b, b, c).expect("singular is a set");
-            assert_eq!(e.semi_axes()[1].norm(), 0.0);
-            assert!((e.shape() - Matrix2::new(a, b, b, c)).amax() < 1e-14);
-        }
-        for extreme in [1e-300, 1e300] {
-            let e = found(extreme, 0.0, 0.0, extreme * 1e-6).expect("a shape");
-            assert!((e.semi_axes()[0].norm() / extreme.sqrt() - 1.0).abs() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn a_shape_is_given_back() {
-        let mut rng = ChaCha8Rng::seed_from_u64(12);
-        for _ in 0..1000 {
-            let e = random_ellipse(&mut rng);
-            let again = Ellipse::new(e.center(), e.shape()).expect("a shape");
-            assert!((again.shape() - e.shape()).amax() < 1e-12 * (1.0 + e.shape().amax()));
-        }
-    }
-
-    #[test]
-    fn the_circumscribed_polygon_contains_and_touches() {
-        let mut rng = ChaCha8Rng::seed_from_u64(13);
-        for _ in 0..300 {
-            let e = random_ellipse(&mut rng);
-            let polygon = e.outer_polygon(16);
-            for p in e.sampled_boundary(97) {
-                assert!(polygon.signed_distance(p) <= 1e-12);
-            }
-            let ratio = 16.0 / std::f64::consts::PI * (std::f64::consts::PI / 16.0).tan();
-            assert!((polygon.area() - ratio * e.area()).abs() < 1e-9);
-            assert!(polygon.vertices().len() <= 16);
-        }
-    }
-
-    #[test]
-    fn not_a_number_is_inside() {
-        let e = Ellipse::point(Vector::zeros());
-        assert!(e.contains(Vector::new(f64::NAN, 100.0)));
-        assert!(
-            e.signed_distance(Vector::new(f64::NAN, 0.0))
-                .distance
-                .is_nan()
-        );
-        assert!(e.contains(Vector::zeros()) && !e.contains(Vector::new(1e-150, 0.0)));
-    }
-}
+mod tests;

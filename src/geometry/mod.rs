@@ -11,7 +11,7 @@ mod nearness;
 mod polygon;
 mod simplify;
 
-pub use boxes::{BoxIndex, Window};
+pub(crate) use boxes::{BoxIndex, Window};
 pub use convex::{ConvexPolygon, GeometryError};
 pub use crossing::{Crossing, EdgeIndex};
 pub use decomposition::{DecompositionError, convex_pieces};
@@ -19,9 +19,9 @@ pub use disc::{DISC_SIDES, outer_disc};
 pub(crate) use ellipse::distance_in_frame;
 pub use ellipse::{Ellipse, ShapeError, SignedDistance};
 pub use enclosing_ellipse::outer_enclosing_ellipse;
-pub use nearness::{Stretch, stretch_near};
+pub(crate) use nearness::stretch_near;
 pub use polygon::{Polygon, PolygonError};
-pub use simplify::outer_simplified;
+pub(crate) use simplify::outer_simplified;
 
 /// A number to six digits, for an error to say.
 fn rounded(value: f64) -> f64 {

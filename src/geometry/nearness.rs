@@ -4,17 +4,6 @@ use super::ConvexPolygon;
 use crate::frame::{Vector, cross};
 
 /// A stretch of a path from `from` to `to`, as shares of it.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{ConvexPolygon, Stretch, stretch_near};
-///
-/// let buoy = ConvexPolygon::point(Vector::new(50.0, 3.0));
-/// let line = [Vector::zeros(), Vector::new(100.0, 0.0)];
-/// // within 5 m of the buoy from 46 m to 54 m along the line, here as parts of it
-/// let Stretch { from, to } = stretch_near(&buoy, line, 5.0).expect("near");
-/// assert!((from - 0.46).abs() < 1e-9 && (to - 0.54).abs() < 1e-9);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
     /// In `[0, 1]`.

@@ -4,6 +4,19 @@ use std::fmt;
 use std::path::PathBuf;
 
 /// One thing wrong in a map: where, what was found, what is allowed.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::{Geographic, Georeference};
+/// use searoom::map::{Map, MapFault};
+///
+/// let earth = Georeference::new(Geographic { lat_deg: 63.0, lon_deg: 10.0 }).expect("an origin");
+/// let buoy = r#"{ "type": "Point", "coordinates": [10.0, 63.0] }"#;
+/// let faults: Vec<MapFault> = Map::parse(buoy, &earth).expect_err("no land");
+/// assert_eq!(faults.len(), 1);
+/// assert!(faults[0].to_string().contains("allowed: "));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapFault {
     /// Which feature, from 0; `None` when the file as a whole is meant.
@@ -32,6 +45,18 @@ impl fmt::Display for MapFault {
 }
 
 /// Why a file gives no map.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::{Geographic, Georeference};
+/// use searoom::map::{Map, MapError};
+///
+/// let earth = Georeference::new(Geographic { lat_deg: 63.0, lon_deg: 10.0 }).expect("an origin");
+/// let error = Map::read("maps/nowhere.geojson".as_ref(), &earth).expect_err("no such file");
+/// assert!(matches!(&error, MapError::Read { .. }));
+/// assert!(error.to_string().starts_with("maps/nowhere.geojson: cannot be read"));
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
     /// The file cannot be read.

@@ -9,6 +9,23 @@ use crate::tolerance;
 const SETTLED_M: f64 = 0.02;
 
 /// A stretch of one leg of a path that is nearer to land than it may be.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::{Geographic, Georeference, Vector};
+/// use searoom::map::{LandCrossing, Map};
+///
+/// let earth = Georeference::new(Geographic { lat_deg: 63.0, lon_deg: 10.0 }).expect("an origin");
+/// let island = r#"{ "type": "Polygon", "coordinates":
+///     [[[10.00, 63.00], [10.01, 63.00], [10.01, 63.01], [10.00, 63.01], [10.00, 63.00]]] }"#;
+/// let map = Map::parse(island, &earth).expect("no faults");
+/// let path = [Vector::new(-100.0, 500.0), Vector::new(100.0, 500.0)];
+/// // half-breadth and margin: 10 m
+/// let crossings: Vec<LandCrossing> = map.crossings(&path, 10.0);
+/// assert_eq!((crossings.len(), crossings[0].leg), (1, 0));
+/// assert!((crossings[0].from - 90.0).abs() < 1.0, "metres along the leg");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LandCrossing {
     /// Which leg, from 0.

@@ -28,9 +28,8 @@ pub use cpa::ClosestApproach;
 pub use ellipsoid::EllipsoidObstacle;
 pub use ellipsoid_velocities::EllipsoidVelocityObstacle;
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
-pub use projection::{
-    OUTER_EXCESS_M, PathTime, PathTimeFace, PathTimeObstacle, Track, along_path, outer_faces_along,
-};
+pub use projection::{OUTER_EXCESS_M, PathTime, Track, along_path};
+pub(crate) use projection::{PathTimeObstacle, outer_faces_along};
 pub use representation::Obstacle;
 pub use risk::PeakRisk;
 pub use section::Section;

@@ -12,6 +12,25 @@ use crate::trajectory::Segment;
 
 /// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a unit
 /// normal in the plane. Formulas section 1; the corrected eq. (9) is a positive multiple of it.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{HalfSpace, PolytopeObstacle};
+///
+/// let square = |half: f64, center: Vector| {
+///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
+/// };
+/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
+/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
+/// let east = |face: &&HalfSpace| face.normal.x > 0.99;
+/// let bow: &HalfSpace = target.faces().iter().find(east).expect("a face to the east");
+/// // after 10 s she is at most at 70 m east, and 30 m from 100 m
+/// assert!((bow.slack(Vector::new(100.0, 0.0), 10.0) - 30.0).abs() < 1e-9);
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace {
     /// Outward unit normal `n`.
@@ -30,6 +49,24 @@ impl HalfSpace {
 }
 
 /// How far a point is outside, and by which face.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{PolytopeObstacle, Slack};
+///
+/// let square = |half: f64, center: Vector| {
+///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
+/// };
+/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
+/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
+/// let Slack { value, face } = target.slack(Vector::new(50.0, 50.0), 10.0);
+/// // after 10 s she reaches 20 m to the north
+/// assert!((value - 30.0).abs() < 1e-9 && target.faces()[face].normal.y > 0.99);
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slack {
     /// `g(x, t)`, metres: inside is `g <= 0`, and then `-g` is the depth; outside `g` is a lower bound
@@ -41,6 +78,25 @@ pub struct Slack {
 
 /// A vertex of the sections `O_t`: it moves in a straight line, and its path is an edge of the
 /// space-time body.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{MovingVertex, PolytopeObstacle};
+///
+/// let square = |half: f64, center: Vector| {
+///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
+/// };
+/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
+/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
+/// let vertices: Vec<MovingVertex> = target.moving_vertices();
+/// assert_eq!(vertices.len(), 4);
+/// let east = vertices.iter().map(|v| v.origin.x + 10.0 * v.velocity.x).fold(f64::MIN, f64::max);
+/// assert!((east - 70.0).abs() < 1e-9, "after 10 s");
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingVertex {
     /// Index of the vertex of `O_0`, and of `V`.
@@ -54,6 +110,25 @@ pub struct MovingVertex {
 /// Every position that a target may reach: `O_t = O_0 + t V` for `0 <= t`, convex in space-time.
 /// Because `V` is convex, `O_t` also contains every position reached with a velocity that varies in
 /// time and stays in `V`.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::PolytopeObstacle;
+///
+/// let square = |half: f64, center: Vector| {
+///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
+/// };
+/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
+/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
+/// assert!(target.contains(Vector::new(65.0, 15.0), 10.0));
+/// assert!(!target.contains(Vector::new(75.0, 0.0), 10.0));
+/// let after_10_s = target.section(10.0);
+/// assert!((after_10_s.area() - 40.0 * 40.0).abs() < 1e-6);
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolytopeObstacle {
     name: String,
@@ -340,129 +415,4 @@ fn farthest(points: &[Vector], n: Vector) -> (usize, Vector) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use rand::{Rng, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
-
-    /// From every face, outside and inside, of sets with and without an interior.
-    #[test]
-    fn the_slack_found_from_face_to_face_is_that_of_all_faces() {
-        let mut rng = ChaCha8Rng::seed_from_u64(12);
-        let (mut outside, mut inside) = (0, 0);
-        for _ in 0..4000 {
-            let o =
-                PolytopeObstacle::new("", random_set(&mut rng, 20.0), random_set(&mut rng, 1.0));
-            let place = Vector::new(rng.random_range(-90.0..90.0), rng.random_range(-90.0..90.0));
-            let time = [0.0, rng.random_range(0.0..30.0), -3.0][rng.random_range(0..3)];
-            let all = o.slack(place, time).value;
-            if all > 0.0 {
-                outside += 1
-            } else {
-                inside += 1
-            }
-            for face in 0..=o.faces().len() {
-                let near = o.slack_near(place, time, face);
-                assert!(
-                    (near.value - all).abs() <= 1e-12 * (1.0 + all.abs()),
-                    "{o:?}"
-                );
-                assert_eq!(o.faces()[near.face].slack(place, time), near.value);
-            }
-        }
-        assert!(outside > 500 && inside > 200, "{outside} {inside}");
-        let o = PolytopeObstacle::new("", random_set(&mut rng, 20.0), random_set(&mut rng, 1.0));
-        assert!(
-            o.slack_near(Vector::new(f64::NAN, 0.0), 1.0, 0)
-                .value
-                .is_nan()
-        );
-    }
-
-    fn random_set(rng: &mut ChaCha8Rng, scale: f64) -> ConvexPolygon {
-        let n = rng.random_range(1..7);
-        let grid = rng.random_bool(0.5);
-        let points: Vec<Vector> = (0..n)
-            .map(|_| {
-                let p = Vector::new(rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0));
-                (if grid { p.map(f64::round) } else { p }) * scale
-            })
-            .collect();
-        ConvexPolygon::hull(&points).expect("finite")
-    }
-
-    /// Definition: the hull of all vertex sums, formulas eq. (6).
-    fn hull_of_sums(o: &PolytopeObstacle, t: f64) -> ConvexPolygon {
-        let points: Vec<Vector> = o
-            .initial()
-            .vertices()
-            .iter()
-            .flat_map(|p| o.velocity().vertices().iter().map(move |v| p + v * t))
-            .collect();
-        ConvexPolygon::hull(&points).expect("finite")
-    }
-
-    #[test]
-    fn membership_matches_the_hull_of_vertex_sums() {
-        let mut rng = ChaCha8Rng::seed_from_u64(7);
-        for _ in 0..3000 {
-            let (initial, velocity) = (random_set(&mut rng, 10.0), random_set(&mut rng, 1.0));
-            let o = PolytopeObstacle::new("x", initial, velocity);
-            let t = if rng.random_bool(0.2) {
-                0.0
-            } else {
-                rng.random_range(0.0..50.0)
-            };
-            let p = Vector::new(
-                rng.random_range(-200.0..200.0),
-                rng.random_range(-200.0..200.0),
-            );
-            let distance = hull_of_sums(&o, t).signed_distance(p);
-            let slack = o.slack(p, t).value;
-            if distance.abs() > 1e-6 {
-                assert_eq!(o.contains(p, t), distance < 0.0, "{o:?} {p:?} {t}");
-            }
-            if distance < -1e-6 {
-                assert!((slack - distance).abs() < 1e-6);
-            } else {
-                assert!(slack <= distance + 1e-6);
-            }
-            assert!((o.section(t).area() - hull_of_sums(&o, t).area()).abs() < 1e-6);
-        }
-    }
-
-    #[test]
-    fn moving_vertices_are_the_vertices_of_every_section() {
-        let mut rng = ChaCha8Rng::seed_from_u64(8);
-        for _ in 0..500 {
-            let o =
-                PolytopeObstacle::new("x", random_set(&mut rng, 10.0), random_set(&mut rng, 1.0));
-            for t in [0.5, 7.0, 100.0] {
-                let points: Vec<Vector> = o
-                    .moving_vertices()
-                    .iter()
-                    .map(|v| v.origin + v.velocity * t)
-                    .collect();
-                let hull = ConvexPolygon::hull(&points).expect("finite");
-                assert!((hull.area() - o.section(t).area()).abs() < 1e-6 * (1.0 + hull.area()));
-                for v in o.section(t).vertices() {
-                    assert!(points.iter().any(|p| (p - v).norm() < 1e-9));
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn degenerate_sets_block_exactly_their_points() {
-        let at = |x: f64, y: f64| Vector::new(x, y);
-        let line = PolytopeObstacle::new(
-            "mast",
-            ConvexPolygon::point(at(0.0, 0.0)),
-            ConvexPolygon::point(at(2.0, 1.0)),
-        );
-        assert!(line.contains(at(20.0, 10.0), 10.0));
-        assert!(!line.contains(at(20.0, 10.0 + 1e-6), 10.0));
-        assert!(!line.contains(at(0.0, 0.0), -1.0));
-        assert!(line.contains(at(f64::NAN, 0.0), 1.0) && line.contains(at(1e9, 0.0), f64::NAN));
-    }
-}
+mod tests;

@@ -10,6 +10,26 @@ pub const OUTER_EXCESS_M: f64 = 0.05;
 const MAX_CUTS: usize = 200;
 
 /// A point of the path-time diagram.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{PathTime, PolytopeObstacle, along_path};
+///
+/// let square = |half: f64, center: Vector| {
+///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
+/// };
+/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
+/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
+/// // a path to the north that crosses her track 100 m east of her
+/// let (start, north) = (Vector::new(100.0, -200.0), Vector::new(0.0, 1.0));
+/// let corners: Vec<PathTime> = along_path(&target, start, north, 400.0, 60.0);
+/// let first = corners.iter().map(|c| c.time).fold(f64::INFINITY, f64::min);
+/// assert!((first - 15.0).abs() < 1e-9, "she reaches the path after {first} s");
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathTime {
     /// Metres along the path.
@@ -19,6 +39,16 @@ pub struct PathTime {
 }
 
 /// A straight piece of a path: `x(s) = start + s direction`, `0 <= s <= length`, paper eq. (28).
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::obstacle::Track;
+///
+/// let track = Track { start: Vector::new(0.0, 10.0), direction: Vector::new(1.0, 0.0), length: 500.0 };
+/// assert_eq!(track.at(200.0), Vector::new(200.0, 10.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Track {
     /// Metres.
@@ -126,12 +156,8 @@ impl PathTimeObstacle {
         self.low
     }
 
-    /// The greatest distance and the greatest time of the polygon.
-    pub fn high(&self) -> PathTime {
-        self.high
-    }
-
     /// Metres that a point of the track is outside the set; where negative, minus the least distance to a face.
+    #[cfg(test)]
     pub fn slack(&self, at: PathTime) -> f64 {
         self.faces
             .iter()
@@ -336,156 +362,4 @@ pub fn along_path(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::ConvexPolygon;
-    use rand::{Rng, SeedableRng};
-
-    #[test]
-    fn the_projection_is_membership_along_the_path() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(51);
-        let mut met = 0;
-        for _ in 0..300 {
-            let mut set = |n: usize, scale: f64| {
-                let points: Vec<Vector> = (0..n)
-                    .map(|_| {
-                        Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0))
-                            * scale
-                    })
-                    .collect();
-                ConvexPolygon::hull(&points).expect("finite")
-            };
-            let o = PolytopeObstacle::new("x", set(5, 80.0), set(4, 3.0));
-            let start = Vector::new(
-                rng.random_range(-200.0..0.0),
-                rng.random_range(-100.0..100.0),
-            );
-            let direction = crate::frame::direction(rng.random_range(-0.6..0.6));
-            let (length, horizon) = (400.0, 120.0);
-            let corners = along_path(&o, start, direction, length, horizon);
-            let points: Vec<Vector> = corners
-                .iter()
-                .map(|c| Vector::new(c.distance, c.time))
-                .collect();
-            let polygon = ConvexPolygon::hull(&points).ok();
-            met += usize::from(polygon.is_some());
-            for _ in 0..200 {
-                let (s, t) = (
-                    rng.random_range(0.0..length),
-                    rng.random_range(0.0..horizon),
-                );
-                let slack = o.slack(start + direction * s, t).value;
-                let inside = polygon
-                    .as_ref()
-                    .is_some_and(|p| p.contains(Vector::new(s, t)));
-                if slack.abs() > 1e-6 {
-                    assert_eq!(inside, slack < 0.0, "{s} {t} {slack}");
-                }
-            }
-        }
-        assert!(met > 100);
-    }
-
-    fn random_set(rng: &mut rand_chacha::ChaCha8Rng, n: usize, scale: f64) -> ConvexPolygon {
-        let points: Vec<Vector> = (0..n)
-            .map(|_| Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale)
-            .collect();
-        ConvexPolygon::hull(&points).expect("finite")
-    }
-
-    #[test]
-    fn the_polygons_of_an_ellipsoid_contain_it_and_hardly_more() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(52);
-        let (mut met, mut most) = (0, 0);
-        for _ in 0..300 {
-            let (initial, velocity) = (random_set(&mut rng, 5, 80.0), random_set(&mut rng, 4, 3.0));
-            let o = EllipsoidObstacle::outer_of(&PolytopeObstacle::new("x", initial, velocity));
-            let bend = Vector::new(
-                rng.random_range(-150.0..50.0),
-                rng.random_range(-80.0..80.0),
-            );
-            let turned = |start: Vector, way: f64| Track {
-                start,
-                direction: crate::frame::direction(way),
-                length: 300.0,
-            };
-            let way = rng.random_range(-0.6..0.6);
-            let before = turned(bend - crate::frame::direction(way) * 300.0, way);
-            let tracks = [before, turned(bend, rng.random_range(-2.0..2.0))];
-            let horizon = 120.0;
-            let faces = outer_faces_along(&o, &tracks, horizon);
-            most = most.max(faces.len());
-            for track in &tracks {
-                let seen = PathTimeObstacle::new(&faces, 0.0, track, [0.0, horizon], 1e-7);
-                for corner in seen.iter().flat_map(|s| s.corners()) {
-                    let away = o.signed_distance(track.at(corner.distance), corner.time);
-                    assert!(away.distance <= OUTER_EXCESS_M + 1e-9, "{away:?}");
-                }
-                for _ in 0..200 {
-                    let at = PathTime {
-                        distance: rng.random_range(0.0..300.0),
-                        time: rng.random_range(0.0..horizon),
-                    };
-                    let away = o.signed_distance(track.at(at.distance), at.time).distance;
-                    if away < -1e-6 {
-                        met += 1;
-                        assert!(seen.as_ref().is_some_and(|s| s.slack(at) < 0.0), "{away}");
-                    }
-                    if away > OUTER_EXCESS_M + 1e-6 {
-                        assert!(seen.as_ref().is_none_or(|s| s.slack(at) > 0.0), "{away}");
-                    }
-                }
-            }
-        }
-        assert!(met > 1000 && most < 2 * MAX_CUTS, "{met} {most}");
-    }
-
-    /// A line is inside as long as its points are.
-    #[test]
-    fn the_part_of_a_line_inside_is_that_of_its_points() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(53);
-        let mut met = 0;
-        for case in 0..2000 {
-            let o = PolytopeObstacle::new(
-                "x",
-                random_set(&mut rng, 5, 60.0),
-                random_set(&mut rng, 4, 2.0),
-            );
-            let start = Vector::new(rng.random_range(-200.0..0.0), rng.random_range(-60.0..60.0));
-            let direction = crate::frame::direction(rng.random_range(-0.6..0.6));
-            let track = Track {
-                start,
-                direction,
-                length: 200.0,
-            };
-            let times = [10.0, 70.0];
-            let seen = PathTimeObstacle::new(o.faces(), 10.0, &track, times, 1e-7);
-            // waits at the ends of the track among them
-            let s = match case % 4 {
-                0 => [0.0, 0.0],
-                1 => [200.0, 200.0],
-                _ => [rng.random_range(0.0..100.0), rng.random_range(100.0..200.0)],
-            };
-            let t = [rng.random_range(0.0..40.0), rng.random_range(40.0..90.0)];
-            let [from, to] = [0, 1].map(|i| PathTime {
-                distance: s[i],
-                time: t[i],
-            });
-            let found = seen.as_ref().and_then(|o| o.inside(from, to, 1e-7));
-            met += usize::from(found.is_some());
-            for i in 0..=400 {
-                let share = f64::from(i) / 400.0;
-                let (d, t) = (s[0] + (s[1] - s[0]) * share, t[0] + (t[1] - t[0]) * share);
-                let slack = o.slack(track.at(d), t - times[0]).value;
-                let inside = slack < 0.0 && t > times[0] && t < times[1];
-                let within = found.is_some_and(|[a, b]| share > a && share < b);
-                let edge = found
-                    .is_some_and(|[a, b]| (share - a).abs() < 1e-6 || (share - b).abs() < 1e-6);
-                if slack.abs() > 1e-5 && !edge {
-                    assert_eq!(inside, within, "{slack} {t} {found:?}");
-                }
-            }
-        }
-        assert!(met > 200, "{met}");
-    }
-}
+mod tests;

@@ -10,6 +10,26 @@ use crate::tolerance;
 use crate::trajectory::Segment;
 
 /// Why velocity sets do not follow one another.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{SlabError, SlabObstacle};
+/// use searoom::target::VelocitySpell;
+///
+/// let heading_north = |spread: f64| ConvexPolygon::hull(&[(-spread, 4.0), (spread, 4.0), (0.0, 6.0)].map(|(x, y)| Vector::new(x, y)));
+/// // little is unknown of her for a minute, more from then on
+/// let spells = vec![
+///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
+///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
+/// ];
+/// let backwards = spells.into_iter().rev().collect();
+/// let refused = SlabObstacle::new("ferry", ConvexPolygon::point(Vector::zeros()), backwards);
+/// assert!(matches!(refused, Err(SlabError::NotIncreasing { .. })));
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SlabError {
     /// No velocity set at all.
@@ -30,6 +50,28 @@ pub enum SlabError {
 }
 
 /// One stretch of time with one set of velocities.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{Slab, SlabObstacle};
+/// use searoom::target::VelocitySpell;
+///
+/// let heading_north = |spread: f64| ConvexPolygon::hull(&[(-spread, 4.0), (spread, 4.0), (0.0, 6.0)].map(|(x, y)| Vector::new(x, y)));
+/// // little is unknown of her for a minute, more from then on
+/// let spells = vec![
+///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
+///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
+/// ];
+/// let target = SlabObstacle::new("ferry", ConvexPolygon::point(Vector::zeros()), spells).expect("in order");
+/// let second: &Slab = &target.slabs()[1];
+/// assert_eq!((second.start(), second.end()), (60.0, f64::INFINITY));
+/// // it begins with all the places that she may have reached
+/// assert!(second.obstacle().initial().contains(Vector::new(0.0, 300.0)));
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slab {
     start: f64,
@@ -74,6 +116,27 @@ struct SlabFace {
 /// `O_t = O_0 ⊕ sum of (t_j+1 - t_j) V_j ⊕ (t - t_k) V_k`. Exact. Every section and every slab is convex; the whole
 /// is not when the sets grow, so everything is asked of slab by slab. Faces per slab: those of `O_0` and of
 /// all sets so far.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::SlabObstacle;
+/// use searoom::target::VelocitySpell;
+///
+/// let heading_north = |spread: f64| ConvexPolygon::hull(&[(-spread, 4.0), (spread, 4.0), (0.0, 6.0)].map(|(x, y)| Vector::new(x, y)));
+/// // little is unknown of her for a minute, more from then on
+/// let spells = vec![
+///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
+///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
+/// ];
+/// let target = SlabObstacle::new("ferry", ConvexPolygon::point(Vector::zeros()), spells).expect("in order");
+/// let beside = |time| target.section(time).support(Vector::new(1.0, 0.0));
+/// assert!((beside(60.0) - 6.0).abs() < 1e-6);
+/// assert!((beside(90.0) - 66.0).abs() < 1e-6);
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlabObstacle {
     name: String,

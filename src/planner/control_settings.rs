@@ -3,6 +3,18 @@
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 /// Ship, grid and weights of the stage cost `(x - r)' Q (x - r) + tau' R tau`.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::planner::ControlSettings;
+/// use searoom::vessel::VesselKind;
+///
+/// let usual = ControlSettings::of(VesselKind::CyberShip2);
+/// let finer = ControlSettings { intervals: 100, ..usual.clone() };
+/// assert_eq!(usual.intervals, 50);
+/// assert_eq!(finer.force_limits, VesselKind::CyberShip2.force_limits());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlSettings {
     /// Whose forces.

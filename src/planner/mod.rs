@@ -5,22 +5,41 @@ mod control_settings;
 pub mod cost;
 mod explored;
 mod line_error;
+mod no_plan;
 pub mod optimal_control;
 pub mod path_time;
 pub mod space_time;
 
 pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
+pub use no_plan::NoPlan;
 
 use std::time::Duration;
 
 use crate::colregs::{Duty, Encountered};
 use crate::frame::{Side, Vector};
 use crate::obstacle::{Coast, Obstacle};
-use crate::trajectory::{DesiredTrajectory, NetworkError, Trajectory};
+use crate::trajectory::{DesiredTrajectory, Trajectory};
 use crate::vessel::OwnShip;
 
 /// Which search runs over the graph.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::pipeline;
+/// use searoom::planner::SearchKind;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let mut all = scenario.clone();
+/// all.search = SearchKind::Dijkstra;
+/// let [a_star, dijkstra] = [scenario, all].map(|s| pipeline::run(s).planned);
+/// // the same plan, found with fewer nodes
+/// assert_eq!(a_star.outcome.plan().map(|p| p.cost), dijkstra.outcome.plan().map(|p| p.cost));
+/// assert!(a_star.stats.expanded < dijkstra.stats.expanded);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchKind {
     /// Best first by cost plus an admissible bound of the cost to go.
@@ -30,6 +49,15 @@ pub enum SearchKind {
 }
 
 /// Which planner.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::planner::PlannerKind;
+///
+/// let words = [PlannerKind::SpaceTime, PlannerKind::PathTime, PlannerKind::OptimalControl].map(PlannerKind::word);
+/// assert_eq!(words, ["space-time", "path-time", "optimal-control"]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlannerKind {
     /// Chooses her way and her speed: [`space_time`].
@@ -52,6 +80,16 @@ impl PlannerKind {
 }
 
 /// What a planner minimises.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::planner::Objective;
+///
+/// // a metre longer, or one per cent more risk: the same
+/// let careful = Objective::LengthRisk { weight: 100.0 };
+/// assert_eq!((Objective::Time.word(), careful.word()), ("time", "length-risk"));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
     /// The space-time error, formulas section 7, m².
@@ -80,6 +118,25 @@ impl Objective {
 }
 
 /// What a planner is asked: keep `own` clear of every obstacle, close to `desired`, until she arrives.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::obstacle::Coast;
+/// use searoom::pipeline;
+/// use searoom::planner::{Problem, space_time};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let sets: Vec<_> = pipeline::sets(&scenario).into_iter().map(|target| target.hard).collect();
+/// let asked = pipeline::problem(&scenario, &sets, Coast::none());
+/// let clear = space_time::plan(&asked).outcome;
+/// // the same without anybody else
+/// let alone = space_time::plan(&Problem { obstacles: &[], ..asked }).outcome;
+/// let cost = |outcome: &searoom::planner::Outcome| outcome.plan().map(|plan| plan.cost);
+/// assert!(cost(&clear) > cost(&alone) && cost(&alone) < Some(1.0));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     /// Own ship and her limits.
@@ -111,7 +168,7 @@ pub struct Problem<'a> {
 
 impl Problem<'_> {
     /// What is asked of the first alteration.
-    pub fn duty(&self) -> Duty {
+    pub(crate) fn duty(&self) -> Duty {
         Duty::of(self.encountered.iter().map(|e| e.role))
     }
 }
@@ -121,6 +178,19 @@ impl Problem<'_> {
 pub const AGAINST_THE_RULES: f64 = 0.05;
 
 /// What the search did to find the cheapest plan on the graph.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::planner::SearchStats;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let SearchStats { expanded, generated, edges_checked, .. } = run.planned.stats;
+/// assert!(0 < expanded && expanded < edges_checked && edges_checked < generated);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct SearchStats {
     /// Nodes whose successors were made.
@@ -134,6 +204,21 @@ pub struct SearchStats {
 }
 
 /// A collision-free trajectory to the end of the desired path.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::planner::Plan;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let plan: &Plan = run.planned.outcome.plan().expect("there is room");
+/// // it ends at the last waypoint, ten seconds late
+/// assert!((plan.trajectory.end().position - run.scenario.desired.end()).norm() < 1e-5);
+/// assert!((plan.trajectory.end_time() - 310.0).abs() < 1.0 && plan.cost > 0.0);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// From own ship's pose at t = 0 to the last waypoint.
@@ -145,6 +230,21 @@ pub struct Plan {
 }
 
 /// What ends the hold of a ship that stands on: the plan is to hold course and speed until then, and this escape after it.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::pipeline;
+/// use searoom::planner::Escape;
+/// use searoom::scenario::{Compliance, Scenario};
+///
+/// let mut scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
+/// scenario.compliance = Compliance::Rules;
+/// let Escape { latest, turn, .. } = pipeline::run(scenario).planned.escape.expect("she stands on");
+/// // course and speed are held for nearly two minutes; then she would turn to starboard
+/// assert!((90.0..150.0).contains(&latest) && turn < 0.0);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Escape {
     /// Seconds: the latest time at which an escape is known to be clear.
@@ -155,189 +255,23 @@ pub struct Escape {
     pub speed: f64,
 }
 
-/// Why there is no plan.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum NoPlan {
-    /// Own ship starts inside an obstacle.
-    #[error("own ship starts inside the set of '{target}', {depth:.1} m deep")]
-    StartInside {
-        /// Name of the obstacle.
-        target: String,
-        /// Metres.
-        depth: f64,
-    },
-    /// Own ship starts nearer to land than she may be on some heading.
-    #[error(
-        "own ship starts {depth:.1} m nearer to land than her half-diagonal and the land margin allow"
-    )]
-    StartAshore {
-        /// Metres.
-        depth: f64,
-    },
-    /// The end cannot be reached before the horizon even without obstacles.
-    #[error(
-        "the last waypoint is reached after {earliest:.1} s at best, on the path found for the turning radius, without targets, but the horizon is {horizon:.1} s"
-    )]
-    HorizonTooShort {
-        /// Seconds.
-        earliest: f64,
-        /// Seconds.
-        horizon: f64,
-    },
-    /// The waypoints and own ship's pose cannot be joined by a path.
-    #[error("no path joins own ship and the waypoints: a coordinate is out of range")]
-    NoRoute,
-    /// A planner that keeps to a path begins on it.
-    #[error("own ship is {away:.3} m from the first waypoint; the path-time planner begins there")]
-    OffPath {
-        /// Metres.
-        away: f64,
-    },
-    /// The alternatives and the main path are no network.
-    #[error("the paths cannot be sailed: {0}")]
-    NoNetwork(NetworkError),
-    /// The end of the path cannot be reached before the horizon even without obstacles.
-    #[error(
-        "the last waypoint is reached after {earliest:.1} s at best, on the shortest of the paths at the greatest speed, without targets, but the horizon is {horizon:.1} s"
-    )]
-    PathTooLong {
-        /// Seconds.
-        earliest: f64,
-        /// Seconds.
-        horizon: f64,
-    },
-    /// The start of the path is in a set at t = 0.
-    #[error(
-        "own ship starts inside the set of '{target}', {depth:.1} m deep, which stays over the start {}",
-        until_text(*until)
-    )]
-    StartCovered {
-        /// Name of the obstacle.
-        target: String,
-        /// Metres.
-        depth: f64,
-        /// Seconds; `None` up to the horizon.
-        until: Option<f64>,
-    },
-    /// No motion along the paths is clear of every set; what bars the way where own ship came nearest to the end.
-    #[error(
-        "no motion along the path is clear of every set: {to_go:.0} m before its end own ship, at the earliest, meets the set of '{target}' after {time:.1} s, which stays there {}",
-        until_text(*until)
-    )]
-    Barred {
-        /// Name of the obstacle.
-        target: String,
-        /// Metres to the end of the path.
-        to_go: f64,
-        /// Seconds.
-        time: f64,
-        /// Seconds; `None` up to the horizon.
-        until: Option<f64>,
-    },
-    /// The sets leave a way, but not within the horizon.
-    #[error(
-        "no motion along the path is clear of every set and at the end before the horizon of {horizon:.1} s"
-    )]
-    OutOfTime {
-        /// Seconds.
-        horizon: f64,
-    },
-    /// No candidate is clear of every set.
-    #[error(
-        "no trajectory of the graph or its refinement is clear of every set until arrival; held on the desired \
-         trajectory, own ship meets the set of '{target}' after {time:.1} s"
-    )]
-    NoCandidate {
-        /// Name of the obstacle that the undisturbed motion meets first.
-        target: String,
-        /// Seconds.
-        time: f64,
-    },
-    /// No candidate came of the search at all, though the undisturbed motion meets no set.
-    #[error(
-        "no trajectory of the graph or its refinement arrives clear of every set, though the desired trajectory meets none: the numbers leave no digits for it"
-    )]
-    NoTrajectory,
-    /// No start of the optimal-control planner led out of every set.
-    #[error(
-        "of {starts} starts none leads to a plan clear of every set; the least deep of those solved is {depth:.3} m inside the set of '{target}' at {time:.1} s"
-    )]
-    Locked {
-        /// Starts that were tried.
-        starts: usize,
-        /// Name of the obstacle.
-        target: String,
-        /// Seconds.
-        time: f64,
-        /// Metres.
-        depth: f64,
-    },
-    /// No start of the optimal-control planner was solved at all.
-    #[error("of {starts} starts none was solved: {why}")]
-    Unsolved {
-        /// Starts that were tried.
-        starts: usize,
-        /// How the first one ended.
-        why: String,
-    },
-    /// Plans of a coarse grid, but none on the finer one that the ship's motion needs.
-    #[error(
-        "there are plans on {coarse} intervals, but they are too coarse for the ship, and on {intervals} the cheapest is lost: {why}"
-    )]
-    Lost {
-        /// Of the horizon, as asked for.
-        coarse: usize,
-        /// Of the horizon, in the end.
-        intervals: usize,
-        /// How the solve on the finer grid ended.
-        why: String,
-    },
-    /// The motion between the nodes is not the ship's.
-    #[error(
-        "with {intervals} intervals, the most that were tried, the ship would be off the plan by {off:.1e} of her units at the end of an interval, {allowed:.0e} allowed; what may help: more intervals (planner.optimal_control), a shorter horizon"
-    )]
-    Coarse {
-        /// Of the horizon.
-        intervals: usize,
-        /// In the ship's own units of length, speed and angle.
-        off: f64,
-        /// In the same units.
-        allowed: f64,
-    },
-}
-
-impl NoPlan {
-    /// True when smaller sets might leave a way.
-    pub fn is_for_the_sets(&self) -> bool {
-        match self {
-            Self::NoCandidate { .. }
-            | Self::Barred { .. }
-            | Self::OutOfTime { .. }
-            | Self::Locked { .. }
-            | Self::Lost { .. }
-            | Self::Unsolved { .. } => true,
-            Self::StartInside { .. }
-            | Self::StartAshore { .. }
-            | Self::StartCovered { .. }
-            | Self::HorizonTooShort { .. }
-            | Self::PathTooLong { .. }
-            | Self::OffPath { .. }
-            | Self::NoNetwork(_)
-            | Self::Coarse { .. }
-            | Self::NoRoute
-            | Self::NoTrajectory => false,
-        }
-    }
-}
-
-fn until_text(until: Option<f64>) -> String {
-    match until {
-        Some(time) => format!("until {time:.1} s"),
-        None => "up to the horizon".to_owned(),
-    }
-}
-
 /// What a planner answers. None of these is an error.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::planner::Outcome;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// match &run.planned.outcome {
+///     Outcome::Solved(plan) => assert!(plan.trajectory.length() > 1500.0),
+///     Outcome::Infeasible(reason) => panic!("{reason}"),
+///     Outcome::Deadline(best) => panic!("out of time; a plan so far: {}", best.is_some()),
+/// }
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub enum Outcome {
     /// A plan, clear of every set.
@@ -375,18 +309,19 @@ impl Outcome {
 /// use searoom::evaluation::{Evaluation, Passage};
 /// use searoom::obstacle::SpaceTimeObstacle;
 /// use searoom::pipeline::{self, Run, TargetSets};
-/// use searoom::planner::{Outcome, Plan, SearchStats};
+/// use searoom::planner::{Outcome, Plan, Planned, SearchStats};
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
 /// let run: Run = pipeline::run(scenario);
 /// let sets: &TargetSets = &run.sets[0];
 /// assert_eq!(sets.hard.name(), "target");
-/// let Outcome::Solved(Plan { trajectory, cost, .. }) = &run.planned.outcome else {
+/// let planned: &Planned = &run.planned;
+/// let Outcome::Solved(Plan { trajectory, cost, .. }) = &planned.outcome else {
 ///     panic!("there is room");
 /// };
 /// assert!(trajectory.end_time() > 300.0 && *cost > 0.0);
-/// let SearchStats { expanded, generated, .. } = run.planned.stats;
+/// let SearchStats { expanded, generated, .. } = planned.stats;
 /// assert!(expanded <= generated);
 /// let judged: &Evaluation = run.evaluation.as_ref().expect("every plan is judged");
 /// assert!(judged.verified() && judged.violations.is_empty());

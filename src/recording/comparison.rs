@@ -46,6 +46,23 @@ const WIDEST: f32 = 3.0;
 const WEAKEST: f32 = 0.45;
 
 /// A comparison of one scenario, with what stands in its recording as text.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::comparison::{Contender, Method};
+/// use searoom::recording::{Compared, Recorded, write_comparison};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// let entries = [Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario)];
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("compared.rrd");
+/// let compared = Compared { scenario: &scenario, entries: &entries, table: "hold course", document: "{}" };
+/// write_comparison(&compared, &file)?;
+/// assert_eq!(Recorded::read(&file)?.comparison(), Some("{}"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Compared<'a> {
     /// What was asked.

@@ -115,6 +115,18 @@ const PATH_TIME: &str = "path_time";
 const PATH_TIME_PLANE: &str = "path_time/plane";
 
 /// Why there is no recording.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::recording::{RecordingError, write};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// let error = write(&pipeline::run(scenario), None, "no/such/folder/a.rrd".as_ref()).expect_err("no folder");
+/// assert!(matches!(error, RecordingError::Write { .. }));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The run could not be turned into a recording.

@@ -19,6 +19,15 @@ const FILE_BYTES: u64 = 1 << 30;
 const NANOSECONDS: f64 = 1e9;
 
 /// Why a recording cannot be read.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::recording::{ReadError, Recorded};
+///
+/// let error = Recorded::read("scenarios/README.md".as_ref()).expect_err("no recording");
+/// assert!(matches!(error, ReadError::Broken { .. }));
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file cannot be read.
@@ -40,6 +49,21 @@ pub enum ReadError {
 }
 
 /// A recording that was read: its own store, not that of its layout.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::recording::{Recorded, write};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("head-on.rrd");
+/// write(&pipeline::run(scenario), None, &file)?;
+/// let recorded = Recorded::read(&file)?;
+/// assert!(recorded.is_ours() && recorded.document().is_none(), "none was put in");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Recorded {
     /// The program that made it.
@@ -56,6 +80,21 @@ pub struct Recorded {
 }
 
 /// What one entity holds.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::recording::{EntityContents, Recorded, write};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("head-on.rrd");
+/// write(&pipeline::run(scenario), None, &file)?;
+/// let entities: Vec<EntityContents> = Recorded::read(&file)?.entities();
+/// assert!(entities.len() > 5 && entities.iter().all(|entity| !entity.components.is_empty()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct EntityContents {
     /// With a leading slash.
@@ -69,6 +108,21 @@ pub struct EntityContents {
 }
 
 /// A timeline and what of it is used.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::recording::{Recorded, TimelineContents, write};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("head-on.rrd");
+/// write(&pipeline::run(scenario), None, &file)?;
+/// let timelines: Vec<TimelineContents> = Recorded::read(&file)?.timelines();
+/// assert!(timelines.iter().any(|line| line.first <= 0.0 && line.last >= 300.0), "seconds of the plan");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimelineContents {
     /// Its name.

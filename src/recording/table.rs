@@ -21,6 +21,23 @@ const TEXT: &str = "TextDocument:text";
 const AXES: [&str; 4] = ["x", "y", "z", "w"];
 
 /// Everything that an entity holds, a row per instant and write.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::recording::{EntityTable, Recorded, write};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("head-on.rrd");
+/// write(&pipeline::run(scenario), None, &file)?;
+/// let recorded = Recorded::read(&file)?;
+/// let first = &recorded.entities()[0];
+/// let table: EntityTable = recorded.table(&first.path).expect("it is there");
+/// assert!(!table.rows.is_empty() && recorded.table("/no/such/entity").is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct EntityTable {
     /// The timelines, with their unit.
@@ -34,6 +51,23 @@ pub struct EntityTable {
 }
 
 /// One row.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::recording::{EntityRow, Recorded, write};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("head-on.rrd");
+/// write(&pipeline::run(scenario), None, &file)?;
+/// let recorded = Recorded::read(&file)?;
+/// let table = recorded.table(&recorded.entities()[0].path).expect("it is there");
+/// let row: &EntityRow = &table.rows[0];
+/// assert_eq!((row.times.len(), row.values.len()), (table.timelines.len(), table.components.len()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct EntityRow {
     /// Per timeline; none for what holds at all times.
@@ -43,6 +77,23 @@ pub struct EntityRow {
 }
 
 /// Numbers and texts in named columns: for a CSV file.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::recording::{Columns, Recorded, write};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("head-on.rrd");
+/// write(&pipeline::run(scenario), None, &file)?;
+/// let recorded = Recorded::read(&file)?;
+/// let table = recorded.table(&recorded.entities()[0].path).expect("it is there");
+/// let Columns { header, rows } = table.columns();
+/// assert!(rows.iter().all(|row| row.len() == header.len()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns {
     /// One per column.

@@ -33,6 +33,21 @@ pub(super) const TIME: usize = 11;
 pub(super) const ACCEPTED: &str = "accepted\nrisk";
 
 /// One contender in a few figures. Figures of the motion are `None` without one.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::comparison::{Contender, Method};
+/// use searoom::report::{ComparisonRow, comparison_table};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let held = Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario);
+/// let row = ComparisonRow::of(&scenario, &held);
+/// assert_eq!((row.verified, row.duration), (Some(false), Some(300.0)));
+/// assert!(comparison_table(&scenario.title, &[row], &[], false).contains("hold course"));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparisonRow {
     /// Who.

@@ -13,6 +13,18 @@ const CROSSING_STEP: f64 = 1.0;
 const MOST_CROSSINGS: u32 = 1_000_000;
 
 /// How a run ended.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::report::Verdict;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// assert_eq!((Verdict::of(&run), Verdict::of(&run).word()), (Verdict::Solved, "solved"));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// A plan that gives up nothing.
@@ -48,6 +60,20 @@ impl Verdict {
 }
 
 /// An alteration of course.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::frame::Side;
+/// use searoom::report::{Summary, Turn};
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let Turn { side, degrees } = Summary::of(&run).turn.expect("she alters");
+/// assert!(side == Side::Starboard && degrees > 30.0, "readily apparent");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
     /// To which side.
@@ -57,6 +83,20 @@ pub struct Turn {
 }
 
 /// How one target was met.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::frame::Side;
+/// use searoom::report::{Meeting, Summary};
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let met: &Meeting = &Summary::of(&run).meetings[0];
+/// assert_eq!((met.role, met.side, met.cuts_astern), ("give-way", Some(Side::Port), Some(true)));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Meeting {
     /// Its name.
@@ -79,6 +119,20 @@ pub struct Meeting {
 }
 
 /// A run in a few figures. Figures of the plan are `None` without one.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::report::Summary;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let summary = Summary::of(&run);
+/// assert_eq!((summary.title.as_str(), summary.verified, summary.targets), ("Give-way", Some(true), 1));
+/// assert!(summary.clearance > Some(20.0));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// The scenario's title.

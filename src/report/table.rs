@@ -36,6 +36,21 @@ pub(super) const NUMBERS: std::ops::Range<usize> = 5..11;
 pub(super) const TIME: usize = 10;
 
 /// One line of a suite's table.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::report::document::UNREADABLE;
+/// use searoom::report::{Row, Summary, suite_table};
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let failed = Row::Failed { file: "a.toml".to_owned(), outcome: UNREADABLE };
+/// let table = suite_table(&[Row::Run(Summary::of(&run)), failed], false);
+/// assert!(table.contains("Give-way") && table.contains("a.toml"));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub enum Row {
     /// A scenario that was run.
@@ -448,49 +463,4 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn summary(meetings: usize) -> Summary {
-        let meeting = Meeting {
-            target: "t".to_owned(),
-            role: "give-way",
-            undisturbed_tcpa: 100.0,
-            undisturbed_dcpa: -1.0,
-            side: Some(Side::Port),
-            dcpa: Some(100.0),
-            tcpa: Some(90.0),
-            cuts_astern: Some(true),
-        };
-        Summary {
-            title: "Busy".to_owned(),
-            verdict: Verdict::Relaxed,
-            verified: Some(true),
-            meetings: vec![meeting; meetings],
-            targets: 9,
-            turn: None,
-            space_time_error: Some(12345.6),
-            delay: Some(-0.04),
-            clearance: None,
-            max_risk: Some(0.25),
-            expanded: 7,
-            milliseconds: 1.234,
-        }
-    }
-
-    #[test]
-    fn rows_name_a_few_targets_and_count_the_rest() {
-        let table = suite_table(&[Row::Run(summary(5))], false);
-        assert_eq!(table.matches("port, astern").count(), NAMED);
-        assert!(table.contains("+ 2 more"), "{table}");
-        assert!(table.contains("12346") && table.contains("+0.0") && table.contains("none"));
-        assert!(!table.contains('\u{1b}'));
-        assert!(suite_table(&[Row::Run(summary(1))], true).contains('\u{1b}'));
-        let failed = Row::Failed {
-            file: "x.toml".to_owned(),
-            outcome: "unreadable",
-        };
-        let both = suite_table(&[failed, Row::Run(summary(0))], false);
-        assert!(both.find("x.toml") < both.find("Busy"));
-    }
-}
+mod tests;

@@ -4,6 +4,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A file that could not be written.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::report::{WriteError, write_atomically};
+///
+/// let nowhere = std::path::Path::new("no/such/folder/plan.json");
+/// let WriteError { file, .. } = write_atomically(nowhere, b"{}").expect_err("no folder");
+/// assert_eq!(file, nowhere);
+/// ```
 #[derive(Debug, thiserror::Error)]
 #[error("{}: cannot be written: {source}", file.display())]
 pub struct WriteError {

@@ -6,6 +6,18 @@ use std::path::PathBuf;
 use crate::map::listed;
 
 /// One thing wrong in a file: where, what was found, what is allowed.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::{Fault, Scenario};
+///
+/// let faults: Vec<Fault> = Scenario::parse("title = \"A\"\nhorizon_s = -1.0").expect_err("faults");
+/// let horizon = faults.iter().find(|fault| fault.path == "horizon_s").expect("it is negative");
+/// assert_eq!((horizon.line, horizon.found.as_str()), (Some(2), "-1.0"));
+/// // every fault of the text at once
+/// assert!(faults.iter().any(|fault| fault.path == "own_ship"));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
     /// The field, as in `targets[0].speed_mps`; empty when the file as a whole is meant.
@@ -31,6 +43,16 @@ impl fmt::Display for Fault {
 }
 
 /// Why a file gives no scenario.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::{Scenario, ScenarioError};
+///
+/// let error = Scenario::read("scenarios/nowhere.toml".as_ref()).expect_err("no such file");
+/// assert!(matches!(&error, ScenarioError::Read { .. }));
+/// assert!(error.to_string().starts_with("scenarios/nowhere.toml: cannot be read"));
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum ScenarioError {
     /// The file cannot be read.

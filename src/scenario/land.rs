@@ -19,6 +19,23 @@ const TURN_SETTLED_M: f64 = 1e-3;
 const MAX_LISTED: usize = 20;
 
 /// What own ship keeps off.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::scenario::Land;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/harbour/munkholmen.toml".as_ref())?;
+/// let land: &Land = scenario.land.as_ref().expect("a map");
+/// // straight through the island
+/// let path = [Vector::new(-1500.0, 0.0), Vector::new(1500.0, 0.0)];
+/// assert!(!land.map.polygons().is_empty());
+/// assert!(land.clearance_along(&scenario.own_ship.hull) >= scenario.own_ship.hull.beam / 2.0);
+/// assert!(!land.crossings(&scenario.own_ship.hull, &path).is_empty());
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Land {
     /// Shared, not copied, by the copies of a scenario.

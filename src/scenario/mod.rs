@@ -26,6 +26,15 @@ use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
 /// How far a plan follows the rules of the road.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::Compliance;
+///
+/// assert_eq!((Compliance::Rules.word(), Compliance::Rules.shapes()), ("rules", true));
+/// assert!(!Compliance::None.shapes(), "hulls and margins alone");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compliance {
     /// The hard sets alone.

@@ -74,6 +74,35 @@ pub trait Space {
 }
 
 /// What became of a node.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::search::{Fate, Search, Space};
+///
+/// # struct Numbers;
+/// # impl Space for Numbers {
+/// #     type State = u32;
+/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
+/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
+/// #     }
+/// #     fn bound(&mut self, _: &u32) -> f64 {
+/// #         0.0
+/// #     }
+/// #     fn is_goal(&self, state: &u32) -> bool {
+/// #         *state == 10
+/// #     }
+/// #     fn admits(&mut self, state: &u32) -> bool {
+/// #         *state <= 10
+/// #     }
+/// # }
+/// // `Numbers` is the space of the example of `Space`: from 1 to 10
+/// let mut search = Search::new(1);
+/// search.next_goal(&mut Numbers, 1000);
+/// let fates = search.nodes().iter().map(|node| node.fate);
+/// assert_eq!(fates.filter(|&fate| fate == Fate::Goal).count(), 1);
+/// assert!(search.nodes().iter().all(|n| n.state <= 10 || n.fate != Fate::Expanded));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
     /// Still in the queue; its edge is not tested, or the closer bound put it back.
@@ -87,6 +116,34 @@ pub enum Fate {
 }
 
 /// A node of the search tree.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::search::{Node, Search, Space};
+///
+/// # struct Numbers;
+/// # impl Space for Numbers {
+/// #     type State = u32;
+/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
+/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
+/// #     }
+/// #     fn bound(&mut self, _: &u32) -> f64 {
+/// #         0.0
+/// #     }
+/// #     fn is_goal(&self, state: &u32) -> bool {
+/// #         *state == 10
+/// #     }
+/// #     fn admits(&mut self, state: &u32) -> bool {
+/// #         *state <= 10
+/// #     }
+/// # }
+/// // `Numbers` is the space of the example of `Space`: from 1 to 10
+/// let mut search = Search::new(1);
+/// search.next_goal(&mut Numbers, 1000);
+/// let root: &Node<u32> = &search.nodes()[0];
+/// assert_eq!((root.state, root.parent, root.cost), (1, None, 0.0));
+/// ```
 #[derive(Debug, Clone)]
 pub struct Node<S> {
     /// What it is.
@@ -100,6 +157,33 @@ pub struct Node<S> {
 }
 
 /// Why a search stopped.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::search::{Search, Space, Stop};
+///
+/// # struct Numbers;
+/// # impl Space for Numbers {
+/// #     type State = u32;
+/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
+/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
+/// #     }
+/// #     fn bound(&mut self, _: &u32) -> f64 {
+/// #         0.0
+/// #     }
+/// #     fn is_goal(&self, state: &u32) -> bool {
+/// #         *state == 10
+/// #     }
+/// #     fn admits(&mut self, state: &u32) -> bool {
+/// #         *state <= 10
+/// #     }
+/// # }
+/// // `Numbers` is the space of the example of `Space`: from 1 to 10
+/// let mut search = Search::new(1);
+/// assert_eq!(search.next_goal(&mut Numbers, 0), Stop::Budget);
+/// assert!(matches!(search.next_goal(&mut Numbers, 1000), Stop::Goal(_)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
     /// The cheapest goal not yet reported; its node.
@@ -113,6 +197,35 @@ pub enum Stop {
 }
 
 /// Counts of a search.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::search::{Counts, Search, Space};
+///
+/// # struct Numbers;
+/// # impl Space for Numbers {
+/// #     type State = u32;
+/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
+/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
+/// #     }
+/// #     fn bound(&mut self, _: &u32) -> f64 {
+/// #         0.0
+/// #     }
+/// #     fn is_goal(&self, state: &u32) -> bool {
+/// #         *state == 10
+/// #     }
+/// #     fn admits(&mut self, state: &u32) -> bool {
+/// #         *state <= 10
+/// #     }
+/// # }
+/// // `Numbers` is the space of the example of `Space`: from 1 to 10
+/// let mut search = Search::new(1);
+/// assert_eq!(search.counts(), Counts { generated: 1, ..Counts::default() });
+/// search.next_goal(&mut Numbers, 1000);
+/// let Counts { expanded, generated, tested } = search.counts();
+/// assert!(0 < expanded && expanded <= tested && tested <= generated);
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Nodes whose successors were made.
@@ -125,6 +238,35 @@ pub struct Counts {
 
 /// A best-first search that can be resumed: each [`Search::next_goal`] gives the next cheapest goal.
 /// Ties: less cost plus bound first, then the greater cost (nearer the goal), then the older node.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::search::{Search, Space, Stop};
+///
+/// # struct Numbers;
+/// # impl Space for Numbers {
+/// #     type State = u32;
+/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
+/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
+/// #     }
+/// #     fn bound(&mut self, _: &u32) -> f64 {
+/// #         0.0
+/// #     }
+/// #     fn is_goal(&self, state: &u32) -> bool {
+/// #         *state == 10
+/// #     }
+/// #     fn admits(&mut self, state: &u32) -> bool {
+/// #         *state <= 10
+/// #     }
+/// # }
+/// // `Numbers` is the space of the example of `Space`: from 1 to 10
+/// let mut search = Search::new(1);
+/// let Stop::Goal(first) = search.next_goal(&mut Numbers, 1000) else { panic!("a way") };
+/// // the next cheapest way is found by going on
+/// let Stop::Goal(second) = search.next_goal(&mut Numbers, 1000) else { panic!("another way") };
+/// assert!(search.nodes()[first].cost <= search.nodes()[second].cost);
+/// ```
 #[derive(Debug)]
 pub struct Search<S> {
     nodes: Vec<Node<S>>,
@@ -288,154 +430,4 @@ impl<S> Search<S> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Lattice steps east and north with costs from a hash; some cells closed; goal at a corner.
-    struct Grid {
-        size: i32,
-        informed: bool,
-        closer: bool,
-    }
-
-    impl Grid {
-        fn weight(x: i32, y: i32) -> f64 {
-            1.0 + f64::from((x * 7919 + y * 104_729).rem_euclid(13)) / 13.0
-        }
-    }
-
-    impl Space for Grid {
-        type State = (i32, i32);
-        fn successors(&mut self, &(x, y): &(i32, i32), out: &mut Vec<((i32, i32), f64)>) {
-            for (a, b) in [(x + 1, y), (x, y + 1)] {
-                if a < self.size && b < self.size {
-                    out.push(((a, b), Self::weight(a, b)));
-                }
-            }
-        }
-        fn bound(&mut self, &(x, y): &(i32, i32)) -> f64 {
-            if self.informed {
-                f64::from(2 * self.size - 2 - x - y)
-            } else {
-                0.0
-            }
-        }
-        fn closer_bound(&mut self, &(x, y): &(i32, i32)) -> f64 {
-            if self.closer {
-                let steps = 2 * self.size - 2 - x - y;
-                f64::from(steps)
-                    + if steps > 0 {
-                        Self::weight(self.size - 1, self.size - 1) - 1.0
-                    } else {
-                        0.0
-                    }
-            } else {
-                0.0
-            }
-        }
-        fn is_goal(&self, &(x, y): &(i32, i32)) -> bool {
-            x == self.size - 1 && y == self.size - 1
-        }
-        fn admits(&mut self, &(x, y): &(i32, i32)) -> bool {
-            (x * 31 + y * 17) % 11 != 5
-        }
-    }
-
-    fn costs(informed: bool, closer: bool) -> (Vec<f64>, Counts) {
-        let mut grid = Grid {
-            size: 7,
-            informed,
-            closer,
-        };
-        let mut search = Search::new((0, 0));
-        let mut found = Vec::new();
-        while let Stop::Goal(node) = search.next_goal(&mut grid, usize::MAX) {
-            found.push(search.nodes()[node].cost);
-            let way = search.way_to(node);
-            assert_eq!(way.len(), 13);
-            if found.len() == 5 {
-                break;
-            }
-        }
-        (found, search.counts())
-    }
-
-    /// Every way, by plain recursion.
-    fn all_costs(grid: &mut Grid, at: (i32, i32), cost: f64, out: &mut Vec<f64>) {
-        if grid.is_goal(&at) {
-            out.push(cost);
-            return;
-        }
-        let mut next = Vec::new();
-        grid.successors(&at, &mut next);
-        for (state, step) in next {
-            if grid.admits(&state) {
-                all_costs(grid, state, cost + step, out);
-            }
-        }
-    }
-
-    #[test]
-    fn goals_come_in_order_of_cost_and_are_those_of_plain_enumeration() {
-        let mut every = Vec::new();
-        all_costs(
-            &mut Grid {
-                size: 7,
-                informed: false,
-                closer: false,
-            },
-            (0, 0),
-            0.0,
-            &mut every,
-        );
-        every.sort_by(f64::total_cmp);
-        let mut expanded = Vec::new();
-        for (informed, closer) in [(false, false), (true, false), (true, true)] {
-            let (found, counts) = costs(informed, closer);
-            for k in 0..5 {
-                assert!((found[k] - every[k]).abs() < 1e-12);
-            }
-            expanded.push(counts.expanded);
-        }
-        assert!(expanded[1] < expanded[0], "{expanded:?}");
-        assert!(expanded[2] <= expanded[1], "{expanded:?}");
-    }
-
-    #[test]
-    fn a_budget_stops_and_can_be_raised() {
-        let mut grid = Grid {
-            size: 7,
-            informed: false,
-            closer: false,
-        };
-        let mut search = Search::new((0, 0));
-        assert_eq!(search.next_goal(&mut grid, 3), Stop::Budget);
-        assert_eq!(search.counts().expanded, 3);
-        assert!(matches!(
-            search.next_goal(&mut grid, usize::MAX),
-            Stop::Goal(_)
-        ));
-    }
-
-    struct Broken;
-    impl Space for Broken {
-        type State = u8;
-        fn successors(&mut self, _: &u8, out: &mut Vec<(u8, f64)>) {
-            out.extend([(1, f64::NAN), (2, -1.0)]);
-        }
-        fn bound(&mut self, _: &u8) -> f64 {
-            0.0
-        }
-        fn is_goal(&self, state: &u8) -> bool {
-            *state > 0
-        }
-        fn admits(&mut self, _: &u8) -> bool {
-            true
-        }
-    }
-
-    #[test]
-    fn costs_that_are_no_numbers_are_no_edges() {
-        assert_eq!(Search::new(0).next_goal(&mut Broken, 10), Stop::Exhausted);
-    }
-}
+mod tests;

@@ -4,6 +4,25 @@ use super::TrajectoryError;
 use crate::frame::{Pose, Vector, direction, to_port};
 
 /// The state of a ship at an instant, and the forces on her from then on.
+///
+/// # Examples
+///
+/// ```
+/// use std::f64::consts::FRAC_PI_2;
+/// use searoom::frame::{Pose, Vector};
+/// use searoom::trajectory::Node;
+///
+/// let node = Node {
+///     time: 0.0,
+///     pose: Pose::new(Vector::zeros(), FRAC_PI_2),
+///     velocity: Vector::new(2.0, 0.5), // ahead and to port, m/s
+///     yaw_rate: 0.0,
+///     force: Vector::new(1.0, 0.0),
+///     moment: 0.0,
+/// };
+/// // she points north: ahead is north, and port is west
+/// assert!((node.ground_velocity() - Vector::new(-0.5, 2.0)).norm() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
     /// Seconds.
@@ -50,6 +69,27 @@ impl Node {
 const LEAST_SWING: f64 = std::f64::consts::PI / 36.0;
 
 /// From one extreme of the heading to the next.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::{Pose, Vector};
+/// use searoom::trajectory::{Node, Steered, Swing};
+///
+/// let at = |time: f64, east: f64, heading: f64| Node {
+///     time,
+///     pose: Pose::new(Vector::new(east, 0.0), heading),
+///     velocity: Vector::new(2.0, 0.0),
+///     yaw_rate: 0.0,
+///     force: Vector::zeros(),
+///     moment: 0.0,
+/// };
+/// let motion = Steered::new(vec![at(0.0, 0.0, 0.0), at(1.0, 2.0, 0.2), at(2.0, 4.0, 0.3)])?;
+/// let swings: Vec<Swing> = motion.swings();
+/// assert_eq!((swings.len(), swings[0].start_time), (1, 0.0));
+/// assert!((swings[0].turned - 0.3).abs() < 1e-9, "radians, to port positive");
+/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
     /// At the extreme that it begins with, seconds.
@@ -60,6 +100,27 @@ pub struct Swing {
 
 /// A motion given at nodes. Between two of them position and heading are the cubics through both with both rates: what a
 /// plan of forces claims to sail. How near the ship comes to that is for a check to say.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::{Pose, Vector};
+/// use searoom::trajectory::{Node, Steered, Trajectory};
+///
+/// let at = |time: f64, east: f64, heading: f64| Node {
+///     time,
+///     pose: Pose::new(Vector::new(east, 0.0), heading),
+///     velocity: Vector::new(2.0, 0.0),
+///     yaw_rate: 0.0,
+///     force: Vector::zeros(),
+///     moment: 0.0,
+/// };
+/// let motion = Steered::new(vec![at(0.0, 0.0, 0.0), at(1.0, 2.0, 0.0)])?;
+/// assert!((motion.length() - 2.0).abs() < 1e-3);
+/// let trajectory = Trajectory::from(motion);
+/// assert!((trajectory.pose_at(0.5).position.x - 1.0).abs() < 1e-9);
+/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Steered {
     nodes: Vec<Node>,
@@ -164,6 +225,26 @@ impl Steered {
 }
 
 /// Motion between two instants: position and heading are cubics of time.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::frame::{Pose, Vector};
+/// use searoom::trajectory::{Cubic, Node};
+///
+/// let at = |time: f64, east: f64, heading: f64| Node {
+///     time,
+///     pose: Pose::new(Vector::new(east, 0.0), heading),
+///     velocity: Vector::new(2.0, 0.0),
+///     yaw_rate: 0.0,
+///     force: Vector::zeros(),
+///     moment: 0.0,
+/// };
+/// let piece = Cubic::from_nodes(&at(4.0, 0.0, 0.0), &at(6.0, 4.0, 0.0));
+/// assert_eq!(piece.end_time(), 6.0);
+/// assert!((piece.position(0.5) - Vector::new(2.0, 0.0)).norm() < 1e-12);
+/// assert!((piece.velocity(0.5) - Vector::new(2.0, 0.0)).norm() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic {
     /// Seconds.
@@ -182,7 +263,7 @@ pub struct Cubic {
 
 /// The largest that some derivatives become in a piece, in absolute value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
+pub(crate) struct Bounds {
     /// m/s.
     pub speed: f64,
     /// m/s².
@@ -269,7 +350,7 @@ impl Cubic {
 
     /// Bounds over the whole piece: second derivatives of cubics are largest at an end, first ones are within half of
     /// that times the duration of the mean.
-    pub fn bounds(&self) -> Bounds {
+    pub(crate) fn bounds(&self) -> Bounds {
         let t = self.duration;
         let ends = |rise: f64, first: f64, last: f64| {
             [
@@ -330,93 +411,4 @@ impl Cubic {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn node(time: f64, x: f64, y: f64, heading: f64) -> Node {
-        Node {
-            time,
-            pose: Pose::new(Vector::new(x, y), heading),
-            velocity: Vector::new(0.3 + 0.1 * x, -0.1),
-            yaw_rate: 0.2 - 0.1 * heading,
-            force: Vector::zeros(),
-            moment: 0.0,
-        }
-    }
-
-    fn motion() -> Steered {
-        Steered::new(vec![
-            node(0.0, 0.0, 0.0, 0.0),
-            node(2.0, 0.5, 0.3, 0.4),
-            node(5.0, 1.5, -0.3, 1.1),
-        ])
-        .expect("in order")
-    }
-
-    #[test]
-    fn pieces_meet_with_their_rates_and_stay_within_their_bounds() {
-        let motion = motion();
-        for (piece, pair) in motion.pieces().zip(motion.nodes().windows(2)) {
-            assert!((piece.pose_at(pair[1].time).position - pair[1].pose.position).norm() < 1e-12);
-            assert!((piece.velocity(0.0) - pair[0].ground_velocity()).norm() < 1e-12);
-            assert!((piece.body_velocity_at(pair[1].time) - pair[1].velocity).norm() < 1e-12);
-            assert!((piece.yaw_rate_at(pair[0].time) - pair[0].yaw_rate).abs() < 1e-12);
-            let (from, to) = (piece.start_time + 0.3, piece.start_time + 1.1);
-            let cut = piece.between(from, to);
-            for time in [from, from + 0.5, to] {
-                assert!((cut.pose_at(time).position - piece.pose_at(time).position).norm() < 1e-12);
-                assert!((cut.yaw_rate_at(time) - piece.yaw_rate_at(time)).abs() < 1e-12);
-            }
-            let bounds = piece.bounds();
-            for k in 0..200 {
-                let t = piece.start_time + piece.duration * f64::from(k) / 200.0;
-                let step = 1e-5;
-                let velocity = (piece.pose_at(t + step).position
-                    - piece.pose_at(t - step).position)
-                    / (2.0 * step);
-                assert!((velocity - piece.velocity(piece.part(t))).norm() < 1e-8);
-                let bend = (piece.velocity(piece.part(t + step))
-                    - piece.velocity(piece.part(t - step)))
-                    / (2.0 * step);
-                assert!(bend.norm() <= bounds.acceleration + 1e-6);
-                assert!(velocity.norm() <= bounds.speed + 1e-9);
-                assert!(piece.yaw_rate_at(t).abs() <= bounds.yaw_rate + 1e-9);
-                let turn =
-                    (piece.yaw_rate_at(t + step) - piece.yaw_rate_at(t - step)) / (2.0 * step);
-                assert!(turn.abs() <= bounds.yaw_acceleration + 1e-6);
-            }
-        }
-    }
-
-    #[test]
-    fn the_length_is_that_of_a_dense_sum() {
-        let motion = motion();
-        let n = 20_000;
-        let at = |k: i32| {
-            let t = 5.0 * f64::from(k) / f64::from(n);
-            motion.piece_at(t).pose_at(t).position
-        };
-        let dense: f64 = (0..n).map(|k| (at(k + 1) - at(k)).norm()).sum();
-        assert!(
-            (motion.length() - dense).abs() < 2e-3 * dense,
-            "{} {dense}",
-            motion.length()
-        );
-        assert_eq!(motion.node_at(-1.0).time, 0.0);
-        assert_eq!(motion.node_at(2.5).time, 2.0);
-        assert_eq!(motion.node_at(9.0).time, 5.0);
-    }
-
-    #[test]
-    fn disorder_is_refused() {
-        assert!(Steered::new(vec![node(0.0, 0.0, 0.0, 0.0)]).is_err());
-        assert!(Steered::new(vec![node(1.0, 0.0, 0.0, 0.0), node(1.0, 1.0, 0.0, 0.0)]).is_err());
-        assert!(
-            Steered::new(vec![
-                node(0.0, 0.0, 0.0, 0.0),
-                node(1.0, f64::NAN, 0.0, 0.0)
-            ])
-            .is_err()
-        );
-    }
-}
+mod tests;

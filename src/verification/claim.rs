@@ -15,6 +15,22 @@ use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 const PATH_TIME: &str = "path-time";
 
 /// One field of a document that is not as it has to be.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, report::document::PlanDocument, scenario::Scenario};
+/// use searoom::verification::{ClaimError, ClaimFault, verify};
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let text = serde_json::to_string(&PlanDocument::of(&pipeline::run(scenario))).expect("JSON");
+/// let Err(ClaimError::Value(fault)) = verify(&text.replace("searoom-plan/1", "other/1")) else {
+///     panic!("another format");
+/// };
+/// let ClaimFault { path, found, allowed } = fault;
+/// assert_eq!([path.as_str(), found.as_str(), allowed.as_str()], ["format", "'other/1'", "searoom-plan/1"]);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ClaimFault {
     /// The field.
@@ -26,6 +42,15 @@ pub struct ClaimFault {
 }
 
 /// Why a text is no plan document that can be checked.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::verification::{ClaimError, verify};
+///
+/// let error = verify("[1, 2").expect_err("no document");
+/// assert!(matches!(error, ClaimError::Shape { .. }), "{error}");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ClaimError {
     /// No JSON, a key that is missing, or a value of another kind.

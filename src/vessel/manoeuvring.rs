@@ -10,6 +10,15 @@ pub type StateVector = Vector6<f64>;
 pub type ForceVector = Vector3<f64>;
 
 /// What is one of each component for this ship: a solver works in these units.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::vessel::{CyberShip2, Manoeuvring, Scales};
+///
+/// let Scales { state, force } = CyberShip2::EXACT.scales();
+/// assert!(state.iter().chain(force.iter()).all(|unit| *unit > 0.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
     /// In the units of [`StateVector`].
@@ -22,6 +31,26 @@ pub struct Scales {
 /// everywhere and at all times (no rate depends on position).
 ///
 /// Its derivatives are checked against differences for every implementor.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::vessel::{ForceVector, Manoeuvring, StateVector, VesselKind};
+///
+/// /// Seconds until a ship without way has half the speed that a force holds, by Euler steps of 0.1 s.
+/// fn seconds_to_half(ship: &dyn Manoeuvring, speed: f64) -> f64 {
+///     let force: ForceVector = ship.steady(speed);
+///     let (mut state, mut time) = (StateVector::zeros(), 0.0);
+///     while state[3] < speed / 2.0 {
+///         state += ship.rates(&state, &force) * 0.1;
+///         time += 0.1;
+///     }
+///     time
+/// }
+///
+/// let model = seconds_to_half(VesselKind::CyberShip2.exact().as_ref(), 0.2);
+/// assert!((1.0..60.0).contains(&model), "{model}");
+/// ```
 pub trait Manoeuvring: std::fmt::Debug + Sync {
     /// The time derivative of the state. O(1).
     fn rates(&self, state: &StateVector, force: &ForceVector) -> StateVector;

@@ -10,11 +10,9 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::Ellipse;
 use searoom::obstacle::{Coast, EllipsoidObstacle, Obstacle};
-use searoom::planner::optimal_control::KeepOut;
-use searoom::planner::optimal_control::guess::profile_along;
-use searoom::planner::optimal_control::solver::Settings;
-use searoom::planner::optimal_control::task::{Controls, Profile, Task};
-use searoom::planner::optimal_control::transcription::Weights;
+use searoom::planner::optimal_control::{
+    Controls, KeepOut, Profile, Settings, Task, Weights, profile_along,
+};
 use searoom::planner::{ControlSettings, Objective, Problem, SearchKind};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{CyberShip2, Hull, Manoeuvring, OwnShip, StateVector, VesselKind};

@@ -5,6 +5,22 @@ use super::meeting::{Meeting, Sight};
 use super::thresholds::Thresholds;
 
 /// A role and when own ship has it.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::colregs::conduct::{RoleSpell, Thresholds};
+///
+/// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
+/// let first: &RoleSpell = &toward_the_ferry.roles[0];
+/// assert_eq!((first.role.name(), first.from), ("stand-on", 0.0));
+/// assert!(first.until < 150.0, "seconds; then she is past");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoleSpell {
     /// Never [`Role::None`] and never [`Role::Static`].

@@ -82,12 +82,27 @@ impl Sight {
     }
 
     /// Own ship from the target: metres ahead of her, and to port.
-    pub fn from_target(&self) -> Vector {
+    pub fn seen_from_target(&self) -> Vector {
         self.target.pose.body_coordinates(self.own.pose.position)
     }
 }
 
 /// All sights of own ship and one target, in order of time.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::conduct::Meeting;
+/// use searoom::comparison;
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let ferry = scenario.targets[0].ship().expect("a ship");
+/// let held = comparison::hold_course(&scenario).trajectory;
+/// let meeting = Meeting::along(&held, scenario.own_ship.hull, ferry);
+/// assert_eq!((meeting.length(), meeting.target_length()), (60.0, 60.0), "metres: the longer ship is hers");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Meeting {
     sights: Vec<Sight>,
@@ -129,7 +144,7 @@ impl Meeting {
     }
 
     /// In order of time, at least one.
-    pub fn sights(&self) -> &[Sight] {
+    pub(crate) fn sights(&self) -> &[Sight] {
         &self.sights
     }
 

@@ -11,14 +11,29 @@ mod monitor;
 mod score;
 mod thresholds;
 
-pub use alteration::{Alteration, alterations};
 pub use latch::{RoleSpell, roles};
-pub use meeting::{Ahead, Meeting, Sight};
+pub use meeting::Meeting;
 pub use monitor::{Finding, Measure, Verdict, monitors};
 pub use score::{Scores, scores};
 pub use thresholds::{MonitorLimits, RiskLimits, ScoreLimits, Thresholds};
 
 /// A rule that own ship breaks.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::colregs::conduct::{Breach, Thresholds};
+///
+/// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
+/// let breach: &Breach = &toward_the_ferry.breaches[0];
+/// assert_eq!(breach.rule, "17(c)");
+/// assert!(breach.what.contains("to port"));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Breach {
     /// Of the collision regulations: `14(a)`, `17(c)`, ...
@@ -30,6 +45,28 @@ pub struct Breach {
 }
 
 /// What both judges say.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::conduct::{Conduct, Meeting, Thresholds};
+/// use searoom::scenario::Scenario;
+/// use searoom::{comparison, pipeline};
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let ferry = scenario.targets[0].ship().expect("a ship");
+/// // whoever holds course and speed does not keep clear
+/// let held = comparison::hold_course(&scenario).trajectory;
+/// let meeting = Meeting::along(&held, scenario.own_ship.hull, ferry);
+/// let judged: Conduct = Conduct::judge(&meeting, thresholds);
+/// assert!(!judged.complies() && judged.scores.least() < 0.1);
+///
+/// let run = pipeline::run(scenario);
+/// let planned = run.conduct(thresholds).remove(0).expect("a plan");
+/// assert!(planned.complies() && planned.scores.least() > judged.scores.least());
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conduct {
     /// The roles of own ship over time; empty when there is no risk of collision.

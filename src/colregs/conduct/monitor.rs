@@ -7,6 +7,22 @@ use super::thresholds::Thresholds;
 use crate::frame::{Pose, wrap};
 
 /// What a monitor found.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::colregs::conduct::{Thresholds, Verdict};
+///
+/// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
+/// let verdicts = toward_the_ferry.findings.each_ref().map(|finding| finding.verdict);
+/// assert!(verdicts.contains(&Verdict::Satisfied) && verdicts.contains(&Verdict::Idle));
+/// assert_eq!(Verdict::Idle.name(), "idle");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// The formula holds, and its premise was met.
@@ -32,6 +48,21 @@ impl Verdict {
 }
 
 /// In what robustness is measured.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::colregs::conduct::{Measure, Thresholds};
+///
+/// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
+/// let safety = &toward_the_ferry.findings[0];
+/// assert_eq!((safety.monitor, safety.measure), ("S", Measure::Distance));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Metres.
@@ -41,6 +72,22 @@ pub enum Measure {
 }
 
 /// One formula over one trace.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::colregs::conduct::{Finding, Thresholds, Verdict};
+///
+/// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
+/// let safety: &Finding = &toward_the_ferry.findings[0];
+/// assert_eq!(safety.verdict, Verdict::Satisfied);
+/// assert!(safety.robustness.expect("metres") > 100.0, "never nearer than that");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
     /// `S`, `R3` (crossing), `R4` (head-on), `R5` (overtaking) or `R6` (stand-on).

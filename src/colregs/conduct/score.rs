@@ -11,6 +11,22 @@ use crate::colregs::Role;
 use crate::frame::{deg_from_radians, wrap};
 
 /// How well own ship behaved toward one target; 1 is best. `None` where the rule asks nothing of her.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::colregs::conduct::{Scores, Thresholds};
+///
+/// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
+/// let scores: &Scores = &toward_the_ferry.scores;
+/// assert!(scores.safety > 0.9 && scores.rule_15.is_none(), "Rule 15 asks nothing of a stand-on ship");
+/// assert_eq!(scores.by_name().len(), 2, "safety and Rule 17");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Scores {
     /// Distance and pose at the closest approach; 0 after a collision, as every other score then.
@@ -201,7 +217,7 @@ impl Act<'_> {
         let s = &self.t.score;
         let all = self.sights.iter().chain(self.after.iter().skip(1));
         let places: Vec<_> = all
-            .map(|s| (s.time, s.target.speed, s.from_target()))
+            .map(|s| (s.time, s.target.speed, s.seen_from_target()))
             .collect();
         places.windows(2).find_map(|w| {
             let [(_, _, a), (time, speed, b)] = [w[0], w[1]];

@@ -12,6 +12,17 @@ const FILE: &str = include_str!("thresholds.toml");
 
 /// A published set of numbers. Angles in radians, speeds in m/s, times in seconds, lengths in multiples of the longer
 /// ship's, weights and shares without a unit; what each is for stands in `thresholds.toml`.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::conduct::Thresholds;
+///
+/// let names: Vec<&str> = Thresholds::all().iter().map(|profile| profile.name.as_str()).collect();
+/// assert_eq!(names, ["searoom", "dnv-trafficgen", "sfi-autoship"]);
+/// let [own, dnv] = ["searoom", "dnv-trafficgen"].map(|name| Thresholds::named(name).expect("a profile"));
+/// assert!(dnv.sectors.head_on < own.sectors.head_on);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thresholds {
     /// What it is asked for by.
@@ -29,6 +40,16 @@ pub struct Thresholds {
 }
 
 /// When there is risk of collision, and when no longer.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::conduct::{RiskLimits, Thresholds};
+///
+/// let profile = Thresholds::standard().expect("the profile of the program");
+/// let RiskLimits { time, lengths, .. } = profile.risk;
+/// assert_eq!((time, lengths), (420.0, 2.0), "seconds ahead, and lengths between the ships");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "named as in thresholds.toml")]
 pub struct RiskLimits {
@@ -39,6 +60,17 @@ pub struct RiskLimits {
 }
 
 /// What the scores are measured by.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::conduct::{ScoreLimits, Thresholds};
+///
+/// let profile = Thresholds::standard().expect("the profile of the program");
+/// let score: &ScoreLimits = &profile.score;
+/// let weights = score.weight_least + score.weight_near_miss + score.weight_collision;
+/// assert!((weights - 1.0).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "named as in thresholds.toml")]
 pub struct ScoreLimits {
@@ -67,6 +99,16 @@ pub struct ScoreLimits {
 }
 
 /// What the monitors are measured by.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::colregs::conduct::{MonitorLimits, Thresholds};
+///
+/// let profile = Thresholds::standard().expect("the profile of the program");
+/// let MonitorLimits { react, manoeuvre, .. } = profile.monitor;
+/// assert_eq!((react, manoeuvre), (60.0, 70.0), "seconds");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "named as in thresholds.toml")]
 pub struct MonitorLimits {

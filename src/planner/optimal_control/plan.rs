@@ -10,10 +10,11 @@ use super::grid::{Ended, Refined, brought_to};
 use super::guess::{Start, family, profile_along};
 use super::keep_out::KeepOut;
 use super::passing::passing_sides;
+use super::report::{ControlReport, Controlled, HomotopyClass, StartReport};
 use super::solver::{Settings, Status};
 use super::task::{Controls, Profile, Task};
 use super::transcription::Weights;
-use crate::frame::{Side, Vector};
+use crate::frame::Vector;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::{
     ControlSettings, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats,
@@ -32,58 +33,6 @@ const SPACE_TIME_SHARE: f64 = 0.25;
 
 /// Relative. Plans this near in their objective are one plan.
 const SAME: f64 = 1e-6;
-
-/// What came of one start.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StartReport {
-    /// Which.
-    pub start: Start,
-    /// How its solve ended.
-    pub status: Status,
-    /// True when solved and clear of every set.
-    pub feasible: bool,
-    /// The integral of the stage cost.
-    pub objective: f64,
-    /// Steps of the solver.
-    pub iterations: usize,
-    /// Per set the side on which it is passed.
-    pub sides: Vec<Option<Side>>,
-}
-
-/// Plans that pass every set alike.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HomotopyClass {
-    /// Per set the side on which it lies when nearest; `None` where it is far.
-    pub sides: Vec<Option<Side>>,
-    /// The least objective found.
-    pub objective: f64,
-    /// Starts that led there.
-    pub starts: usize,
-}
-
-/// How a plan of forces was found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ControlReport {
-    /// Every start, in their order.
-    pub starts: Vec<StartReport>,
-    /// The classes of the feasible plans, the cheapest first.
-    pub classes: Vec<HomotopyClass>,
-    /// Intervals of the grid of the starts: their objectives, and those of the classes, are on it.
-    pub start_intervals: usize,
-    /// Intervals of the plan's grid; without a plan of the last one that was tried.
-    pub intervals: usize,
-    /// The largest deviation at the end of an interval on that grid, in the ship's units; NaN where no start led to a plan.
-    pub defect: f64,
-}
-
-/// A plan of forces and how it was found.
-#[derive(Debug, Clone)]
-pub struct Controlled {
-    /// The verdict; the cost of a plan is the integral of the stage cost, its horizon the problem's.
-    pub planned: Planned,
-    /// How.
-    pub report: ControlReport,
-}
 
 /// The sets that are kept out of: ellipsoids as they are, of others the smallest ellipses around their two sets, and
 /// where a set has no interior one of a millimetre. Outer sets.

@@ -3,6 +3,21 @@
 use crate::obstacle::{PathTime, Track};
 
 /// A leg that is sailed.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::planner::path_time::DiagramLeg;
+///
+/// let scenario = Scenario::read("scenarios/harbour/ferry-crossing.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let diagram = run.planned.path_time.as_ref().expect("planned along paths");
+/// let [first, second]: &[DiagramLeg] = &diagram.legs[..] else { panic!("two legs") };
+/// assert_eq!((first.path, first.begin), (0, 0.0));
+/// assert!((second.begin - first.track.length).abs() < 1e-9);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiagramLeg {
     /// Where it is.
@@ -14,6 +29,21 @@ pub struct DiagramLeg {
 }
 
 /// An obstacle on a leg.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::planner::path_time::DiagramObstacle;
+///
+/// let scenario = Scenario::read("scenarios/harbour/ferry-crossing.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let diagram = run.planned.path_time.as_ref().expect("planned along paths");
+/// let trawler: &DiagramObstacle = &diagram.obstacles[0];
+/// assert_eq!((trawler.obstacle, trawler.leg), (0, 0));
+/// assert!(trawler.corners.iter().all(|corner| corner.time <= diagram.horizon));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiagramObstacle {
     /// Index of the obstacle.
@@ -25,6 +55,21 @@ pub struct DiagramObstacle {
 }
 
 /// A corner of the path itself: exempt from the turning radius.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::planner::path_time::DiagramCorner;
+///
+/// let scenario = Scenario::read("scenarios/harbour/ferry-crossing.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let diagram = run.planned.path_time.as_ref().expect("planned along paths");
+/// let corner: &DiagramCorner = diagram.corners.last().expect("the path bends");
+/// // the second leg is eleven degrees to port of the first
+/// assert!((corner.turn.to_degrees() - 11.2).abs() < 0.1 && corner.distance > 400.0);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiagramCorner {
     /// Metres from the start.
@@ -34,6 +79,21 @@ pub struct DiagramCorner {
 }
 
 /// Distance along the legs that are sailed across, time up: paper figures 5b and 6b.
+///
+/// # Examples
+///
+/// ```
+/// # use searoom::{pipeline, scenario::Scenario};
+/// use searoom::planner::path_time::PathTimeDiagram;
+///
+/// let scenario = Scenario::read("scenarios/harbour/ferry-crossing.toml".as_ref())?;
+/// let run = pipeline::run(scenario);
+/// let diagram = run.planned.path_time.as_ref().expect("planned along paths");
+/// let whole: &PathTimeDiagram = diagram;
+/// let end = whole.profile.last().expect("a profile");
+/// assert!((end.distance - whole.length()).abs() < 1e-6 && end.time < whole.horizon);
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathTimeDiagram {
     /// In the order in which they are sailed; those of the main path where there is no plan.

@@ -35,6 +35,23 @@ const SAMPLE_STEP: f64 = 1.0;
 const MOST_SAMPLES: u32 = 20_000;
 
 /// One plan, alone: everything that is needed to check it again.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::pipeline;
+/// use searoom::report::document::{PLAN_FORMAT, PlanDocument};
+/// use searoom::scenario::Scenario;
+///
+/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
+/// let plan = PlanDocument::of(&pipeline::run(scenario));
+/// assert_eq!((plan.format.as_str(), plan.outcome.as_str(), plan.verified), (PLAN_FORMAT, "solved", true));
+/// // what is written can be read
+/// let text = serde_json::to_string(&plan).expect("JSON");
+/// let read: PlanDocument = serde_json::from_str(&text).expect("a plan");
+/// assert_eq!(read.encounters[0].role, "give-way");
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(
     missing_docs,

@@ -17,13 +17,15 @@ mod volume;
 mod window;
 
 pub use assessment::assessment_figure;
-pub use comparison::{comparison_figure, comparison_panels, diagram_panels};
+pub use comparison::comparison_figure;
+pub(super) use comparison::{comparison_panels, diagram_panels};
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};
 pub use motion::moments_figure;
 pub use outline::Stroke;
 pub use panel::Panel;
 pub use path_time::{ProfileLine, path_time_panel};
-pub use plan::{chart_panel, path_panel, plan_figure, plan_panels};
+pub(super) use plan::plan_panels;
+pub use plan::{chart_panel, path_panel, plan_figure};
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
 pub use volume::volume_panel;

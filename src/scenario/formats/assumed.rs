@@ -25,6 +25,19 @@ pub(super) const TURNING_LENGTHS: f64 = 2.5;
 pub(super) const HORIZON_ROUTES: f64 = 2.0;
 
 /// What foreign files do not say and a scenario needs. The default is that of `docs/formats.md`.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::formats::{Assumed, Assumption, Contents};
+///
+/// let assumed = Assumed::default().with(Assumption::SafetyMargin, 500.0).with_variants(true);
+/// let Contents::Situations { situations, .. } = Contents::read("scenarios/imazu/imazu.json".as_ref(), &assumed)? else {
+///     panic!("situations");
+/// };
+/// assert_eq!((assumed.variants(), situations.len()), (true, 25));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
     speed_spread: f64,
@@ -49,6 +62,16 @@ impl Default for Assumed {
 }
 
 /// One of the numbers of [`Assumed`], as a user gives it.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::formats::Assumption;
+///
+/// assert!(Assumption::CourseSpread.allows(5.0) && !Assumption::CourseSpread.allows(f64::NAN));
+/// assert!(!Assumption::SpeedSpread.allows(-1.0));
+/// assert_eq!(Assumption::SpeedSpread.allowed(), "a number from 0 to 100");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Assumption {
     /// Half-width of every target's speed, m/s.

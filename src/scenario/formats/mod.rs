@@ -25,6 +25,20 @@ use super::{ScenarioError, limits};
 use json::Json;
 
 /// What a file is.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::formats::{Assumed, Contents, Format};
+///
+/// let file = "scenarios/dnv/traffic_situation_01.json".as_ref();
+/// let Contents::Situations { format, mut situations } = Contents::read(file, &Assumed::default())? else {
+///     panic!("situations");
+/// };
+/// assert_eq!((format, situations.len()), (Format::Dnv, 1));
+/// # situations.clear();
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// A scenario file.
@@ -38,6 +52,19 @@ pub enum Format {
 }
 
 /// What is in a file.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::formats::{Assumed, Contents};
+///
+/// let assumed = Assumed::default();
+/// let of = |file: &str| Contents::read(file.as_ref(), &assumed);
+/// assert!(matches!(of("scenarios/colregs/head-on.toml")?, Contents::Scenario));
+/// assert!(matches!(of("scenarios/commonocean/sample-head-on.xml")?, Contents::Situations { .. }));
+/// assert!(matches!(of("maps/trondheim-harbour.geojson")?, Contents::Other(_)));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug)]
 pub enum Contents {
     /// A scenario file, or what can only be meant as one: [`Scenario::read`](super::Scenario::read) says more.

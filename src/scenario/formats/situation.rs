@@ -8,6 +8,21 @@ use super::track::Track;
 
 /// A situation read from a foreign file, checked, SI and east-north. [`Situation::scenario`](super::Situation::scenario)
 /// makes a scenario of it.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::formats::{Assumed, Contents, Situation};
+///
+/// let Contents::Situations { mut situations, .. } =
+///     Contents::read("scenarios/imazu/imazu.json".as_ref(), &Assumed::default())?
+/// else {
+///     panic!("situations");
+/// };
+/// let last: Situation = situations.remove(21).expect("no faults");
+/// assert_eq!((last.id(), last.others()), (Some("imazu-22"), 3));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Situation {
     pub(super) name: String,
@@ -22,6 +37,23 @@ pub struct Situation {
 }
 
 /// What a file says of its situation beside the ships: to be compared with them, never planned with.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::formats::{Assumed, Contents, Declared};
+///
+/// let Contents::Situations { mut situations, .. } =
+///     Contents::read("scenarios/imazu/imazu.json".as_ref(), &Assumed::default())?
+/// else {
+///     panic!("situations");
+/// };
+/// let case_12 = situations.remove(11).expect("no faults");
+/// let declared: &Declared = case_12.declared();
+/// // the table has one ship less than its drawing
+/// assert_eq!((declared.ships, case_12.others()), (Some(3), 2));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Declared {
     /// How many others there ought to be.

@@ -12,6 +12,25 @@ use crate::geometry::{ConvexPolygon, outer_disc};
 use crate::vessel::Hull;
 
 /// A scenario made of a foreign situation.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::scenario::Scenario;
+/// use searoom::scenario::formats::{Assumed, Contents, Imported};
+///
+/// let assumed = Assumed::default();
+/// let file = "scenarios/dnv/traffic_situation_01.json";
+/// let Contents::Situations { mut situations, .. } = Contents::read(file.as_ref(), &assumed)? else {
+///     panic!("situations");
+/// };
+/// let situation = situations.remove(0).expect("no faults");
+/// let Imported { scenario, text, notes } = situation.scenario(&assumed).expect("no faults");
+/// // the text is the scenario, and what was assumed is said
+/// assert_eq!(Scenario::parse(&text).expect("no faults"), scenario);
+/// assert!(!notes.is_empty());
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// The scenario.

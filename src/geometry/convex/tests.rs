@@ -1,0 +1,127 @@
+use super::*;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+fn random_polygon(rng: &mut ChaCha8Rng) -> ConvexPolygon {
+    let n = rng.random_range(1..8);
+    let grid = rng.random_bool(0.5);
+    let points: Vec<Vector> = (0..n)
+        .map(|_| {
+            let p = Vector::new(rng.random_range(-5.0..5.0), rng.random_range(-5.0..5.0));
+            if grid { p.map(f64::round) } else { p }
+        })
+        .collect();
+    ConvexPolygon::hull(&points).expect("finite points")
+}
+
+#[test]
+fn hulls_of_degenerate_points_are_points_and_segments() {
+    let p = Vector::new(2.0, 3.0);
+    let point = ConvexPolygon::hull(&[p, p, p]).expect("a point");
+    assert_eq!(point.vertices(), &[p]);
+    let line: Vec<Vector> = (0..5)
+        .map(|i| Vector::new(f64::from(i), 2.0 * f64::from(i)))
+        .collect();
+    let segment = ConvexPolygon::hull(&line).expect("a segment");
+    assert_eq!(segment.vertices(), &[line[0], line[4]]);
+    assert!(matches!(
+        ConvexPolygon::hull(&[]),
+        Err(GeometryError::Empty)
+    ));
+    assert!(matches!(
+        ConvexPolygon::hull(&[p, Vector::new(f64::NAN, 0.0)]),
+        Err(GeometryError::NotFinite { index: 1 })
+    ));
+}
+
+#[test]
+fn a_vertex_inside_is_named() {
+    let square = [(0.0, 0.0), (4.0, 0.0), (2.0, 1.0), (4.0, 4.0), (0.0, 4.0)];
+    let points: Vec<Vector> = square.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+    let found = ConvexPolygon::from_vertices(&points);
+    assert!(matches!(
+        found,
+        Err(GeometryError::NotConvex { index: 2, .. })
+    ));
+}
+
+#[test]
+fn minkowski_sums_match_the_hull_of_all_vertex_sums() {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    for _ in 0..2000 {
+        let (a, b) = (random_polygon(&mut rng), random_polygon(&mut rng));
+        let sum = a.minkowski_sum(&b);
+        let all: Vec<Vector> = a
+            .vertices()
+            .iter()
+            .flat_map(|p| b.vertices().iter().map(move |q| p + q))
+            .collect();
+        let hull = ConvexPolygon::hull(&all).expect("finite points");
+        assert!((sum.area() - hull.area()).abs() < 1e-9);
+        for i in 0..64 {
+            let n = crate::frame::direction(f64::from(i) * 0.1);
+            assert!((sum.support(n) - a.support(n) - b.support(n)).abs() < 1e-9);
+        }
+        assert_eq!(sum.vertices().len(), hull.vertices().len(), "{a:?} + {b:?}");
+    }
+}
+
+#[test]
+fn half_spaces_of_the_normals_are_the_set() {
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    for _ in 0..2000 {
+        let set = random_polygon(&mut rng);
+        let p = Vector::new(rng.random_range(-6.0..6.0), rng.random_range(-6.0..6.0));
+        let slack = set
+            .normals()
+            .iter()
+            .map(|n| n.dot(&p) - set.support(*n))
+            .fold(f64::NEG_INFINITY, f64::max);
+        let distance = set.signed_distance(p);
+        if distance < -1e-9 {
+            assert!((slack - distance).abs() < 1e-9);
+        } else if distance > 1e-9 {
+            assert!(slack > 0.0 && slack <= distance + 1e-9);
+        }
+    }
+}
+
+#[test]
+fn separation_is_symmetric_and_zero_at_touch() {
+    let square = outer_square(1.0);
+    let moved = square.translated(Vector::new(5.0, 0.0));
+    assert!((square.separation(&moved) - 3.0).abs() < 1e-12);
+    assert!((moved.separation(&square) - 3.0).abs() < 1e-12);
+    assert!(
+        square
+            .separation(&square.translated(Vector::new(2.0, 0.0)))
+            .abs()
+            < 1e-12
+    );
+    assert!((square.separation(&square.translated(Vector::new(1.5, 0.0))) + 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn not_a_number_is_inside() {
+    let square = outer_square(1.0);
+    assert!(square.contains(Vector::new(f64::NAN, 100.0)));
+    assert!(!square.contains(Vector::new(100.0, 100.0)));
+}
+
+#[test]
+fn centroid_is_the_area_mean() {
+    let l = [(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (0.0, 2.0)];
+    let points: Vec<Vector> = l.iter().map(|&(x, y)| Vector::new(x + 1e6, y)).collect();
+    let c = ConvexPolygon::hull(&points).expect("finite").centroid();
+    assert!((c - Vector::new(1e6 + 2.0, 1.0)).norm() < 1e-9);
+}
+
+fn outer_square(half: f64) -> ConvexPolygon {
+    ConvexPolygon::hull(&[
+        Vector::new(-half, -half),
+        Vector::new(half, -half),
+        Vector::new(half, half),
+        Vector::new(-half, half),
+    ])
+    .expect("finite")
+}
