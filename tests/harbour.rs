@@ -163,6 +163,7 @@ fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
         time_weight: speed * speed,
         max_risk: 0.0,
         deadline: 60.0,
+        thresholds: None,
         earth: None,
         land: Some(land),
     }

@@ -1,8 +1,10 @@
 //! The arguments.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::{Args, Parser, Subcommand};
+use searoom::colregs::conduct::Thresholds;
 use searoom::planner::{PlannerKind, SearchKind};
 use searoom::scenario::formats::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
@@ -112,7 +114,7 @@ pub struct SuiteArgs {
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
     /// Plan nothing: say where ships would meet, and what is odd about the scenarios
-    #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk"])]
+    #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk", "thresholds"])]
     pub lint: bool,
 }
 
@@ -213,6 +215,9 @@ pub struct Shared {
     /// Risk that the plan may accept instead of the scenario's: 0 to below 1
     #[arg(long, value_name = "R", value_parser = max_risk)]
     pub max_risk: Option<f64>,
+    /// What own ship's behaviour is judged by, of no effect on the plan: searoom, dnv-trafficgen, sfi-autoship, or a TOML file
+    #[arg(long, value_name = "PROFILE|FILE", value_parser = thresholds)]
+    pub thresholds: Option<Arc<Thresholds>>,
     /// Write a Rerun recording: a file ending in .rrd, or a folder
     #[arg(long, value_name = "PATH")]
     pub rrd: Option<PathBuf>,
@@ -323,6 +328,9 @@ impl Shared {
         if let Some(max_risk) = self.max_risk {
             scenario.max_risk = max_risk;
         }
+        if let Some(thresholds) = &self.thresholds {
+            scenario.thresholds = Some(Arc::clone(thresholds));
+        }
         let faults = scenario.unfit();
         if faults.is_empty() {
             Ok(())
@@ -368,6 +376,24 @@ fn compliance(word: &str) -> Result<Compliance, String> {
         "rules" => Ok(Compliance::Rules),
         _ => Err("allowed: none, shape, rules".to_owned()),
     }
+}
+
+/// A published set by its name, before a file of that name; `./NAME` is the file.
+fn thresholds(word: &str) -> Result<Arc<Thresholds>, String> {
+    if let Some(published) = Thresholds::named(word) {
+        return Ok(Arc::new(published.clone()));
+    }
+    let file = Path::new(word);
+    if !file.exists() {
+        let names: Vec<&str> = Thresholds::all().iter().map(|t| t.name.as_str()).collect();
+        return Err(format!(
+            "allowed: {}, or a file that is there",
+            names.join(", ")
+        ));
+    }
+    Thresholds::read(file)
+        .map(Arc::new)
+        .map_err(|error| error.to_string())
 }
 
 fn max_risk(word: &str) -> Result<f64, String> {

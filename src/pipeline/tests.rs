@@ -47,6 +47,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
         time_weight: 25.0,
         max_risk: 0.0,
         deadline: 5.0,
+        thresholds: None,
         earth: None,
         land: None,
     }

@@ -123,7 +123,7 @@ const PATH_TIME_PLANE: &str = "path_time/plane";
 /// use searoom::recording::{RecordingError, write};
 ///
 /// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
-/// let error = write(&pipeline::run(scenario), None, "no/such/folder/a.rrd".as_ref()).expect_err("no folder");
+/// let error = write(&pipeline::run(scenario), None, "Cargo.toml/a.rrd".as_ref()).expect_err("no folder");
 /// assert!(matches!(error, RecordingError::Write { .. }));
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```

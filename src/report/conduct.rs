@@ -1,13 +1,14 @@
 //! How own ship behaves, in words.
 
-use crate::colregs::conduct::{Finding, Measure, Thresholds, Verdict};
+use crate::colregs::conduct::{Finding, Measure, Verdict};
 use crate::frame::deg_from_radians;
 use crate::pipeline::Run;
 
 /// How own ship behaves toward every target that she has a role to: the least score of each, and every rule that is broken.
 pub(super) fn lines(run: &Run) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
-    let conduct = Thresholds::standard().map_or_else(Vec::new, |t| run.conduct(t));
+    let thresholds = run.scenario.judged_by();
+    let conduct = thresholds.map_or_else(Vec::new, |t| run.conduct(t));
     for (target, conduct) in run.scenario.targets.iter().zip(&conduct) {
         let Some(conduct) = conduct.as_ref().filter(|c| !c.roles.is_empty()) else {
             continue;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// ```
 /// use searoom::report::{WriteError, write_atomically};
 ///
-/// let nowhere = std::path::Path::new("no/such/folder/plan.json");
+/// let nowhere = std::path::Path::new("Cargo.toml/plan.json");
 /// let WriteError { file, .. } = write_atomically(nowhere, b"{}").expect_err("no folder");
 /// assert_eq!(file, nowhere);
 /// ```

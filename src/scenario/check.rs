@@ -84,6 +84,7 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
         max_risk: planner.max_risk.unwrap_or(0.0),
         deadline: planner.deadline.unwrap_or(DEFAULT_DEADLINE),
+        thresholds: None,
         earth: plane.earth(),
         land,
     })

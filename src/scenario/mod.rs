@@ -18,7 +18,9 @@ pub use fault::{Fault, ScenarioError};
 pub use land::Land;
 
 use std::path::Path;
+use std::sync::Arc;
 
+use crate::colregs::conduct::Thresholds;
 use crate::frame::{Georeference, Vector};
 use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
 use crate::target::Target;
@@ -88,6 +90,8 @@ pub struct Scenario {
     pub max_risk: f64,
     /// Wall-clock budget of one plan, seconds.
     pub deadline: f64,
+    /// What own ship's behaviour is judged by, of no effect on plans; `None` for the first published set.
+    pub thresholds: Option<Arc<Thresholds>>,
     /// Where the plane lies on the earth, where that is known.
     pub earth: Option<Georeference>,
     /// The land, where there is a map.
@@ -104,6 +108,14 @@ impl Scenario {
             file: file.to_owned(),
             faults,
         })
+    }
+
+    /// The thresholds of the judges of the rules: its own, or the first published set.
+    pub fn judged_by(&self) -> Option<&Thresholds> {
+        match &self.thresholds {
+            Some(own) => Some(own),
+            None => Thresholds::standard(),
+        }
     }
 
     /// What keeps the planner that the scenario asks for from planning it; every fault, without lines.

@@ -305,6 +305,7 @@ fn scene(
             time_weight: TIME_WEIGHT,
             max_risk: 0.0,
             deadline: DEADLINE,
+            thresholds: None,
             earth: None,
             land: None,
         },

@@ -2,10 +2,11 @@
 
 use std::fs;
 
-use super::program::{document, searoom, stdout, text, untimed};
+use super::program::{document, searoom, stdout, text, untimed, write};
 use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
+use serde_json::Value;
 
 #[test]
 fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
@@ -503,4 +504,57 @@ mod recordings {
                 .stderr(contains("holds no plan document"));
         }
     }
+}
+
+#[test]
+fn the_rules_are_judged_by_what_is_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let stand_on = "scenarios/colregs/stand-on.toml";
+    let plan = |args: &[&str]| {
+        let all = [&["plan", stand_on, "--json"], args].concat();
+        untimed(document(&searoom(&all).success()))
+    };
+    let usual = plan(&[]);
+    assert_eq!(usual["thresholds"], "searoom");
+    assert_eq!(plan(&["--thresholds", "searoom"]), usual);
+    // who wants five lengths between the ships sees a near miss in the same plan
+    let text_of =
+        |lines: &str| format!("name = 'mine'\nsource = 'a test'\nlike = 'searoom'\n{lines}");
+    let near = "near_miss_lengths = 5\nleast_lengths = 10\npreferred_lengths = 20";
+    let file = write(folder.path(), "mine.toml", text_of(near));
+    let mine = plan(&["--thresholds", &file]);
+    assert_eq!(mine["thresholds"], "mine");
+    assert_eq!(mine["trajectory"], usual["trajectory"]);
+    let safety = |plan: &Value| {
+        plan["encounters"][0]["scores"]["safety"]
+            .as_f64()
+            .expect("a score")
+    };
+    assert!(
+        safety(&usual) > 0.9 && safety(&mine) < 0.7,
+        "{}",
+        safety(&mine)
+    );
+    searoom(&["suite", stand_on, "--thresholds", "sfi-autoship"]).success();
+}
+
+#[test]
+fn thresholds_that_are_wrong_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let stand_on = "scenarios/colregs/stand-on.toml";
+    let refused = |word: &str| searoom(&["plan", stand_on, "--thresholds", word]).code(2);
+    refused("nobody").stderr(contains(
+        "allowed: searoom, dnv-trafficgen, sfi-autoship, or a file that is there",
+    ));
+    let faulty = "name = 'mine'\nsource = 'a'\nlike = 'searoom'\nhead_on_deg = 200\nhold = 1";
+    let file = write(folder.path(), "mine.toml", faulty);
+    refused(&file)
+        .stderr(contains(
+            "mine.toml: head_on_deg: found 200; allowed: a number from 0 to 180",
+        ))
+        .stderr(contains("hold: found 1; allowed: like, name, source"));
+    refused(text(folder.path())).stderr(contains("cannot be read"));
+    let long = write(folder.path(), "long.toml", "#".repeat(70_000));
+    refused(&long).stderr(contains("file: found more than 65536 bytes"));
+    searoom(&["suite", "--lint", stand_on, "--thresholds", "searoom"]).code(2);
 }

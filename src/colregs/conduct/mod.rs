@@ -10,12 +10,14 @@ mod meeting;
 mod monitor;
 mod score;
 mod thresholds;
+mod thresholds_file;
 
 pub use latch::{RoleSpell, roles};
 pub use meeting::Meeting;
 pub use monitor::{Finding, Measure, Verdict, monitors};
 pub use score::{Scores, scores};
 pub use thresholds::{MonitorLimits, RiskLimits, ScoreLimits, Thresholds};
+pub use thresholds_file::{ThresholdsError, ThresholdsFault};
 
 /// A rule that own ship breaks.
 ///

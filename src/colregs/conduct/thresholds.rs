@@ -120,7 +120,21 @@ pub struct MonitorLimits {
     pub manoeuvre: f64,
 }
 
-static ALL: LazyLock<Vec<Thresholds>> = LazyLock::new(|| read(FILE).unwrap_or_default());
+static TABLES: LazyLock<Vec<toml::Table>> = LazyLock::new(|| tables(FILE).unwrap_or_default());
+
+static ALL: LazyLock<Vec<Thresholds>> = LazyLock::new(|| {
+    let entries = TABLES.iter().cloned().map(|t| t.try_into::<Entry>());
+    let all: Result<Vec<Entry>, _> = entries.collect();
+    all.map_or_else(
+        |_| Vec::new(),
+        |all| all.into_iter().map(Entry::thresholds).collect(),
+    )
+});
+
+/// The published sets as they are written, none `like` another any more.
+pub(super) fn published() -> &'static [toml::Table] {
+    &TABLES
+}
 
 impl Thresholds {
     /// Every set, in the order of the file.
@@ -128,7 +142,7 @@ impl Thresholds {
         &ALL
     }
 
-    /// The first set, by which the command line judges.
+    /// The first set, by which is judged where no other is asked for.
     pub fn standard() -> Option<&'static Self> {
         Self::all().first()
     }
@@ -140,7 +154,7 @@ impl Thresholds {
 }
 
 /// The entries of a file, one that is `like` another completed from that.
-fn read(text: &str) -> Result<Vec<Thresholds>, toml::de::Error> {
+fn tables(text: &str) -> Result<Vec<toml::Table>, toml::de::Error> {
     #[derive(Deserialize)]
     struct File {
         profile: Vec<toml::Table>,
@@ -156,14 +170,13 @@ fn read(text: &str) -> Result<Vec<Thresholds>, toml::de::Error> {
         table.extend(entry.into_iter().filter(|(key, _)| key != "like"));
         tables.push(table);
     }
-    let entries = tables.into_iter().map(|t| t.try_into::<Entry>());
-    entries.map(|e| e.map(Entry::thresholds)).collect()
+    Ok(tables)
 }
 
 /// An entry as it is written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+pub(super) struct Entry {
     name: String,
     source: String,
     head_on_deg: f64,
@@ -204,7 +217,7 @@ struct Entry {
 }
 
 impl Entry {
-    fn thresholds(self) -> Thresholds {
+    pub(super) fn thresholds(self) -> Thresholds {
         let angle = radians_from_deg;
         Thresholds {
             sectors: Sectors {

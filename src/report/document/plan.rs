@@ -12,7 +12,6 @@ use super::parts::{
 };
 use super::path_time::{PathTimeDocument, path_time_document};
 use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
-use crate::colregs::conduct::Thresholds;
 use crate::evaluation::Evaluation;
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
@@ -63,6 +62,9 @@ pub struct PlanDocument {
     pub planner: String,
     pub search: String,
     pub compliance: String,
+    /// The name of what own ship's behaviour is judged by.
+    #[serde(default)]
+    pub thresholds: String,
     pub objective: String,
     /// Of the objective that weighs risk; absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -117,6 +119,9 @@ impl PlanDocument {
             planner: scenario.planner.word().to_owned(),
             search: words::search(scenario.search).to_owned(),
             compliance: scenario.compliance.word().to_owned(),
+            thresholds: scenario
+                .judged_by()
+                .map_or_else(String::new, |t| t.name.clone()),
             objective: words::objective(scenario).to_owned(),
             risk_weight_m: match scenario.objective {
                 Objective::LengthRisk { weight } => Some(weight),
@@ -424,7 +429,8 @@ pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
 
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
-    let conduct = Thresholds::standard().map_or_else(Vec::new, |t| run.conduct(t));
+    let thresholds = run.scenario.judged_by();
+    let conduct = thresholds.map_or_else(Vec::new, |t| run.conduct(t));
     run.scenario
         .targets
         .iter()
