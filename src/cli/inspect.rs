@@ -175,6 +175,8 @@ struct Contents {
     verified: Value,
     cost: Value,
     search_stats: Value,
+    /// Where own ship stands on; else null.
+    escape: Value,
     targets: Vec<Value>,
     /// Of a comparison: its part of `compare --json`; else null.
     comparison: Value,
@@ -232,11 +234,14 @@ impl Contents {
             .document()
             .and_then(|text| serde_json::from_str(text).ok())
             .unwrap_or_default();
-        let compared: Value = recorded
+        let mut compared: Value = recorded
             .comparison()
             .and_then(|text| serde_json::from_str(text).ok())
             .unwrap_or_default();
-        let comparison = compared["comparisons"][0].clone();
+        let comparison = compared
+            .pointer_mut("/comparisons/0")
+            .map(Value::take)
+            .unwrap_or_default();
         let scenario = [&document, &comparison]
             .into_iter()
             .find_map(|d| d.get("scenario"))
@@ -255,6 +260,7 @@ impl Contents {
             verified: field("verified"),
             cost: field("cost"),
             search_stats: field("search_stats"),
+            escape: field("escape"),
             targets: names.cloned().collect(),
             comparison,
             timelines: TimelineDocument::all(recorded.timelines()),
@@ -366,6 +372,12 @@ impl Contents {
         if let Some(expanded) = self.search_stats["expanded"].as_u64() {
             lines.push(format!("  search       {expanded} nodes expanded"));
         }
+        if let Some(latest) = self.escape["latest_s"].as_f64() {
+            lines.push(format!(
+                "  stands on    until {latest:.1} s, then {}",
+                manoeuvre(&self.escape)
+            ));
+        }
         for target in &self.targets {
             let dcpa = target["dcpa_m"].as_f64().map_or(String::new(), |d| {
                 format!(
@@ -379,9 +391,61 @@ impl Contents {
                 word(&target["target"]),
                 word(&target["role"])
             ));
+            lines.extend(conduct(target));
         }
         lines
     }
+}
+
+/// What follows a hold.
+fn manoeuvre(escape: &Value) -> String {
+    let number = |key: &str| escape[key].as_f64().unwrap_or(0.0);
+    let (turn, speed) = (number("turn_deg"), number("speed_mps"));
+    if turn == 0.0 {
+        return format!("{speed:.2} m/s");
+    }
+    let side = if turn > 0.0 { "starboard" } else { "port" };
+    format!("{:.0}° to {side} at {speed:.2} m/s", turn.abs())
+}
+
+/// Roles over time, scores and every broken rule with its moment, of one encounter; nothing where none is judged.
+fn conduct(encounter: &Value) -> Vec<String> {
+    let list = |key: &str| encounter[key].as_array().map_or(&[][..], Vec::as_slice);
+    let word = |value: &Value| value.as_str().unwrap_or("unknown").to_owned();
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    let spell = |role: &Value| {
+        let (from, until) = (number(&role["from_s"]), number(&role["until_s"]));
+        format!("{} {from:.0} to {until:.0} s", word(&role["role"]))
+    };
+    let roles: Vec<String> = list("roles").iter().map(spell).collect();
+    let mut lines = Vec::new();
+    if roles.is_empty() {
+        return lines;
+    }
+    lines.push(format!("    roles      {}", roles.join(", ")));
+    let scores = encounter["scores"].as_object().into_iter().flatten();
+    let scores: Vec<String> = scores
+        .map(|(rule, score)| format!("{} {:.2}", rule.replace('_', " "), number(score)))
+        .collect();
+    lines.push(format!("    scores     {}", scores.join(", ")));
+    lines.extend(list("breaches").iter().map(|breach| {
+        let (rule, what) = (word(&breach["rule"]), word(&breach["what"]));
+        format!(
+            "    breaks     {rule} at {:.0} s: {what}",
+            number(&breach["t_s"])
+        )
+    }));
+    let broken = |finding: &&Value| finding["verdict"] == "violated";
+    lines.extend(list("monitors").iter().filter(broken).map(|finding| {
+        format!(
+            "    monitor    {} violated at {:.0} s, by {:.1} {}",
+            word(&finding["monitor"]),
+            number(&finding["t_s"]),
+            -number(&finding["robustness"]),
+            word(&finding["unit"])
+        )
+    }));
+    lines
 }
 
 /// The costs of a document in words; empty without any.

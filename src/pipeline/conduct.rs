@@ -15,4 +15,9 @@ impl Run {
         };
         self.scenario.targets.iter().map(judge).collect()
     }
+
+    /// [`Run::conduct`] by the standard numbers; empty where there are none.
+    pub fn standard_conduct(&self) -> Vec<Option<Conduct>> {
+        Thresholds::standard().map_or_else(Vec::new, |t| self.conduct(t))
+    }
 }

@@ -2,7 +2,7 @@
 
 use rerun::blueprint::{
     Blueprint, BlueprintPanel, ContainerLike, Grid, Horizontal, SelectionPanel, Spatial2DView,
-    Spatial3DView, TextDocumentView, TimePanel, TimeSeriesView, Vertical,
+    Spatial3DView, StateTimelineView, TextDocumentView, TimePanel, TimeSeriesView, Vertical,
 };
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
 use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind, TimelineName};
@@ -19,12 +19,12 @@ use rerun::{
 };
 
 use super::chart::legend_height;
-use super::curves::{CLEARANCE, COURSE, MARGIN, RISK, SPEED, clearances, courses, margins};
+use super::curves::{CLEARANCE, COURSE, Curves, MARGIN, RISK, SPEED};
 use super::explored::BLOCKED;
 use super::scene::{Scene, Stage};
 use super::{
-    APPLICATION, CHART, EXPLORED, PATH_TIME, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, forces,
-    path, path_time, style, velocities,
+    APPLICATION, CHART, EXPLORED, PATH_TIME, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME,
+    forces, path, path_time, rules, style, velocities,
 };
 use crate::frame::{Vector, knots_from_mps, to_starboard};
 
@@ -41,18 +41,30 @@ const LEAST_RANGE_M: f64 = 50.0;
 type Properties = Vec<(String, Box<dyn AsComponents>)>;
 
 /// Lays out all views and makes that the recording's blueprint.
-pub fn send_blueprint(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+pub fn send_blueprint(
+    rec: &RecordingStream,
+    scene: &Scene,
+    curves: &Curves,
+) -> RecordingStreamResult<()> {
     let mut properties = Properties::new();
     let chart = chart_view(scene, 1, &[path(&[EXPLORED])], &mut properties);
     let blocked = path(&[VOLUME, "explored", BLOCKED]);
     let volume = volume_view(scene, &[blocked], &mut properties);
     let summary = TextDocumentView::new("Verdict").with_origin(SUMMARY).into();
-    let mut small = Vec::from(curve_views(scene, &mut properties));
+    let mut small = Vec::from(curve_views(scene, curves, &mut properties));
     if forces::steered(scene).is_some() {
         small.extend(force_views(scene, &mut properties));
     }
     small.push(velocity_view(scene, &mut properties));
-    let left = Vertical::new([chart, summary]).with_row_shares(vec![0.66, 0.34]);
+    let mut left = vec![chart];
+    let mut left_shares = vec![0.66];
+    if let Some((rules, share)) = rules_view(scene, &mut properties) {
+        left.push(rules);
+        left_shares = vec![0.66 - share, share];
+    }
+    left.push(summary);
+    left_shares.push(0.34);
+    let left = Vertical::new(left).with_row_shares(left_shares);
     let mut views = vec![volume];
     views.extend(path_time_view(scene, &mut properties));
     let mut shares = vec![0.5 / views.len() as f32; views.len()];
@@ -238,25 +250,18 @@ fn volume_view(
     without(volume, properties, hidden_folders)
 }
 
-fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 5] {
+fn curve_views(scene: &Scene, curves: &Curves, properties: &mut Properties) -> [ContainerLike; 5] {
     let margin = scene.scenario.own_ship.safety_margin;
-    let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
-    let targets = &scene.scenario.targets;
-    let clearance = targets
-        .iter()
-        .map(|t| least(clearances(scene, &scene.motion, t)));
-    let clearance = clearance.fold(0.0, f64::max);
-    let sets: Vec<_> = scene.sets.iter().map(|s| &s.hard).collect();
     let views = [
         (
             "Clearance between hulls (m)",
             CLEARANCE,
-            near_zero(scene, clearance, margin),
+            near_zero(scene, curves.farthest_passage(), margin),
         ),
         (
             "Margin to the sets (m)",
             MARGIN,
-            near_zero(scene, least(margins(scene, &sets)), margin),
+            near_zero(scene, curves.least_margin(), margin),
         ),
         ("Risk", RISK, [-0.05, 1.2]),
         (
@@ -267,7 +272,7 @@ fn curve_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 5]
                 1.4 * knots_from_mps(scene.scenario.own_ship.max_speed()),
             ],
         ),
-        ("Course (deg)", COURSE, course_range(scene)),
+        ("Course (deg)", COURSE, course_range(curves)),
     ];
     views.map(|(name, origin, range)| {
         // curves of distances are low where they matter
@@ -332,6 +337,27 @@ fn velocity_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
     )
 }
 
+/// The roles over time and the share of the height that they need; nothing where no rule asks anything.
+fn rules_view(scene: &Scene, properties: &mut Properties) -> Option<(ContainerLike, f32)> {
+    let lanes = rules::height(scene);
+    if lanes == 0 {
+        return None;
+    }
+    let times = TimeAxis::new().with_view_range(whole_time(scene));
+    let view = with(
+        StateTimelineView::new("Rules: roles over time, and what is broken").with_origin(RULES),
+        properties,
+        vec![("TimeAxis", Box::new(times))],
+    );
+    let share = LANES_HEAD + LANE * lanes.min(MOST_LANES) as f32;
+    Some((view, share))
+}
+
+/// Of the height of the window: what the head of the lanes takes, each of them, and how many are seen without scrolling.
+const LANES_HEAD: f32 = 0.075;
+const LANE: f32 = 0.03;
+const MOST_LANES: usize = 5;
+
 /// The diagram of a path-time plan, beside the volume.
 fn path_time_view(scene: &Scene, properties: &mut Properties) -> Option<ContainerLike> {
     let diagram = scene.run.planned.path_time.as_deref()?;
@@ -362,10 +388,8 @@ pub fn near_zero(stage: &Stage, least: f64, margin: f64) -> [f64; 2] {
 }
 
 /// Degrees: all courses of the run, and air above them for the legend.
-fn course_range(scene: &Scene) -> [f64; 2] {
-    let courses = courses(scene);
-    let low = courses.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = courses.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+fn course_range(curves: &Curves) -> [f64; 2] {
+    let [low, high] = curves.course_range();
     let air = (0.15 * (high - low)).max(10.0);
     [low - air, high + 3.0 * air]
 }

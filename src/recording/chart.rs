@@ -6,6 +6,7 @@ use rerun::{
 
 use super::scene::{Bounds, Hues, Motion, Scene, Stage, desired_leg, flat, round_down};
 use super::style::{self, Pace};
+use super::summary::approach;
 use super::{MAP, path};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
@@ -129,15 +130,15 @@ pub fn waters_legend(stage: &Stage) -> Vec<Key> {
     // those who sail may each keep out of sets of their own
     let whose = match stage.hues {
         Hues::Targets => "",
-        Hues::OwnShips => ", the scenario's",
+        Hues::OwnShips => " of the scenario",
     };
-    if let Some(set) = stage.sets.first() {
+    if !stage.sets.is_empty() {
         entries.push((
             format!("hard set{whose}"),
             stage.target_color(0),
             super::movers::HARD_RADIUS,
         ));
-        if set.hard != set.shaped {
+        if stage.sets.iter().any(|s| stage.shaped(s).is_some()) {
             entries.push((
                 format!("shaped set{whose}"),
                 super::movers::shaped_color(stage, 0),
@@ -366,7 +367,7 @@ fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
             let away = (other - own)
                 .try_normalize(0.0)
                 .unwrap_or_else(Vector::zeros);
-            let label = format!("CPA {:.0} m at {:.0} s", passage.dcpa, passage.tcpa);
+            let label = format!("CPA {}", approach(passage.dcpa, passage.tcpa));
             nearest = Some((passage.dcpa, other + away * beyond, label));
         }
     }

@@ -18,7 +18,8 @@ use super::{
 };
 use crate::comparison::{Entry, Look, Method, Sailed};
 use crate::frame::{Vector, knots_from_mps};
-use crate::pipeline;
+use crate::obstacle::SpaceTimeObstacle;
+use crate::pipeline::{self, Run, TargetSets};
 use crate::scenario::Scenario;
 
 /// The folder of the contenders, on the chart and in the volume.
@@ -76,7 +77,7 @@ pub struct Compared<'a> {
 }
 
 /// Writes a comparison as one recording, in full or not at all, as [`super::write`] does a run. A contender makes about
-/// 30 kB.
+/// 60 kB.
 pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), RecordingError> {
     let title = &compared.scenario.title;
     put(path, title, Some((COMPARISON, compared.document)), |rec| {
@@ -108,7 +109,7 @@ fn log(rec: &RecordingStream, compared: &Compared) -> RecordingStreamResult<()> 
     let end = end.max(scenario.desired.duration()).min(scenario.horizon);
     let stage = Stage::new(scenario, &sets, &plans, end, Hues::OwnShips);
 
-    let legend = legend(&stage, &contenders);
+    let legend = legend(&stage, &contenders, &sets);
     let rows = legend.len().div_ceil(KEYS);
     let own: Vec<OwnShip> = contenders.iter().map(|c| c.own.clone()).collect();
     land::log_land(rec, &stage)?;
@@ -131,6 +132,14 @@ fn log(rec: &RecordingStream, compared: &Compared) -> RecordingStreamResult<()> 
         };
         let folders =
             [MAP, VOLUME].map(|view| path(&[view, METHODS, &contender.own.name, "explored"]));
+        let folders_of_sets =
+            [MAP, VOLUME].map(|view| path(&[view, METHODS, &contender.own.name, "sets"]));
+        log_kept_out_of(rec, &stage, contender, run, &folders_of_sets)?;
+        if !has_sets_of_its_own(run, &sets) {
+            for (folders, folder) in hidden.iter_mut().zip(folders_of_sets) {
+                folders.push(folder);
+            }
+        }
         let drawn = log_explored(rec, &stage, run, folders.clone(), POINT_BUDGET)?;
         if drawn.edges > 0 {
             let (name, shown, tested) = (&contender.own.name, drawn.edges, drawn.tested);
@@ -181,11 +190,52 @@ fn radius(look: &Look) -> rerun::Radius {
     style::points((RADIUS * look.width) as f32)
 }
 
-fn legend(stage: &Stage, contenders: &[Contender]) -> Vec<Key> {
+/// True where a method keeps out of sets that are neither the hard nor the shaped ones of the scenario: ellipses around them, or
+/// level sets of a risk that it accepts.
+fn has_sets_of_its_own(run: &Run, sets: &[TargetSets]) -> bool {
+    let mut both = run.obstacles.iter().zip(sets);
+    both.any(|(kept, sets)| *kept != sets.hard && *kept != sets.shaped)
+}
+
+/// The sets that a method keeps out of, in its colour: outlines on the chart, bodies in the volume.
+fn log_kept_out_of(
+    rec: &RecordingStream,
+    stage: &Stage,
+    contender: &Contender,
+    run: &Run,
+    [on_chart, in_volume]: &[EntityPath; 2],
+) -> RecordingStreamResult<()> {
+    let color = style::toward_background(contender.own.color, SET_STRENGTH);
+    for set in &run.obstacles {
+        let below = |folder: &EntityPath| folder.join(&path(&["", set.name()]));
+        let name = format!("{} keeps out of: {}", contender.own.name, set.name());
+        let look = movers::set_look(color, movers::SHAPED_RADIUS)
+            .with_labels([name])
+            .with_show_labels(false);
+        movers::log_sections(rec, stage, below(on_chart), set, &look)?;
+        let look = (contender.own.color, space_time::SHAPED_ALPHA);
+        space_time::log_body(rec, stage, below(in_volume), set, look)?;
+    }
+    Ok(())
+}
+
+/// Of a method's colour: that of the sets it keeps out of.
+const SET_STRENGTH: f32 = 0.7;
+
+fn legend(stage: &Stage, contenders: &[Contender], sets: &[TargetSets]) -> Vec<Key> {
     let mut keys: Vec<Key> = contenders
         .iter()
         .map(|c| (c.own.name.clone(), c.own.color, radius(&c.look)))
         .collect();
+    let of_its_own = |c: &Contender| match &c.entry.result {
+        Sailed::Planned(run) => has_sets_of_its_own(run, sets),
+        Sailed::Baseline(_) | Sailed::Nothing(_) => false,
+    };
+    if let Some(first) = contenders.iter().find(|c| of_its_own(c)) {
+        let color = style::toward_background(first.own.color, SET_STRENGTH);
+        let name = "a method's own sets".to_owned();
+        keys.push((name, color, movers::SHAPED_RADIUS));
+    }
     keys.push(("desired".into(), style::desired(), style::points(0.8)));
     keys.extend(chart::waters_legend(stage));
     keys
@@ -328,8 +378,10 @@ fn log_curves(
 fn text(table: &str, graphs: &[String]) -> String {
     let mut parts = vec![table.to_owned()];
     parts.push(
-        "Lines are named where they are pointed at; broken ones are baselines. The sets are those of the scenario: a method \
-         with ellipsoids, or one that accepts a risk, keeps out of its own."
+        "Lines are named where they are pointed at; broken ones are baselines. Grey sets are those of the scenario. The sets that a \
+         method keeps out of are under `methods/<method>/sets` on the chart and in the volume, in its colour: switched on where \
+         they are neither the hard nor the shaped ones of the scenario (ellipses around them, level sets of an accepted \
+         risk), switched off where they are."
             .to_owned(),
     );
     if !graphs.is_empty() {

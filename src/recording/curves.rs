@@ -22,19 +22,71 @@ pub const SPEED: &str = "curves/speed_kn";
 /// Course, continuous: it may leave 0..360 rather than jump.
 pub const COURSE: &str = "curves/course_deg";
 
-/// Of the range of a curve: how far it may be drawn from its samples, less than half a pixel.
-const OFF: f64 = 3e-4;
+/// Of the range of a curve: how far it may be drawn from its samples, half a pixel of a plot 500 high.
+const OFF: f64 = 1e-3;
 
 /// Metres, degrees, shares: what varies by less is drawn as if it did not vary.
 const LEAST_RANGE: f64 = 1e-3;
 
+/// What the layout has to know of, too, at every sample.
+pub struct Curves {
+    /// Per target; the last is what is asked for.
+    clearances: Vec<Series>,
+    /// The first is that of the hard sets; none without sets.
+    margins: Vec<Series>,
+    /// Own ship's, degrees, continuous.
+    courses: Vec<f64>,
+}
+
+impl Curves {
+    pub fn of(scene: &Scene) -> Self {
+        let is_met = !scene.sets.is_empty();
+        Self {
+            clearances: clearance_curves(scene),
+            margins: is_met.then(|| margin_curves(scene)).unwrap_or_default(),
+            courses: courses(scene),
+        }
+    }
+
+    /// The greatest of the targets' least clearances, metres; 0 without targets.
+    pub fn farthest_passage(&self) -> f64 {
+        let targets = self.clearances.split_last().map_or(&[][..], |(_, of)| of);
+        targets.iter().map(Series::least).fold(0.0, f64::max)
+    }
+
+    /// Metres from the hard sets; infinite without sets.
+    pub fn least_margin(&self) -> f64 {
+        self.margins.first().map_or(f64::INFINITY, Series::least)
+    }
+
+    /// Least and greatest course, degrees.
+    pub fn course_range(&self) -> [f64; 2] {
+        let all = || self.courses.iter().copied();
+        let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+        [all().fold(low, f64::min), all().fold(high, f64::max)]
+    }
+}
+
 /// All curves, at most some hundred samples each.
-pub fn log_curves(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    log_clearances(rec, scene)?;
-    log_margins(rec, scene)?;
+pub fn log_curves(
+    rec: &RecordingStream,
+    scene: &Scene,
+    curves: &Curves,
+) -> RecordingStreamResult<()> {
+    let (samples, between) = (&scene.samples, InterpolationMode::Linear);
+    log_plot(
+        rec,
+        path(&[CLEARANCE]),
+        samples,
+        between,
+        &curves.clearances,
+    )?;
+    if !curves.margins.is_empty() {
+        log_plot(rec, path(&[MARGIN]), samples, between, &curves.margins)?;
+    }
     log_risks(rec, scene)?;
     log_speed(rec, scene)?;
-    log_course(rec, scene)
+    log_course(rec, scene, &curves.courses)
 }
 
 /// One curve of a plot.
@@ -45,6 +97,12 @@ pub struct Series {
     pub width: f32,
     /// One per time.
     pub values: Vec<f64>,
+}
+
+impl Series {
+    fn least(&self) -> f64 {
+        self.values.iter().copied().fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// All curves of a plot in one entity: a recording pays for entities, not for values. Every row has all of them, and
@@ -124,7 +182,7 @@ fn bends(times: &[f64], series: &[Series]) -> Vec<usize> {
     kept
 }
 
-fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn clearance_curves(scene: &Scene) -> Vec<Series> {
     let targets = scene.scenario.targets.iter().enumerate();
     let mut series: Vec<Series> = targets
         .map(|(index, target)| Series {
@@ -135,13 +193,7 @@ fn log_clearances(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
         })
         .collect();
     series.push(safety_margin(scene));
-    log_plot(
-        rec,
-        path(&[CLEARANCE]),
-        &scene.samples,
-        InterpolationMode::Linear,
-        &series,
-    )
+    series
 }
 
 /// What is asked for between the hulls, at every sample.
@@ -177,25 +229,13 @@ pub fn clearances(stage: &Stage, motion: &Motion, target: &Target) -> Vec<f64> {
         .collect()
 }
 
-fn log_margins(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    if scene.sets.is_empty() {
-        return Ok(());
-    }
-    let series = margin_curves(scene);
-    log_plot(
-        rec,
-        path(&[MARGIN]),
-        &scene.samples,
-        InterpolationMode::Linear,
-        &series,
-    )
-}
-
 /// Of the hard and the shaped sets, and of those that were kept out of where they are neither.
 pub fn margin_curves(scene: &Scene) -> Vec<Series> {
     let sets = &scene.sets;
     let hard: Vec<&Obstacle> = sets.iter().map(|s| &s.hard).collect();
-    let shaped: Vec<&Obstacle> = sets.iter().map(|s| &s.shaped).collect();
+    let shaped: Vec<&Obstacle> = (sets.iter())
+        .map(|s| scene.shaped(s).unwrap_or(&s.hard))
+        .collect();
     let mut series = vec![Series {
         name: "hard sets".to_owned(),
         color: style::own_ship(),
@@ -353,7 +393,7 @@ pub fn speeds(motion: &Motion, times: &[f64]) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_course(rec: &RecordingStream, scene: &Scene, own: &[f64]) -> RecordingStreamResult<()> {
     let desired = &scene.scenario.desired;
     let wanted = scene
         .samples
@@ -370,7 +410,7 @@ fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
             name: "own ship".to_owned(),
             color: style::own_ship(),
             width: 2.0,
-            values: courses(scene),
+            values: own.to_vec(),
         });
     }
     log_plot(
@@ -383,7 +423,7 @@ fn log_course(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()>
 }
 
 /// Own ship's course at every sample, degrees, continuous.
-pub fn courses(scene: &Scene) -> Vec<f64> {
+fn courses(scene: &Scene) -> Vec<f64> {
     let headings = scene
         .samples
         .iter()

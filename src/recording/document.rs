@@ -73,12 +73,11 @@ pub(super) fn joined(text: &str, times: Option<&str>) -> String {
 pub(super) fn log_document(
     rec: &RecordingStream,
     entity: &str,
-    document: &str,
-) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    packed: Vec<u8>,
+) -> RecordingStreamResult<()> {
     // what is logged before is then in messages before
     let _ = rec.flush_blocking();
-    let bytes = packed(&Parted::of(document).text)?;
-    Ok(rec.log_static(entity, &archetype(bytes))?)
+    rec.log_static(entity, &archetype(packed))
 }
 
 fn archetype(bytes: Vec<u8>) -> DynamicArchetype {
@@ -87,8 +86,9 @@ fn archetype(bytes: Vec<u8>) -> DynamicArchetype {
         .with_component::<MediaType>(MEDIA_TYPE, [ZSTANDARD])
 }
 
-/// With a checksum: the file has none.
-fn packed(text: &str) -> std::io::Result<Vec<u8>> {
+/// All of a document but its times. With a checksum: the file has none.
+pub(super) fn packed(document: &str) -> std::io::Result<Vec<u8>> {
+    let text = Parted::of(document).text;
     let mut encoder = zstd::Encoder::new(Vec::new(), LEVEL)?;
     encoder.include_checksum(true)?;
     encoder.write_all(text.as_bytes())?;

@@ -6,7 +6,7 @@
 //!
 //! | entity | what it is |
 //! | --- | --- |
-//! | `summary` | verdict, manoeuvre, encounters, costs, claims, as markdown |
+//! | `summary` | verdict, manoeuvre, encounters, rules, costs, claims, as markdown |
 //! | `plan_document` | the plan document as JSON, compressed, but for the time that planning took: that is in a store of its own |
 //! | `chart/map` | turns north up (views of Rerun are y-down); everything below is east, north |
 //! | `chart/map/grid`, `legend` | scale, north, line styles |
@@ -18,6 +18,7 @@
 //! | `chart/map/closest_points` | own ship and each target at their CPA, joined; the least distance in words |
 //! | `chart/map/conflict` | without a plan: where the desired trajectory first is in a set |
 //! | `chart/map/violations` | where the independent check found something wrong |
+//! | `chart/map/rules`, `space_time/rules` | where own ship breaks a rule of the road, and where the hold of a ship that stands on ends |
 //! | `chart/map/own_ship`, `own_ship/hull` | own ship's place and name, her hull and speed vector at the cursor |
 //! | `chart/map/targets/<target>` | expected place, hull and speed vector at the cursor |
 //! | `chart/map/trails` | where the ships have been up to the cursor |
@@ -41,6 +42,7 @@
 //! | `path_time/plane/now`, `own_ship` | the cursor's instant, and own ship in it |
 //! | `curves/speed_kn` | desired and own speed, knots; a row where one changes, 0 where one has ended |
 //! | `curves/states`, `curves/forces` | of a plan of forces: surge, sway and yaw rate at its nodes, and the forces held between them; starboard and clockwise are positive |
+//! | `rules/roles` | lanes: own ship's role toward each target over time, the rules that she breaks from the moment on at which she does, her hold and her escape where she stands on |
 //! | `curves/course_deg` | desired and own course, degrees clockwise from true north, continuous |
 //!
 //! A comparison ([`write_comparison`]) shows the same sea, the same targets in grey, and in the place of own ship and her plan:
@@ -51,12 +53,14 @@
 //! | `comparison_document` | its JSON document, compressed |
 //! | `chart/map/methods/<method>/way`, `space_time/methods/<method>/way` | her motion, in the colour that the method has in figures |
 //! | `chart/map/methods/<method>/own_ship`, `own_ship/hull` | her place, hull and speed vector at the cursor |
+//! | `…/methods/<method>/sets/<target>` | the set that it keeps out of: sections at the cursor, bodies; hidden where it is one of the scenario's |
 //! | `…/methods/<method>/explored/free`, `blocked` | edges that the search tested; hidden until asked for |
 //! | `curves/clearance_m/<method>` | metres between own hull and the nearest expected hull, or her centre and the nearest set |
 //! | `curves/speed_kn` | speeds, knots |
 //!
 //! Edges in `blocked` carry as labels what they meet, when, and by which rule or limit.
 //!
+//! Lines have the points that it takes to draw them: outlines of sets and coasts are within a 3000th part of the sea that is shown.
 //! What holds from the first moment on, colours and names, is in the first row of what moves. A plot is one entity; its curves are the scalars of each row, named in `SeriesLines:names`.
 //! The blueprint, a store of its own in the same file, lays this out. Two recordings of one run differ
 //! in their bytes (row ids are clock readings) and compare equal with `rerun rrd compare`.
@@ -77,11 +81,13 @@ mod movers;
 mod packing;
 mod path_time;
 mod reading;
+mod rules;
 mod scene;
 mod space_time;
 mod style;
 mod summary;
 mod table;
+mod thinning;
 mod velocities;
 
 pub use comparison::{Compared, write_comparison};
@@ -96,6 +102,7 @@ use rerun::{
 };
 
 use crate::pipeline::Run;
+use curves::Curves;
 use scene::Scene;
 
 const APPLICATION: &str = "searoom";
@@ -111,6 +118,7 @@ const EXPLORED: &str = "chart/map/explored";
 const VOLUME: &str = "space_time";
 const VELOCITIES: &str = "velocities";
 const PLANE: &str = "velocities/plane";
+const RULES: &str = "rules";
 const PATH_TIME: &str = "path_time";
 const PATH_TIME_PLANE: &str = "path_time/plane";
 
@@ -162,7 +170,7 @@ fn put(
     path: &Path,
     title: &str,
     document: Option<(&str, &str)>,
-    log: impl FnOnce(&RecordingStream) -> RecordingStreamResult<()>,
+    log: impl FnOnce(&RecordingStream) -> RecordingStreamResult<()> + Send,
 ) -> Result<(), RecordingError> {
     let bytes = encode(title, document, log).map_err(|source| RecordingError::Encode {
         path: path.to_owned(),
@@ -177,7 +185,7 @@ fn put(
 fn encode(
     title: &str,
     document: Option<(&str, &str)>,
-    log: impl FnOnce(&RecordingStream) -> RecordingStreamResult<()>,
+    log: impl FnOnce(&RecordingStream) -> RecordingStreamResult<()> + Send,
 ) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
     let (rec, store) = RecordingStreamBuilder::new(APPLICATION)
         .recording_name(title)
@@ -186,28 +194,32 @@ fn encode(
         .memory()?;
     rec.set_log_time_enabled(false);
     rec.set_log_tick_enabled(false);
-    log(&rec)?;
+    let packed = || document.map(|(_, text)| document::packed(text)).transpose();
+    let (packed, logged) = rayon::join(packed, || log(&rec));
+    logged?;
     let mut timing = Vec::new();
-    if let Some((entity, document)) = document {
-        document::log_document(&rec, entity, document)?;
+    if let (Some((entity, document)), Some(packed)) = (document, packed?) {
+        document::log_document(&rec, entity, packed)?;
         timing = document::timing(document)?;
     }
     // the document stays last
-    packing::packed(timing.into_iter().chain(store.take()))
+    packing::packed(timing.into_iter().chain(store.take()).collect())
 }
 
 fn log_run(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
-    blueprint::send_blueprint(rec, scene)?;
+    let curves = Curves::of(scene);
+    blueprint::send_blueprint(rec, scene, &curves)?;
     land::log_land(rec, scene)?;
     chart::log_chart(rec, scene)?;
     movers::log_movers(rec, scene)?;
     space_time::log_volume(rec, scene)?;
     let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
     let drawn = explored::log_explored(rec, scene, scene.run, folders, explored::POINT_BUDGET)?;
-    curves::log_curves(rec, scene)?;
+    curves::log_curves(rec, scene, &curves)?;
     forces::log_forces(rec, scene)?;
     velocities::log_velocities(rec, scene)?;
     path_time::log_path_time(rec, scene)?;
+    rules::log_rules(rec, scene)?;
     summary::log_summary(rec, scene, drawn)
 }
 

@@ -8,6 +8,7 @@ use rerun::{
 use super::chart::{Lines, Strip};
 use super::columns::{log_columns, sparse};
 use super::scene::{Motion, Scene, Stage, flat, round_down};
+use super::thinning::thinned_ring;
 use super::{MAP, TIMELINE, TRAILS, path, style};
 use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
@@ -54,24 +55,14 @@ pub fn log_movers(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 pub fn log_others(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
     for (index, sets) in stage.sets.iter().enumerate() {
         let name = sets.hard.name();
-        if sets.shaped != sets.hard {
-            let look = (shaped_color(stage, index), SHAPED_RADIUS);
-            log_sections(
-                rec,
-                stage,
-                path(&[MAP, "shaped_sets", name]),
-                &sets.shaped,
-                look,
-            )?;
+        if let Some(shaped) = stage.shaped(sets) {
+            let look = set_look(shaped_color(stage, index), SHAPED_RADIUS);
+            let entity = path(&[MAP, "shaped_sets", name]);
+            log_sections(rec, stage, entity, shaped, &look)?;
         }
-        let look = (stage.target_color(index), HARD_RADIUS);
-        log_sections(
-            rec,
-            stage,
-            path(&[MAP, "hard_sets", name]),
-            &sets.hard,
-            look,
-        )?;
+        let look = set_look(stage.target_color(index), HARD_RADIUS);
+        let entity = path(&[MAP, "hard_sets", name]);
+        log_sections(rec, stage, entity, &sets.hard, &look)?;
     }
     for (index, target) in stage.scenario.targets.iter().enumerate() {
         log_target(rec, stage, index, target)?;
@@ -79,29 +70,38 @@ pub fn log_others(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult
     Ok(())
 }
 
+/// What the outline of a set looks like.
+pub fn set_look(color: Color, radius: Radius) -> LineStrips2D {
+    LineStrips2D::update_fields()
+        .with_colors([color])
+        .with_radii([radius])
+}
+
 /// The outline of the section at every moment.
-fn log_sections(
+pub fn log_sections(
     rec: &RecordingStream,
     stage: &Stage,
     entity: rerun::EntityPath,
     set: &Obstacle,
-    (color, radius): (Color, Radius),
+    look: &LineStrips2D,
 ) -> RecordingStreamResult<()> {
-    let look = LineStrips2D::update_fields()
-        .with_colors([color])
-        .with_radii([radius]);
     let outlines = stage
         .moments
         .iter()
-        .map(|&t| outline(&set.outer_section(t)));
+        .map(|&t| drawn(&set.outer_section(t), stage.fineness()));
     let columns = LineStrips2D::update_fields()
         .with_strips(outlines)
         .columns_of_unit_batches()?;
-    log_columns(rec, entity, stage.moment_column(), &look, columns)
+    log_columns(rec, entity, stage.moment_column(), look, columns)
+}
+
+/// The closed boundary of a polygon, off by so many metres at most.
+pub fn drawn(polygon: &ConvexPolygon, off: f64) -> Strip {
+    thinned_ring(polygon, off).into_iter().map(flat).collect()
 }
 
 /// The closed boundary of a polygon.
-pub fn outline(polygon: &ConvexPolygon) -> Strip {
+fn outline(polygon: &ConvexPolygon) -> Strip {
     let mut strip: Strip = polygon.vertices().iter().copied().map(flat).collect();
     strip.extend(strip.first().copied());
     strip

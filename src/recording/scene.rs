@@ -3,11 +3,12 @@
 
 use rerun::{Color, TimeColumn};
 
-use super::{TIMELINE, style};
+use super::{TIMELINE, style, thinning};
+use crate::colregs::conduct::Conduct;
 use crate::frame::{Pose, Vector, heading_of};
 use crate::obstacle::Obstacle;
 use crate::pipeline::{Run, TargetSets};
-use crate::scenario::Scenario;
+use crate::scenario::{Compliance, Scenario};
 use crate::tolerance;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
 
@@ -24,7 +25,7 @@ const OWN_BYTES: usize = 190;
 const MOMENT_STEP_S: f64 = 2.0;
 
 /// Moments, at least and at most.
-const MOMENTS: (f64, f64) = (45.0, 120.0);
+const MOMENTS: (f64, f64) = (36.0, 120.0);
 
 /// Most samples of one curve.
 const CURVE_SAMPLES: f64 = 400.0;
@@ -203,6 +204,21 @@ impl<'a> Stage<'a> {
         }
     }
 
+    /// True where something of the shapes is asked for: elsewhere they are not shown.
+    fn is_shaped(&self) -> bool {
+        self.scenario.compliance != Compliance::None
+    }
+
+    /// The shaped set, where there is one to be shown beside the hard one.
+    pub fn shaped<'s>(&self, sets: &'s TargetSets) -> Option<&'s Obstacle> {
+        (self.is_shaped() && sets.shaped != sets.hard).then_some(&sets.shaped)
+    }
+
+    /// Metres: how far lines may be drawn from where they are.
+    pub fn fineness(&self) -> f64 {
+        thinning::FINENESS * self.bounds.extent()
+    }
+
     /// The unit vector from the first waypoint to the last; own ship's first heading on a round trip.
     pub fn ahead(&self) -> Vector {
         let desired = &self.scenario.desired;
@@ -232,6 +248,8 @@ pub struct Scene<'a> {
     /// Until arrival, or the end of the desired trajectory if that is later. Nothing is claimed after arrival, and the sets only
     /// grow.
     pub stage: Stage<'a>,
+    /// How own ship behaves toward each target, in the order of the scenario's; `None` for one that is no ship, and without a plan.
+    pub conduct: Vec<Option<Conduct>>,
 }
 
 impl<'a> Scene<'a> {
@@ -250,6 +268,7 @@ impl<'a> Scene<'a> {
             run,
             motion,
             stage: Stage::new(&run.scenario, &run.sets, &[motion], end, Hues::Targets),
+            conduct: run.standard_conduct(),
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 const SHADOW: f32 = 0.35;
 
 /// Of the sides of a shaped body.
-const SHAPED_ALPHA: u8 = 16;
+pub const SHAPED_ALPHA: u8 = 16;
 /// Of the sides of a hard body.
 const HARD_ALPHA: u8 = 36;
 
@@ -62,12 +62,14 @@ pub fn log_waters(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult
     log_axes(rec, stage)?;
     for (index, sets) in stage.sets.iter().enumerate() {
         let name = sets.hard.name();
-        if sets.shaped != sets.hard {
+        if let Some(shaped) = stage.shaped(sets) {
             let entity = path(&[VOLUME, "shaped_sets", name]);
-            log_body(rec, stage, entity, &sets.shaped, (index, SHAPED_ALPHA))?;
+            let look = (stage.target_color(index), SHAPED_ALPHA);
+            log_body(rec, stage, entity, shaped, look)?;
         }
         let entity = path(&[VOLUME, "hard_sets", name]);
-        log_body(rec, stage, entity, &sets.hard, (index, HARD_ALPHA))?;
+        let look = (stage.target_color(index), HARD_ALPHA);
+        log_body(rec, stage, entity, &sets.hard, look)?;
     }
     log_expected(rec, stage)
 }
@@ -137,14 +139,13 @@ fn axis_corner(stage: &Stage) -> Vector {
 }
 
 /// The translucent body, its edges and its last section.
-fn log_body(
+pub fn log_body(
     rec: &RecordingStream,
     stage: &Stage,
     entity: rerun::EntityPath,
     set: &Obstacle,
-    (index, alpha): (usize, u8),
+    (color, alpha): (Color, u8),
 ) -> RecordingStreamResult<()> {
-    let color = stage.target_color(index);
     let stretches = stretches(stage, set);
     let body = mesh(stage, &stretches).with_albedo_factor(style::translucent(color, alpha).0);
     let strength = 0.3 + f32::from(alpha) / 100.0;

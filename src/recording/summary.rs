@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use rerun::{MediaType, RecordingStream, RecordingStreamResult, TextDocument};
 
-use super::SUMMARY;
 use super::explored::Drawn;
 use super::movers::vector_seconds;
 use super::scene::{Motion, Scene};
+use super::{SUMMARY, rules};
 use crate::evaluation::Evaluation;
 use crate::frame::{Side, deg_from_radians, knots_from_mps};
 use crate::obstacle::SpaceTimeObstacle;
@@ -41,6 +41,7 @@ fn text(scene: &Scene, drawn: Drawn) -> String {
     }
     parts.extend(run.relaxations.iter().map(relaxation));
     parts.push(targets_table(scene));
+    parts.push(rules::text(scene));
     if let (Some(plan), Some(evaluation)) = (run.planned.outcome.plan(), &run.evaluation) {
         parts.push(cost_table(plan, evaluation));
     }
@@ -250,7 +251,7 @@ fn targets_table(scene: &Scene) -> String {
 }
 
 /// A closest approach: metres between the hulls, negative in overlap, and seconds. Touching is no collision.
-fn approach(distance: f64, time: f64) -> String {
+pub fn approach(distance: f64, time: f64) -> String {
     if distance < -tolerance::DEPTH_M {
         format!("collision at {time:.0} s")
     } else {

@@ -6,8 +6,9 @@ use rerun::{
 
 use super::chart::{Lines, Strip};
 use super::columns::log_columns;
-use super::movers::{HARD_RADIUS, outline};
+use super::movers::{HARD_RADIUS, drawn};
 use super::scene::{Scene, flat};
+use super::thinning;
 use super::{PLANE, path, style};
 use crate::frame::{Vector, direction};
 use crate::geometry::ConvexPolygon;
@@ -20,7 +21,7 @@ const LOOK_AHEAD_S: f64 = 300.0;
 const CIRCLE_STEP: f64 = std::f64::consts::PI / 36.0;
 
 /// Of the view: how far the outline of an ellipsoid's velocity obstacle may be from it.
-const FINENESS: f64 = 1e-3;
+const FINENESS: f64 = 3e-3;
 
 /// Metres per second, east and north, that the view shows to each side: half as much again as own ship's greatest speed.
 pub fn limit(scene: &Scene) -> f64 {
@@ -110,9 +111,9 @@ fn region_outline(scene: &Scene, set: &Obstacle, time: f64) -> Strip {
             from(set, time, velocities).velocity_obstacle(own, ahead)
         }
     };
-    region
-        .clipped(limit)
-        .map_or_else(Vec::new, |region| outline(&region))
+    region.clipped(limit).map_or_else(Vec::new, |region| {
+        drawn(&region, thinning::FINENESS * limit)
+    })
 }
 
 /// A set as it is at a time with the velocities that it has from then on, with a clock that starts then.

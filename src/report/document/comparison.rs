@@ -8,8 +8,10 @@ use crate::comparison::{Entry, Inapplicable, Sailed};
 use crate::report::comparison::ComparisonRow;
 use crate::report::words;
 
-/// Seconds between two positions of a track.
+/// Seconds between two positions of a track, and how many there are at most beside the first: those of a longer motion are farther
+/// apart, evenly.
 const TRACK_STEP: f64 = 5.0;
+const MOST_STEPS: f64 = 1000.0;
 
 /// Every scenario that was compared, in order.
 ///
@@ -104,7 +106,7 @@ pub struct EntryDocument {
     pub largest_turn_side: Option<String>,
     pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
-    /// Every five seconds, and at the end.
+    /// Every five seconds, or every thousandth part of a motion of more than 5000 s, and at the end.
     pub track: Vec<TrackPointDocument>,
 }
 
@@ -228,13 +230,47 @@ fn track(entry: &Entry) -> Vec<TrackPointDocument> {
         return Vec::new();
     };
     let end = trajectory.end_time();
-    let steps = (end / TRACK_STEP).ceil().max(1.0) as usize;
+    let step = TRACK_STEP.max(end / MOST_STEPS);
+    let steps = (end / step).ceil().clamp(1.0, MOST_STEPS) as usize;
     (0..=steps)
-        .map(|k| (k as f64 * TRACK_STEP).min(end))
+        .map(|k| if k == steps { end } else { k as f64 * step })
         .filter_map(|time| Some((finite(time)?, entry.position_at(time)?)))
         .map(|(t_s, at)| TrackPointDocument {
             t_s,
             position: position(at),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn a_long_track_has_no_more_than_its_thousandth_parts() {
+        for (way, expected) in [(1000.0, 5.0), (200_000.0, 40.0)] {
+            let text = format!(
+                r#"title = "long"
+                horizon_s = 100000.0
+                own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8,
+                    turning_radius_m = 100 }}
+                mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {way}, north_m = 0 }}] }}"#
+            );
+            let scenario = Scenario::parse(&text).expect("valid");
+            let entries = crate::comparison::compare(&scenario, &[0.0]);
+            let tracks: Vec<_> = entries
+                .iter()
+                .map(track)
+                .filter(|t| !t.is_empty())
+                .collect();
+            assert!(!tracks.is_empty());
+            let direct = tracks.iter().find(|t| t[t.len() - 1].t_s < way / 5.0 + 1.0);
+            let direct = direct.expect("one that arrives");
+            assert!((direct[1].t_s - expected).abs() < 1e-6, "{:?}", direct[1]);
+            for t in tracks {
+                assert!(t.len() <= MOST_STEPS as usize + 1 && t.is_sorted_by_key(|p| p.t_s));
+            }
+        }
+    }
 }

@@ -429,8 +429,7 @@ pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
 
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
-    let thresholds = run.scenario.judged_by();
-    let conduct = thresholds.map_or_else(Vec::new, |t| run.conduct(t));
+    let conduct = run.standard_conduct();
     run.scenario
         .targets
         .iter()
