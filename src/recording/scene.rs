@@ -13,7 +13,7 @@ use crate::tolerance;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
 
 /// Bytes that everything that moves may take; the step of the cursor follows.
-const MOVING_BYTES: f64 = 72e3;
+const MOVING_BYTES: f64 = 62e3;
 
 /// Bytes at a moment: a corner of a section, what a row has beside its values, a target with her velocity obstacle, own ship.
 const CORNER_BYTES: usize = 8;

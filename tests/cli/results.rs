@@ -355,7 +355,11 @@ mod recordings {
         let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
         let mut seen = 0;
         for sort in fs::read_dir(scenarios).expect("a folder") {
-            for scenario in fs::read_dir(sort.expect("an entry").path()).expect("a folder") {
+            let sort = sort.expect("an entry").path();
+            if !sort.is_dir() {
+                continue;
+            }
+            for scenario in fs::read_dir(sort).expect("a folder") {
                 let scenario = scenario.expect("an entry").path();
                 if scenario.extension().is_none_or(|e| e != "toml") {
                     continue;
