@@ -16,8 +16,9 @@ impl Run {
         self.scenario.targets.iter().map(judge).collect()
     }
 
-    /// [`Run::conduct`] by the standard numbers; empty where there are none.
-    pub fn standard_conduct(&self) -> Vec<Option<Conduct>> {
-        Thresholds::standard().map_or_else(Vec::new, |t| self.conduct(t))
+    /// [`Run::conduct`] by the thresholds that the scenario asks for; empty where there are none.
+    pub fn judged_conduct(&self) -> Vec<Option<Conduct>> {
+        let thresholds = self.scenario.judged_by();
+        thresholds.map_or_else(Vec::new, |t| self.conduct(t))
     }
 }

@@ -268,7 +268,7 @@ impl<'a> Scene<'a> {
             run,
             motion,
             stage: Stage::new(&run.scenario, &run.sets, &[motion], end, Hues::Targets),
-            conduct: run.standard_conduct(),
+            conduct: run.judged_conduct(),
         }
     }
 }

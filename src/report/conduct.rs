@@ -7,7 +7,7 @@ use crate::pipeline::Run;
 /// How own ship behaves toward every target that she has a role to: the least score of each, and every rule that is broken.
 pub(super) fn lines(run: &Run) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
-    let conduct = run.standard_conduct();
+    let conduct = run.judged_conduct();
     for (target, conduct) in run.scenario.targets.iter().zip(&conduct) {
         let Some(conduct) = conduct.as_ref().filter(|c| !c.roles.is_empty()) else {
             continue;

@@ -429,7 +429,7 @@ pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
 
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
-    let conduct = run.standard_conduct();
+    let conduct = run.judged_conduct();
     run.scenario
         .targets
         .iter()
