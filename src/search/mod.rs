@@ -272,6 +272,8 @@ pub struct Search<S> {
     nodes: Vec<Node<S>>,
     queue: BinaryHeap<Reverse<Entry>>,
     counts: Counts,
+    /// What bounds are multiplied by.
+    weight: f64,
 }
 
 #[derive(Debug, PartialEq, Eq)]
@@ -321,7 +323,27 @@ impl<S> Search<S> {
                 generated: 1,
                 ..Counts::default()
             },
+            weight: 1.0,
         }
+    }
+
+    /// Multiplies every bound by a factor, at least 1, from now on: fewer nodes are expanded, and goals that are reported cost at
+    /// most so many times the cheapest that is left (weighted A*, doi:10.1016/0004-3702(70)90007-X). Without bounds nothing
+    /// changes.
+    pub fn weigh(&mut self, weight: f64) {
+        let change = weight / self.weight;
+        let queue = std::mem::take(&mut self.queue).into_vec();
+        self.queue = queue
+            .into_iter()
+            .map(|Reverse(entry)| {
+                let to_go = entry.estimate - entry.cost;
+                Reverse(Entry {
+                    estimate: entry.cost + to_go * change,
+                    ..entry
+                })
+            })
+            .collect();
+        self.weight = weight;
     }
 
     /// Every node made so far.
@@ -380,7 +402,8 @@ impl<S> Search<S> {
                 return Stop::Goal(index);
             }
             if !entry.ready {
-                let estimate = entry.cost + space.closer_bound(&self.nodes[index].state);
+                let to_go = space.closer_bound(&self.nodes[index].state);
+                let estimate = entry.cost + self.weight * to_go;
                 if estimate > entry.estimate {
                     if estimate.is_finite() {
                         self.queue.push(Reverse(Entry {
@@ -401,7 +424,7 @@ impl<S> Search<S> {
             let cost_here = self.nodes[index].cost;
             for (state, step) in successors.drain(..) {
                 let cost = cost_here + step;
-                let estimate = cost + space.bound(&state);
+                let estimate = cost + self.weight * space.bound(&state);
                 let comparable = step >= 0.0 && estimate.is_finite();
                 let node = self.nodes.len();
                 self.counts.generated += 1;

@@ -111,6 +111,27 @@ fn goals_come_in_order_of_cost_and_are_those_of_plain_enumeration() {
 }
 
 #[test]
+fn weighed_goals_cost_at_most_so_many_times_the_cheapest() {
+    let (exact, patient) = costs(true, true);
+    for weight in [1.0, 1.5, 4.0] {
+        let mut grid = Grid {
+            size: 7,
+            informed: true,
+            closer: true,
+        };
+        let mut search = Search::new((0, 0));
+        assert_eq!(search.next_goal(&mut grid, 3), Stop::Budget);
+        search.weigh(weight);
+        let Stop::Goal(goal) = search.next_goal(&mut grid, usize::MAX) else {
+            panic!("there is a way");
+        };
+        let cost = search.nodes()[goal].cost;
+        assert!(cost <= weight * exact[0] + 1e-12, "{weight}: {cost}");
+        assert!(search.counts().expanded <= patient.expanded, "{weight}");
+    }
+}
+
+#[test]
 fn a_budget_stops_and_can_be_raised() {
     let mut grid = Grid {
         size: 7,

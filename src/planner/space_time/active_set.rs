@@ -4,7 +4,7 @@
 use super::factor::{
     LANES, Padded, Square, Triangle, add, add_scaled, dot, inverse_transposed_factor, remove,
 };
-use super::quadratic::{Constraint, MAX_VARIABLES, Programme, Row, Solution};
+use super::quadratic::{Answer, Constraint, MAX_VARIABLES, Programme, Row, Solution};
 
 /// Steps before giving up; a programme of this size needs about as many as it has constraints.
 const MAX_STEPS: usize = 1000;
@@ -14,6 +14,9 @@ const FALLING: f64 = 1e-14;
 
 /// Share of a normal, squared, that the active ones must not span: less is rounding.
 const INDEPENDENT: f64 = 1e-12;
+
+/// Violation, metres, at which the price of it has doubled: what keeps the Hessian definite.
+pub(crate) const SOFTENED_M: f64 = 1e3;
 
 /// Relative violation that is none.
 const SATISFIED: f64 = 1e-9;
@@ -29,7 +32,6 @@ enum Kind {
 struct Scaled<const N: usize> {
     normal: Padded<N>,
     bound: f64,
-    /// Zero where the row is left out.
     scale: f64,
 }
 
@@ -42,6 +44,8 @@ impl<const N: usize> Scaled<N> {
 /// A programme in arrays just as long as it needs, for which loops are unrolled.
 pub(crate) struct Compact<const N: usize> {
     size: usize,
+    /// The last variable is the largest violation of a row.
+    elastic: bool,
     hessian: Square<N>,
     gradient: Padded<N>,
     low: Padded<N>,
@@ -50,7 +54,6 @@ pub(crate) struct Compact<const N: usize> {
 }
 
 /// Where the dual method is: `x` is the minimum over the active constraints as equations.
-#[derive(Clone)]
 struct Point<const N: usize> {
     x: Padded<N>,
     j: Square<N>,
@@ -140,11 +143,9 @@ impl<const N: usize> Point<N> {
         self.count -= 1;
     }
 
-    /// Goes to the minimum over the active constraints and this one; those it pushes away leave. Where it contradicts,
-    /// nothing has changed. `steps` counts down.
+    /// Goes to the minimum over the active constraints and this one; those it pushes away leave. `steps` counts down.
     fn enter(&mut self, of: &Compact<N>, entering: Kind, steps: &mut usize) -> Entered {
         let mut multiplier = 0.0;
-        let mut before = None;
         loop {
             if *steps == 0 || !self.is_finite() {
                 return Entered::Stopped;
@@ -164,13 +165,7 @@ impl<const N: usize> Point<N> {
             };
             let step = dual_step.min(primal_step);
             if step.is_infinite() {
-                if let Some(before) = before {
-                    *self = before;
-                }
                 return Entered::Contradicts;
-            }
-            if primal_step > dual_step && before.is_none() {
-                before = Some(self.clone());
             }
             add_scaled(&mut self.multipliers, -step, &back);
             multiplier += step;
@@ -212,25 +207,6 @@ impl<const N: usize> Point<N> {
         self.x = x;
         self.multipliers = self.r.solve(&sums, self.count);
     }
-
-    /// Goes to the minimum without active constraint `i`: its multiplier falls to zero, and those that reach zero
-    /// before leave as well.
-    fn leave(&mut self, of: &Compact<N>, i: usize) {
-        let (leaving, mut multiplier) = (self.active[i], self.multipliers[i]);
-        self.drop(i);
-        loop {
-            let Bearing { z, back, .. } = self.bearing(of, leaving);
-            let (step, other) = self.first_zero(&back.map(|b| -b));
-            let step = step.min(multiplier);
-            add_scaled(&mut self.multipliers, step, &back);
-            add_scaled(&mut self.x, -step, &z);
-            multiplier -= step;
-            match other {
-                Some(i) if multiplier > 0.0 => self.drop(i),
-                _ => return,
-            }
-        }
-    }
 }
 
 /// A constraint's normal as the factors see it: `J' normal`, what `x` moves by and what the multipliers fall by per unit
@@ -242,7 +218,8 @@ struct Bearing<const N: usize> {
 }
 
 impl<const N: usize> Compact<N> {
-    pub(crate) fn of(programme: &Programme) -> Self {
+    /// With a price the largest violation is a variable, the last.
+    pub(crate) fn of(programme: &Programme, price: Option<f64>) -> Self {
         let n = programme.size;
         let head = |row: &Row| {
             let mut padded = [0.0; N];
@@ -253,8 +230,20 @@ impl<const N: usize> Compact<N> {
         for (to, from) in hessian.iter_mut().zip(programme.hessian) {
             *to = head(from);
         }
+        let (mut gradient, low, mut high) = (
+            head(programme.gradient),
+            head(programme.low),
+            head(programme.high),
+        );
+        if let Some(price) = price {
+            hessian[n][n] = price / SOFTENED_M;
+            (gradient[n], high[n]) = (price, f64::MAX);
+        }
         let of_row = |row: &Constraint| {
-            let normal = head(&row.coefficients);
+            let mut normal = head(&row.coefficients);
+            if price.is_some() {
+                normal[n] = 1.0;
+            }
             let size = dot(&normal, &normal).sqrt();
             Scaled {
                 normal,
@@ -263,11 +252,12 @@ impl<const N: usize> Compact<N> {
             }
         };
         Self {
-            size: n,
+            size: n + usize::from(price.is_some()),
+            elastic: price.is_some(),
             hessian,
-            gradient: head(programme.gradient),
-            low: head(programme.low),
-            high: head(programme.high),
+            gradient,
+            low,
+            high,
             rows: programme.rows.iter().map(of_row).collect(),
         }
     }
@@ -312,43 +302,29 @@ impl<const N: usize> Compact<N> {
             }
         }
         for (r, row) in self.rows.iter().enumerate() {
-            if row.scale > 0.0 {
-                look(Kind::Row(r), row.value(x) * row.scale);
-            }
+            look(Kind::Row(r), row.value(x) * row.scale);
         }
         worst.1
     }
 
     /// See [`Programme::solve`].
     #[inline(never)]
-    pub(crate) fn solve(mut self) -> Option<Solution> {
-        let mut at = Point::free(&self)?;
+    pub(crate) fn solve(self) -> Answer {
+        let Some(mut at) = Point::free(&self) else {
+            return Answer::Stopped;
+        };
         let mut steps = MAX_STEPS;
         let boxes = [self.low, self.high].map(|bounds| bounds.map(|b| 1.0 / (1.0 + b.abs())));
         while let Some(entering) = self.violated(&at, &boxes) {
             match at.enter(&self, entering, &mut steps) {
-                Entered::Active => continue,
-                Entered::Contradicts => {}
-                Entered::Stopped => return None,
+                Entered::Active => {}
+                Entered::Contradicts => return Answer::Contradiction,
+                Entered::Stopped => return Answer::Stopped,
             }
-            if let Kind::Row(row) = entering {
-                self.rows[row].scale = 0.0;
-                continue;
-            }
-            // a bound that contradicts active rows: leave out one of those
-            let newest = at.active().iter().enumerate().rev();
-            let (i, row) = newest
-                .filter_map(|(i, k)| match k {
-                    Kind::Row(row) => Some((i, *row)),
-                    _ => None,
-                })
-                .next()?;
-            self.rows[row].scale = 0.0;
-            at.leave(&self, i);
         }
         at.settle(&self);
         if !at.is_finite() {
-            return None;
+            return Answer::Stopped;
         }
         let mut multipliers = vec![0.0; self.rows.len()];
         for (kind, u) in at.active().iter().zip(&at.multipliers) {
@@ -358,6 +334,14 @@ impl<const N: usize> Compact<N> {
         }
         let mut x = [0.0; MAX_VARIABLES];
         x[..N].copy_from_slice(&at.x);
-        Some(Solution { x, multipliers })
+        let mut missing = 0.0;
+        if self.elastic {
+            missing = std::mem::take(&mut x[self.size - 1]).max(0.0);
+        }
+        Answer::Solved(Solution {
+            x,
+            multipliers,
+            missing,
+        })
     }
 }

@@ -194,6 +194,7 @@ fn multipliers(scene: &Scene, base: &Seed) -> Option<Vec<f64>> {
         low: &base.lengths.map(|l| (-PRICING_RADIUS_M).max(-l)),
         high: &[PRICING_RADIUS_M; MAX_VARIABLES],
         rows: &model.rows,
+        price: None,
     };
     Some(programme.solve()?.multipliers)
 }

@@ -33,8 +33,9 @@ use super::outside::{LIMITS, Outside, View, WAYS, greater, lesser, squared_chord
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::trajectory::DesiredLeg;
 
-/// Seconds of an interval.
+/// Seconds of an interval at least, and how many there are at most.
 const INTERVAL_S: f64 = 12.0;
+const MOST_INTERVALS: f64 = 24.0;
 
 /// What the bound depends on beside the node.
 #[derive(Debug)]
@@ -166,10 +167,11 @@ impl<'a> Closer<'a> {
         let reached = self.reached(keep_out, pose, time);
         let turned = ways.angles[0].max(ways.angles[1]) * self.radius / u;
         let until = arrival.min(turned.max(keep_out.last_contact() - time));
+        let interval = INTERVAL_S.max(until / MOST_INTERVALS);
         let (mut from, mut sum) = (0.0, 0.0);
         let (mut back, mut beyond) = apart(0.0);
         while from < until {
-            let to = (from + INTERVAL_S).min(until);
+            let to = (from + interval).min(until);
             let next = apart(to);
             let mut least =
                 squared_chord(back.0, next.0.0) + kappa * squared_chord(back.1, next.0.1);

@@ -170,8 +170,7 @@ impl<'a> Graph<'a> {
         let (pose, time) = motion
             .last()
             .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
-        // one node may have thousands of successors
-        if time > self.problem.horizon || self.clock.is_up() {
+        if time > self.problem.horizon {
             return;
         }
         let cost = motion

@@ -20,6 +20,7 @@ mod closer;
 mod compliance;
 mod departure;
 mod detour;
+mod effort;
 mod escape;
 mod factor;
 mod future;
@@ -58,6 +59,7 @@ use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 use approach::FINE_CHORD_RAD;
+use effort::Effort;
 use graph::Graph;
 use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact};
 use outline::Scene;
@@ -66,10 +68,6 @@ use route::Route;
 use scale::Scale;
 use seeds::Conflict;
 use selection::Selection;
-
-/// Expansions of one search at most: the bound on its memory and time. Alone a search needs some tens; among
-/// ten targets no plan came of more than this.
-const MAX_EXPANDED: usize = 2_000;
 
 /// Plans of the graph that are refined, each passing the targets on other sides.
 const MAX_SIGNATURES: usize = 4;
@@ -195,8 +193,10 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     }
     let mut graph = Graph::new(problem, hazards, &route, &undisturbed, clock);
     let mut search = Search::new(graph.root());
-    let mut selection = Selection::new(scene, &undisturbed);
-    let mut budget = MAX_EXPANDED;
+    let effort = Effort::of(by_obstacle(hazards).count());
+    let mut selection = Selection::new(scene, &undisturbed, effort);
+    let mut stages = effort.stages.iter();
+    let mut budget = 0;
     let mut timed_out = false;
     let mut optimum = None;
     while selection.signatures() < MAX_SIGNATURES {
@@ -212,6 +212,13 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
                 if is_plan {
                     budget = budget.min(search.counts().expanded + FURTHER_EXPANDED);
                 }
+            }
+            Stop::Budget if selection.signatures() == 0 => {
+                let Some((most, weight)) = stages.next() else {
+                    break;
+                };
+                search.weigh(*weight);
+                budget = *most;
             }
             Stop::Exhausted | Stop::Budget => break,
             Stop::Time => {

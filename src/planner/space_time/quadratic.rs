@@ -27,35 +27,63 @@ pub(crate) struct Programme<'a> {
     pub low: &'a Row,
     pub high: &'a Row,
     pub rows: &'a [Constraint],
+    /// What the largest violation of a row costs per unit where not all can be met; `None` where all have to be.
+    pub price: Option<f64>,
 }
 
 /// Where the minimum is.
 #[derive(Debug, Clone)]
 pub(crate) struct Solution {
     pub x: Row,
-    /// One per row, not negative; zero where the row is slack or was left out. Their sum is the least
-    /// weight of an exact penalty on the largest violation.
+    /// One per row, not negative; zero where the row is slack. Their sum is the least weight of an exact penalty on the
+    /// largest violation, or the price of it.
     pub multipliers: Vec<f64>,
+    /// By how much the rows are violated at most, zero where they can all be met.
+    pub missing: f64,
+}
+
+/// How a programme ends.
+pub(crate) enum Answer {
+    Solved(Solution),
+    /// No `x` meets all rows and the box.
+    Contradiction,
+    /// The Hessian is not positive definite, a number is not finite, or it takes too long.
+    Stopped,
 }
 
 impl Programme<'_> {
-    /// The minimum; rows that cannot be met together with the box and earlier rows are left out, one
-    /// at a time (the caller's merit function sees what is violated). `None` when the Hessian is not
+    /// The minimum. Where the rows contradict one another or the box, that of the cost and the price of the largest
+    /// violation, with next to nothing of its square; without a price there is none. `None` as well when the Hessian is not
     /// positive definite or a number is not finite.
     pub(crate) fn solve(&self) -> Option<Solution> {
-        match self.size.div_ceil(LANES) {
-            0 | 1 => Compact::<4>::of(self).solve(),
-            2 => Compact::<8>::of(self).solve(),
-            3 => Compact::<12>::of(self).solve(),
-            4 => Compact::<16>::of(self).solve(),
-            5 => Compact::<20>::of(self).solve(),
-            _ => Compact::<MAX_VARIABLES>::of(self).solve(),
+        let answer = match (self.answer(None), self.price) {
+            (Answer::Contradiction, Some(price)) => self.answer(Some(price)),
+            (answer, _) => answer,
+        };
+        match answer {
+            Answer::Solved(solution) => Some(solution),
+            Answer::Contradiction | Answer::Stopped => None,
+        }
+    }
+
+    /// With a variable more where violations have a price.
+    fn answer(&self, price: Option<f64>) -> Answer {
+        let size = self.size + usize::from(price.is_some());
+        match size.div_ceil(LANES) {
+            0 | 1 => Compact::<4>::of(self, price).solve(),
+            2 => Compact::<8>::of(self, price).solve(),
+            3 => Compact::<12>::of(self, price).solve(),
+            4 => Compact::<16>::of(self, price).solve(),
+            5 => Compact::<20>::of(self, price).solve(),
+            6 => Compact::<MAX_VARIABLES>::of(self, price).solve(),
+            _ => Answer::Stopped,
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::active_set::SOFTENED_M;
     use super::super::factor::dot;
     use super::*;
     use rand::{Rng, SeedableRng};
@@ -120,6 +148,7 @@ mod tests {
                 low: &LOW,
                 high: &HIGH,
                 rows: &self.rows,
+                price: None,
             }
         }
     }
@@ -166,67 +195,59 @@ mod tests {
         }
     }
 
-    /// With rows that contradict one another and the box: what is left is the minimum over the rows that push and the
-    /// box, whichever were left out.
+    /// With rows that contradict one another and the box: no change within the box brings cost and price of the largest
+    /// violation lower, and without a price there is no answer.
     #[test]
-    fn what_contradicts_is_left_out_and_the_rest_is_a_minimum() {
+    fn of_what_contradicts_the_price_is_paid_and_the_sum_is_least() {
         let mut rng = ChaCha8Rng::seed_from_u64(43);
-        let mut pushing = 0;
+        let mut missed = 0;
         for _ in 0..400 {
             let random = Random::new(&mut rng, 5..25, -1.0..2.0);
-            let Random {
-                size: n,
-                hessian,
-                gradient,
-                rows,
-            } = &random;
-            let solution = random.programme().solve().expect("positive definite");
-            let Solution { x, multipliers } = solution;
-            for (row, multiplier) in rows.iter().zip(&multipliers) {
-                assert!(*multiplier >= 0.0);
-                if *multiplier > 1e-9 {
-                    pushing += 1;
-                    let value = dot(&row.coefficients, &x) - row.bound;
-                    assert!(value.abs() < 1e-7, "{value}");
-                }
-            }
-            for i in 0..*n {
-                assert!(x[i] >= -1.0 - 1e-7 && x[i] <= 2.0 + 1e-7, "{x:?}");
-                let pushed: f64 = rows
-                    .iter()
-                    .zip(&multipliers)
-                    .map(|(row, m)| row.coefficients[i] * m)
+            let n = random.size;
+            let price = rng.random_range(1.0..50.0);
+            let hard = random.programme();
+            let programme = Programme {
+                price: Some(price),
+                ..random.programme()
+            };
+            let Solution {
+                x,
+                multipliers,
+                missing,
+            } = programme.solve().expect("positive definite");
+            let violation = |p: &Row| {
+                let rows = random.rows.iter();
+                rows.map(|r| r.bound - dot(&r.coefficients, p))
+                    .fold(0.0, f64::max)
+            };
+            let value = |p: &Row| {
+                let cost: f64 = (0..n)
+                    .map(|i| p[i] * (0.5 * dot(&random.hessian[i], p) + random.gradient[i]))
                     .sum();
-                let rate = gradient[i] + dot(&hessian[i], &x) - pushed;
-                let tolerance = 1e-9 * (1.0 + multipliers.iter().sum::<f64>());
-                assert!(rate < tolerance || x[i] < -1.0 + 1e-7, "{i}: {rate} {x:?}");
-                assert!(rate > -tolerance || x[i] > 2.0 - 1e-7, "{i}: {rate} {x:?}");
+                let over = violation(p);
+                cost + price * (over + 0.5 * over * over / SOFTENED_M)
+            };
+            assert!((violation(&x) - missing).abs() < 1e-7, "{missing}");
+            assert_eq!(hard.solve().is_none(), missing > 0.0, "{missing}");
+            assert!(multipliers.iter().all(|m| *m >= 0.0));
+            if missing == 0.0 {
+                continue;
+            }
+            missed += 1;
+            let paid = price * (1.0 + missing / SOFTENED_M);
+            let sum: f64 = multipliers.iter().sum();
+            assert!((sum - paid).abs() < 1e-9 * paid, "{sum} {paid}");
+            let best = value(&x);
+            for _ in 0..300 {
+                let scale = 10f64.powf(rng.random_range(-4.0..0.5));
+                let mut p = x;
+                p[..n]
+                    .iter_mut()
+                    .for_each(|v| *v += scale * rng.random_range(-1.0..1.0));
+                p[..n].iter_mut().for_each(|v| *v = v.clamp(-1.0, 2.0));
+                assert!(value(&p) >= best - 1e-6, "{} {best}", value(&p));
             }
         }
-        assert!(pushing > 400, "{pushing}");
-    }
-
-    #[test]
-    fn contradicting_rows_are_left_out() {
-        let mut hessian = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
-        hessian[0][0] = 1.0;
-        let row = |c: f64, bound: f64| {
-            let mut coefficients = [0.0; MAX_VARIABLES];
-            coefficients[0] = c;
-            Constraint {
-                coefficients,
-                bound,
-            }
-        };
-        let programme = Programme {
-            size: 1,
-            hessian: &hessian,
-            gradient: &[0.0; MAX_VARIABLES],
-            low: &[-9.0; MAX_VARIABLES],
-            high: &[9.0; MAX_VARIABLES],
-            rows: &[row(1.0, 2.0), row(-1.0, 5.0)],
-        };
-        let x = programme.solve().expect("solvable").x[0];
-        assert!((x - 2.0).abs() < 1e-9 || (x + 5.0).abs() < 1e-9);
+        assert!(missed > 100, "{missed}");
     }
 }

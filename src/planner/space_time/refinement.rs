@@ -215,6 +215,11 @@ impl Refinement {
         self.handicap * self.best_cost()
     }
 
+    /// True where next to nothing is missing, or was on the way.
+    pub(crate) fn is_nearly_clear(&self) -> bool {
+        self.best.is_some() || self.model.violation < RESTORABLE_M
+    }
+
     /// Gives up: another one is ahead.
     pub(crate) fn stop(&mut self) {
         (self.finished, self.overtaken) = (true, true);
@@ -260,6 +265,7 @@ impl Refinement {
                 low: &low,
                 high: &high,
                 rows: &self.model.rows,
+                price: None,
             };
             let Some(solution) = programme.solve() else {
                 return;
@@ -334,6 +340,7 @@ impl Refinement {
             low: &low,
             high: &high,
             rows: &scene.rows(&self.template, outline),
+            price: None,
         };
         let solution = programme.solve()?;
         let mut corrected = *trial;
@@ -366,7 +373,7 @@ impl Refinement {
             }
             // negated on purpose: a NaN stays. What is met all over the box needs no row
             if !(least >= row.bound) {
-                // a row that the box cannot meet asks for what it can: otherwise it would be left out
+                // a row that the box cannot meet asks for what it can
                 rows.push(Constraint {
                     bound: row.bound.min(REACHABLE * reach),
                     ..*row
@@ -380,12 +387,14 @@ impl Refinement {
             low: &low,
             high: &high,
             rows: &rows,
+            price: Some(self.penalty),
         };
         let Some(solution) = programme.solve() else {
             return false;
         };
         self.price = solution.multipliers.iter().sum::<f64>();
         self.penalty = self.penalty.max(1.5 * self.price);
+        let met = self.model.violation - solution.missing;
         let step = solution.x;
         let largest = step[..n].iter().fold(0.0_f64, |m, s| m.max(s.abs()));
         let linear: f64 = (0..n).map(|i| step[i] * self.model.gradient[i]).sum();
@@ -400,8 +409,7 @@ impl Refinement {
         let merit = self.merit();
         let mut share = 1.0;
         for _ in 0..=MAX_BACKTRACKS {
-            let predicted =
-                share * (self.penalty * self.model.violation - linear) - 0.5 * share * share * bent;
+            let predicted = share * (self.penalty * met - linear) - 0.5 * share * share * bent;
             let mut trial = self.lengths;
             for i in 0..n {
                 trial[i] = (trial[i] + share * step[i]).max(0.0);

@@ -427,7 +427,7 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
         side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
         let side = side.unwrap_or(Side::Starboard);
         turns += usize::from(before != Some(side));
-        group(&mut draft, &paces, side, turn, line);
+        group(&mut draft, &paces, side, turn, line, vertices.len());
         if vertices.len() == 1 {
             draft.turn(side, &[(paces.fast, 0.0)]);
             draft.line(&[(paces.fast, 0.0)]);
@@ -435,7 +435,7 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
     }
     let back = side.unwrap_or(Side::Starboard).opposite();
     if turns < 2 && vertices.len() < 3 {
-        group(&mut draft, &paces, back, None, None);
+        group(&mut draft, &paces, back, None, None, vertices.len());
     }
     match last.ending {
         Ending::Return { leg, .. } => {
@@ -461,16 +461,26 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
     }
 }
 
+/// A turn and a line, with fewer speeds where there are many such groups.
 fn group(
     draft: &mut Draft,
     paces: &Paces,
     side: Side,
     turn: Option<&Segment>,
     line: Option<&Segment>,
+    groups: usize,
 ) {
-    let turns = shared(turn, &[paces.slow, paces.fast]);
+    let Paces { slow, normal, fast } = *paces;
+    let own = turn.or(line).map_or(fast, |s| s.speed);
+    let (turns, lines): (&[f64], &[f64]) = match groups {
+        0..=3 => (&[slow, fast], &[slow, normal, fast]),
+        // no more variables than there may be
+        4 => (&[own], &[slow, normal, fast]),
+        _ => (&[own], &[slow, fast]),
+    };
+    let turns = shared(turn, turns);
     draft.turn(side, &turns);
-    let lines = shared(line, &[paces.slow, paces.normal, paces.fast]);
+    let lines = shared(line, lines);
     draft.line(&lines);
 }
 

@@ -4,6 +4,7 @@ use super::addition::{enriched, tidied};
 use super::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
 use super::ashore;
 use super::compliance::complies;
+use super::effort::Effort;
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::node::State;
 use super::outline::Scene;
@@ -98,16 +99,8 @@ const WORTH_RUSHING: f64 = 1.2;
 /// Conflicts that get manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
-/// How many refinements go on after so many steps: those of the least expected
-/// cost. A winner is seen early.
-const PLACES: [(usize, usize); 5] = [(0, 12), (1, 6), (2, 4), (4, 3), (6, 2)];
-
-/// Steps of the race once a manoeuvre is clear: what the winner still lacks are slots, not steps.
-const ROUNDS: usize = 8;
-
-/// Manoeuvres that are enriched at most, the share of the cost by which one may be behind the best, and below which two
-/// are the same.
-const LEADERS: usize = 2;
+/// Of manoeuvres that are enriched: the share of the cost by which one may be behind the best, and below which two are
+/// the same.
 const BEHIND: f64 = 0.05;
 const ALIKE: f64 = 1e-3;
 
@@ -140,6 +133,7 @@ pub(crate) struct Selection<'a> {
     scene: Scene<'a>,
     /// The route on schedule.
     undisturbed: &'a [Segment],
+    effort: &'a Effort,
     signatures: Vec<Vec<bool>>,
     seeds: Vec<Seed>,
     best: Option<Candidate>,
@@ -147,10 +141,11 @@ pub(crate) struct Selection<'a> {
 }
 
 impl<'a> Selection<'a> {
-    pub(crate) fn new(scene: Scene<'a>, undisturbed: &'a [Segment]) -> Self {
+    pub(crate) fn new(scene: Scene<'a>, undisturbed: &'a [Segment], effort: &'a Effort) -> Self {
         Self {
             scene,
             undisturbed,
+            effort,
             signatures: Vec::new(),
             seeds: Vec::new(),
             best: None,
@@ -237,6 +232,7 @@ impl<'a> Selection<'a> {
             }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
+            let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.effort.manoeuvres)];
             for &side in sides {
                 let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
                 let tried = if far && sides.len() > 1 {
@@ -257,12 +253,13 @@ impl<'a> Selection<'a> {
             .filter_map(|s| Refinement::fitting(&scene, s))
             .collect();
         for round in 0..MAX_STEPS {
-            let decided = round >= ROUNDS && running.iter().any(|r| r.best_cost().is_finite());
+            let decided =
+                round >= self.effort.rounds && running.iter().any(|r| r.best_cost().is_finite());
             // nothing counts as clear before fine chords have seen it
             if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
-            race(&mut running, round);
+            race(&mut running, round, self.effort.places);
             if round == FINE_FROM {
                 scene.chord = FINE_CHORD_RAD;
                 for refinement in running.iter_mut().filter(|r| !r.is_overtaken()) {
@@ -292,7 +289,7 @@ impl<'a> Selection<'a> {
     /// Adds what the leaders lack and refines them anew, and again what the best of them lacks; in the end without scraps,
     /// where that costs next to nothing.
     fn polish(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
-        let leaders = leaders(running);
+        let leaders = leaders(running, self.effort.leaders);
         let mut least = leaders.first()?.1;
         let [first, then] = UNCUT_M;
         let mut best = None;
@@ -310,7 +307,7 @@ impl<'a> Selection<'a> {
             }
             running.extend(again);
         }
-        if gained > WORTH_ANOTHER {
+        if self.effort.twice && gained > WORTH_ANOTHER {
             let again = best.as_ref().and_then(|s| self.richer(s, then, clock));
             best = again.as_ref().and_then(Refinement::best).or(best);
             running.extend(again);
@@ -392,15 +389,15 @@ fn best_of(running: &[Refinement]) -> Option<&Refinement> {
 }
 
 /// The cheapest of all and the next that is another, with their ranks: what a manoeuvre lacks can be worth more than the
-/// lead of one that lacks nothing.
-fn leaders(running: &[Refinement]) -> Vec<(Seed, f64)> {
-    let mut found: Vec<(Seed, f64)> = Vec::with_capacity(LEADERS);
+/// lead of one that lacks nothing. So many at most.
+fn leaders(running: &[Refinement], most: usize) -> Vec<(Seed, f64)> {
+    let mut found: Vec<(Seed, f64)> = Vec::with_capacity(most);
     for refinement in ranked(running) {
         let rank = refinement.rank();
         let least = found.first().map_or(rank, |f| f.1);
         let alike = found.iter().any(|f| rank <= (1.0 + ALIKE) * f.1);
         // negated on purpose: a NaN is behind
-        if found.len() == LEADERS || !(rank <= (1.0 + BEHIND) * least) {
+        if found.len() == most || !(rank <= (1.0 + BEHIND) * least) {
             break;
         }
         if !alike {
@@ -417,10 +414,10 @@ fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
     found.into_iter()
 }
 
-/// Stops what has fallen behind after so many rounds. A missing metre costs at least the median of what it
+/// Stops what has fallen behind after so many rounds, but never the first that is nearly clear. A missing metre costs at least the median of what it
 /// costs them: one that is stuck deep inside a set sees no price at all.
-fn race(running: &mut [Refinement], rounds: usize) {
-    let places = PLACES.iter().rev().find(|(from, _)| *from <= rounds);
+fn race(running: &mut [Refinement], rounds: usize, places: &[(usize, usize)]) {
+    let places = places.iter().rev().find(|(from, _)| *from <= rounds);
     let places = places.map_or(running.len(), |p| p.1);
     let mut going: Vec<&mut Refinement> =
         running.iter_mut().filter(|r| !r.is_overtaken()).collect();
@@ -431,7 +428,10 @@ fn race(running: &mut [Refinement], rounds: usize) {
     prices.sort_by(f64::total_cmp);
     let usual = prices[(prices.len() - 1) / 2];
     going.sort_by(|a, b| a.expected_cost(usual).total_cmp(&b.expected_cost(usual)));
-    for refinement in going.into_iter().skip(places) {
-        refinement.stop();
+    let clear = going.iter().position(|r| r.is_nearly_clear());
+    for (place, refinement) in going.into_iter().enumerate().skip(places) {
+        if Some(place) != clear {
+            refinement.stop();
+        }
     }
 }
