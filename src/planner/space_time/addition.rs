@@ -25,6 +25,9 @@ const LEAST_LINE: f64 = 0.05;
 /// Metres by which one step may change a length when the contacts are priced.
 const PRICING_RADIUS_M: f64 = 20.0;
 
+/// m²/m. What a missing metre of slack is worth at most.
+const DEAREST: f64 = 1e5;
+
 /// Slots added at a time, the most promising.
 const MOST_ADDED: usize = 8;
 
@@ -194,7 +197,7 @@ fn multipliers(scene: &Scene, base: &Seed) -> Option<Vec<f64>> {
         low: &base.lengths.map(|l| (-PRICING_RADIUS_M).max(-l)),
         high: &[PRICING_RADIUS_M; MAX_VARIABLES],
         rows: &model.rows,
-        price: None,
+        price: Some(DEAREST),
     };
     Some(programme.solve()?.multipliers)
 }
