@@ -554,6 +554,9 @@ fn plans_of_another_size_are_the_same_plans() {
     }
 }
 
+/// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste.
+const HASTE: f64 = 8.0;
+
 #[test]
 fn a_star_finds_what_dijkstra_finds() {
     let alone = EncounterKind::ALL.into_iter().flat_map(|kind| {
@@ -581,7 +584,13 @@ fn a_star_finds_what_dijkstra_finds() {
             .each_ref()
             .map(|p| p.outcome.plan().and_then(|p| p.graph_cost));
         match cost {
-            [Some(a), Some(b)] => assert!((a - b).abs() <= 1e-9 * b, "{name} {seed}: {a} {b}"),
+            [Some(a), Some(b)] => {
+                let most = if name == "traffic" { HASTE } else { 1.0 };
+                assert!(a >= (1.0 - 1e-9) * b, "{name} {seed}: {a} {b}");
+                assert!(a <= (most + 1e-9) * b, "{name} {seed}: {a} {b}");
+            }
+            // haste may find what the reference has no budget for
+            [Some(_), None] => assert_eq!(name, "traffic"),
             other => assert_eq!(other[0], other[1], "{name} {seed}"),
         }
         let [a, b] = planned.map(|p| p.stats.expanded);

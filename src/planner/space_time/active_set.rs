@@ -4,7 +4,7 @@
 use super::factor::{
     LANES, Padded, Square, Triangle, add, add_scaled, dot, inverse_transposed_factor, remove,
 };
-use super::quadratic::{Answer, Constraint, MAX_VARIABLES, Programme, Row, Solution};
+use super::quadratic::{Constraint, MAX_VARIABLES, Programme, Row, Solution, Unsolved};
 
 /// Steps before giving up; a programme of this size needs about as many as it has constraints.
 const MAX_STEPS: usize = 1000;
@@ -309,22 +309,22 @@ impl<const N: usize> Compact<N> {
 
     /// See [`Programme::solve`].
     #[inline(never)]
-    pub(crate) fn solve(self) -> Answer {
+    pub(crate) fn solve(self) -> Result<Solution, Unsolved> {
         let Some(mut at) = Point::free(&self) else {
-            return Answer::Stopped;
+            return Err(Unsolved::Stopped);
         };
         let mut steps = MAX_STEPS;
         let boxes = [self.low, self.high].map(|bounds| bounds.map(|b| 1.0 / (1.0 + b.abs())));
         while let Some(entering) = self.violated(&at, &boxes) {
             match at.enter(&self, entering, &mut steps) {
                 Entered::Active => {}
-                Entered::Contradicts => return Answer::Contradiction,
-                Entered::Stopped => return Answer::Stopped,
+                Entered::Contradicts => return Err(Unsolved::Contradiction),
+                Entered::Stopped => return Err(Unsolved::Stopped),
             }
         }
         at.settle(&self);
         if !at.is_finite() {
-            return Answer::Stopped;
+            return Err(Unsolved::Stopped);
         }
         let mut multipliers = vec![0.0; self.rows.len()];
         for (kind, u) in at.active().iter().zip(&at.multipliers) {
@@ -338,7 +338,7 @@ impl<const N: usize> Compact<N> {
         if self.elastic {
             missing = std::mem::take(&mut x[self.size - 1]).max(0.0);
         }
-        Answer::Solved(Solution {
+        Ok(Solution {
             x,
             multipliers,
             missing,

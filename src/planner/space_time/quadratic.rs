@@ -42,9 +42,8 @@ pub(crate) struct Solution {
     pub missing: f64,
 }
 
-/// How a programme ends.
-pub(crate) enum Answer {
-    Solved(Solution),
+/// Why a programme has no solution.
+pub(crate) enum Unsolved {
     /// No `x` meets all rows and the box.
     Contradiction,
     /// The Hessian is not positive definite, a number is not finite, or it takes too long.
@@ -56,18 +55,15 @@ impl Programme<'_> {
     /// violation, with next to nothing of its square; without a price there is none. `None` as well when the Hessian is not
     /// positive definite or a number is not finite.
     pub(crate) fn solve(&self) -> Option<Solution> {
-        let answer = match (self.answer(None), self.price) {
-            (Answer::Contradiction, Some(price)) => self.answer(Some(price)),
+        match (self.answer(None), self.price) {
+            (Err(Unsolved::Contradiction), Some(price)) => self.answer(Some(price)),
             (answer, _) => answer,
-        };
-        match answer {
-            Answer::Solved(solution) => Some(solution),
-            Answer::Contradiction | Answer::Stopped => None,
         }
+        .ok()
     }
 
     /// With a variable more where violations have a price.
-    fn answer(&self, price: Option<f64>) -> Answer {
+    fn answer(&self, price: Option<f64>) -> Result<Solution, Unsolved> {
         let size = self.size + usize::from(price.is_some());
         match size.div_ceil(LANES) {
             0 | 1 => Compact::<4>::of(self, price).solve(),
@@ -76,7 +72,7 @@ impl Programme<'_> {
             4 => Compact::<16>::of(self, price).solve(),
             5 => Compact::<20>::of(self, price).solve(),
             6 => Compact::<MAX_VARIABLES>::of(self, price).solve(),
-            _ => Answer::Stopped,
+            _ => Err(Unsolved::Stopped),
         }
     }
 }
