@@ -43,7 +43,11 @@ impl Curves {
         let is_met = !scene.sets.is_empty();
         Self {
             clearances: clearance_curves(scene),
-            margins: is_met.then(|| margin_curves(scene)).unwrap_or_default(),
+            margins: if is_met {
+                margin_curves(scene)
+            } else {
+                Vec::new()
+            },
             courses: courses(scene),
         }
     }
