@@ -13,6 +13,7 @@ use super::duty::{encountered, first_turn};
 use super::inside;
 use super::rung::Rung;
 use super::sets::TargetSets;
+use super::shares::HALF;
 use crate::obstacle::{Coast, Obstacle, SpaceTimeObstacle};
 use crate::planner::optimal_control::{self, ControlReport, Controlled};
 use crate::planner::{
@@ -22,16 +23,8 @@ use crate::planner::{
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
-/// Shares of the shapes that are tried where no plan was found for the shapes, or for the hard sets, alone.
-const BELOW_SHAPES: [f64; 2] = [0.0, 0.5];
-const BY_THE_RULES: [f64; 2] = [0.5, 0.0];
-const ABOVE_HARD_SETS: [f64; 2] = [1.0, 0.5];
-
-/// Halvings of the share of the shapes that a plan keeps, between what one keeps and what none was found for.
-const SHARE_HALVINGS: usize = 2;
-
-/// Halvings within which the share of one shape is found that a given plan is clear of.
-const KEPT_HALVINGS: usize = 10;
+/// Shares of the shapes that are tried by the rules where no plan was found for the whole.
+const BY_THE_RULES: [f64; 2] = [HALF, 0.0];
 
 /// Dimensionless. The least risk is sought to this, and no plan is asked for at a greater one than 1 less this.
 pub const RISK_STEP: f64 = 1.0 / 64.0;
@@ -109,6 +102,7 @@ impl Ladder<'_> {
             Self::clear_of_shapes,
             Self::clear_of_hard_sets,
             Self::around_hard_sets,
+            Self::clear_of_half_the_shapes,
             Self::at_least_risk,
         ];
         for rung in lower {
@@ -122,11 +116,6 @@ impl Ladder<'_> {
         self.at_worst(first)
     }
 
-    /// So much of every shape.
-    fn shares(&self, share: f64) -> Vec<f64> {
-        vec![share; self.sets.len()]
-    }
-
     fn left(&self) -> Duration {
         let budget = Duration::try_from_secs_f64(self.scenario.deadline);
         budget
@@ -135,7 +124,7 @@ impl Ladder<'_> {
     }
 
     /// What is asked of the planner, against these sets.
-    fn problem<'b>(&'b self, obstacles: &'b [Obstacle]) -> Problem<'b> {
+    pub(super) fn problem<'b>(&'b self, obstacles: &'b [Obstacle]) -> Problem<'b> {
         let shaped = self.scenario.compliance.shapes();
         Problem {
             deadline: self.left(),
@@ -145,10 +134,8 @@ impl Ladder<'_> {
     }
 
     /// Plans against so much of each shape at a risk.
-    fn attempt(&self, rung: Rung, shares: &[f64], risk: f64) -> Attempt {
-        let kept = self.sets.iter().zip(&self.scenario.targets).zip(shares);
-        let kept = kept.map(|((sets, target), share)| sets.kept(self.scenario, target, *share));
-        let (whole, cuts): (Vec<Obstacle>, Vec<f64>) = kept.map(|k| (k.obstacle, k.cut)).unzip();
+    pub(super) fn attempt(&self, rung: Rung, shares: &[f64], risk: f64) -> Attempt {
+        let (whole, cuts) = self.kept(shares);
         let obstacles = level_sets(&whole, risk);
         let forces = self.scenario.planner == PlannerKind::OptimalControl;
         let obstacles = if forces {
@@ -232,47 +219,6 @@ impl Ladder<'_> {
         }
     }
 
-    /// A plan that is clear of the hard sets and, where shapes are asked for, of as much of them as was found. `None` where
-    /// none was found in time that is left; an attempt without a plan where the time ran out.
-    fn clear_of_hard_sets(&self, shaped: bool) -> Option<Attempt> {
-        if !self.sets.iter().any(TargetSets::has_shape) {
-            return None;
-        }
-        let risk = self.scenario.max_risk;
-        let tried = if shaped {
-            BELOW_SHAPES
-        } else {
-            ABOVE_HARD_SETS
-        };
-        // along paths what is found for the larger set is found for the smaller one
-        let monotone = self.scenario.planner == PlannerKind::PathTime;
-        let tried = match (shaped, monotone) {
-            (true, true) => &tried[..1],
-            (false, true) => &[],
-            _ => &tried[..],
-        };
-        let mut found = None;
-        for share in tried {
-            let attempt = self.attempt(Rung::Domains, &self.shares(*share), risk);
-            match attempt.planned.outcome {
-                Outcome::Solved(_) | Outcome::Deadline(_) => {
-                    found = Some(attempt);
-                    break;
-                }
-                Outcome::Infeasible(_) => {}
-            }
-        }
-        let found = found?;
-        let Some(trajectory) = found.trajectory() else {
-            return Some(found);
-        };
-        if !shaped {
-            return Some(self.clear_of(&found, &self.shares(0.0), Rung::Compliant));
-        }
-        let kept = self.kept_along(trajectory, risk);
-        Some(self.with_more_kept(self.clear_of(&found, &kept, Rung::Domains), &kept))
-    }
-
     /// A wide way around the hard sets: the planner proper stays near the path. `None` where none was found.
     fn around_hard_sets(&self, shaped: bool) -> Option<Attempt> {
         if self.scenario.planner != PlannerKind::SpaceTime {
@@ -281,11 +227,15 @@ impl Ladder<'_> {
         let risk = self.scenario.max_risk;
         let whole: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let obstacles = level_sets(&whole, risk);
-        let plan = space_time::detour(&self.problem(&obstacles))?;
-        let kept = if shaped {
-            self.kept_along(&plan.trajectory, risk)
-        } else {
-            self.shares(0.0)
+        let wide = space_time::detour(&self.problem(&obstacles))?;
+        let refined = space_time::continued(&self.problem(&obstacles), &wide.trajectory).outcome;
+        let plan = match refined.plan() {
+            Some(refined) if refined.cost < wide.cost => refined.clone(),
+            _ => wide,
+        };
+        let outcome = match refined {
+            Outcome::Deadline(_) => Outcome::Deadline(Some(plan)),
+            _ => Outcome::Solved(plan),
         };
         let rung = if shaped {
             Rung::Domains
@@ -300,7 +250,7 @@ impl Ladder<'_> {
             obstacles,
             risk,
             planned: Planned {
-                outcome: Outcome::Solved(plan),
+                outcome,
                 stats: SearchStats::default(),
                 explored: ExploredGraph::new(),
                 path_time: None,
@@ -309,75 +259,28 @@ impl Ladder<'_> {
             control: None,
             why: None,
         };
-        Some(self.clear_of(&found, &kept, rung))
-    }
-
-    /// The same plan, said to be clear of so much of each shape.
-    fn clear_of(&self, attempt: &Attempt, shares: &[f64], rung: Rung) -> Attempt {
-        let kept = self.sets.iter().zip(&self.scenario.targets).zip(shares);
-        let kept = kept.map(|((sets, target), share)| sets.kept(self.scenario, target, *share));
-        let (whole, cuts): (Vec<Obstacle>, Vec<f64>) = kept.map(|k| (k.obstacle, k.cut)).unzip();
-        Attempt {
-            rung,
-            obstacles: level_sets(&whole, attempt.risk),
-            whole,
-            cuts: match self.scenario.compliance {
-                Compliance::Shape | Compliance::Rules => cuts,
-                Compliance::None => attempt.cuts.clone(),
-            },
-            ..attempt.clone()
+        if !shaped {
+            return Some(self.clear_of(&found, &self.shares(0.0), rung));
         }
+        let kept = self.kept_along(found.trajectory()?, risk);
+        Some(self.with_more_kept(self.clear_of(&found, &kept, rung), &kept))
     }
 
-    /// Share of each shape that a motion is clear of.
-    fn kept_along(&self, trajectory: &Trajectory, risk: f64) -> Vec<f64> {
-        let all = self.sets.iter().zip(&self.scenario.targets);
-        all.map(|(sets, target)| {
-            let clear = |share: f64| {
-                let set = sets.kept(self.scenario, target, share).obstacle;
-                let set = if risk > 0.0 { set.at_risk(risk) } else { set };
-                let enters = |s| set.first_contact(s, TOUCH_M).is_some();
-                !trajectory.segments().iter().any(enters)
-            };
-            if !sets.has_shape() || clear(1.0) {
-                return 1.0;
-            }
-            let (mut kept, mut entered) = (0.0, 1.0);
-            for _ in 0..KEPT_HALVINGS {
-                let share = 0.5 * (kept + entered);
-                if clear(share) {
-                    kept = share;
-                } else {
-                    entered = share;
-                }
-            }
-            kept
-        })
-        .collect()
-    }
-
-    /// Looks for plans that keep more of the shapes, between what one keeps and all.
-    fn with_more_kept(&self, found: Attempt, kept: &[f64]) -> Attempt {
-        let least = |kept: &[f64]| kept.iter().copied().fold(1.0, f64::min);
-        let (mut best, mut low, mut high) = (found, least(kept), 1.0);
+    /// The plan of an attempt refined for another risk; `None` where that is none.
+    fn drawn_to(&self, attempt: &Attempt, risk: f64) -> Option<Attempt> {
         if self.scenario.planner != PlannerKind::SpaceTime {
-            return best;
+            return None;
         }
-        for _ in 0..SHARE_HALVINGS {
-            let share = 0.5 * (low + high);
-            let tried = self.attempt(Rung::Domains, &self.shares(share), best.risk);
-            let Some(trajectory) = tried.trajectory() else {
-                high = share;
-                if matches!(tried.planned.outcome, Outcome::Deadline(_)) {
-                    return out_of_time(best);
-                }
-                continue;
-            };
-            let kept = self.kept_along(trajectory, best.risk);
-            low = least(&kept).max(share);
-            best = self.clear_of(&tried, &kept, Rung::Domains);
-        }
-        best
+        let obstacles = level_sets(&attempt.whole, risk);
+        let outcome =
+            space_time::continued(&self.problem(&obstacles), attempt.trajectory()?).outcome;
+        let mut drawn = Attempt {
+            obstacles,
+            risk,
+            ..attempt.clone()
+        };
+        drawn.planned.outcome = outcome;
+        matches!(drawn.planned.outcome, Outcome::Solved(_)).then_some(drawn)
     }
 
     /// The plan at the least risk that was found to leave a way, to [`RISK_STEP`].
@@ -396,7 +299,7 @@ impl Ladder<'_> {
         }
         while high - low > RISK_STEP {
             let risk = 0.5 * (low + high);
-            let tried = at(risk);
+            let tried = self.drawn_to(&best, risk).unwrap_or_else(|| at(risk));
             match tried.planned.outcome {
                 Outcome::Infeasible(_) => low = risk,
                 Outcome::Deadline(None) => return Some(out_of_time(best)),
@@ -472,7 +375,7 @@ impl Ladder<'_> {
 }
 
 /// The level sets of a risk.
-fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
+pub(super) fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
     if risk > 0.0 {
         whole.iter().map(|set| set.at_risk(risk)).collect()
     } else {
@@ -481,7 +384,7 @@ fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
 }
 
 /// A plan that might have become better.
-fn out_of_time(mut attempt: Attempt) -> Attempt {
+pub(super) fn out_of_time(mut attempt: Attempt) -> Attempt {
     attempt.planned.outcome = match attempt.planned.outcome {
         Outcome::Solved(plan) => Outcome::Deadline(Some(plan)),
         other => other,

@@ -10,6 +10,7 @@ mod relaxation;
 mod risk;
 mod rung;
 mod sets;
+mod shares;
 mod shore;
 
 pub use judge::{judge, judge_free};

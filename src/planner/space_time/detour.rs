@@ -2,7 +2,8 @@
 //! or late.
 //!
 //! Turns and lines of about the length of a grid's cell, one after another, best first by cost plus what the grid says is still to
-//! come ([`Future`]); from each of them also a turn and a line straight to the end.
+//! come ([`Future`]); from each of them also a turn and a line straight to the end. A piece is tested when it leaves the queue: most
+//! never do.
 
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashSet};
@@ -49,17 +50,44 @@ const FINENESSES: [Fineness; 2] = [
     },
 ];
 
+/// What is still to come is multiplied by this (weighted A*): a plan a little dearer, and a fraction of the pieces.
+const WEIGHT: f64 = 1.1;
+
 /// Metres. A centre of a turn this near to a point has no line to it.
 const NEAR_M: f64 = 1e-6;
 
-/// A state that has been reached, or the end of the path.
+/// A turn and a line after it, or a wait.
+#[derive(Debug, Clone, Copy)]
+enum Piece {
+    /// Radians to port, and metres.
+    Bent { speed: f64, turn: f64, line: f64 },
+    /// Seconds.
+    Wait { duration: f64 },
+}
+
+impl Piece {
+    /// From a pose at a time.
+    fn motion(self, pose: &Pose, time: f64, radius: f64) -> Vec<Segment> {
+        match self {
+            Self::Bent { speed, turn, line } => bent(pose, time, speed, radius, turn, line),
+            Self::Wait { duration } => vec![Segment {
+                start: *pose,
+                start_time: time,
+                duration,
+                speed: 0.0,
+                turn_rate: 0.0,
+            }],
+        }
+    }
+}
+
+/// A state that may be reached, or the end of the path, and how: the state before it and the piece from there.
 #[derive(Debug)]
 struct Reached {
     pose: Pose,
     time: f64,
     cost: f64,
-    from: Option<usize>,
-    motion: Vec<Segment>,
+    from: Option<(usize, Piece)>,
     is_end: bool,
 }
 
@@ -86,7 +114,7 @@ impl Ord for Open {
 }
 
 /// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
-/// its budget. Not refined: of use where nothing else is found. Some tens to some hundreds of milliseconds.
+/// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
 pub fn detour(problem: &Problem) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     let parts = parts(problem.obstacles, problem.horizon);
@@ -110,10 +138,10 @@ pub fn detour(problem: &Problem) -> Option<Plan> {
 /// The way to a state as a plan.
 fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
     let mut motion = Vec::new();
-    let mut at = Some(end);
-    while let Some(index) = at {
-        motion.extend(search.reached[index].motion.iter().rev());
-        at = search.reached[index].from;
+    let mut at = end;
+    while let Some((before, _)) = search.reached[at].from {
+        motion.extend(search.motion_to(at).into_iter().rev());
+        at = before;
     }
     motion.reverse();
     let cost = search.reached[end].cost;
@@ -138,20 +166,29 @@ struct Detour<'a> {
 impl Detour<'_> {
     /// The state at the end of the path.
     fn run(&mut self, clock: Clock) -> Option<usize> {
-        self.reach(self.problem.own.pose, 0.0, 0.0, None, Vec::new(), false);
+        self.reach(Reached {
+            pose: self.problem.own.pose,
+            time: 0.0,
+            cost: 0.0,
+            from: None,
+            is_end: false,
+        });
         for _ in 0..self.fineness.most {
-            if clock.is_up() {
-                return None;
-            }
             let index = loop {
+                if clock.is_up() {
+                    return None;
+                }
                 let index = self.open.pop()?.index;
-                if self.reached[index].is_end {
+                let state = &self.reached[index];
+                let key = self.key(state);
+                if !state.is_end && self.seen.contains(&key) || !self.admits(index) {
+                    continue;
+                }
+                if state.is_end {
                     return Some(index);
                 }
-                let key = self.key(&self.reached[index]);
-                if self.seen.insert(key) {
-                    break index;
-                }
+                self.seen.insert(key);
+                break index;
             };
             self.expand(index);
         }
@@ -167,41 +204,48 @@ impl Detour<'_> {
 
     fn expand(&mut self, index: usize) {
         let own = self.problem.own;
-        let (pose, time, cost) = {
-            let state = &self.reached[index];
-            (state.pose, state.time, state.cost)
-        };
+        let pose = self.reached[index].pose;
         let way = self.fineness.way * self.future.cell;
         let end = self.problem.desired.end();
         for speed in own.speeds.iter().copied() {
             if speed == 0.0 {
-                let wait = Segment {
-                    start: pose,
-                    start_time: time,
-                    duration: self.future.step,
-                    speed,
-                    turn_rate: 0.0,
-                };
-                self.offer(index, cost, vec![wait], false);
+                let duration = self.future.step;
+                self.offer(index, Piece::Wait { duration }, false);
                 continue;
             }
             for turn in TURNS_RAD {
                 let line = (way - turn.abs() * own.turning_radius).max(0.0);
-                let motion = bent(&pose, time, speed, own.turning_radius, turn, line);
-                self.offer(index, cost, motion, false);
+                self.offer(index, Piece::Bent { speed, turn, line }, false);
             }
             for side in [Side::Starboard, Side::Port] {
                 if let Some((turn, line)) = toward(&pose, own.turning_radius, side, end) {
-                    let motion = bent(&pose, time, speed, own.turning_radius, turn, line);
-                    self.offer(index, cost, motion, true);
+                    self.offer(index, Piece::Bent { speed, turn, line }, true);
                 }
             }
         }
     }
 
-    /// Takes a way on where it is clear and in time, and leads on.
-    fn offer(&mut self, from: usize, cost: f64, motion: Vec<Segment>, is_end: bool) {
+    /// The piece by which a state is reached; nothing at the root.
+    fn motion_to(&self, index: usize) -> Vec<Segment> {
+        self.reached[index]
+            .from
+            .map_or_else(Vec::new, |(before, piece)| {
+                let before = &self.reached[before];
+                piece.motion(&before.pose, before.time, self.problem.own.turning_radius)
+            })
+    }
+
+    /// True where the piece that leads to a state is clear.
+    fn admits(&self, index: usize) -> bool {
+        let motion = self.motion_to(index);
+        first_met(self.hazards, &motion).is_none() && !ashore::meets(self.problem.coast, &motion)
+    }
+
+    /// Takes a way on where it is in time and leads on.
+    fn offer(&mut self, from: usize, piece: Piece, is_end: bool) {
         let problem = self.problem;
+        let before = &self.reached[from];
+        let motion = piece.motion(&before.pose, before.time, problem.own.turning_radius);
         let Some(last) = motion.last() else {
             return;
         };
@@ -213,41 +257,28 @@ impl Detour<'_> {
         if !is_end && !self.future.from(pose.position, time).is_finite() {
             return;
         }
-        if first_met(self.hazards, &motion).is_some() || ashore::meets(problem.coast, &motion) {
-            return;
-        }
         let more = |s| space_time_error(problem.desired, s, problem.time_weight);
-        let cost = cost + motion.iter().map(more).sum::<f64>();
-        self.reach(pose, time, cost, Some(from), motion, is_end);
-    }
-
-    fn reach(
-        &mut self,
-        pose: Pose,
-        time: f64,
-        cost: f64,
-        from: Option<usize>,
-        motion: Vec<Segment>,
-        is_end: bool,
-    ) {
-        let to_go = if is_end {
-            0.0
-        } else {
-            self.future.from(pose.position, time)
-        };
-        let index = self.reached.len();
-        self.open.push(Open {
-            total: cost + to_go,
-            index,
-        });
-        self.reached.push(Reached {
+        let cost = before.cost + motion.iter().map(more).sum::<f64>();
+        self.reach(Reached {
             pose,
             time,
             cost,
-            from,
-            motion,
+            from: Some((from, piece)),
             is_end,
         });
+    }
+
+    fn reach(&mut self, state: Reached) {
+        let to_go = if state.is_end {
+            0.0
+        } else {
+            self.future.from(state.pose.position, state.time)
+        };
+        self.open.push(Open {
+            total: state.cost + WEIGHT * to_go,
+            index: self.reached.len(),
+        });
+        self.reached.push(state);
     }
 }
 

@@ -14,6 +14,9 @@ const CELLS: usize = 80;
 /// Cells that she makes from one instant to the next at her greatest speed.
 const REACH: i32 = 2;
 
+/// Cells of a row with those beyond the edges that she might make for, from which nothing can be reached.
+const WIDE: usize = CELLS + 2 * REACH as usize;
+
 /// The cost to go, m², from the middles of cells at evenly spaced instants.
 #[derive(Debug)]
 pub(crate) struct Future {
@@ -46,7 +49,7 @@ impl Future {
             cell,
             step,
             layers,
-            to_go: vec![f32::INFINITY; CELLS * CELLS * layers],
+            to_go: vec![f32::INFINITY; WIDE * WIDE * layers],
         };
         let ashore: Vec<bool> = (0..CELLS * CELLS)
             .map(|k| {
@@ -58,34 +61,35 @@ impl Future {
         for dx in -REACH..=REACH {
             for dy in -REACH..=REACH {
                 if dx * dx + dy * dy <= REACH * REACH {
-                    moves.push((dx, dy));
+                    moves.push((dy * WIDE as i32 + dx) as isize);
                 }
             }
         }
         let per_second = 1.0 / problem.desired.duration();
+        let mut later = [f32::INFINITY; CELLS];
         for layer in (0..layers).rev() {
             let time = step * layer as f64;
             let mut blocked = ashore.clone();
             for hazard in hazards {
                 future.block(&mut blocked, hazard, time);
             }
-            for (k, is_blocked) in blocked.into_iter().enumerate() {
-                let here = future.middle(k);
-                if is_blocked {
-                    continue;
+            for row in 0..CELLS {
+                if layer + 1 < layers {
+                    future.best_after(layer, row, &moves, &mut later);
                 }
-                let at = layer * CELLS * CELLS + k;
-                if (here - end).norm() <= cell {
-                    future.to_go[at] = 0.0;
-                    continue;
-                }
-                let later = future.best_after(layer, k, &moves);
-                if later.is_finite() {
-                    let error = problem
-                        .desired
-                        .nearest(here, time, problem.time_weight)
-                        .error;
-                    future.to_go[at] = later + (error * step * per_second) as f32;
+                for (column, later) in later.iter().enumerate() {
+                    let k = row * CELLS + column;
+                    let (here, at) = (future.middle(k), future.index(layer, column, row));
+                    if blocked[k] {
+                        continue;
+                    }
+                    if (here - end).norm() <= cell {
+                        future.to_go[at] = 0.0;
+                    } else if later.is_finite() {
+                        let nearest = problem.desired.nearest(here, time, problem.time_weight);
+                        let error = nearest.error * step * per_second;
+                        future.to_go[at] = later + error as f32;
+                    }
                 }
             }
         }
@@ -97,17 +101,21 @@ impl Future {
         self.corner + Vector::new(column, row) * self.cell
     }
 
-    fn best_after(&self, layer: usize, k: usize, moves: &[(i32, i32)]) -> f32 {
-        if layer + 1 >= self.layers {
-            return f32::INFINITY;
+    fn index(&self, layer: usize, column: usize, row: usize) -> usize {
+        let edge = REACH as usize;
+        (layer * WIDE + row + edge) * WIDE + column + edge
+    }
+
+    /// The least cost to go one instant later from what can be made from each cell of a row.
+    fn best_after(&self, layer: usize, row: usize, moves: &[isize], least: &mut [f32; CELLS]) {
+        least.fill(f32::INFINITY);
+        for by in moves {
+            let first = self.index(layer + 1, 0, row).saturating_add_signed(*by);
+            for (least, there) in least.iter_mut().zip(&self.to_go[first..first + CELLS]) {
+                // one instruction, unlike `f32::min`; a NaN leads nowhere
+                *least = if *there < *least { *there } else { *least };
+            }
         }
-        let (column, row) = ((k % CELLS) as i32, (k / CELLS) as i32);
-        let within = |v: i32| (0..CELLS as i32).contains(&v);
-        let reached = moves.iter().map(|(dx, dy)| (column + dx, row + dy));
-        let reached = reached.filter(|(x, y)| within(*x) && within(*y));
-        reached
-            .map(|(x, y)| self.to_go[(layer + 1) * CELLS * CELLS + y as usize * CELLS + x as usize])
-            .fold(f32::INFINITY, f32::min)
     }
 
     /// Marks the cells whose middles are in a set.
@@ -145,8 +153,8 @@ impl Future {
                     let (x, y, t) = (at.x.floor() + dx, at.y.floor() + dy, layer + dt);
                     let within = |v: f64, most: usize| v >= 0.0 && v < most as f64;
                     if within(x, CELLS) && within(y, CELLS) && within(t, self.layers) {
-                        let k = y as usize * CELLS + x as usize;
-                        least = least.min(self.to_go[t as usize * CELLS * CELLS + k]);
+                        let at = self.index(t as usize, x as usize, y as usize);
+                        least = least.min(self.to_go[at]);
                     }
                 }
             }

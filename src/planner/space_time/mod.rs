@@ -18,6 +18,7 @@ mod ashore;
 mod chain;
 mod closer;
 mod compliance;
+mod continuation;
 mod departure;
 mod detour;
 mod effort;
@@ -48,6 +49,7 @@ mod stand_on;
 mod tail;
 mod template;
 
+pub use continuation::continued;
 pub use detour::detour;
 pub use escape::{after_holding, escape, undisturbed};
 
@@ -82,26 +84,38 @@ const FURTHER_EXPANDED: usize = 4;
 /// cheapest of the candidates, not proven the cheapest of all: see the docs on its quality. The same
 /// problem gives the same plan unless the deadline strikes. Waypoints on a line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
+    let clock = Clock::new(problem.deadline);
+    at_usual_size(problem, |problem, hazards, _| {
+        plan_clear_of(problem, hazards, clock)
+    })
+}
+
+/// Planned at a usual size, or as it is: where it is of one, and where the plan, at its own size again, touches a set.
+fn at_usual_size(
+    problem: &Problem,
+    plan: impl Fn(&Problem, &[Hazard], Option<&Scale>) -> Planned,
+) -> Planned {
     let desired = problem.desired.straightened();
     let problem = &Problem {
         desired: &desired,
         ..*problem
     };
-    let clock = Clock::new(problem.deadline);
     let parts = parts(problem.obstacles, problem.horizon);
     let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
-    plan_at_scale(problem, &hazards, clock)
-        .unwrap_or_else(|| plan_clear_of(problem, &hazards, clock))
+    scaled(problem, &hazards, &plan).unwrap_or_else(|| plan(problem, &hazards, None))
 }
 
-/// Planned at a usual size; `None` where the problem is of one, and where the plan, at its own size again, touches a set.
-fn plan_at_scale(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Option<Planned> {
+fn scaled(
+    problem: &Problem,
+    hazards: &[Hazard],
+    plan: impl Fn(&Problem, &[Hazard], Option<&Scale>) -> Planned,
+) -> Option<Planned> {
     let scale = Scale::of(problem, hazards)?;
     let shrunk = scale.shrink(problem)?;
     let shrunk = shrunk.problem(problem);
     let parts = parts(shrunk.obstacles, shrunk.horizon);
     let shrunken: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
-    let planned = scale.restored(plan_clear_of(&shrunk, &shrunken, clock));
+    let planned = scale.restored(plan(&shrunk, &shrunken, Some(&scale)));
     let touches = |plan: &Plan| first_contact(hazards, plan.trajectory.segments()).is_some();
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
@@ -263,15 +277,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         edges_checked: counts.tested,
         further_expanded: search.counts().expanded - counts.expanded,
     };
-    let graph_cost = selection.graph_cost();
-    let plan = selection.cheapest().and_then(|(motion, cost)| {
-        let trajectory = Trajectory::new(motion).ok()?;
-        Some(Plan {
-            trajectory,
-            cost,
-            graph_cost,
-        })
-    });
+    let plan = selection.plan();
     let outcome = match (plan, timed_out) {
         (plan, true) => Outcome::Deadline(plan),
         (Some(plan), false) => Outcome::Solved(plan),

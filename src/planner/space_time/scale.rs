@@ -157,6 +157,15 @@ impl Scale {
         })
     }
 
+    /// A motion of the problem at this size.
+    pub(crate) fn shrink_motion(&self, motion: &[Segment]) -> Vec<Segment> {
+        let inverse = Self {
+            length: 1.0 / self.length,
+            time: 1.0 / self.time,
+        };
+        motion.iter().map(|s| inverse.segment(s)).collect()
+    }
+
     /// What was planned, at the problem's own size.
     pub(crate) fn restored(&self, planned: Planned) -> Planned {
         let outcome = match planned.outcome {

@@ -170,13 +170,13 @@ pub(crate) struct Canonical {
 
 /// Slots and lengths while they are put together.
 #[derive(Debug, Default)]
-struct Draft {
+pub(super) struct Draft {
     slots: Vec<Slot>,
     lengths: Vec<f64>,
 }
 
 impl Draft {
-    fn push(&mut self, slot: Slot, length: f64) {
+    pub(super) fn push(&mut self, slot: Slot, length: f64) {
         self.slots.push(slot);
         self.lengths.push(length);
     }
@@ -199,7 +199,7 @@ impl Draft {
         }
     }
 
-    fn runs(&mut self, paces: &Paces, normal: f64, fast: f64, slow: f64) {
+    pub(super) fn runs(&mut self, paces: &Paces, normal: f64, fast: f64, slow: f64) {
         self.push(
             Slot::Run {
                 speed: paces.normal,
@@ -210,7 +210,7 @@ impl Draft {
         self.push(Slot::Run { speed: paces.slow }, slow);
     }
 
-    fn seed(self, ending: Ending) -> Option<Seed> {
+    pub(super) fn seed(self, ending: Ending) -> Option<Seed> {
         if self.slots.len() + 2 > MAX_VARIABLES {
             return None;
         }

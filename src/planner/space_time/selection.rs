@@ -11,9 +11,10 @@ use super::outline::Scene;
 use super::refinement::{MAX_STEPS, Refinement, Seed};
 use super::seeds::{Canonical, Conflict, ahead, from_graph, slowing, waiting};
 use crate::frame::{Side, cross};
+use crate::planner::Plan;
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, Trajectory};
 
 /// Ahead of schedule first, then around the set: of use in every conflict.
 const RUSH: Canonical = Canonical {
@@ -158,9 +159,9 @@ impl<'a> Selection<'a> {
         self.signatures.len()
     }
 
-    /// Cost of the graph's best plan, m².
-    pub(crate) fn graph_cost(&self) -> Option<f64> {
-        self.graph_cost
+    /// Takes a manoeuvre to refine.
+    pub(crate) fn begin_from(&mut self, seed: Seed) {
+        self.seeds.push(seed);
     }
 
     /// Takes a plan of the graph, the states after the root, already tested; false where it does not comply with the rules.
@@ -377,9 +378,14 @@ impl<'a> Selection<'a> {
         clear
     }
 
-    /// The cheapest clear trajectory and its cost, m².
-    pub(crate) fn cheapest(self) -> Option<(Vec<Segment>, f64)> {
-        self.best.map(|c| (c.motion, c.cost))
+    /// The cheapest clear motion.
+    pub(crate) fn plan(self) -> Option<Plan> {
+        let best = self.best?;
+        Some(Plan {
+            trajectory: Trajectory::new(best.motion).ok()?,
+            cost: best.cost,
+            graph_cost: self.graph_cost,
+        })
     }
 }
 

@@ -14,7 +14,7 @@ use crate::planner::space_time::interception::Chase;
 use crate::trajectory::Segment;
 
 /// Radians. A return flatter than this is not solvable.
-const FLATTEST_RETURN: f64 = 0.01;
+pub(crate) const FLATTEST_RETURN: f64 = 0.01;
 
 /// A part of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
