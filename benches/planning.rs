@@ -10,6 +10,9 @@ use searoom::planner::{Outcome, Problem, SearchKind, space_time};
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 
+#[path = "../examples/shared/new_york.rs"]
+mod new_york;
+
 /// Random encounters of each kind, random traffic of each size, and runs of each scene.
 const ENCOUNTERS: u64 = 250;
 const TRAFFIC: u64 = 50;
@@ -143,6 +146,34 @@ fn random_scenes(_: &mut Criterion) {
     }
 }
 
+/// Each vessel under way in New York harbour among all others: the whole ladder, sets and verdict apart. With the same traffic again
+/// nine times, beyond anybody's reach, the plans are the same.
+fn new_york_harbour(_: &mut Criterion) {
+    let scenes = new_york::scenes().expect("the data");
+    let planned = |scenes: &[Scenario]| {
+        let mut times = Vec::new();
+        let mut costs = Vec::new();
+        for scene in scenes {
+            let runs: Vec<pipeline::Run> =
+                (0..RUNS).map(|_| pipeline::run(scene.clone())).collect();
+            assert!(runs[0].evaluation.as_ref().is_some_and(|e| e.verified()));
+            let milliseconds = runs.iter().map(|run| run.plan_time.as_secs_f64() * 1e3);
+            times.push(milliseconds.fold(f64::INFINITY, f64::min));
+            costs.push(runs[0].planned.outcome.plan().map(|plan| plan.cost));
+        }
+        times.sort_by(f64::total_cmp);
+        (times, costs)
+    };
+    let (times, costs) = planned(&scenes);
+    let targets = scenes[0].targets.len();
+    print_times(&format!("New York/{targets} targets"), &times);
+    let crowded: Vec<Scenario> = scenes.iter().map(new_york::with_more_far_away).collect();
+    let (more, same) = planned(&crowded);
+    let targets = crowded[0].targets.len();
+    print_times(&format!("New York/{targets} targets"), &more);
+    assert_eq!(costs, same);
+}
+
 /// Sets, plan and verdict together.
 fn whole_run(criterion: &mut Criterion) {
     let drawn = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin).expect("drawn");
@@ -158,6 +189,7 @@ criterion_group!(
     dijkstra,
     many_targets,
     whole_run,
-    random_scenes
+    random_scenes,
+    new_york_harbour
 );
 criterion_main!(benches);

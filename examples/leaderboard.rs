@@ -6,6 +6,9 @@
 //!
 //! Everything but the milliseconds is the same wherever it runs.
 
+#[path = "shared/new_york.rs"]
+mod new_york;
+
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -37,6 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             foreign("commonocean", &assumed)?,
         ),
     ];
+    suites.push(("New York, 195 targets".to_owned(), new_york::scenes()?));
     for kind in EncounterKind::ALL {
         let drawn = (0..RANDOM).map(|seed| random_encounter(kind, seed, Placement::Origin));
         let scenes: Result<Vec<_>, _> = drawn.collect();

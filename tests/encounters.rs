@@ -555,7 +555,7 @@ fn plans_of_another_size_are_the_same_plans() {
 }
 
 /// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste.
-const HASTE: f64 = 8.0;
+const HASTE: f64 = 4.0;
 
 #[test]
 fn a_star_finds_what_dijkstra_finds() {

@@ -242,7 +242,7 @@ fn an_island_in_the_way_is_sailed_round() {
 }
 
 /// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste.
-const HASTE: f64 = 8.0;
+const HASTE: f64 = 4.0;
 
 /// The same graph without the bound.
 #[test]

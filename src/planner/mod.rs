@@ -225,7 +225,7 @@ pub struct Plan {
     pub trajectory: Trajectory,
     /// What was minimised, in the objective's unit.
     pub cost: f64,
-    /// The first plan on the graph, before refinement, m²: for one target its cheapest, among several at most eight times that;
+    /// The first plan on the graph, before refinement, m²: for one target its cheapest, among several at most four times that;
     /// `None` where the graph had none.
     pub graph_cost: Option<f64>,
 }

@@ -3,7 +3,7 @@
 use super::approach::FINE_CHORD_RAD;
 use super::ashore;
 use super::effort::Effort;
-use super::hazard::{Hazard, by_obstacle};
+use super::hazard::Hazard;
 use super::outline::Scene;
 use super::quadratic::MAX_VARIABLES;
 use super::refinement::Seed;
@@ -54,8 +54,7 @@ fn refined(problem: &Problem, hazards: &[Hazard], motion: &[Segment], clock: Clo
             blocks: &blocks,
             chord: FINE_CHORD_RAD,
         };
-        let effort = Effort::of(by_obstacle(hazards).count());
-        let mut selection = Selection::new(scene, &undisturbed, effort);
+        let mut selection = Selection::new(scene, &undisturbed, &Effort::CONTINUED);
         selection.begin_from(seed);
         let timed_out = selection.refine(&[], clock);
         Some((selection.plan(), timed_out))

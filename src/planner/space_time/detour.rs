@@ -10,7 +10,7 @@ use std::collections::{BinaryHeap, HashSet};
 
 use super::ashore;
 use super::future::Future;
-use super::hazard::{Hazard, first_met};
+use super::hazard::{Hazard, first_met, within_reach};
 use super::part::parts;
 use crate::frame::{Pose, Side, Vector, heading_of, to_port, wrap};
 use crate::planner::clock::Clock;
@@ -118,7 +118,7 @@ impl Ord for Open {
 pub fn detour(problem: &Problem) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     let parts = parts(problem.obstacles, problem.horizon);
-    let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
+    let hazards = within_reach(problem, &parts);
     let future = Future::of(problem, &hazards)?;
     FINENESSES.into_iter().find_map(|fineness| {
         let mut search = Detour {

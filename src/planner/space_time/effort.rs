@@ -1,5 +1,7 @@
 //! How much is spent on finding a plan.
 
+use super::refinement::MAX_STEPS;
+
 /// What a search and a refinement may spend.
 #[derive(Debug)]
 pub(crate) struct Effort {
@@ -11,6 +13,8 @@ pub(crate) struct Effort {
     /// How many refinements go on after so many steps: those of the least expected
     /// cost. A winner is seen early.
     pub places: &'static [(usize, usize)],
+    /// Steps of the race at most.
+    pub steps: usize,
     /// Steps of the race once a manoeuvre is clear: what the winner still lacks are slots, not steps.
     pub rounds: usize,
     /// Manoeuvres that are enriched at most.
@@ -25,6 +29,7 @@ impl Effort {
         stages: &[(2_000, 1.0)],
         manoeuvres: usize::MAX,
         places: &[(0, 12), (1, 6), (2, 4), (4, 3), (6, 2)],
+        steps: MAX_STEPS,
         rounds: 8,
         leaders: 2,
         twice: true,
@@ -34,12 +39,19 @@ impl Effort {
     /// plan of the graph that is not its best is as good a beginning as a rule. In haste first; what cannot be had so
     /// is had sooner with bounds that hold more of the truth.
     pub(crate) const AMONG_SEVERAL: Self = Self {
-        stages: &[(20, 1.0), (200, 8.0), (1_300, 2.0)],
+        stages: &[(20, 1.0), (200, 4.0), (1_300, 2.0)],
         manoeuvres: 2,
         places: &[(0, 6), (1, 3), (2, 2), (6, 1)],
+        steps: MAX_STEPS,
         rounds: 5,
         leaders: 1,
         twice: false,
+    };
+
+    /// For a manoeuvre that is known to be clear of other sets: what is not clear of these soon never is.
+    pub(crate) const CONTINUED: Self = Self {
+        steps: 16,
+        ..Self::AMONG_SEVERAL
     };
 
     /// For so many targets.

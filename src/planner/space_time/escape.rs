@@ -3,7 +3,7 @@
 //! A turn to either side and a straight line, at each speed: of these the one that is out of all sets at the earliest, for good,
 //! and meets no other meanwhile. From there on the planner is asked anew.
 
-use super::hazard::{Hazard, TOUCH_M};
+use super::hazard::{Hazard, TOUCH_M, within_reach};
 use super::part::parts;
 use super::route::Route;
 use crate::frame::{Pose, Side};
@@ -37,7 +37,7 @@ const HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
 pub fn escape(problem: &Problem) -> Option<Plan> {
     let clock = crate::planner::clock::Clock::new(problem.deadline);
     let parts = parts(problem.obstacles, problem.horizon);
-    let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
+    let hazards = within_reach(problem, &parts);
     let ways = ways_out(problem, &hazards);
     for way in ways.iter().take(MOST_WAYS) {
         for hold in HOLDS_S {

@@ -1,13 +1,18 @@
 //! The parts of the obstacles of one problem with what a quick test needs.
 
 use super::part::{Body, Part, Window};
-use crate::frame::Vector;
+use crate::frame::{Vector, cross};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
+use crate::planner::Problem;
 use crate::trajectory::Segment;
+use crate::vessel::OwnShip;
 
 /// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of what a checker
 /// rejects.
 pub(crate) const TOUCH_M: f64 = 1e-7;
+
+/// Metres by which a disc stays out of own ship's reach that she cannot meet: far more than roundings.
+const REACH_M: f64 = 1e-3;
 
 /// A part of an obstacle inside a growing disc that moves with its middle.
 #[derive(Debug)]
@@ -71,6 +76,30 @@ impl<'a> Hazard<'a> {
             radius: body.initial().translated(-centre).reach(),
             growth: 0.0,
         }
+    }
+
+    /// False where own ship cannot meet it until the horizon, whatever she does: as fast as she is, the disc around it stays out
+    /// of her reach. True where that is not known.
+    fn is_within_reach(&self, own: &OwnShip, horizon: f64) -> bool {
+        let start = self.start();
+        let (from, to) = self
+            .window
+            .map_or((0.0, horizon), |w| (w.start, w.end.min(horizon)));
+        // at time t the disc is so far from where own ship started, less her way by then
+        let apart = self.centre - self.drift * start - own.pose.position;
+        let closing = self.growth + own.max_speed();
+        let spare = |t: f64| {
+            (apart + self.drift * t).norm() - (self.radius - self.growth * start) - closing * t
+        };
+        // convex in time: least at an end, or where its rate is zero
+        let square = self.drift.norm_squared() - closing * closing;
+        let along = apart.dot(&self.drift) / self.drift.norm_squared();
+        let across = cross(self.drift, apart).abs() / self.drift.norm();
+        let least = closing * across / (self.drift.norm() * square.max(0.0).sqrt()) - along;
+        // a NaN is the beginning
+        let least = least.max(from).min(to);
+        // negated on purpose: a NaN is within
+        ![from, least, to].into_iter().all(|t| spare(t) > REACH_M)
     }
 
     /// A disc around it at a time, metres; `None` while it is not in force.
@@ -261,9 +290,87 @@ pub(crate) fn first_contact(hazards: &[Hazard], segments: &[Segment]) -> Option<
     None
 }
 
+/// The hazards that own ship can meet until the horizon: the broad phase. What follows costs as much as these.
+pub(crate) fn within_reach<'a>(problem: &Problem, parts: &'a [Part]) -> Vec<Hazard<'a>> {
+    let hazards = parts.iter().map(Hazard::new);
+    hazards
+        .filter(|h| h.is_within_reach(problem.own, problem.horizon))
+        .collect()
+}
+
 /// The hazards of each obstacle, in their order.
 pub(crate) fn by_obstacle<'h, 'a>(
     hazards: &'h [Hazard<'a>],
 ) -> impl Iterator<Item = &'h [Hazard<'a>]> {
     hazards.chunk_by(|a, b| a.obstacle == b.obstacle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, direction};
+    use crate::geometry::{ConvexPolygon, outer_disc};
+    use crate::vessel::Hull;
+    use rand::{Rng, SeedableRng};
+
+    /// Against the same at many instants, for sets that move, stand still, come toward own ship and go away, and parts of them.
+    #[test]
+    fn what_is_out_of_reach_is_never_in_it() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
+        let (mut within, mut beyond) = (0, 0);
+        for case in 0..4000 {
+            let mut near = |most: f64| {
+                let angle: f64 = rng.random_range(-3.1..3.1);
+                direction(angle) * rng.random_range(0.0..most)
+            };
+            let own = OwnShip {
+                pose: Pose::new(near(3000.0), 0.0),
+                speed: 5.0,
+                hull: Hull {
+                    length: 30.0,
+                    beam: 8.0,
+                },
+                turning_radius: 100.0,
+                speeds: vec![2.5, 5.0, 6.0],
+                safety_margin: 20.0,
+            };
+            let drift = if case % 5 == 0 {
+                Vector::zeros()
+            } else {
+                near(14.0)
+            };
+            let spread: Vec<Vector> = (0..4).map(|_| drift + near(0.8)).collect();
+            let velocity = ConvexPolygon::hull(&spread).expect("finite");
+            let initial = outer_disc(150.0, 0.0).translated(near(12_000.0));
+            let body = PolytopeObstacle::new("", initial, velocity);
+            let window = (case % 3 == 0).then_some(Window {
+                start: 200.0,
+                end: 500.0,
+            });
+            let part = Part {
+                obstacle: 0,
+                window,
+                body: Body::Polytope(body),
+            };
+            let hazard = Hazard::new(&part);
+            let horizon = 900.0;
+            let least = (0..=9000)
+                .filter_map(|k| {
+                    let time = horizon * f64::from(k) / 9000.0;
+                    let (centre, radius) = hazard.disc_at(time)?;
+                    let apart = (centre - own.pose.position).norm();
+                    Some(apart - radius - own.max_speed() * time)
+                })
+                .fold(f64::INFINITY, f64::min);
+            if hazard.is_within_reach(&own, horizon) {
+                within += 1;
+                // an instant is at most so far from those that were looked at
+                assert!(least <= REACH_M + 0.05 * 30.0, "{least}");
+            } else {
+                beyond += 1;
+                assert!(least > 0.0, "{least}");
+            }
+        }
+        assert!(within > 500 && beyond > 500, "{within} {beyond}");
+    }
 }

@@ -63,7 +63,7 @@ use crate::trajectory::{Segment, Trajectory};
 use approach::FINE_CHORD_RAD;
 use effort::Effort;
 use graph::Graph;
-use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact};
+use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact, within_reach};
 use outline::Scene;
 use part::parts;
 use route::Route;
@@ -101,7 +101,7 @@ fn at_usual_size(
         ..*problem
     };
     let parts = parts(problem.obstacles, problem.horizon);
-    let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
+    let hazards = within_reach(problem, &parts);
     scaled(problem, &hazards, &plan).unwrap_or_else(|| plan(problem, &hazards, None))
 }
 
@@ -114,7 +114,7 @@ fn scaled(
     let shrunk = scale.shrink(problem)?;
     let shrunk = shrunk.problem(problem);
     let parts = parts(shrunk.obstacles, shrunk.horizon);
-    let shrunken: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
+    let shrunken = within_reach(&shrunk, &parts);
     let planned = scale.restored(plan(&shrunk, &shrunken, Some(&scale)));
     let touches = |plan: &Plan| first_contact(hazards, plan.trajectory.segments()).is_some();
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)

@@ -8,7 +8,7 @@ use super::effort::Effort;
 use super::hazard::{Hazard, by_obstacle, first_met};
 use super::node::State;
 use super::outline::Scene;
-use super::refinement::{MAX_STEPS, Refinement, Seed};
+use super::refinement::{Refinement, Seed};
 use super::seeds::{Canonical, Conflict, ahead, from_graph, slowing, waiting};
 use crate::frame::{Side, cross};
 use crate::planner::Plan;
@@ -253,7 +253,7 @@ impl<'a> Selection<'a> {
             .take_while(|_| !clock.is_up())
             .filter_map(|s| Refinement::fitting(&scene, s))
             .collect();
-        for round in 0..MAX_STEPS {
+        for round in 0..self.effort.steps {
             let decided =
                 round >= self.effort.rounds && running.iter().any(|r| r.best_cost().is_finite());
             // nothing counts as clear before fine chords have seen it
