@@ -631,7 +631,16 @@ const SETTING: &[Alteration] = &[
     ),
     (
         "a turning radius above the plan's",
-        |d| scale(at(d, "/own_ship/turning_radius_m"), 1.01),
+        |d| scale(at(d, "/own_ship/turning_radius_m"), 1.0 + 1e-6),
+        "turning radius",
+    ),
+    (
+        "a turn on the spot",
+        |d| {
+            for s in segments(d) {
+                s["speed_mps"] = json!(0.0);
+            }
+        },
         "turning radius",
     ),
     (
@@ -1238,6 +1247,81 @@ fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
         *at(&mut clear, &format!("{encounter}/max_risk")) = Value::Null;
         assert!(is_caught(&clear), "{name}: no risk");
     }
+}
+
+/// What is said of a risk, told without a contradiction: that it was accepted, and that it has a time, is held by itself.
+#[test]
+fn a_risk_is_within_what_was_accepted_and_has_a_time() {
+    let mut risky = documents().swap_remove(1).1;
+    assert!(at(&mut risky, "/encounters/0/max_risk_t_s").is_number());
+    let clear = document(scenario("colregs/head-on.toml"));
+    let forces = document(scenario("forces/give-way.toml"));
+    let mut accepting = scenario("colregs/head-on.toml");
+    accepting.max_risk = 0.4;
+    accepting.targets[0].motion = {
+        // far off the way
+        let Motion::Ship(mut ship) = accepting.targets[0].motion.clone() else {
+            panic!("a ship");
+        };
+        ship.pose.position.y += 5000.0;
+        Motion::Ship(ship)
+    };
+    let accepting = document(accepting);
+    let tell = |d: &mut Value, risk: f64, time: Value| {
+        *at(d, "/encounters/0/max_risk") = json!(risk);
+        *at(d, "/encounters/0/max_risk_t_s") = time;
+        *at(d, "/cost/max_risk") = json!(risk.max(0.0));
+        let target = at(d, "/encounters/0/target").clone();
+        let given_up = list(d, "/relaxations");
+        given_up.retain(|r| r["kind"] != "risk");
+        if risk > 0.0 {
+            given_up.push(json!({ "kind": "risk", "target": target, "amount": risk }));
+        }
+    };
+    for (name, original) in [
+        ("clear", &clear),
+        ("forces", &forces),
+        ("accepting", &accepting),
+    ] {
+        assert!(!is_caught(original), "{name}");
+        for (risk, time, word) in [
+            (
+                0.5,
+                json!(10.0),
+                "max_risk: the document says 0.5, it is from 0 to",
+            ),
+            (
+                -0.5,
+                Value::Null,
+                "max_risk: the document says -0.5, it is from 0 to",
+            ),
+            (
+                0.0,
+                json!(10.0),
+                "max_risk_t_s: the document says 10, it is nothing",
+            ),
+            (
+                0.3,
+                Value::Null,
+                "max_risk_t_s: the document says nothing, it is a time",
+            ),
+        ] {
+            let mut document = original.clone();
+            tell(&mut document, risk, time);
+            let found = checked(&document).violations;
+            let told = found.iter().any(|v| v.what.contains(word));
+            assert!(told, "{name}, {word}: {found:#?}");
+        }
+    }
+    let mut late = risky.clone();
+    *at(&mut late, "/encounters/0/max_risk_t_s") = Value::Null;
+    let found = checked(&late).violations;
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert!(
+        found[0]
+            .what
+            .contains("max_risk_t_s: the document says nothing")
+    );
 }
 
 #[test]

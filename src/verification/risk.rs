@@ -35,6 +35,7 @@ pub(super) fn check(claim: &Claim, request: &Request) -> Vec<Violation> {
     for encounter in encounters {
         found.extend(bounds(claim, encounter, said(encounter)));
         found.extend(given_up(claim, encounter, said(encounter)));
+        found.extend(instant(encounter, said(encounter)));
         if let Some(ClaimedMotion::Segments(segments)) = &claim.motion {
             found.extend(taken(claim, encounter, segments, request));
         }
@@ -75,6 +76,16 @@ fn given_up(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Viola
     }
 }
 
+/// A risk that is taken is taken at a time, and none at none.
+fn instant(encounter: &EncounterFile, said: f64) -> Option<Violation> {
+    let what = label(encounter, "max_risk_t_s");
+    match encounter.max_risk_t_s {
+        Some(time) if said == 0.0 => Some(untrue(&what, time, "nothing")),
+        None if said > 0.0 => Some(untrue(&what, "nothing", "a time")),
+        _ => None,
+    }
+}
+
 /// The risk along lines and arcs, from both sides.
 fn taken(
     claim: &Claim,
@@ -105,13 +116,7 @@ fn taken(
     if above < 1.0 && !(margin(above, segments) >= -tolerance::DEPTH_M) {
         return Some(untrue(&what, said, "more"));
     }
-    let Some(time) = encounter.max_risk_t_s else {
-        return (said > 0.0)
-            .then(|| untrue(&label(encounter, "max_risk_t_s"), "nothing", "a time"));
-    };
-    if said == 0.0 {
-        return Some(untrue(&label(encounter, "max_risk_t_s"), time, "nothing"));
-    }
+    let time = encounter.max_risk_t_s?;
     let below = said - tolerance::FIGURE;
     let then: Vec<Segment> = around(segments, time)
         .map(|s| s.between(time.max(s.start_time), time.min(s.end_time())))
