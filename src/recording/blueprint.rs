@@ -1,159 +1,106 @@
 //! How the viewer opens the recording: chart at left, volume, curves, and the verdict in words.
 
-use rerun::blueprint::{
-    Blueprint, BlueprintPanel, ContainerLike, Grid, Horizontal, SelectionPanel, Spatial2DView,
-    Spatial3DView, StateTimelineView, TextDocumentView, TimePanel, TimeSeriesView, Vertical,
-};
 use rerun::datatypes::{TimeRange, TimeRangeBoundary, VisibleTimeRange};
-use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind, TimelineName};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EntityBehavior, EyeControls3D, LineGrid3D, PlotLegend, ScalarAxis, TimeAxis,
-    VisibleTimeRanges, VisualBounds2D,
+    TimePanelBlueprint, VisibleTimeRanges, VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, Corner2D, LoopMode, PanelState, PlayState,
 };
-use rerun::log::{Chunk, ChunkError};
-use rerun::{
-    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult,
+use rerun::external::re_sdk_types::blueprint::views::{
+    Spatial2DView, Spatial3DView, StateTimelineView, TextDocumentView, TimeSeriesView,
 };
+use rerun::{EntityPath, RecordingStreamResult};
 
 use super::chart::legend_height;
 use super::curves::{CLEARANCE, COURSE, Curves, MARGIN, RISK, SPEED};
 use super::explored::BLOCKED;
+use super::layout::{Layout, Pane};
+use super::recorder::Recorder;
 use super::scene::{Scene, Stage};
 use super::{
-    APPLICATION, CHART, EXPLORED, PATH_TIME, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME,
-    forces, path, path_time, rules, style, velocities,
+    CHART, EXPLORED, PATH_TIME, RULES, SUMMARY, TIMELINE, TRAILS, VELOCITIES, VOLUME, forces, path,
+    path_time, rules, style, velocities,
 };
 use crate::frame::{Vector, knots_from_mps, to_starboard};
 
 /// Seconds in which the whole run is played.
 const PLAY_S: f64 = 25.0;
 
-/// The timeline of the store that the layout is in: what a user changes comes later on it.
-const LAYOUT_TIMELINE: &str = "blueprint";
-
 /// Metres that a plot of distances shows at least, or half of the sea that is shown.
 const LEAST_RANGE_M: f64 = 50.0;
 
-/// Properties of views, with the path they are logged at.
-type Properties = Vec<(String, Box<dyn AsComponents>)>;
-
-/// Lays out all views and makes that the recording's blueprint.
-pub fn send_blueprint(
-    rec: &RecordingStream,
-    scene: &Scene,
-    curves: &Curves,
-) -> RecordingStreamResult<()> {
-    let mut properties = Properties::new();
-    let chart = chart_view(scene, 1, &[path(&[EXPLORED])], &mut properties);
-    let blocked = path(&[VOLUME, "explored", BLOCKED]);
-    let volume = volume_view(scene, &[blocked], &mut properties);
-    let summary = TextDocumentView::new("Verdict").with_origin(SUMMARY).into();
-    let mut small = Vec::from(curve_views(scene, curves, &mut properties));
-    if forces::steered(scene).is_some() {
-        small.extend(force_views(scene, &mut properties));
-    }
-    small.push(velocity_view(scene, &mut properties));
+/// Lays out all views of a run.
+pub fn of_run(scene: &Scene, curves: &Curves) -> RecordingStreamResult<Recorder> {
+    let mut layout = Layout::new();
+    let to = &mut layout;
+    let chart = chart_view(to, scene, 1, &[path(&[EXPLORED])])?;
     let mut left = vec![chart];
     let mut left_shares = vec![0.66];
-    if let Some((rules, share)) = rules_view(scene, &mut properties) {
+    if let Some((rules, share)) = rules_view(to, scene)? {
         left.push(rules);
         left_shares = vec![0.66 - share, share];
     }
-    left.push(summary);
+    left.push(to.view::<TextDocumentView>("Verdict", SUMMARY)?);
     left_shares.push(0.34);
-    let left = Vertical::new(left).with_row_shares(left_shares);
-    let mut views = vec![volume];
-    views.extend(path_time_view(scene, &mut properties));
+    let left = to.below(&left, left_shares)?;
+    let blocked = path(&[VOLUME, "explored", BLOCKED]);
+    let mut views = vec![volume_view(to, scene, &[blocked])?];
+    views.extend(path_time_view(to, scene)?);
     let mut shares = vec![0.5 / views.len() as f32; views.len()];
-    views.push(Grid::new(small).with_grid_columns(2).into());
+    let mut small = curve_views(to, scene, curves)?;
+    if forces::steered(scene).is_some() {
+        small.extend(force_views(to, scene)?);
+    }
+    small.push(velocity_view(to, scene)?);
+    views.push(to.grid(&small, 2)?);
     shares.push(0.5);
-    let right = Vertical::new(views).with_row_shares(shares);
-    let root = Horizontal::new([left.into(), right.into()]).with_column_shares(vec![0.54, 0.46]);
-    open_with(rec, scene, root, &properties)
+    let right = to.below(&views, shares)?;
+    let root = to.beside(&[left, right], [0.54, 0.46])?;
+    layout.finished(&root, &time_panel(scene))
 }
 
 /// The layout of a comparison: chart and volume side by side, below them the table and the curves. `hidden` are folders on the
 /// chart and in the volume; `rows` those of the legend, `plots` the name, the entity and the range of each plot.
-pub fn send_comparison_blueprint(
-    rec: &RecordingStream,
+pub fn of_comparison(
     stage: &Stage,
     rows: usize,
     hidden: &[Vec<EntityPath>; 2],
     plots: &[(&str, &str, [f64; 2])],
-) -> RecordingStreamResult<()> {
-    let mut properties = Properties::new();
-    let chart = chart_view(stage, rows, &hidden[0], &mut properties);
-    let volume = volume_view(stage, &hidden[1], &mut properties);
-    let table = TextDocumentView::new("Comparison").with_origin(SUMMARY);
-    let plots: Vec<ContainerLike> = plots
-        .iter()
-        .map(|(name, origin, range)| {
-            // the legend of the chart is theirs, too
-            let legend = PlotLegend::new().with_visible(false);
-            plot_view(stage, (name, origin), *range, legend, &mut properties)
-        })
-        .collect();
-    let pictures = Horizontal::new([chart, volume]).with_column_shares(vec![0.5, 0.5]);
-    let below = Horizontal::new([table.into(), Vertical::new(plots).into()])
-        .with_column_shares(vec![0.56, 0.44]);
-    let root = Vertical::new([pictures.into(), below.into()]).with_row_shares(vec![0.62, 0.38]);
-    open_with(rec, stage, root, &properties)
-}
-
-/// The panels around the views, paused at the start.
-fn open_with(
-    rec: &RecordingStream,
-    stage: &Stage,
-    root: impl Into<ContainerLike>,
-    properties: &Properties,
-) -> RecordingStreamResult<()> {
-    let blueprint = Blueprint::new(root)
-        .with_auto_views(false)
-        .with_auto_layout(false)
-        .with_blueprint_panel(BlueprintPanel::from_state(PanelState::Hidden))
-        .with_selection_panel(SelectionPanel::from_state(PanelState::Hidden))
-        .with_time_panel(
-            TimePanel::new()
-                .with_state(PanelState::Collapsed)
-                .with_timeline(TIMELINE)
-                .with_playback_speed((stage.end / PLAY_S).round().max(1.0))
-                .with_play_state(PlayState::Paused)
-                .with_loop_mode(LoopMode::All),
-        );
-    send(rec, blueprint, properties)
-}
-
-/// Adds a property to a view and returns the view.
-fn with(
-    view: impl Into<ContainerLike>,
-    properties: &mut Properties,
-    added: Vec<(&str, Box<dyn AsComponents>)>,
-) -> ContainerLike {
-    let view = view.into();
-    if let ContainerLike::View(inner) = &view {
-        for (name, property) in added {
-            properties.push((format!("{}/{name}", inner.blueprint_path()), property));
-        }
+) -> RecordingStreamResult<Recorder> {
+    let mut layout = Layout::new();
+    let to = &mut layout;
+    let chart = chart_view(to, stage, rows, &hidden[0])?;
+    let volume = volume_view(to, stage, &hidden[1])?;
+    let pictures = to.beside(&[chart, volume], [0.5, 0.5])?;
+    let table = to.view::<TextDocumentView>("Comparison", SUMMARY)?;
+    let mut curves = Vec::new();
+    for (name, origin, range) in plots {
+        // the legend of the chart is theirs, too
+        let legend = PlotLegend::new().with_visible(false);
+        let plot = plot_view(to, stage, (name, origin), &legend)?;
+        to.set(&plot, "ScalarAxis", &scale(*range))?;
+        curves.push(plot);
     }
-    view
+    let curves = to.below(&curves, [])?;
+    let below = to.beside(&[table, curves], [0.56, 0.44])?;
+    let root = to.below(&[pictures, below], [0.62, 0.38])?;
+    layout.finished(&root, &time_panel(stage))
 }
 
-fn plain_background() -> Box<dyn AsComponents> {
-    Box::new(Background::new(BackgroundKind::SolidColor).with_color(style::background()))
+/// Paused at the start.
+fn time_panel(stage: &Stage) -> TimePanelBlueprint {
+    TimePanelBlueprint::new()
+        .with_state(PanelState::Collapsed)
+        .with_timeline(TIMELINE)
+        .with_playback_speed((stage.end / PLAY_S).round().max(1.0))
+        .with_play_state(PlayState::Paused)
+        .with_loop_mode(LoopMode::All)
 }
 
-fn hidden() -> Box<dyn AsComponents> {
-    Box::new(EntityBehavior::new().with_visible(false))
-}
-
-/// Where a view keeps what it does with an entity.
-fn behavior(entity: &EntityPath) -> String {
-    let entity = entity.to_string();
-    let entity = entity.trim_start_matches('/');
-    format!("ViewContents/overrides/{entity}/visualizers")
+fn plain_background() -> Background {
+    Background::new(BackgroundKind::SolidColor).with_color(style::background())
 }
 
 /// Everything logged so far stays visible.
@@ -178,45 +125,52 @@ fn whole_time(stage: &Stage) -> TimeRange {
 }
 
 fn chart_view(
+    to: &mut Layout,
     stage: &Stage,
     legend_rows: usize,
     hidden_folders: &[EntityPath],
-    properties: &mut Properties,
-) -> ContainerLike {
+) -> RecordingStreamResult<Pane> {
     let (low, high) = (stage.bounds.low, stage.bounds.high);
     // the view's own axis points down: north is negative there
-    let shown = rerun::datatypes::Range2D {
-        x_range: [low.x, high.x].into(),
-        y_range: [-high.y, -low.y + legend_height(stage, legend_rows)].into(),
-    };
-    let chart = with(
-        Spatial2DView::new("Chart, north up").with_origin(CHART),
-        properties,
-        vec![
-            ("VisualBounds2D", Box::new(VisualBounds2D::new(shown))),
-            ("Background", plain_background()),
-            (&behavior(&path(&[TRAILS])), Box::new(up_to_cursor())),
-        ],
-    );
-    without(chart, properties, hidden_folders)
+    let shown = [
+        [low.x, high.x],
+        [-high.y, -low.y + legend_height(stage, legend_rows)],
+    ];
+    let chart = plane_view(to, ("Chart, north up", CHART), shown)?;
+    to.set_of(&chart, &path(&[TRAILS]), &up_to_cursor())?;
+    hide(to, &chart, hidden_folders)?;
+    Ok(chart)
 }
 
-/// The view with some folders of it hidden until they are asked for.
-fn without(
-    view: ContainerLike,
-    properties: &mut Properties,
-    folders: &[EntityPath],
-) -> ContainerLike {
-    folders.iter().fold(view, |view, folder| {
-        with(view, properties, vec![(&behavior(folder), hidden())])
-    })
+/// A view of a plane: from where to where, to the right and downward.
+fn plane_view(
+    to: &mut Layout,
+    (name, origin): (&str, &str),
+    [right, down]: [[f64; 2]; 2],
+) -> RecordingStreamResult<Pane> {
+    let view = to.view::<Spatial2DView>(name, origin)?;
+    let shown = rerun::datatypes::Range2D {
+        x_range: right.into(),
+        y_range: down.into(),
+    };
+    to.set(&view, "VisualBounds2D", &VisualBounds2D::new(shown))?;
+    to.set(&view, "Background", &plain_background())?;
+    Ok(view)
+}
+
+/// Hides folders of a view until they are asked for.
+fn hide(to: &mut Layout, view: &Pane, folders: &[EntityPath]) -> RecordingStreamResult<()> {
+    let hidden = EntityBehavior::new().with_visible(false);
+    folders
+        .iter()
+        .try_for_each(|folder| to.set_of(view, folder, &hidden))
 }
 
 fn volume_view(
+    to: &mut Layout,
     stage: &Stage,
     hidden_folders: &[EntityPath],
-    properties: &mut Properties,
-) -> ContainerLike {
+) -> RecordingStreamResult<Pane> {
     let size = 0.92 * stage.bounds.size().norm();
     let middle = stage.lifted(stage.bounds.center(), 0.42 * stage.end);
     // from starboard and somewhat astern: own ship runs from left to right and upward
@@ -227,130 +181,99 @@ fn volume_view(
         middle[1] + (side.y * size) as f32,
         middle[2] + (0.36 * size) as f32,
     ];
-    let volume = with(
-        Spatial3DView::new("Space-time: time upward").with_origin(VOLUME),
-        properties,
-        vec![
-            (
-                "EyeControls3D",
-                Box::new(
-                    EyeControls3D::new()
-                        .with_position(eye)
-                        .with_look_target(middle)
-                        .with_eye_up([0.0, 0.0, 1.0]),
-                ),
-            ),
-            (
-                "LineGrid3D",
-                Box::new(LineGrid3D::new().with_visible(false)),
-            ),
-            ("Background", plain_background()),
-        ],
-    );
-    without(volume, properties, hidden_folders)
+    let eye = EyeControls3D::new()
+        .with_position(eye)
+        .with_look_target(middle)
+        .with_eye_up([0.0, 0.0, 1.0]);
+    let volume = to.view::<Spatial3DView>("Space-time: time upward", VOLUME)?;
+    to.set(&volume, "EyeControls3D", &eye)?;
+    let no_grid = LineGrid3D::new().with_visible(false);
+    to.set(&volume, "LineGrid3D", &no_grid)?;
+    to.set(&volume, "Background", &plain_background())?;
+    hide(to, &volume, hidden_folders)?;
+    Ok(volume)
 }
 
-fn curve_views(scene: &Scene, curves: &Curves, properties: &mut Properties) -> [ContainerLike; 5] {
+fn curve_views(
+    to: &mut Layout,
+    scene: &Scene,
+    curves: &Curves,
+) -> RecordingStreamResult<Vec<Pane>> {
     let margin = scene.scenario.own_ship.safety_margin;
+    let fastest = knots_from_mps(scene.scenario.own_ship.max_speed());
+    let farthest = near_zero(scene, curves.farthest_passage(), margin);
+    let least = near_zero(scene, curves.least_margin(), margin);
     let views = [
-        (
-            "Clearance between hulls (m)",
-            CLEARANCE,
-            near_zero(scene, curves.farthest_passage(), margin),
-        ),
-        (
-            "Margin to the sets (m)",
-            MARGIN,
-            near_zero(scene, curves.least_margin(), margin),
-        ),
+        ("Clearance between hulls (m)", CLEARANCE, farthest),
+        ("Margin to the sets (m)", MARGIN, least),
         ("Risk", RISK, [-0.05, 1.2]),
-        (
-            "Speed (kn)",
-            SPEED,
-            [
-                0.0,
-                1.4 * knots_from_mps(scene.scenario.own_ship.max_speed()),
-            ],
-        ),
+        ("Speed (kn)", SPEED, [0.0, 1.4 * fastest]),
         ("Course (deg)", COURSE, course_range(curves)),
     ];
-    views.map(|(name, origin, range)| {
-        // curves of distances are low where they matter
-        let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-        plot_view(scene, (name, origin), range, legend, properties)
-    })
+    let view = |(name, origin, range)| {
+        let view = plot_view(to, scene, (name, origin), &above_the_curves())?;
+        to.set(&view, "ScalarAxis", &scale(range))?;
+        Ok(view)
+    };
+    views.into_iter().map(view).collect()
+}
+
+/// Curves of distances are low where they matter.
+fn above_the_curves() -> PlotLegend {
+    PlotLegend::new().with_corner(Corner2D::RightTop)
+}
+
+fn scale(range: [f64; 2]) -> ScalarAxis {
+    ScalarAxis::new().with_range(rerun::datatypes::Range1D(range))
 }
 
 fn plot_view(
+    to: &mut Layout,
     stage: &Stage,
     (name, origin): (&str, &str),
-    range: [f64; 2],
-    legend: PlotLegend,
-    properties: &mut Properties,
-) -> ContainerLike {
-    let times = TimeAxis::new().with_view_range(whole_time(stage));
-    let range = rerun::datatypes::Range1D(range);
-    with(
-        TimeSeriesView::new(name).with_origin(origin),
-        properties,
-        vec![
-            ("PlotLegend", Box::new(legend)),
-            ("TimeAxis", Box::new(times)),
-            ("ScalarAxis", Box::new(ScalarAxis::new().with_range(range))),
-        ],
-    )
+    legend: &PlotLegend,
+) -> RecordingStreamResult<Pane> {
+    let view = to.view::<TimeSeriesView>(name, origin)?;
+    to.set(&view, "PlotLegend", legend)?;
+    to.set(&view, "TimeAxis", &time_axis(stage))?;
+    Ok(view)
+}
+
+fn time_axis(stage: &Stage) -> TimeAxis {
+    TimeAxis::new().with_view_range(whole_time(stage))
 }
 
 /// Of a plan of forces: what the ship does, and what makes her do it.
-fn force_views(scene: &Scene, properties: &mut Properties) -> [ContainerLike; 2] {
-    let names = [
-        ("Velocity (m/s, deg/s)", forces::STATES),
-        ("Forces (N, Nm)", forces::FORCES),
-    ];
-    names.map(|(name, origin)| {
-        let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-        let times = TimeAxis::new().with_view_range(whole_time(scene));
-        with(
-            TimeSeriesView::new(name).with_origin(origin),
-            properties,
-            vec![
-                ("PlotLegend", Box::new(legend)),
-                ("TimeAxis", Box::new(times)),
-            ],
-        )
-    })
+fn force_views(to: &mut Layout, scene: &Scene) -> RecordingStreamResult<[Pane; 2]> {
+    let legend = above_the_curves();
+    Ok([
+        plot_view(
+            to,
+            scene,
+            ("Velocity (m/s, deg/s)", forces::STATES),
+            &legend,
+        )?,
+        plot_view(to, scene, ("Forces (N, Nm)", forces::FORCES), &legend)?,
+    ])
 }
 
-fn velocity_view(scene: &Scene, properties: &mut Properties) -> ContainerLike {
+fn velocity_view(to: &mut Layout, scene: &Scene) -> RecordingStreamResult<Pane> {
     let limit = 1.05 * velocities::limit(scene);
-    let shown = rerun::datatypes::Range2D {
-        x_range: [-limit, limit].into(),
-        y_range: [-limit, limit].into(),
-    };
-    with(
-        Spatial2DView::new("Velocity obstacles (m/s, north up)").with_origin(VELOCITIES),
-        properties,
-        vec![
-            ("VisualBounds2D", Box::new(VisualBounds2D::new(shown))),
-            ("Background", plain_background()),
-        ],
-    )
+    let name = "Velocity obstacles (m/s, north up)";
+    plane_view(to, (name, VELOCITIES), [[-limit, limit]; 2])
 }
 
 /// The roles over time and the share of the height that they need; nothing where no rule asks anything.
-fn rules_view(scene: &Scene, properties: &mut Properties) -> Option<(ContainerLike, f32)> {
+fn rules_view(to: &mut Layout, scene: &Scene) -> RecordingStreamResult<Option<(Pane, f32)>> {
     let lanes = rules::height(scene);
     if lanes == 0 {
-        return None;
+        return Ok(None);
     }
-    let times = TimeAxis::new().with_view_range(whole_time(scene));
-    let view = with(
-        StateTimelineView::new("Rules: roles over time, and what is broken").with_origin(RULES),
-        properties,
-        vec![("TimeAxis", Box::new(times))],
-    );
+    let name = "Rules: roles over time, and what is broken";
+    let view = to.view::<StateTimelineView>(name, RULES)?;
+    to.set(&view, "TimeAxis", &time_axis(scene))?;
     let share = LANES_HEAD + LANE * lanes.min(MOST_LANES) as f32;
-    Some((view, share))
+    Ok(Some((view, share)))
 }
 
 /// Of the height of the window: what the head of the lanes takes, each of them, and how many are seen without scrolling.
@@ -359,23 +282,18 @@ const LANE: f32 = 0.03;
 const MOST_LANES: usize = 5;
 
 /// The diagram of a path-time plan, beside the volume.
-fn path_time_view(scene: &Scene, properties: &mut Properties) -> Option<ContainerLike> {
-    let diagram = scene.run.planned.path_time.as_deref()?;
+fn path_time_view(to: &mut Layout, scene: &Scene) -> RecordingStreamResult<Option<Pane>> {
+    let Some(diagram) = scene.run.planned.path_time.as_deref() else {
+        return Ok(None);
+    };
     let frame = path_time::Frame::of(diagram);
     let height = frame.top * frame.rise;
     // the view's own axis points down: time is negative there
-    let shown = rerun::datatypes::Range2D {
-        x_range: [-0.08 * frame.length, 1.04 * frame.length].into(),
-        y_range: [-1.04 * height, 0.08 * height].into(),
-    };
-    Some(with(
-        Spatial2DView::new("Path and time: time upward").with_origin(PATH_TIME),
-        properties,
-        vec![
-            ("VisualBounds2D", Box::new(VisualBounds2D::new(shown))),
-            ("Background", plain_background()),
-        ],
-    ))
+    let shown = [
+        [-0.08 * frame.length, 1.04 * frame.length],
+        [-1.04 * height, 0.08 * height],
+    ];
+    plane_view(to, ("Path and time: time upward", PATH_TIME), shown).map(Some)
 }
 
 /// The interesting part of a distance that falls to `least`, where `margin` is asked for; metres.
@@ -392,59 +310,4 @@ fn course_range(curves: &Curves) -> [f64; 2] {
     let [low, high] = curves.course_range();
     let air = (0.15 * (high - low)).max(10.0);
     [low - air, high + 3.0 * air]
-}
-
-/// The API has no setters for most properties of views: they are logged into the blueprint's own
-/// store, before one activation.
-fn send(
-    rec: &RecordingStream,
-    blueprint: Blueprint,
-    properties: &Properties,
-) -> RecordingStreamResult<()> {
-    let (_stream, store) = RecordingStreamBuilder::new(APPLICATION)
-        .enabled(true)
-        .with_blueprint(blueprint)
-        .memory()?;
-    let mut messages: Vec<LogMsg> = store
-        .take()
-        .into_iter()
-        .filter(|m| m.store_id().kind() == StoreKind::Blueprint)
-        .filter(|m| !matches!(m, LogMsg::BlueprintActivationCommand(_)))
-        .map(without_clock)
-        .collect::<Result<_, _>>()?;
-    let Some(id) = messages.first().map(|m| m.store_id().clone()) else {
-        return Ok(());
-    };
-    let (extra, store) = RecordingStreamBuilder::new(APPLICATION)
-        .enabled(true)
-        .recording_id(id.recording_id().clone())
-        .blueprint()
-        .memory()?;
-    extra.set_log_time_enabled(false);
-    extra.set_log_tick_enabled(false);
-    extra.set_time_sequence(LAYOUT_TIMELINE, 0);
-    for (path, property) in properties {
-        extra.log(path.as_str(), property.as_ref())?;
-    }
-    let only_data = |m: &LogMsg| matches!(m, LogMsg::ArrowMsg(..));
-    messages.extend(store.take().into_iter().filter(only_data));
-    rec.send_blueprint(
-        messages,
-        BlueprintActivationCommand {
-            blueprint_id: id,
-            make_active: true,
-            make_default: true,
-        },
-    );
-    Ok(())
-}
-
-/// A part of the layout without the time of day that the library writes beside it.
-fn without_clock(message: LogMsg) -> Result<LogMsg, ChunkError> {
-    let LogMsg::ArrowMsg(store, data) = message else {
-        return Ok(message);
-    };
-    let kept = [TimelineName::from(LAYOUT_TIMELINE)].into_iter().collect();
-    let chunk = Chunk::from_arrow_msg(&data)?.timelines_sliced(&kept);
-    Ok(LogMsg::ArrowMsg(store, chunk.to_arrow_msg()?))
 }

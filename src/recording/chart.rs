@@ -1,9 +1,8 @@
 //! The chart that stands still: grid, legend, desired and planned trajectory, closest points.
 
-use rerun::{
-    AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult,
-};
+use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStreamResult};
 
+use super::recorder::Recorder;
 use super::scene::{Bounds, Hues, Motion, Scene, Stage, desired_leg, flat, round_down};
 use super::style::{self, Pace};
 use super::summary::approach;
@@ -42,7 +41,7 @@ impl Lines {
 }
 
 /// Everything of the chart that does not move.
-pub fn log_chart(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+pub fn log_chart(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     log_waters(rec, scene)?;
     log_legend(rec, scene, plan_legend(scene), 1)?;
     log_planned(rec, scene)?;
@@ -53,7 +52,7 @@ pub fn log_chart(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<
 }
 
 /// What is there whoever sails: the grid, the desired trajectory, the targets' tracks.
-pub fn log_waters(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+pub fn log_waters(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     // views of Rerun are y-down: this turns north up for everything below
     rec.log_static(MAP, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
     log_grid(rec, stage)?;
@@ -65,7 +64,7 @@ pub fn log_waters(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult
 }
 
 /// Lines every round number of metres, the scale named at one of them, and north.
-fn log_grid(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+fn log_grid(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     let Bounds { low, high } = stage.bounds.grown(0.6 * stage.bounds.extent());
     let spacing = grid_spacing(stage);
     let mut lines = Lines::default();
@@ -159,7 +158,7 @@ pub fn waters_legend(stage: &Stage) -> Vec<Key> {
 
 /// Samples of the line styles with their meaning, in rows below the sea that is shown.
 pub fn log_legend(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     entries: Vec<Key>,
     rows: usize,
@@ -202,7 +201,7 @@ fn shown_paces(scene: &Scene) -> Vec<Pace> {
 }
 
 /// Dashed: where own ship is meant to be.
-fn log_desired(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+fn log_desired(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     let dash = stage.bounds.extent() / 120.0;
     let mut lines = Lines::default();
     for leg in stage.scenario.desired.legs() {
@@ -221,7 +220,7 @@ fn log_desired(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()
 }
 
 /// The plan, one line per segment, by its speed against the desired one.
-fn log_planned(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_planned(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     if !scene.motion.is_planned() {
         return Ok(());
     }
@@ -305,7 +304,7 @@ pub fn mark_step(stage: &Stage) -> f64 {
 }
 
 /// Own ship's position every round number of seconds, with the time.
-fn log_time_marks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_time_marks(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let times: Vec<f64> = multiples(0.0, scene.end, mark_step(scene))
         .skip(1)
         .collect();
@@ -324,7 +323,7 @@ fn log_time_marks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 
 /// Where a target is expected, with the same time marks.
 fn log_track(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     index: usize,
     target: &Target,
@@ -347,7 +346,7 @@ fn log_track(
 }
 
 /// A line between own ship and each target at their closest, with distance and time of the least.
-fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_closest_points(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let Some(evaluation) = &scene.run.evaluation else {
         return Ok(());
     };
@@ -385,7 +384,7 @@ fn log_closest_points(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
 }
 
 /// Without a plan: where own ship on the desired trajectory first is in a set.
-fn log_conflict(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_conflict(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     if scene.motion.is_planned() {
         return Ok(());
     }
@@ -412,7 +411,7 @@ fn log_conflict(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<(
 }
 
 /// Where the independent check found something wrong.
-fn log_violations(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_violations(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let Some(evaluation) = &scene.run.evaluation else {
         return Ok(());
     };

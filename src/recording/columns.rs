@@ -6,13 +6,15 @@ use rerun::external::arrow::array::ListArray;
 use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer};
 use rerun::external::arrow::datatypes::Field;
 use rerun::{
-    AsComponents, EntityPath, RecordingStream, RecordingStreamResult, SerializedComponentBatch,
+    AsComponents, EntityPath, RecordingStreamResult, SerializedComponentBatch,
     SerializedComponentColumn, TimeColumn,
 };
 
+use super::recorder::Recorder;
+
 /// Sends `columns` with a row per time, and `look` in the first of these rows: it holds from then on.
 pub fn log_columns(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     entity: EntityPath,
     times: TimeColumn,
     look: &dyn AsComponents,
@@ -27,7 +29,7 @@ pub fn log_columns(
         lengths[0] = Some(batch.array.len());
         sparse(batch, &lengths)
     });
-    rec.send_columns(entity, [times], once.chain(columns))
+    rec.send_columns(entity, Some(times), once.chain(columns))
 }
 
 /// A column whose rows take so many of the batch's instances each; where there is `None` the row before goes on to hold.

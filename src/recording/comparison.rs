@@ -4,17 +4,18 @@ use std::path::Path;
 
 use rerun::components::InterpolationMode;
 use rerun::{
-    Color, EntityPath, LineStrips2D, LineStrips3D, MediaType, RecordingStream,
-    RecordingStreamResult, TextDocument,
+    Color, EntityPath, LineStrips2D, LineStrips3D, MediaType, RecordingStreamResult, TextDocument,
 };
 
 use super::chart::{self, Key};
 use super::curves::{self, CLEARANCE, SPEED, Series};
 use super::explored::log_explored;
 use super::movers::{self, OwnShip};
+use super::recorder::Recorder;
 use super::scene::{Hues, Motion, Stage, flat};
 use super::{
-    COMPARISON, MAP, RecordingError, SUMMARY, VOLUME, blueprint, land, path, put, space_time, style,
+    COMPARISON, Logged, MAP, RecordingError, SUMMARY, VOLUME, blueprint, land, path, put,
+    space_time, style,
 };
 use crate::comparison::{Entry, Look, Method, Sailed};
 use crate::frame::{Vector, knots_from_mps};
@@ -80,8 +81,8 @@ pub struct Compared<'a> {
 /// 60 kB.
 pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), RecordingError> {
     let title = &compared.scenario.title;
-    put(path, title, Some((COMPARISON, compared.document)), |rec| {
-        log(rec, compared)
+    put(path, title, Some((COMPARISON, compared.document)), || {
+        log(compared)
     })
 }
 
@@ -92,7 +93,9 @@ struct Contender<'a> {
     look: Look,
 }
 
-fn log(rec: &RecordingStream, compared: &Compared) -> RecordingStreamResult<()> {
+fn log(compared: &Compared) -> RecordingStreamResult<Logged> {
+    let mut recording = Recorder::of_section(1);
+    let rec = &mut recording;
     let Compared {
         scenario, entries, ..
     } = *compared;
@@ -150,10 +153,11 @@ fn log(rec: &RecordingStream, compared: &Compared) -> RecordingStreamResult<()> 
         }
     }
     let plots = log_curves(rec, &stage, &contenders)?;
-    blueprint::send_comparison_blueprint(rec, &stage, rows, &hidden, &plots)?;
     let text = text(compared.table, &graphs);
     let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
-    rec.log_static(SUMMARY, &text)
+    rec.log_static(SUMMARY, &text)?;
+    let layout = blueprint::of_comparison(&stage, rows, &hidden, &plots)?;
+    Ok(Logged { recording, layout })
 }
 
 /// Those that sail. In a sweep a method keeps its colour, the weaker the more risk it accepts.
@@ -199,7 +203,7 @@ fn has_sets_of_its_own(run: &Run, sets: &[TargetSets]) -> bool {
 
 /// The sets that a method keeps out of, in its colour: outlines on the chart, bodies in the volume.
 fn log_kept_out_of(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     contender: &Contender,
     run: &Run,
@@ -243,7 +247,7 @@ fn legend(stage: &Stage, contenders: &[Contender], sets: &[TargetSets]) -> Vec<K
 
 /// The motion on the chart and in the volume.
 fn log_way(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     contender: &Contender,
     order: f32,
@@ -323,7 +327,7 @@ fn dashes(stage: &Stage, line: &[(Vector, f64)]) -> Vec<Vec<(Vector, f64)>> {
 
 /// Distance from the nearest target that keeps course and speed, and the speed; the plots for the layout.
 fn log_curves(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     contenders: &[Contender],
 ) -> RecordingStreamResult<Vec<(&'static str, &'static str, [f64; 2])>> {

@@ -1,9 +1,10 @@
 //! Curves over time: clearance, margin, speed, course.
 
 use rerun::components::{AggregationPolicy, InterpolationMode};
-use rerun::{EntityPath, RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
+use rerun::{EntityPath, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
 use super::columns::log_columns;
+use super::recorder::Recorder;
 use super::scene::{Motion, Scene, Stage, desired_leg};
 use super::{TIMELINE, path, style};
 use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap};
@@ -72,11 +73,7 @@ impl Curves {
 }
 
 /// All curves, at most some hundred samples each.
-pub fn log_curves(
-    rec: &RecordingStream,
-    scene: &Scene,
-    curves: &Curves,
-) -> RecordingStreamResult<()> {
+pub fn log_curves(rec: &mut Recorder, scene: &Scene, curves: &Curves) -> RecordingStreamResult<()> {
     let (samples, between) = (&scene.samples, InterpolationMode::Linear);
     log_plot(
         rec,
@@ -112,7 +109,7 @@ impl Series {
 /// All curves of a plot in one entity: a recording pays for entities, not for values. Every row has all of them, and
 /// each is a number: one that is none equals nothing, itself neither, and no two recordings would be alike.
 pub fn log_plot(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     entity: EntityPath,
     times: &[f64],
     between: InterpolationMode,
@@ -284,7 +281,7 @@ pub fn margins(scene: &Scene, sets: &[&Obstacle]) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-fn log_risks(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_risks(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let times = risk_times(scene);
     let series = risk_curves(scene, &times);
     log_plot(
@@ -346,7 +343,7 @@ fn risks(scene: &Scene, set: &Obstacle, times: &[f64]) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-fn log_speed(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_speed(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let wanted = Motion::Undisturbed(&scene.scenario.desired);
     let mut shown = vec![(wanted, "desired", style::desired(), 1.0)];
     if scene.motion.is_planned() {
@@ -397,7 +394,7 @@ pub fn speeds(motion: &Motion, times: &[f64]) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-fn log_course(rec: &RecordingStream, scene: &Scene, own: &[f64]) -> RecordingStreamResult<()> {
+fn log_course(rec: &mut Recorder, scene: &Scene, own: &[f64]) -> RecordingStreamResult<()> {
     let desired = &scene.scenario.desired;
     let wanted = scene
         .samples

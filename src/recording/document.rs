@@ -6,13 +6,11 @@ use std::io::{Read, Write};
 use rerun::components::{Blob, MediaType};
 use rerun::external::arrow::array::{Array, AsArray};
 use rerun::external::arrow::datatypes::UInt8Type;
-use rerun::external::re_log_types::LogMsg;
 use rerun::log::Chunk;
-use rerun::{
-    DynamicArchetype, RecordingStream, RecordingStreamBuilder, RecordingStreamResult, TextDocument,
-};
+use rerun::{DynamicArchetype, RecordingStreamResult, TextDocument};
 
-use super::{APPLICATION, TIMING};
+use super::TIMING;
+use super::recorder::Recorder;
 
 /// What the document is in the recording.
 const ARCHETYPE: &str = "Document";
@@ -71,12 +69,10 @@ pub(super) fn joined(text: &str, times: Option<&str>) -> String {
 
 /// Logs the document after everything else, so that a recording that was cut short is without it.
 pub(super) fn log_document(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     entity: &str,
     packed: Vec<u8>,
 ) -> RecordingStreamResult<()> {
-    // what is logged before is then in messages before
-    let _ = rec.flush_blocking();
     rec.log_static(entity, &archetype(packed))
 }
 
@@ -116,16 +112,11 @@ pub(super) fn unpacked(chunks: &[Chunk]) -> Result<String, String> {
     Ok(text)
 }
 
-/// The time in a store of the kind that is not compared, nor shown unless it is made active.
-pub(super) fn timing(document: &str) -> RecordingStreamResult<Vec<LogMsg>> {
-    let (rec, store) = RecordingStreamBuilder::new(APPLICATION)
-        .enabled(true)
-        .blueprint()
-        .memory()?;
-    rec.set_log_time_enabled(false);
-    rec.set_log_tick_enabled(false);
+/// The time alone.
+pub(super) fn timing(document: &str) -> RecordingStreamResult<Recorder> {
+    let mut rec = Recorder::of_section(0);
     rec.log_static(TIMING, &TextDocument::new(Parted::of(document).times))?;
-    Ok(store.take())
+    Ok(rec)
 }
 
 #[cfg(test)]

@@ -2,11 +2,10 @@
 
 use std::cell::OnceCell;
 
-use rerun::{
-    Color, EntityPath, LineStrips2D, LineStrips3D, RecordingStream, RecordingStreamResult,
-};
+use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D, RecordingStreamResult};
 
 use super::chart::polyline;
+use super::recorder::Recorder;
 use super::scene::{Stage, flat};
 use super::style;
 use crate::frame::Vector;
@@ -46,7 +45,7 @@ struct Kind {
 /// tested are not drawn. They lie below `folders`, on the chart and in the volume, and the refused ones carry the reason as
 /// their label, which is shown where one is pointed at. The answer says how many that were.
 pub fn log_explored(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     run: &Run,
     folders: [EntityPath; 2],
@@ -175,7 +174,7 @@ fn edge_line(edge: &ExploredEdge) -> Vec<(Vector, f64)> {
 }
 
 fn log_kind(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     kind: Kind,
     folders: &[EntityPath; 2],

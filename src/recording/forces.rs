@@ -1,9 +1,10 @@
 //! Curves of a plan of forces: velocities in the ship's frame, and the forces themselves.
 
 use rerun::components::{AggregationPolicy, InterpolationMode};
-use rerun::{RecordingStream, RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
+use rerun::{RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
 use super::columns::log_columns;
+use super::recorder::Recorder;
 use super::scene::{Motion, Scene};
 use super::{TIMELINE, path, style};
 use crate::frame::clockwise_deg_per_s;
@@ -23,7 +24,7 @@ pub fn steered<'a>(scene: &Scene<'a>) -> Option<&'a Steered> {
 }
 
 /// Both plots; nothing for a plan of lines and arcs.
-pub fn log_forces(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+pub fn log_forces(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let Some(motion) = steered(scene) else {
         return Ok(());
     };
@@ -54,7 +55,7 @@ pub fn log_forces(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 }
 
 fn log(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     entity: &str,
     names: [&str; 3],
     between: InterpolationMode,

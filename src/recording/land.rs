@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
-use rerun::{LineStrips2D, Mesh3D, RecordingStream, RecordingStreamResult};
+use rerun::{LineStrips2D, Mesh3D, RecordingStreamResult};
 
+use super::recorder::Recorder;
 use super::scene::{Stage, flat};
 use super::thinning::thinned;
 use super::{MAP, VOLUME, path, style};
@@ -14,7 +15,7 @@ use crate::geometry::{Polygon, Window};
 const FAR_FINENESS: f64 = 1.0 / 300.0;
 
 /// Nothing without land.
-pub fn log_land(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+pub fn log_land(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     let Some(land) = &stage.scenario.land else {
         return Ok(());
     };

@@ -62,8 +62,8 @@
 //!
 //! Lines have the points that it takes to draw them: outlines of sets and coasts are within a 3000th part of the sea that is shown.
 //! What holds from the first moment on, colours and names, is in the first row of what moves. A plot is one entity; its curves are the scalars of each row, named in `SeriesLines:names`.
-//! The blueprint, a store of its own in the same file, lays this out. Two recordings of one run differ
-//! in their bytes (row ids are clock readings) and compare equal with `rerun rrd compare`.
+//! The blueprint, a store of its own in the same file, lays this out. Two recordings of one run have the same bytes, but for the time that
+//! planning took.
 
 mod blueprint;
 mod body;
@@ -77,10 +77,12 @@ mod file;
 mod forces;
 mod frames;
 mod land;
+mod layout;
 mod movers;
 mod packing;
 mod path_time;
 mod reading;
+mod recorder;
 mod rules;
 mod scene;
 mod space_time;
@@ -97,12 +99,12 @@ pub use table::{Columns, EntityRow, EntityTable};
 
 use std::path::{Path, PathBuf};
 
-use rerun::{
-    EntityPath, EntityPathPart, RecordingStream, RecordingStreamBuilder, RecordingStreamResult,
-};
+use rayon::prelude::*;
+use rerun::{EntityPath, EntityPathPart, RecordingInfo, RecordingStreamResult};
 
 use crate::pipeline::Run;
 use curves::Curves;
+use recorder::Recorder;
 use scene::Scene;
 
 const APPLICATION: &str = "searoom";
@@ -160,9 +162,15 @@ pub enum RecordingError {
 /// One target makes about 200 kB; more sets have longer steps of the cursor, so that 300 kB are hardly ever exceeded. `document`, the text of the plan document, is kept in it: [`Recorded::document`] gives it back.
 pub fn write(run: &Run, document: Option<&str>, path: &Path) -> Result<(), RecordingError> {
     let document = document.map(|text| (DOCUMENT, text));
-    put(path, &run.scenario.title, document, |rec| {
-        log_run(rec, &Scene::new(run))
+    put(path, &run.scenario.title, document, || {
+        log_run(&Scene::new(run))
     })
+}
+
+/// What is shown, and how it is laid out.
+struct Logged {
+    recording: Recorder,
+    layout: Recorder,
 }
 
 /// Encodes what `log` logs, and a document at its entity, and writes the file.
@@ -170,7 +178,7 @@ fn put(
     path: &Path,
     title: &str,
     document: Option<(&str, &str)>,
-    log: impl FnOnce(&RecordingStream) -> RecordingStreamResult<()> + Send,
+    log: impl FnOnce() -> RecordingStreamResult<Logged> + Send,
 ) -> Result<(), RecordingError> {
     let bytes = encode(title, document, log).map_err(|source| RecordingError::Encode {
         path: path.to_owned(),
@@ -185,42 +193,76 @@ fn put(
 fn encode(
     title: &str,
     document: Option<(&str, &str)>,
-    log: impl FnOnce(&RecordingStream) -> RecordingStreamResult<()> + Send,
+    log: impl FnOnce() -> RecordingStreamResult<Logged> + Send,
 ) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
-    let (rec, store) = RecordingStreamBuilder::new(APPLICATION)
-        .recording_name(title)
-        // whatever the environment says of other programs' recordings
-        .enabled(true)
-        .memory()?;
-    rec.set_log_time_enabled(false);
-    rec.set_log_tick_enabled(false);
     let packed = || document.map(|(_, text)| document::packed(text)).transpose();
-    let (packed, logged) = rayon::join(packed, || log(&rec));
-    logged?;
-    let mut timing = Vec::new();
+    let (packed, logged) = rayon::join(packed, log);
+    let Logged { recording, layout } = logged?;
+    let mut whole = Recorder::of_section(0);
+    let name = RecordingInfo::update_fields().with_name(title);
+    whole.log_static(EntityPath::properties(), &name)?;
+    whole.append(recording);
+    let mut aside = None;
     if let (Some((entity, document)), Some(packed)) = (document, packed?) {
-        document::log_document(&rec, entity, packed)?;
-        timing = document::timing(document)?;
+        // the last of all, so that a recording that was cut short is without it
+        let mut last = Recorder::of_section(LAST_SECTION);
+        document::log_document(&mut last, entity, packed)?;
+        whole.append(last);
+        aside = Some(document::timing(document)?);
     }
-    // the document stays last
-    packing::packed(timing.into_iter().chain(store.take()).collect())
+    packing::packed(packing::Stores {
+        recording: whole,
+        layout,
+        aside,
+    })
 }
 
-fn log_run(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+/// Behind those of a run and of a comparison.
+const LAST_SECTION: usize = 1 << 16;
+
+/// A part of the pictures of a run.
+type Section = fn(&mut Recorder, &Scene, &Curves) -> RecordingStreamResult<()>;
+
+/// What is logged side by side, the longest first.
+const SECTIONS: [Section; 6] = [
+    |rec, scene, _| movers::log_movers(rec, scene),
+    |rec, scene, _| velocities::log_velocities(rec, scene),
+    |rec, scene, _| {
+        land::log_land(rec, scene)?;
+        chart::log_chart(rec, scene)?;
+        space_time::log_volume(rec, scene)
+    },
+    |rec, scene, curves| {
+        curves::log_curves(rec, scene, curves)?;
+        forces::log_forces(rec, scene)
+    },
+    |rec, scene, _| {
+        let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
+        let budget = explored::POINT_BUDGET;
+        let drawn = explored::log_explored(rec, scene, scene.run, folders, budget)?;
+        summary::log_summary(rec, scene, drawn)
+    },
+    |rec, scene, _| {
+        path_time::log_path_time(rec, scene)?;
+        rules::log_rules(rec, scene)
+    },
+];
+
+fn log_run(scene: &Scene) -> RecordingStreamResult<Logged> {
     let curves = Curves::of(scene);
-    blueprint::send_blueprint(rec, scene, &curves)?;
-    land::log_land(rec, scene)?;
-    chart::log_chart(rec, scene)?;
-    movers::log_movers(rec, scene)?;
-    space_time::log_volume(rec, scene)?;
-    let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
-    let drawn = explored::log_explored(rec, scene, scene.run, folders, explored::POINT_BUDGET)?;
-    curves::log_curves(rec, scene, &curves)?;
-    forces::log_forces(rec, scene)?;
-    velocities::log_velocities(rec, scene)?;
-    path_time::log_path_time(rec, scene)?;
-    rules::log_rules(rec, scene)?;
-    summary::log_summary(rec, scene, drawn)
+    let logged = |(index, log): (usize, &Section)| {
+        let mut rec = Recorder::of_section(index + 1);
+        log(&mut rec, scene, &curves)?;
+        Ok(rec)
+    };
+    let sections = SECTIONS.par_iter().enumerate().map(logged);
+    let sections: RecordingStreamResult<Vec<Recorder>> = sections.collect();
+    let mut recording = Recorder::of_section(0);
+    for section in sections? {
+        recording.append(section);
+    }
+    let layout = blueprint::of_run(scene, &curves)?;
+    Ok(Logged { recording, layout })
 }
 
 /// An entity path whose first part may hold slashes (ours do) and whose others are taken literally:

@@ -1,12 +1,13 @@
 //! The chart that moves with the cursor: ships and the sections of their sets.
 
 use rerun::{
-    AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, Radius, RecordingStream,
+    AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, Radius,
     RecordingStreamResult, TimeColumn, Transform3D,
 };
 
 use super::chart::{Lines, Strip};
 use super::columns::{log_columns, sparse};
+use super::recorder::Recorder;
 use super::scene::{Motion, Scene, Stage, flat, round_down};
 use super::thinning::thinned_ring;
 use super::{MAP, TIMELINE, TRAILS, path, style};
@@ -35,7 +36,7 @@ pub struct OwnShip<'a> {
 }
 
 /// Everything on the chart that moves.
-pub fn log_movers(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+pub fn log_movers(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     log_others(rec, scene)?;
     let name = if scene.motion.is_planned() {
         "Own ship"
@@ -52,7 +53,7 @@ pub fn log_movers(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 }
 
 /// The targets and their sets.
-pub fn log_others(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+pub fn log_others(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     for (index, sets) in stage.sets.iter().enumerate() {
         let name = sets.hard.name();
         if let Some(shaped) = stage.shaped(sets) {
@@ -79,7 +80,7 @@ pub fn set_look(color: Color, radius: Radius) -> LineStrips2D {
 
 /// The outline of the section at every moment.
 pub fn log_sections(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     entity: rerun::EntityPath,
     set: &Obstacle,
@@ -109,7 +110,7 @@ fn outline(polygon: &ConvexPolygon) -> Strip {
 
 /// A target's hull and speed vector do not turn: they are drawn turned and only move.
 fn log_target(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     index: usize,
     target: &Target,
@@ -135,7 +136,7 @@ fn log_target(
 
 /// Her place and name, and below it her hull and her speed vector; the name is always shown where `named`.
 pub fn log_own_ship(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     entity: EntityPath,
     own: &OwnShip,
@@ -151,7 +152,7 @@ pub fn log_own_ship(
 }
 
 fn log_places(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     entity: rerun::EntityPath,
     look: &dyn AsComponents,
@@ -166,11 +167,7 @@ fn log_places(
 
 /// A dot per ship and moment; the blueprint shows those up to the cursor. The last one marks the ship
 /// at any zoom.
-pub fn log_trails(
-    rec: &RecordingStream,
-    stage: &Stage,
-    own: &[OwnShip],
-) -> RecordingStreamResult<()> {
+pub fn log_trails(rec: &mut Recorder, stage: &Stage, own: &[OwnShip]) -> RecordingStreamResult<()> {
     let targets = &stage.scenario.targets;
     let entity = path(&[TRAILS]);
     let others = (0..targets.len()).map(|index| stage.target_color(index));
@@ -193,7 +190,7 @@ pub fn log_trails(
 
 /// Own ship's hull and speed vector, which turn with her; drawn anew where the speed changes.
 fn log_own_hull(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     entity: EntityPath,
     own: &OwnShip,

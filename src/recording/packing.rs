@@ -1,40 +1,127 @@
-//! Messages → the bytes of a file, packed closer than the library does: with many small messages that is a tenth of it.
+//! Stores → the bytes of a file, packed closer than the library does: with many small messages that is a tenth of it.
 //! Any reader of recordings reads them.
 
 use lz4::block::{CompressionMode, compress};
 use rayon::prelude::*;
 use re_protos::common::v1alpha1::Compression;
-use re_protos::log_msg::v1alpha1::log_msg::Msg;
+use re_protos::log_msg::v1alpha1::{ArrowMsg, log_msg::Msg};
 use rerun::external::re_log_encoding::{self, Encodable, Encoder, ToTransport};
-use rerun::external::re_log_types::LogMsg;
+use rerun::external::re_log_types::external::re_tuid::Tuid;
+use rerun::external::re_log_types::{
+    BlueprintActivationCommand, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind, StoreSource,
+};
+use rerun::log::Chunk;
+
+use super::APPLICATION;
+use super::recorder::Recorder;
 
 /// Of LZ4's twelve: those behind it gain a hundredth for four times the time.
 const LEVEL: CompressionMode = CompressionMode::HIGHCOMPRESSION(7);
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-/// The file, in the order of the messages, which are packed side by side. It has no footer: that is an index into files too large to be
-/// read whole, and would be 40 % of ours.
-pub fn packed(messages: Vec<LogMsg>) -> Result<Vec<u8>, Failure> {
+/// The stores of a file.
+#[derive(Debug)]
+pub struct Stores {
+    /// What is shown.
+    pub recording: Recorder,
+    /// How it is laid out.
+    pub layout: Recorder,
+    /// What is neither shown nor compared.
+    pub aside: Option<Recorder>,
+}
+
+/// The file. It has no footer: that is an index into files too large to be read whole, and would be 40 % of ours. Messages are packed side by
+/// side. The recording is named after its contents, so that the viewer takes two that differ for two.
+pub fn packed(stores: Stores) -> Result<Vec<u8>, Failure> {
+    let recording = stores.recording.into_chunks();
+    let others =
+        [Some(stores.layout), stores.aside].map(|s| s.map_or_else(Vec::new, Recorder::into_chunks));
+    let shown = recording.len();
+    let laid_out = others[0].len();
+    let chunks = recording.into_iter().chain(others.into_iter().flatten());
+    let parts: Result<Vec<ArrowMsg>, Failure> = chunks
+        .collect::<Vec<Chunk>>()
+        .into_par_iter()
+        .map(part)
+        .collect();
+    let mut parts = parts?;
+    let mut aside = parts.split_off(shown);
+    let layout: Vec<ArrowMsg> = aside.drain(..laid_out).collect();
+
+    let name = digest(&parts);
+    let id = |kind: StoreKind, what: &str| {
+        StoreId::new(kind, APPLICATION, format!("{what}_{name:032x}"))
+    };
+    let (recording_id, layout_id, aside_id) = (
+        id(StoreKind::Recording, "rec"),
+        id(StoreKind::Blueprint, "layout"),
+        id(StoreKind::Blueprint, "aside"),
+    );
     // the head of the stream, which says that LZ4 is used
     let mut encoder = Encoder::local()?;
     encoder.do_not_emit_footer();
     encoder.finish()?;
     let mut bytes = encoder.into_inner()?;
-    let parts: Result<Vec<Vec<u8>>, Failure> = messages.into_par_iter().map(frame).collect();
-    bytes.extend(parts?.concat());
+    put(&mut bytes, opening(&recording_id))?;
+    if !aside.is_empty() {
+        put(&mut bytes, opening(&aside_id))?;
+        put_all(&mut bytes, aside, &aside_id)?;
+    }
+    put(&mut bytes, opening(&layout_id))?;
+    put_all(&mut bytes, layout, &layout_id)?;
+    let activation = BlueprintActivationCommand {
+        blueprint_id: layout_id,
+        make_active: true,
+        make_default: true,
+    };
+    put(&mut bytes, activation.into())?;
+    put_all(&mut bytes, parts, &recording_id)?;
     Ok(bytes)
 }
 
-/// One message as it stands in the file.
-fn frame(message: LogMsg) -> Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    let mut message = message.to_transport(re_log_encoding::Compression::Off)?;
-    if let Msg::ArrowMsg(data) = &mut message {
-        data.uncompressed_size = data.payload.len() as u64;
-        data.payload = compress(&data.payload, Some(LEVEL), false)?.into();
-        data.compression = Compression::Lz4.into();
+/// What a store begins with.
+fn opening(id: &StoreId) -> LogMsg {
+    let source = StoreSource::Other(APPLICATION.to_owned());
+    SetStoreInfo {
+        row_id: Tuid::ZERO,
+        info: StoreInfo::new(id.clone(), source),
     }
-    message.to_rrd_bytes(&mut bytes)?;
-    Ok(bytes)
+    .into()
+}
+
+fn put(bytes: &mut Vec<u8>, message: LogMsg) -> Result<(), Failure> {
+    let message = message.to_transport(re_log_encoding::Compression::Off)?;
+    message.to_rrd_bytes(bytes)?;
+    Ok(())
+}
+
+fn put_all(bytes: &mut Vec<u8>, parts: Vec<ArrowMsg>, store: &StoreId) -> Result<(), Failure> {
+    for mut part in parts {
+        part.store_id = Some(store.clone().into());
+        Msg::ArrowMsg(part).to_rrd_bytes(bytes)?;
+    }
+    Ok(())
+}
+
+/// One chunk, packed, but for the store that it belongs to.
+fn part(chunk: Chunk) -> Result<ArrowMsg, Failure> {
+    let nowhere = StoreId::new(StoreKind::Recording, APPLICATION, "");
+    let message = chunk.to_arrow_msg()?;
+    let mut part = message.to_transport((nowhere, re_log_encoding::Compression::Off))?;
+    part.uncompressed_size = part.payload.len() as u64;
+    part.payload = compress(&part.payload, Some(LEVEL), false)?.into();
+    part.compression = Compression::Lz4.into();
+    Ok(part)
+}
+
+/// Of everything in the parts: FNV-1a, 128 bits.
+fn digest(parts: &[ArrowMsg]) -> u128 {
+    let bytes = parts.iter().flat_map(|part| part.payload.iter());
+    bytes.fold(
+        0x6c62_272e_07bb_0142_62b8_2175_6295_c58d,
+        |digest: u128, byte| {
+            (digest ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b)
+        },
+    )
 }

@@ -1,11 +1,10 @@
 //! The path-time diagram: distance along the path to the right, time upward, own ship at the cursor.
 
-use rerun::{
-    AsComponents, LineStrips2D, Points2D, RecordingStream, RecordingStreamResult, Transform3D,
-};
+use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult, Transform3D};
 
 use super::chart::{Lines, multiples};
 use super::columns::log_columns;
+use super::recorder::Recorder;
 use super::scene::{Scene, round_down};
 use super::{PATH_TIME_PLANE, path, style};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
@@ -54,7 +53,7 @@ impl Frame {
 }
 
 /// The whole view; nothing without a diagram.
-pub fn log_path_time(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+pub fn log_path_time(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let Some(diagram) = scene.run.planned.path_time.as_deref() else {
         return Ok(());
     };
@@ -75,7 +74,7 @@ pub fn log_path_time(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRes
 
 /// A grid with its units, and where legs join.
 fn log_axes(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     diagram: &PathTimeDiagram,
     frame: &Frame,
 ) -> RecordingStreamResult<()> {
@@ -112,7 +111,7 @@ fn log_axes(
 
 /// The outlines of each target's polygons, and her name at the first of them.
 fn log_obstacles(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     scene: &Scene,
     diagram: &PathTimeDiagram,
     frame: &Frame,
@@ -150,7 +149,7 @@ fn log_obstacles(
 
 /// Own ship in the diagram, and the instant as a line.
 fn log_now(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     scene: &Scene,
     diagram: &PathTimeDiagram,
     frame: &Frame,

@@ -1,12 +1,13 @@
 //! The rules of the road: own ship's roles over time, what she breaks and when, and how long a ship that stands on holds.
 
 use rerun::{
-    AsComponents, Color, Points2D, Points3D, RecordingStream, RecordingStreamResult, StateChange,
+    AsComponents, Color, Points2D, Points3D, RecordingStreamResult, StateChange,
     StateConfiguration, TimeColumn,
 };
 
 use super::chart::Lines;
 use super::columns::log_columns;
+use super::recorder::Recorder;
 use super::scene::{Scene, flat};
 use super::style::{self, Pace};
 use super::{MAP, TIMELINE, VOLUME, path};
@@ -138,7 +139,7 @@ pub fn height(scene: &Scene) -> usize {
 }
 
 /// The lanes, and the moments on the chart and in the volume; nothing where no rule asks anything.
-pub fn log_rules(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+pub fn log_rules(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let lanes = lanes(scene);
     if lanes.is_empty() {
         return Ok(());
@@ -173,7 +174,7 @@ pub fn log_rules(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<
 const ABOVE: f64 = 1.0 / 22.0;
 
 /// Where own ship is when she breaks a rule, and where her hold ends.
-fn log_moments(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_moments(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let several = judged(scene).count() > 1;
     let mut marks: Vec<(f64, String, Color)> = Vec::new();
     for (_, name, conduct) in judged(scene) {

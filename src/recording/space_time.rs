@@ -1,14 +1,15 @@
 //! The space-time volume: east, north and, upward, time.
 
 use rerun::{
-    AsComponents, Color, LineStrips3D, Points3D, Radius, RecordingStream, RecordingStreamResult,
-    Transform3D, ViewCoordinates,
+    AsComponents, Color, LineStrips3D, Points3D, Radius, RecordingStreamResult, Transform3D,
+    ViewCoordinates,
 };
 
 use super::body::{mesh, stretches};
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
 use super::columns::log_columns;
 use super::movers::OwnShip;
+use super::recorder::Recorder;
 use super::scene::{Bounds, Scene, Stage};
 use super::{VOLUME, path, style};
 use crate::frame::{Vector, to_port};
@@ -45,7 +46,7 @@ impl Lines {
 }
 
 /// The whole volume.
-pub fn log_volume(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+pub fn log_volume(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     log_waters(rec, scene)?;
     log_planned(rec, scene)?;
     let own = OwnShip {
@@ -57,7 +58,7 @@ pub fn log_volume(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult
 }
 
 /// What is there whoever sails: the axes, the sets, the desired motion and those of the targets.
-pub fn log_waters(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+pub fn log_waters(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     rec.log_static(VOLUME, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
     log_axes(rec, stage)?;
     for (index, sets) in stage.sets.iter().enumerate() {
@@ -75,7 +76,7 @@ pub fn log_waters(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult
 }
 
 /// The sea at t = 0 as a grid, the time axis with its ticks.
-fn log_axes(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+fn log_axes(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     let Bounds { low, high } = stage.bounds;
     let spacing = grid_spacing(stage);
     let mut lines = Lines::default();
@@ -140,7 +141,7 @@ fn axis_corner(stage: &Stage) -> Vector {
 
 /// The translucent body, its edges and its last section.
 pub fn log_body(
-    rec: &RecordingStream,
+    rec: &mut Recorder,
     stage: &Stage,
     entity: rerun::EntityPath,
     set: &Obstacle,
@@ -162,7 +163,7 @@ pub fn log_body(
 }
 
 /// The plan, and its shadow on the sea.
-fn log_planned(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_planned(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     if !scene.motion.is_planned() {
         return Ok(());
     }
@@ -178,7 +179,7 @@ fn log_planned(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()
 }
 
 /// Desired and expected motions.
-fn log_expected(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<()> {
+fn log_expected(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     let desired = &stage.scenario.desired;
     let mut lines = Lines::default();
     let mut strip: Vec<_> = desired
@@ -205,7 +206,7 @@ fn log_expected(rec: &RecordingStream, stage: &Stage) -> RecordingStreamResult<(
 }
 
 /// The plane of the cursor, and where the ships are in it.
-pub fn log_now(rec: &RecordingStream, stage: &Stage, own: &[OwnShip]) -> RecordingStreamResult<()> {
+pub fn log_now(rec: &mut Recorder, stage: &Stage, own: &[OwnShip]) -> RecordingStreamResult<()> {
     let Bounds { low, high } = stage.bounds;
     let frame = [
         [low.x, low.y],

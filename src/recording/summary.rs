@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use rerun::{MediaType, RecordingStream, RecordingStreamResult, TextDocument};
+use rerun::{MediaType, RecordingStreamResult, TextDocument};
 
 use super::explored::Drawn;
 use super::movers::vector_seconds;
+use super::recorder::Recorder;
 use super::scene::{Motion, Scene};
 use super::{SUMMARY, rules};
 use crate::evaluation::Evaluation;
@@ -18,11 +19,7 @@ use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
 
 /// Writes the text once, for all times.
-pub fn log_summary(
-    rec: &RecordingStream,
-    scene: &Scene,
-    drawn: Drawn,
-) -> RecordingStreamResult<()> {
+pub fn log_summary(rec: &mut Recorder, scene: &Scene, drawn: Drawn) -> RecordingStreamResult<()> {
     rec.log_static(
         SUMMARY,
         &TextDocument::new(text(scene, drawn)).with_media_type(MediaType::MARKDOWN),

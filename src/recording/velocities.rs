@@ -1,12 +1,11 @@
 //! The plane of velocities at the cursor: own ship's velocity and the velocity obstacles of the hard sets.
 
-use rerun::{
-    AsComponents, LineStrips2D, Points2D, RecordingStream, RecordingStreamResult, Transform3D,
-};
+use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult, Transform3D};
 
 use super::chart::{Lines, Strip};
 use super::columns::log_columns;
 use super::movers::{HARD_RADIUS, drawn};
+use super::recorder::Recorder;
 use super::scene::{Scene, flat};
 use super::thinning;
 use super::{PLANE, path, style};
@@ -29,7 +28,7 @@ pub fn limit(scene: &Scene) -> f64 {
 }
 
 /// The whole view.
-pub fn log_velocities(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+pub fn log_velocities(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     // north up, as on the chart
     let turned = Transform3D::from_scale([1.0, -1.0, 1.0]);
     rec.log_static(PLANE, &turned)?;
@@ -66,7 +65,7 @@ pub fn log_velocities(rec: &RecordingStream, scene: &Scene) -> RecordingStreamRe
 }
 
 /// The axes, and a circle for each of own ship's speeds.
-fn log_axes(rec: &RecordingStream, scene: &Scene) -> RecordingStreamResult<()> {
+fn log_axes(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let limit = limit(scene);
     let mut lines = Lines::default();
     for axis in [Vector::new(limit, 0.0), Vector::new(0.0, limit)] {
