@@ -87,6 +87,8 @@ pub(super) fn packed(document: &str) -> std::io::Result<Vec<u8>> {
     let text = Parted::of(document).text;
     let mut encoder = zstd::Encoder::new(Vec::new(), LEVEL)?;
     encoder.include_checksum(true)?;
+    // tables for this much: those for a text of any length take longer to clear than it does to pack
+    encoder.set_pledged_src_size(Some(text.len() as u64))?;
     encoder.write_all(text.as_bytes())?;
     encoder.finish()
 }
