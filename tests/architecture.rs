@@ -130,6 +130,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "trajectory",
             "vessel",
             "target",
+            "colregs",
             "obstacle",
             "assessment",
             "planner",

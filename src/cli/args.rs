@@ -131,37 +131,26 @@ pub struct ImportArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    mut_arg("planner", |arg| arg.help("Only this planner, beside the baselines: space-time, path-time, optimal-control")),
+    mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra")),
+    mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder")),
+    mut_arg("figure", |arg| arg.help("Draw ways, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
+)]
 pub struct CompareArgs {
     /// Scenario files, or folders of them
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
-    /// Only this planner, beside the baselines: space-time, path-time, optimal-control
-    #[arg(long, value_name = "KIND", value_parser = planner)]
-    pub planner: Option<PlannerKind>,
-    /// Only this search: a-star, dijkstra
-    #[arg(long, value_name = "KIND", value_parser = search)]
-    pub search: Option<SearchKind>,
-    /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and filters)
-    #[arg(long, value_name = "C", value_parser = compliance)]
-    pub compliance: Option<Compliance>,
+    #[command(flatten)]
+    pub asked: Asked,
     /// Risks that may be accepted instead of the scenario's, each 0 to below 1: several are a sweep
     #[arg(long, value_name = "R,R,..", value_parser = max_risk, value_delimiter = ',')]
     pub max_risk: Vec<f64>,
     /// Write the rows as CSV
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
-    /// Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder
-    #[arg(long, value_name = "PATH")]
-    pub rrd: Option<PathBuf>,
-    /// Write a report for a browser, index.html and its figures, into this folder
-    #[arg(long, value_name = "DIR")]
-    pub report: Option<PathBuf>,
-    /// Draw ways, distances, and in a sweep cost over risk: a file ending in .svg or .png
-    #[arg(long, value_name = "PATH")]
-    pub figure: Option<PathBuf>,
-    /// Print one JSON document instead of tables
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub written: Written,
 }
 
 #[derive(Debug, Args)]
@@ -200,9 +189,9 @@ pub struct CompletionsArgs {
     pub shell: clap_complete::Shell,
 }
 
-/// What every planning command takes.
+/// What takes the place of what a scenario says.
 #[derive(Debug, Args)]
-pub struct Shared {
+pub struct Asked {
     /// Planner instead of the scenario's: space-time, path-time, optimal-control
     #[arg(long, value_name = "KIND", value_parser = planner)]
     pub planner: Option<PlannerKind>,
@@ -212,12 +201,14 @@ pub struct Shared {
     /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and filters)
     #[arg(long, value_name = "C", value_parser = compliance)]
     pub compliance: Option<Compliance>,
-    /// Risk that the plan may accept instead of the scenario's: 0 to below 1
-    #[arg(long, value_name = "R", value_parser = max_risk)]
-    pub max_risk: Option<f64>,
     /// What own ship's behaviour is judged by, of no effect on the plan: searoom, dnv-trafficgen, sfi-autoship, or a TOML file
     #[arg(long, value_name = "PROFILE|FILE", value_parser = thresholds)]
     pub thresholds: Option<Arc<Thresholds>>,
+}
+
+/// Where results go.
+#[derive(Debug, Args)]
+pub struct Written {
     /// Write a Rerun recording: a file ending in .rrd, or a folder
     #[arg(long, value_name = "PATH")]
     pub rrd: Option<PathBuf>,
@@ -230,6 +221,18 @@ pub struct Shared {
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
+}
+
+/// What `plan` and `suite` take.
+#[derive(Debug, Args)]
+pub struct Shared {
+    #[command(flatten)]
+    pub asked: Asked,
+    /// Risk that the plan may accept instead of the scenario's: 0 to below 1
+    #[arg(long, value_name = "R", value_parser = max_risk)]
+    pub max_risk: Option<f64>,
+    #[command(flatten)]
+    pub written: Written,
 }
 
 /// What foreign files do not say. Of no effect on scenario files.
@@ -303,7 +306,19 @@ fn beam(word: &str) -> Result<f64, String> {
     assumption(Assumption::Beam, word)
 }
 
-impl Shared {
+impl Asked {
+    /// What the rules ask of a scenario, and by what own ship is judged.
+    pub fn apply_rules(&self, scenario: &mut Scenario) {
+        if let Some(compliance) = self.compliance {
+            scenario.compliance = compliance;
+        }
+        if let Some(thresholds) = &self.thresholds {
+            scenario.thresholds = Some(Arc::clone(thresholds));
+        }
+    }
+}
+
+impl Written {
     /// The files to be written.
     pub fn wanted(&self) -> Wanted<'_> {
         Wanted {
@@ -313,23 +328,20 @@ impl Shared {
             report: self.report.as_deref(),
         }
     }
+}
 
+impl Shared {
     /// Puts what the command line says in the place of what the scenario says; what the planner cannot do then.
     pub fn apply(&self, scenario: &mut Scenario) -> Result<(), Vec<Fault>> {
-        if let Some(planner) = self.planner {
+        if let Some(planner) = self.asked.planner {
             scenario.planner = planner;
         }
-        if let Some(search) = self.search {
+        if let Some(search) = self.asked.search {
             scenario.search = search;
         }
-        if let Some(compliance) = self.compliance {
-            scenario.compliance = compliance;
-        }
+        self.asked.apply_rules(scenario);
         if let Some(max_risk) = self.max_risk {
             scenario.max_risk = max_risk;
-        }
-        if let Some(thresholds) = &self.thresholds {
-            scenario.thresholds = Some(Arc::clone(thresholds));
         }
         let faults = scenario.unfit();
         if faults.is_empty() {

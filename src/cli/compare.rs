@@ -41,7 +41,7 @@ struct Compared {
 /// Compares every scenario. Contenders of all of them run at the same time, and are shown in a fixed order.
 pub fn compare(args: &CompareArgs, output: &Output) -> Status {
     // before anything is computed
-    if let Some(path) = &args.figure
+    if let Some(path) = &args.written.figure
         && let Err(error) = figure::prepare(path)
     {
         output.error(&format_args!("{error:#}"));
@@ -49,10 +49,10 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
     }
     let all = files::find(&args.paths, &files::SCENARIOS, output);
     let found: Vec<Found> = all.iter().flatten().cloned().collect();
+    // one figure, of all scenarios
     let wanted = Wanted {
-        recordings: args.rrd.as_deref(),
-        report: args.report.as_deref(),
-        ..Wanted::default()
+        figures: None,
+        ..args.written.wanted()
     };
     let products = match Products::prepare(&found, wanted) {
         Ok(products) => products,
@@ -117,9 +117,7 @@ fn ask(found: &Found, args: &CompareArgs) -> Asked {
         Ok(Err(error)) => return Asked::refused(name, sentence(&error)),
         Err(fault) => return Asked::refused(name.clone(), format!("{name}: {fault}")),
     };
-    if let Some(compliance) = args.compliance {
-        scenario.compliance = compliance;
-    }
+    args.asked.apply_rules(&mut scenario);
     let risks = if args.max_risk.is_empty() {
         vec![scenario.max_risk]
     } else {
@@ -146,7 +144,8 @@ fn sentence(error: &ScenarioError) -> String {
 fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     match method {
         Method::Planner { kind, search, .. } => {
-            args.planner.is_none_or(|k| k == *kind) && args.search.is_none_or(|s| s == *search)
+            let asked = &args.asked;
+            asked.planner.is_none_or(|k| k == *kind) && asked.search.is_none_or(|s| s == *search)
         }
         Method::HoldCourse | Method::ConstantVelocity => true,
     }
@@ -264,7 +263,7 @@ fn write(args: &CompareArgs, compared: &[Compared]) -> anyhow::Result<Status> {
         // the message names its cause already
         write_atomically(file, &bytes).map_err(|error| anyhow!("{error}"))?;
     }
-    if let Some(file) = &args.figure {
+    if let Some(file) = &args.written.figure {
         let drawn: Vec<(&Scenario, &[Entry])> = compared
             .iter()
             .filter_map(|c| Some((c.asked.scenario.as_ref().ok()?, c.entries.as_slice())))
@@ -299,7 +298,7 @@ fn report(compared: &[Compared], products: &Products) -> Result<(), (Status, Str
 }
 
 fn show(args: &CompareArgs, compared: &[Compared], output: &Output) -> Status {
-    if args.json {
+    if args.written.json {
         return output.document(&ComparisonDocument {
             comparisons: compared.iter().map(Compared::document).collect(),
         });

@@ -56,7 +56,7 @@ pub fn suite(
         }
     });
     let document = LintDocument::of(documents.collect());
-    let shown = if args.shared.json {
+    let shown = if args.shared.written.json {
         output.document(&document)
     } else {
         output.result(&lint_text(&document, output.colour))

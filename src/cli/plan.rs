@@ -43,7 +43,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
         return Status::BadInput;
     }
     let found: Vec<_> = scenes.iter().map(|scene| scene.found.clone()).collect();
-    let products = match Products::prepare(&found, args.shared.wanted()) {
+    let products = match Products::prepare(&found, args.shared.written.wanted()) {
         Ok(products) => products,
         Err(error) => {
             output.error(&format_args!("{error:#}"));
@@ -58,7 +58,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
                     output.note(&note);
                 }
                 let no_return = args.no_return.then(|| run.no_return()).flatten();
-                let shown = if args.shared.json {
+                let shown = if args.shared.written.json {
                     let mut document = PlanDocument::of(&run);
                     document.time_of_no_return_s = no_return.map(NoReturn::time);
                     output.document(&document)

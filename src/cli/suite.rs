@@ -67,7 +67,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     let found: Vec<Found> = all.iter().flatten().map(|s| s.found.clone()).collect();
     let wanted = Wanted {
         plans: args.plans.as_deref(),
-        ..args.shared.wanted()
+        ..args.shared.written.wanted()
     };
     let products = match Products::prepare(&found, wanted) {
         Ok(products) => products,
@@ -106,7 +106,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
         output.error(&error);
         tally.status = tally.status.max(Some(status));
     }
-    let shown = if args.shared.json {
+    let shown = if args.shared.written.json {
         output.document(&document)
     } else {
         let table = suite_table(&tally.rows, output.colour);

@@ -14,6 +14,7 @@ pub use baseline::{Baseline, constant_velocity, hold_course};
 pub(crate) use look::Look;
 pub use method::Method;
 
+use crate::colregs::conduct::{Conduct, Meeting};
 use crate::evaluation::Evaluation;
 use crate::frame::Vector;
 use crate::obstacle::{Obstacle, PeakRisk};
@@ -181,6 +182,19 @@ impl Entry {
             Sailed::Baseline(baseline) => &baseline.risks,
             Sailed::Nothing(_) => &[],
         }
+    }
+
+    /// What two judges say of own ship toward each target that is a ship, by the thresholds that the scenario asks for; empty
+    /// without a motion. They see the motion and the target's nominal track alone. O(targets x seconds).
+    pub fn conduct(&self, scenario: &Scenario) -> Vec<Conduct> {
+        let (Some(trajectory), Some(thresholds)) = (self.trajectory(), scenario.judged_by()) else {
+            return Vec::new();
+        };
+        let ships = scenario.targets.iter().filter_map(|target| target.ship());
+        let meetings = ships.map(|ship| Meeting::along(trajectory, scenario.own_ship.hull, ship));
+        meetings
+            .map(|meeting| Conduct::judge(&meeting, thresholds))
+            .collect()
     }
 
     /// True when the motion ends at the last waypoint.

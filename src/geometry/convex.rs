@@ -153,7 +153,7 @@ impl ConvexPolygon {
                 kept += 1;
             }
         }
-        if v.len() > 2 {
+        if v.len() > 2 && !is_wide(&v, extent) {
             let (a, b) = farthest_pair(&v);
             let axis = (b - a) / (b - a).norm();
             let (mut low, mut high) = (0.0_f64, 0.0_f64);
@@ -360,6 +360,19 @@ fn extent(points: &[Vector]) -> f64 {
         (high - low).norm()
     }
 }
+
+/// True where a convex polygon is wider than the thinnest that is one, by [`WIDE`]: its area is at most its width times its extent.
+/// O(vertices), where [`farthest_pair`] looks at every pair.
+fn is_wide(vertices: &[Vector], extent: f64) -> bool {
+    let from = |p: &Vector| p - vertices[0];
+    let twice: f64 = (vertices.windows(2))
+        .map(|side| cross(from(&side[0]), from(&side[1])))
+        .sum();
+    twice > 2.0 * WIDE * tolerance::THIN * extent * extent
+}
+
+/// Far above the roundings of an area.
+const WIDE: f64 = 1e3;
 
 fn farthest_pair(points: &[Vector]) -> (Vector, Vector) {
     let mut best = (points[0], points[0]);

@@ -10,7 +10,7 @@ use crate::frame::Side;
 use crate::scenario::Scenario;
 
 /// Units below the names, so that the table fits a terminal.
-pub(super) const HEADER: [&str; 13] = [
+pub(super) const HEADER: [&str; 14] = [
     "method",
     "outcome",
     "J\n[m²]",
@@ -24,6 +24,7 @@ pub(super) const HEADER: [&str; 13] = [
     "nodes\nexpanded",
     "time\n[ms]",
     "verified",
+    "breaks",
 ];
 
 /// The column of the time that planning took.
@@ -78,6 +79,9 @@ pub struct ComparisonRow {
     pub largest_risk: Option<f64>,
     /// The largest alteration to one side; `None` also without any.
     pub largest_turn: Option<Turn>,
+    /// The rules of the road that it breaks toward any target, and the monitors that it violates, each once, sorted; `None` without a
+    /// motion and without ships.
+    pub broken: Option<Vec<&'static str>>,
     /// Nodes expanded; `None` for a baseline.
     pub expanded: Option<usize>,
     /// Wall-clock milliseconds of planning, with others at the same time; `None` for a baseline.
@@ -94,6 +98,10 @@ impl ComparisonRow {
             Sailed::Planned(run) => Some(run),
             Sailed::Baseline(_) | Sailed::Nothing(_) => None,
         };
+        let conduct = entry.conduct(scenario);
+        let mut broken: Vec<_> = conduct.iter().flat_map(|c| c.broken()).collect();
+        broken.sort_unstable();
+        broken.dedup();
         Self {
             method: entry.contender.method,
             max_risk: entry.contender.max_risk,
@@ -122,6 +130,7 @@ impl ComparisonRow {
             largest_turn: entry
                 .trajectory()
                 .and_then(|t| largest_alteration(t, scenario.own_ship.pose.heading)),
+            broken: (!conduct.is_empty()).then_some(broken),
             expanded: run.map(|run| run.planned.stats.expanded),
             milliseconds: run.map(|run| run.plan_time.as_secs_f64() * 1e3),
         }
@@ -149,8 +158,8 @@ pub fn comparison_table(
     if sweep {
         header.insert(2, ACCEPTED);
     }
-    let last = header.len() - 1;
-    let mut table = figures(&header, 2..last, colour);
+    let words = header.len() - 2;
+    let mut table = figures(&header, 2..words, colour);
     for row in rows {
         let mut cells = cells(row);
         if sweep {
@@ -224,7 +233,7 @@ fn in_cell(text: &str) -> String {
 }
 
 /// A row as texts, in the order of [`HEADER`].
-pub(super) fn texts(row: &ComparisonRow) -> [(String, Tone); 13] {
+pub(super) fn texts(row: &ComparisonRow) -> [(String, Tone); 14] {
     let text = |value: Option<String>| (value.unwrap_or_else(|| "–".to_owned()), Tone::Plain);
     let tenths = |value: f64| format!("{value:.1}");
     let moved = row.verified.is_some();
@@ -247,6 +256,11 @@ pub(super) fn texts(row: &ComparisonRow) -> [(String, Tone); 13] {
         text(row.expanded.map(|n| n.to_string())),
         text(row.milliseconds.map(|ms| format!("{ms:.2}"))),
         said(row.verified.filter(|_| row.is_planned())),
+        match &row.broken {
+            None => text(None),
+            Some(broken) if broken.is_empty() => ("nothing".to_owned(), Tone::Good),
+            Some(broken) => (broken.join(", "), Tone::Fair),
+        },
     ]
 }
 
@@ -264,7 +278,7 @@ fn short(turn: Turn) -> String {
 }
 
 /// The columns of [`comparison_csv`].
-pub const COMPARISON_COLUMNS: [&str; 19] = [
+pub const COMPARISON_COLUMNS: [&str; 20] = [
     "file",
     "scenario",
     "method",
@@ -281,13 +295,14 @@ pub const COMPARISON_COLUMNS: [&str; 19] = [
     "largest_risk",
     "largest_turn_deg",
     "largest_turn_side",
+    "breaks",
     "expanded",
     "plan_ms",
     "reason",
 ];
 
 /// A row of values in the order of [`COMPARISON_COLUMNS`]; empty where there is none.
-pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 19] {
+pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 20] {
     let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let word = |value: Option<bool>| value.map_or_else(String::new, |v| v.to_string());
     [
@@ -308,6 +323,9 @@ pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 
         number(row.largest_turn.map(|t| t.degrees)),
         row.largest_turn
             .map_or_else(String::new, |t| t.side.to_string()),
+        row.broken
+            .as_ref()
+            .map_or_else(String::new, |b| b.join(" ")),
         row.expanded.map_or_else(String::new, |n| n.to_string()),
         number(row.milliseconds),
         row.reason.clone().unwrap_or_default(),

@@ -100,8 +100,15 @@ impl Conduct {
 
     /// True when neither judge finds a rule broken.
     pub fn complies(&self) -> bool {
-        let broken = |f: &Finding| f.verdict == Verdict::Violated;
-        self.breaches.is_empty() && !self.findings.iter().any(broken)
+        self.broken().next().is_none()
+    }
+
+    /// The rules that the first judge finds broken, and the monitors that the second finds violated, by their names; a rule may be there
+    /// more than once.
+    pub fn broken(&self) -> impl Iterator<Item = &'static str> {
+        let violated = |f: &&Finding| f.verdict == Verdict::Violated;
+        let monitors = self.findings.iter().filter(violated).map(|f| f.monitor);
+        self.breaches.iter().map(|b| b.rule).chain(monitors)
     }
 }
 

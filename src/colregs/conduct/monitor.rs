@@ -105,6 +105,8 @@ pub struct Finding {
 /// A trace with what is measured.
 struct Trace<'a> {
     sights: &'a [Sight],
+    /// Own ship's in each of the sights.
+    roles: Vec<Option<Role>>,
     t: &'a Thresholds,
     target_length: f64,
 }
@@ -139,8 +141,10 @@ impl Trace<'_> {
     }
 
     fn role(&self, sight: &Sight) -> Option<Role> {
-        let role = role_within(&sight.own, &sight.target, &self.t.sectors);
-        role.filter(|_| self.collision_possible(sight))
+        if !self.collision_possible(sight) {
+            return None;
+        }
+        role_within(&sight.own, &sight.target, &self.t.sectors)
     }
 
     /// The role is still the same after the time to react, if both hold course and speed.
@@ -163,11 +167,8 @@ impl Trace<'_> {
 
     /// Where a role begins, and how long it stays.
     fn stretches(&self, wanted: impl Fn(Role) -> bool) -> Vec<Stretch> {
-        let has: Vec<bool> = self
-            .sights
-            .iter()
-            .map(|s| self.role(s).is_some_and(&wanted))
-            .collect();
+        let roles = self.roles.iter();
+        let has: Vec<bool> = roles.map(|role| role.is_some_and(&wanted)).collect();
         let mut found: Vec<Stretch> = Vec::new();
         for k in 0..has.len() {
             if has[k] && (k == 0 || !has[k - 1]) {
@@ -268,11 +269,13 @@ impl Trace<'_> {
 
 /// Every monitor over one meeting. O(sights).
 pub fn monitors(meeting: &Meeting, t: &Thresholds) -> [Finding; 5] {
-    let trace = Trace {
+    let mut trace = Trace {
         sights: meeting.sights(),
+        roles: Vec::new(),
         t,
         target_length: meeting.target_length(),
     };
+    trace.roles = trace.sights.iter().map(|s| trace.role(s)).collect();
     [
         trace.apart(),
         trace.turns("R3", Role::GiveWay, false),

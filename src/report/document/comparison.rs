@@ -104,6 +104,8 @@ pub struct EntryDocument {
     /// Positive.
     pub largest_turn_deg: Option<f64>,
     pub largest_turn_side: Option<String>,
+    /// Rules and monitors; null without a motion and without ships.
+    pub breaks: Option<Vec<String>>,
     pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
     /// Every five seconds, or every thousandth part of a motion of more than 5000 s, and at the end.
@@ -218,6 +220,8 @@ impl EntryDocument {
             }),
             largest_turn_deg: row.largest_turn.map(|turn| turn.degrees),
             largest_turn_side: row.largest_turn.map(|turn| turn.side.to_string()),
+            breaks: (row.broken.as_ref())
+                .map(|broken| broken.iter().map(|rule| (*rule).to_owned()).collect()),
             search_stats: run.map(|run| stats(run)),
             timing: run.map(|run| timing(run)),
             track: track(entry),
