@@ -165,13 +165,15 @@ pub fn log_legend(
 ) -> RecordingStreamResult<()> {
     let bounds = stage.bounds;
     let columns = entries.len().div_ceil(rows.max(1)).max(1);
-    let width = bounds.size().x / columns as f64;
+    // the view is wider than it is high: beside a sea that is not there is room
+    let whole = bounds.size().x.max(LEGEND_SHAPE * bounds.size().y);
+    let width = whole / columns as f64;
     let mut lines = Lines::default();
     let mut labels = Vec::new();
     for (index, (label, color, radius)) in entries.into_iter().enumerate() {
         let (row, column) = (index / columns, index % columns);
         let north = bounds.low.y - (0.25 + LEGEND_ROW * row as f64) * legend_height(stage, 1);
-        let west = bounds.low.x + width * (column as f64 + 0.2);
+        let west = bounds.center().x - 0.5 * whole + width * (column as f64 + 0.2);
         let ends = [
             Vector::new(west, north),
             Vector::new(west + 0.6 * width, north),
@@ -184,6 +186,9 @@ pub fn log_legend(
         &lines.archetype().with_labels(labels).with_show_labels(true),
     )
 }
+
+/// Of the height of the sea that is shown: the least width of a legend.
+const LEGEND_SHAPE: f64 = 1.25;
 
 /// Of the height of a legend of one row: what each further one adds.
 const LEGEND_ROW: f64 = 0.7;
@@ -308,6 +313,8 @@ fn log_time_marks(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()
     let times: Vec<f64> = multiples(0.0, scene.end, mark_step(scene))
         .skip(1)
         .collect();
+    // who has arrived has no further places
+    let times = scene.motion.until_arrival(&times);
     let points = times
         .iter()
         .map(|&t| flat(scene.motion.pose_at(t).position));

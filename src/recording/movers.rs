@@ -129,7 +129,9 @@ fn log_target(
         lines.add(vec![[0.0, 0.0], flat(tip)], color, style::points(0.8));
     }
     let lines = lines.archetype();
-    let parts: [&dyn AsComponents; 2] = [&lines, &label(stage, color, &target.name)];
+    let way = target.position_at(stage.end) - target.position_at(0.0);
+    let name = label(stage, color, &target.name, way);
+    let parts: [&dyn AsComponents; 2] = [&lines, &name];
     let places = stage.moments.iter().map(|&t| target.position_at(t));
     log_places(rec, stage, entity, &parts, places)
 }
@@ -142,7 +144,7 @@ pub fn log_own_ship(
     own: &OwnShip,
     named: bool,
 ) -> RecordingStreamResult<()> {
-    let name = label(stage, own.color, &own.name).with_show_labels(named);
+    let name = label(stage, own.color, &own.name, stage.ahead()).with_show_labels(named);
     let places = stage
         .moments
         .iter()
@@ -239,10 +241,15 @@ pub fn vector_seconds(stage: &Stage) -> f64 {
     round_down(stage.end / 6.0)
 }
 
-/// A name north of the ship: the time marks have theirs south of the track.
-fn label(stage: &Stage, color: Color, name: &str) -> Points2D {
-    let off = stage.bounds.extent() / 22.0;
-    Points2D::new([[0.0, off as f32]])
+/// A name beside the track of a ship that goes a way: north of one to the east or west, the time marks have theirs south of it; to
+/// port of others, farther off, as names are wide.
+fn label(stage: &Stage, color: Color, name: &str, way: Vector) -> Points2D {
+    let off = if way.x.abs() >= way.y.abs() {
+        Vector::new(0.0, stage.bounds.extent() / 22.0)
+    } else {
+        Vector::new(-way.y.signum() * stage.bounds.extent() / 9.0, 0.0)
+    };
+    Points2D::new([flat(off)])
         .with_colors([color])
         .with_radii([style::points(0.0)])
         .with_labels([name])

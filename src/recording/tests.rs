@@ -134,13 +134,37 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
     }
 }
 
+/// The names of the stores: the viewer takes two recordings of one name for one.
+fn names(bytes: &[u8]) -> Vec<String> {
+    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::DEFAULT, &mut &bytes[..]);
+    let stores = stores.expect("reads");
+    let mut names: Vec<String> = stores.keys().map(|id| format!("{id:?}")).collect();
+    names.sort();
+    names
+}
+
 #[test]
-fn the_same_run_twice_has_the_same_content() {
+fn the_same_run_twice_has_the_same_bytes_but_for_its_times() {
     let folder = tempfile::tempdir().expect("folder");
-    let (first, second) = (folder.path().join("1.rrd"), folder.path().join("2.rrd"));
-    write(&run(), None, &first).expect("writes");
-    write(&run(), None, &second).expect("writes");
-    assert_eq!(read(&first), read(&second));
+    let written = |run: &Run, document: Option<&str>| {
+        let path = folder.path().join("a.rrd");
+        write(run, document, &path).expect("writes");
+        std::fs::read(path).expect("a file")
+    };
+    let first = written(&run(), Some("{\"plan_s\": 0.25}"));
+    assert_eq!(first, written(&run(), Some("{\"plan_s\": 0.25}")));
+    let later = written(&run(), Some("{\"plan_s\": 0.75}"));
+    let differs = first.iter().zip(&later).filter(|(a, b)| a != b).count();
+    assert!(first.len() == later.len() && differs == 1, "{differs}");
+    // what holds other things is another recording
+    assert_eq!(names(&first), names(&later));
+    for other in [written(&run(), None), written(&run_without_plan(), None)] {
+        assert!(
+            names(&other)
+                .iter()
+                .all(|name| !names(&first).contains(name))
+        );
+    }
 }
 
 #[test]
@@ -283,6 +307,10 @@ fn a_comparison_is_one_recording_with_every_motion() {
     let scenario = scenario();
     let path = folder.path().join("compared.rrd");
     let recorded = recorded_comparison(&scenario, &path);
+    let again = folder.path().join("again.rrd");
+    recorded_comparison(&scenario, &again);
+    let bytes = |path: &Path| std::fs::read(path).expect("a file");
+    assert!(bytes(&path) == bytes(&again));
     assert_eq!(
         recorded.comparison(),
         Some("{\"plan_s\": 0.25, \"more\": [{\"plan_s\": 3}]}")

@@ -6,7 +6,7 @@ use super::program::{document, searoom, stdout, text, untimed, write};
 use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 #[test]
 fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
@@ -568,6 +568,46 @@ fn the_rules_are_judged_by_what_is_asked_for() {
         safety(&mine)
     );
     searoom(&["suite", stand_on, "--thresholds", "sfi-autoship"]).success();
+}
+
+#[test]
+fn a_comparison_says_what_each_method_breaks_by_the_thresholds_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let compared = |args: &[&str]| {
+        let all = [
+            &["compare", "scenarios/colregs/stand-on.toml", "--json"],
+            args,
+        ]
+        .concat();
+        let compared = untimed(document(&searoom(&all).success()));
+        compared["comparisons"][0]["entries"].clone()
+    };
+    let usual = compared(&[]);
+    let of = |method: &str, entries: &Value| {
+        let mut entries = entries.as_array().expect("entries").iter();
+        let entry = entries.find(|e| e["method"] == method).expect("one");
+        entry["breaks"].clone()
+    };
+    assert_eq!(of("space-time, A*", &usual), json!(["17(c)", "R6"]));
+    assert_eq!(of("path-time", &usual), json!([]));
+    // the hulls meet
+    assert_eq!(of("hold course", &usual), json!(["S"]));
+    // who need not hold her course has nothing to be violated
+    let text = "name = 'mine'\nsource = 'a test'\nlike = 'searoom'\nhold_deg = 180";
+    let file = write(folder.path(), "mine.toml", text);
+    let mine = compared(&["--thresholds", &file]);
+    assert_eq!(of("space-time, A*", &mine), json!(["17(c)"]));
+    for (usual, mine) in usual
+        .as_array()
+        .into_iter()
+        .flatten()
+        .zip(mine.as_array().into_iter().flatten())
+    {
+        assert_eq!(usual["track"], mine["track"]);
+    }
+    searoom(&["compare", "scenarios/colregs", "--thresholds", "nobody"])
+        .code(2)
+        .stderr(contains("allowed: searoom, dnv-trafficgen, sfi-autoship"));
 }
 
 #[test]
