@@ -188,7 +188,7 @@ pub fn log_legend(
 }
 
 /// Of the height of the sea that is shown: the least width of a legend.
-const LEGEND_SHAPE: f64 = 1.25;
+const LEGEND_SHAPE: f64 = 1.5;
 
 /// Of the height of a legend of one row: what each further one adds.
 const LEGEND_ROW: f64 = 0.7;

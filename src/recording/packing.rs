@@ -125,3 +125,53 @@ fn digest(parts: &[ArrowMsg]) -> u128 {
         },
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use rerun::{ChunkStore, ChunkStoreConfig};
+
+    use super::super::write;
+    use crate::pipeline::{self, Run};
+    use crate::scenario::Scenario;
+
+    fn run(file: &str) -> Run {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("scenarios")
+            .join(file);
+        pipeline::run(Scenario::read(&file).expect("valid"))
+    }
+
+    /// The names of the stores: the viewer takes two recordings of one name for one.
+    fn names(bytes: &[u8]) -> Vec<String> {
+        let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::DEFAULT, &mut &bytes[..]);
+        let stores = stores.expect("reads");
+        let mut names: Vec<String> = stores.keys().map(|id| format!("{id:?}")).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn the_same_run_twice_has_the_same_bytes_but_for_its_times() {
+        let folder = tempfile::tempdir().expect("folder");
+        let written = |run: &Run, document: Option<&str>| {
+            let path = folder.path().join("a.rrd");
+            write(run, document, &path).expect("writes");
+            std::fs::read(path).expect("a file")
+        };
+        let head_on = || run("colregs/head-on.toml");
+        let first = written(&head_on(), Some("{\"plan_s\": 0.25}"));
+        assert!(first == written(&head_on(), Some("{\"plan_s\": 0.25}")));
+        let later = written(&head_on(), Some("{\"plan_s\": 0.75}"));
+        let differs = first.iter().zip(&later).filter(|(a, b)| a != b).count();
+        assert!(first.len() == later.len() && differs == 1, "{differs}");
+        // what holds other things is another recording
+        assert_eq!(names(&first), names(&later));
+        let give_way = run("colregs/give-way.toml");
+        for other in [written(&head_on(), None), written(&give_way, None)] {
+            let (first, other) = (names(&first), names(&other));
+            assert!(other.iter().all(|name| !first.contains(name)), "{other:?}");
+        }
+    }
+}

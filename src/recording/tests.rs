@@ -134,39 +134,6 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
     }
 }
 
-/// The names of the stores: the viewer takes two recordings of one name for one.
-fn names(bytes: &[u8]) -> Vec<String> {
-    let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::DEFAULT, &mut &bytes[..]);
-    let stores = stores.expect("reads");
-    let mut names: Vec<String> = stores.keys().map(|id| format!("{id:?}")).collect();
-    names.sort();
-    names
-}
-
-#[test]
-fn the_same_run_twice_has_the_same_bytes_but_for_its_times() {
-    let folder = tempfile::tempdir().expect("folder");
-    let written = |run: &Run, document: Option<&str>| {
-        let path = folder.path().join("a.rrd");
-        write(run, document, &path).expect("writes");
-        std::fs::read(path).expect("a file")
-    };
-    let first = written(&run(), Some("{\"plan_s\": 0.25}"));
-    assert_eq!(first, written(&run(), Some("{\"plan_s\": 0.25}")));
-    let later = written(&run(), Some("{\"plan_s\": 0.75}"));
-    let differs = first.iter().zip(&later).filter(|(a, b)| a != b).count();
-    assert!(first.len() == later.len() && differs == 1, "{differs}");
-    // what holds other things is another recording
-    assert_eq!(names(&first), names(&later));
-    for other in [written(&run(), None), written(&run_without_plan(), None)] {
-        assert!(
-            names(&other)
-                .iter()
-                .all(|name| !names(&first).contains(name))
-        );
-    }
-}
-
 #[test]
 fn a_run_without_a_plan_is_recorded_too() {
     let folder = tempfile::tempdir().expect("folder");

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{TokenStream, TokenTree};
 
+use super::module_of;
+
 /// The text of every source file by its path below `src/`.
 pub type Sources = BTreeMap<String, String>;
 
@@ -81,15 +83,6 @@ fn resolved(at: &[String], path: &[String]) -> Vec<String> {
             "super" => drop(module.pop()),
             _ => module.push(step.clone()),
         }
-    }
-    module
-}
-
-fn module_of(path: &str) -> Vec<String> {
-    let stem = path.strip_suffix(".rs").unwrap_or(path);
-    let mut module: Vec<String> = stem.split('/').map(str::to_owned).collect();
-    if module.last().is_some_and(|m| m == "mod" || m == "lib") {
-        module.pop();
     }
     module
 }
