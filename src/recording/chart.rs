@@ -166,7 +166,8 @@ pub fn log_legend(
     let bounds = stage.bounds;
     let columns = entries.len().div_ceil(rows.max(1)).max(1);
     // the view is wider than it is high: beside a sea that is not there is room
-    let whole = bounds.size().x.max(LEGEND_SHAPE * bounds.size().y);
+    let height = bounds.size().y + legend_height(stage, rows);
+    let whole = bounds.size().x.max(LEGEND_SHAPE * height);
     let width = whole / columns as f64;
     let mut lines = Lines::default();
     let mut labels = Vec::new();
@@ -187,8 +188,8 @@ pub fn log_legend(
     )
 }
 
-/// Of the height of the sea that is shown: the least width of a legend.
-const LEGEND_SHAPE: f64 = 1.5;
+/// Of the height of the view: the least width of a legend.
+const LEGEND_SHAPE: f64 = 1.36;
 
 /// Of the height of a legend of one row: what each further one adds.
 const LEGEND_ROW: f64 = 0.7;

@@ -35,6 +35,13 @@ pub struct OwnShip<'a> {
     pub color: Color,
 }
 
+/// Where a name is beside a track to the north or the south.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    West,
+    East,
+}
+
 /// Everything on the chart that moves.
 pub fn log_movers(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     log_others(rec, scene)?;
@@ -130,7 +137,7 @@ fn log_target(
     }
     let lines = lines.archetype();
     let way = target.position_at(stage.end) - target.position_at(0.0);
-    let name = label(stage, color, &target.name, way);
+    let name = label(stage, color, &target.name, way, Side::East);
     let parts: [&dyn AsComponents; 2] = [&lines, &name];
     let places = stage.moments.iter().map(|&t| target.position_at(t));
     log_places(rec, stage, entity, &parts, places)
@@ -144,7 +151,8 @@ pub fn log_own_ship(
     own: &OwnShip,
     named: bool,
 ) -> RecordingStreamResult<()> {
-    let name = label(stage, own.color, &own.name, stage.ahead()).with_show_labels(named);
+    let name = label(stage, own.color, &own.name, stage.ahead(), Side::West);
+    let name = name.with_show_labels(named);
     let places = stage
         .moments
         .iter()
@@ -241,13 +249,14 @@ pub fn vector_seconds(stage: &Stage) -> f64 {
     round_down(stage.end / 6.0)
 }
 
-/// A name beside the track of a ship that goes a way: north of one to the east or west, the time marks have theirs south of it; to
-/// port of others, farther off, as names are wide.
-fn label(stage: &Stage, color: Color, name: &str, way: Vector) -> Points2D {
-    let off = if way.x.abs() >= way.y.abs() {
-        Vector::new(0.0, stage.bounds.extent() / 22.0)
-    } else {
-        Vector::new(-way.y.signum() * stage.bounds.extent() / 9.0, 0.0)
+/// A name beside the track of a ship that goes a way: north of one to the east or west, the time marks have theirs south of it; on a side
+/// of others, farther off, as names are wide.
+fn label(stage: &Stage, color: Color, name: &str, way: Vector, side: Side) -> Points2D {
+    let extent = stage.bounds.extent();
+    let off = match side {
+        _ if way.x.abs() >= way.y.abs() => Vector::new(0.0, extent / 22.0),
+        Side::West => Vector::new(-extent / 9.0, 0.0),
+        Side::East => Vector::new(extent / 9.0, 0.0),
     };
     Points2D::new([flat(off)])
         .with_colors([color])
