@@ -39,7 +39,7 @@ impl Effort {
     /// plan of the graph that is not its best is as good a beginning as a rule. In haste first; what cannot be had so
     /// is had sooner with bounds that hold more of the truth.
     pub(crate) const AMONG_SEVERAL: Self = Self {
-        stages: &[(20, 1.0), (200, 4.0), (1_300, 2.0)],
+        stages: &[(20, 1.0), (200, 4.0), (1_300, 2.5)],
         manoeuvres: 2,
         places: &[(0, 6), (1, 3), (2, 2), (6, 1)],
         steps: MAX_STEPS,
