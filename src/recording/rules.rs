@@ -73,6 +73,7 @@ fn broken(conduct: &Conduct) -> Vec<Broken> {
         let short = match finding.measure {
             Measure::Distance => format!("{short:.1} m"),
             Measure::Angle => format!("{:.0}°", deg_from_radians(short)),
+            Measure::Time => format!("{short:.0} s"),
         };
         let rule = format!("monitor {}", finding.monitor);
         Broken {

@@ -34,6 +34,7 @@ pub(super) fn lines(run: &Run) -> Vec<(&'static str, String)> {
             let short = match finding.measure {
                 Measure::Distance => format!("{:.1} m", -worst),
                 Measure::Angle => format!("{:.0}°", deg_from_radians(-worst)),
+                Measure::Time => format!("{:.0} s", -worst),
             };
             lines.push((
                 "",

@@ -27,6 +27,8 @@ pub struct Sight {
     pub target: SteadyShip,
     /// Between the hulls, metres, negative in overlap.
     pub apart: f64,
+    /// Seconds until the hulls meet if both hold course and speed; infinite where they never do.
+    pub meets_in: f64,
 }
 
 /// Where two ships that hold course and speed will be nearest.
@@ -128,11 +130,21 @@ impl Meeting {
                         speed: target.speed,
                     },
                 ];
+                let between = between(&own, &ships[0], &target.hull, &ships[1]);
+                let apart = between.signed_distance(Vector::zeros());
+                let closing = ships[0].velocity() - ships[1].velocity();
+                // negated on purpose: a NaN is a meeting
+                let meets_in = if !(apart > 0.0) {
+                    0.0
+                } else {
+                    seconds_to(&between, closing)
+                };
                 Sight {
                     time,
                     own: ships[0],
                     target: ships[1],
-                    apart: apart(&own, &ships[0], &target.hull, &ships[1]),
+                    apart,
+                    meets_in,
                 }
             })
             .collect();
@@ -159,9 +171,25 @@ impl Meeting {
     }
 }
 
-fn apart(own: &Hull, a: &SteadyShip, target: &Hull, b: &SteadyShip) -> f64 {
-    let between: ConvexPolygon = target
+/// Where own ship's centre meets the target's hull, about the target's centre less own ship's.
+fn between(own: &Hull, a: &SteadyShip, target: &Hull, b: &SteadyShip) -> ConvexPolygon {
+    target
         .polygon(&b.pose)
-        .minkowski_sum(&own.polygon(&a.pose).negated());
-    between.signed_distance(Vector::zeros())
+        .minkowski_sum(&own.polygon(&a.pose).negated())
+}
+
+/// Seconds until a point that leaves the origin at a velocity is in a set; infinite where it never is.
+fn seconds_to(set: &ConvexPolygon, velocity: Vector) -> f64 {
+    let (mut from, mut until) = (0.0_f64, f64::INFINITY);
+    for normal in set.normals() {
+        let (rate, room) = (normal.dot(&velocity), set.support(normal));
+        if rate > 0.0 {
+            until = until.min(room / rate);
+        } else if rate < 0.0 {
+            from = from.max(room / rate);
+        } else if room < 0.0 {
+            return f64::INFINITY;
+        }
+    }
+    if from > until { f64::INFINITY } else { from }
 }

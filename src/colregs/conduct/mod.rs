@@ -78,7 +78,7 @@ pub struct Conduct {
     /// In the first of them, in order of time.
     pub breaches: Vec<Breach>,
     /// Over the whole of the meeting.
-    pub findings: [Finding; 5],
+    pub findings: [Finding; 6],
 }
 
 impl Conduct {

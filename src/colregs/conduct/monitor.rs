@@ -69,6 +69,8 @@ pub enum Measure {
     Distance,
     /// Radians.
     Angle,
+    /// Seconds.
+    Time,
 }
 
 /// One formula over one trace.
@@ -90,7 +92,7 @@ pub enum Measure {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
-    /// `S`, `R3` (crossing), `R4` (head-on), `R5` (overtaking) or `R6` (stand-on).
+    /// `S`, `R1` (in extremis), `R3` (crossing), `R4` (head-on), `R5` (overtaking) or `R6` (stand-on).
     pub monitor: &'static str,
     /// What was found.
     pub verdict: Verdict,
@@ -242,6 +244,25 @@ impl Trace<'_> {
         Self::finding("S", Measure::Distance, Some(worst), false)
     }
 
+    /// `G(the hulls would meet within the time to manoeuvre if both held on -> F that ends before they meet)`: an escape is in execution.
+    fn leaves_extremis(&self) -> Finding {
+        // negated on purpose: what is not known to be later is within
+        let within = |s: &&Sight| !(s.meets_in > self.t.monitor.manoeuvre);
+        let in_extremis = self.sights.iter().filter(within);
+        let worst = in_extremis
+            .map(|s| (s.meets_in, s.time))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let finding = Self::finding("R1", Measure::Time, worst, false);
+        let open = self.sights.last().is_some_and(|s| within(&s));
+        match finding.verdict {
+            Verdict::Satisfied if open => Finding {
+                verdict: Verdict::Undecided,
+                ..finding
+            },
+            _ => finding,
+        }
+    }
+
     fn finding(
         monitor: &'static str,
         measure: Measure,
@@ -268,7 +289,7 @@ impl Trace<'_> {
 }
 
 /// Every monitor over one meeting. O(sights).
-pub fn monitors(meeting: &Meeting, t: &Thresholds) -> [Finding; 5] {
+pub fn monitors(meeting: &Meeting, t: &Thresholds) -> [Finding; 6] {
     let mut trace = Trace {
         sights: meeting.sights(),
         roles: Vec::new(),
@@ -278,6 +299,7 @@ pub fn monitors(meeting: &Meeting, t: &Thresholds) -> [Finding; 5] {
     trace.roles = trace.sights.iter().map(|s| trace.role(s)).collect();
     [
         trace.apart(),
+        trace.leaves_extremis(),
         trace.turns("R3", Role::GiveWay, false),
         trace.turns("R4", Role::HeadOn, false),
         trace.turns("R5", Role::Overtaking, true),

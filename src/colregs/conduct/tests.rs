@@ -113,8 +113,37 @@ fn nothing_done_is_a_collision_and_scores_nothing() {
             idle.scores.by_name().iter().all(|(_, s)| *s == 0.0),
             "{idle:?}"
         );
-        assert!(rules(&idle).contains(&"8(d)") && violated(&idle).contains(&"S"));
+        assert!(rules(&idle).contains(&"8(d)"));
+        assert_eq!(violated(&idle)[..2], ["S", "R1"]);
     }
+}
+
+/// Reciprocal at 6 m/s each, hulls of one length: they meet when the centres are a length apart.
+#[test]
+fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
+    let left = |turn_at: f64| {
+        let legs = [(0.0, turn_at), (-0.9, 200.0)];
+        let found = conduct(&legs, 1440.0, 0.0, PI, 6.0).findings[1];
+        assert_eq!((found.monitor, found.measure), ("R1", Measure::Time));
+        (found.verdict, found.robustness)
+    };
+    let meets = (1440.0 - HULL.length) / 12.0;
+    let (verdict, seconds) = left(meets - 50.0);
+    assert_eq!(verdict, Verdict::Satisfied);
+    let seconds = seconds.expect("in extremis");
+    assert!(seconds < 50.0 && seconds > 40.0, "{seconds}");
+    assert_eq!(left(20.0), (Verdict::Idle, None));
+    assert_eq!(left(meets), (Verdict::Violated, Some(0.0)));
+    // the plan ends on the way to the meeting
+    let own = planned(&[(0.0, meets - 30.0)], 6.0);
+    let meeting = Meeting::along(
+        &own,
+        HULL,
+        &track(Pose::new(Vector::new(1440.0, 0.0), PI), 6.0),
+    );
+    let found = Conduct::judge(&meeting, standard()).findings[1];
+    assert_eq!(found.verdict, Verdict::Undecided);
+    assert!((found.robustness.expect("in extremis") - 30.0).abs() < 1e-6);
 }
 
 #[test]

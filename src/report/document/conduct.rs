@@ -127,6 +127,7 @@ impl ConductDocument {
                     let (unit, scale): (_, fn(f64) -> f64) = match finding.measure {
                         Measure::Distance => ("m", |metres| metres),
                         Measure::Angle => ("deg", deg_from_radians),
+                        Measure::Time => ("s", |seconds| seconds),
                     };
                     MonitorDocument {
                         monitor: finding.monitor.to_owned(),
