@@ -59,14 +59,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         "```text\ncargo run --release --no-default-features --example leaderboard > docs/benchmarks.md\n```\n"
     );
     println!(
-        "*Clear*: a plan that enters no set that is declared, verified. *Relaxed*: of those, with shapes drawn back or not by the rules. *Complies*: neither judge of \
-         [rules.md](rules.md) finds a rule broken, thresholds of the profile `searoom`. *Score*: the mean over targets of the least of the scores. Milliseconds of planning on one core, \
+        "*Clear*: a plan that enters no set that is declared, verified. *Relaxed*: of those, with shapes drawn back or not by the rules. *Judged*: of those, in \
+         which own ship, as planned, is ever at risk and so has a role toward a target. *Complies*: neither judge of [rules.md](rules.md) finds a rule broken, thresholds of the profile \
+         `searoom`; who is never at risk breaks none. *Score*: the mean over targets of the least of the scores. Milliseconds of planning on one core, \
          of this run; all else is the same everywhere.\n"
     );
     println!(
-        "| suite | `compliance` | scenes | clear | relaxed | complies | score | J, median, m² | ms, median | ms, 99 % | ms, worst |"
+        "| suite | `compliance` | scenes | clear | relaxed | judged | complies | score | J, median, m² | ms, median | ms, 99 % | ms, worst |"
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     for (name, scenes) in suites {
         for compliance in [Compliance::Shape, Compliance::Rules] {
             println!(
@@ -109,7 +110,7 @@ fn foreign(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Err
 
 /// The cells of one row after the first.
 fn row(scenes: &[Scenario], compliance: Compliance, thresholds: &Thresholds) -> String {
-    let (mut clear, mut relaxed, mut complies) = (0, 0, 0);
+    let (mut clear, mut relaxed, mut judged, mut complies) = (0, 0, 0, 0);
     let (mut scores, mut costs, mut times) = (Vec::new(), Vec::new(), Vec::new());
     for scene in scenes {
         let run = pipeline::run(Scenario {
@@ -123,13 +124,14 @@ fn row(scenes: &[Scenario], compliance: Compliance, thresholds: &Thresholds) -> 
         if is_clear(&run) {
             clear += 1;
             relaxed += usize::from(!run.relaxations.is_empty());
+            judged += usize::from(conduct.iter().any(|c| !c.roles.is_empty()));
             complies += usize::from(conduct.iter().all(Conduct::complies));
             costs.extend(run.planned.outcome.plan().map(|plan| plan.cost));
         }
     }
     let mean = scores.iter().sum::<f64>() / scores.len().max(1) as f64;
     format!(
-        "{} | {clear} | {relaxed} | {complies} | {mean:.2} | {:.0} | {:.1} | {:.1} | {:.1}",
+        "{} | {clear} | {relaxed} | {judged} | {complies} | {mean:.2} | {:.0} | {:.1} | {:.1} | {:.1}",
         scenes.len(),
         quantile(&mut costs, 0.5),
         quantile(&mut times, 0.5),

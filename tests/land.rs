@@ -5,7 +5,7 @@ use std::path::Path;
 use searoom::frame::{Geographic, Georeference, Vector};
 use searoom::pipeline;
 use searoom::planner::PlannerKind;
-use searoom::scenario::{Scenario, ScenarioError};
+use searoom::scenario::{Compliance, Scenario, ScenarioError};
 
 /// South-west of Munkholmen, in the middle of the fjord, in metres and on the map.
 const SCENARIO: &str = r#"
@@ -267,4 +267,23 @@ fn a_start_and_a_path_on_land_are_named_together() {
         found.iter().all(|f| f.contains("comes too near to land")),
         "{found:?}"
     );
+}
+
+/// The bends of the canal are tighter than own ship turns: no motion that follows its path is clear of land.
+#[test]
+fn a_path_that_cannot_be_sailed_clear_of_land_has_no_plan_rather_than_one_ashore() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/scenarios/harbour/canal-transit.toml"
+    );
+    let along = Scenario::read(file.as_ref()).expect("a scenario");
+    for compliance in [Compliance::None, Compliance::Shape, Compliance::Rules] {
+        let run = pipeline::run(Scenario {
+            planner: PlannerKind::SpaceTime,
+            compliance,
+            ..along.clone()
+        });
+        assert!(run.evaluation.is_none_or(|e| e.verified()));
+        assert!(run.planned.outcome.plan().is_none());
+    }
 }

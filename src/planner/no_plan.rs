@@ -117,6 +117,17 @@ pub enum NoPlan {
         /// Seconds.
         time: f64,
     },
+    /// No candidate that keeps the rules of own ship's roles is clear of every set.
+    #[error(
+        "no trajectory of the graph or its refinement keeps the rules toward all and is clear of every set until arrival; held on the \
+         desired trajectory, own ship meets the set of '{target}' after {time:.1} s"
+    )]
+    NoneComplies {
+        /// Name of the obstacle that the undisturbed motion meets first.
+        target: String,
+        /// Seconds.
+        time: f64,
+    },
     /// No candidate came of the search at all, though the undisturbed motion meets no set.
     #[error(
         "no trajectory of the graph or its refinement arrives clear of every set, though the desired trajectory meets none: the numbers leave no digits for it"
@@ -175,6 +186,7 @@ impl NoPlan {
     pub fn is_for_the_sets(&self) -> bool {
         match self {
             Self::NoCandidate { .. }
+            | Self::NoneComplies { .. }
             | Self::Barred { .. }
             | Self::OutOfTime { .. }
             | Self::Locked { .. }

@@ -315,7 +315,7 @@ fn a_plan_document_has_what_the_contract_names() {
         "/encounters/0/scores/rule_8",
         "/encounters/0/scores/rule_14",
         "/encounters/0/roles/0/until_s",
-        "/encounters/0/monitors/2/robustness",
+        "/encounters/0/monitors/3/robustness",
     ] {
         let found = plan.pointer(pointer);
         assert!(found.is_some_and(Value::is_number), "{pointer}: {found:?}");

@@ -369,6 +369,11 @@ impl Act<'_> {
                 if self.role == Role::StandOn {
                     port_turn("17(c)", &mut breach);
                 }
+                // negated on purpose: a NaN is a collision
+                if !(closest.apart > 0.0) {
+                    let what = "holds on into a collision".to_owned();
+                    breach("17(b)", closest.time, what);
+                }
             }
             Role::None | Role::Static => {}
         }

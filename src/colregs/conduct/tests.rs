@@ -174,6 +174,8 @@ fn standing_on_is_holding_on_and_never_turning_to_port() {
     let away = [(0.0, 30.0), (-0.7, 200.0)];
     let turned = conduct(&away, 760.0, 720.0, -FRAC_PI_2, 5.0);
     assert_eq!(rules(&turned), ["17(a)(i)"]);
+    let into_it = conduct(&[(0.0, 240.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);
+    assert_eq!(rules(&into_it), ["17(b)"]);
     // which ends what the monitor asks of her
     assert_eq!(violated(&turned), Vec::<&str>::new());
     let late = conduct(&[(0.0, 70.0), (-0.2, 100.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);

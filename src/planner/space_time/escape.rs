@@ -32,8 +32,8 @@ const HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
 
 /// A motion from own ship's start to the last waypoint before the horizon that leaves the sets that she starts in at the
 /// earliest, as far as turns in steps of five degrees go, and is clear of every set from then on. Where no such plan is found, one
-/// that leaves them so and then follows the path, or that follows the path at once. `None` where the path itself is too long
-/// for the horizon. The caller finds out from when on it is clear of what. Some milliseconds, and up to twenty plans.
+/// that leaves them so and then follows the path, or that follows the path at once. `None` where the path itself, as own ship can sail it, is
+/// too long for the horizon or leads ashore. The caller finds out from when on it is clear of what. Some milliseconds, and up to twenty plans.
 pub fn escape(problem: &Problem) -> Option<Plan> {
     let clock = crate::planner::clock::Clock::new(problem.deadline);
     let parts = parts(problem.obstacles, problem.horizon);
@@ -52,8 +52,14 @@ pub fn escape(problem: &Problem) -> Option<Plan> {
         }
     }
     let away = ways.first().map(|way| cut(&way.motion, way.out));
-    let out = away.and_then(|away| onward(problem, &away, undisturbed));
-    out.or_else(|| onward(problem, &[], undisturbed))
+    let out = away.and_then(|away| onward(problem, &away, afloat));
+    out.or_else(|| onward(problem, &[], afloat))
+}
+
+/// Along the path, where that is clear of land.
+fn afloat(problem: &Problem) -> Option<Vec<Segment>> {
+    let motion = undisturbed(problem)?;
+    (!super::ashore::meets(problem.coast, &motion)).then_some(motion)
 }
 
 /// The motion along the path as if nobody else were there; `None` where it is not at the end before the horizon.

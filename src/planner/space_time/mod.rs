@@ -304,8 +304,11 @@ fn no_candidate(
         .into_iter()
         .chain(land)
         .min_by(|a, b| a.1.total_cmp(&b.1));
-    first.map_or(NoPlan::NoTrajectory, |(target, time)| NoPlan::NoCandidate {
-        target,
-        time,
+    first.map_or(NoPlan::NoTrajectory, |(target, time)| {
+        if problem.duty().is_none() {
+            NoPlan::NoCandidate { target, time }
+        } else {
+            NoPlan::NoneComplies { target, time }
+        }
     })
 }

@@ -238,7 +238,7 @@ impl Scale {
                 target,
                 time: time * self.time,
             },
-            // of land, of other planners, or without a number
+            // of land or rules, which are not scaled, of other planners, or without a number
             other => other,
         }
     }
