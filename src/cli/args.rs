@@ -94,11 +94,12 @@ pub struct PlanArgs {
     pub scenario: PathBuf,
     #[command(flatten)]
     pub shared: Shared,
-    #[command(flatten)]
-    pub assumed: AssumedArgs,
     /// Also seek the last moment at which a plan clear of every hard set exists (space-time planner)
     #[arg(long)]
     pub no_return: bool,
+    // the last, because its heading holds for all that follows
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]
@@ -108,14 +109,15 @@ pub struct SuiteArgs {
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
     pub shared: Shared,
-    #[command(flatten)]
-    pub assumed: AssumedArgs,
     /// Write one plan document per scenario into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
     /// Plan nothing: say where ships would meet, and what is odd about the scenarios
     #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk", "thresholds"])]
     pub lint: bool,
+    // the last, because its heading holds for all that follows
+    #[command(flatten)]
+    pub assumed: AssumedArgs,
 }
 
 #[derive(Debug, Args)]
@@ -135,7 +137,7 @@ pub struct ImportArgs {
     mut_arg("planner", |arg| arg.help("Only this planner, beside the baselines: space-time, path-time, optimal-control")),
     mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra")),
     mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder")),
-    mut_arg("figure", |arg| arg.help("Draw ways, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
+    mut_arg("figure", |arg| arg.value_name("FILE").help("Draw ways, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
 )]
 pub struct CompareArgs {
     /// Scenario files, or folders of them

@@ -7,13 +7,14 @@ use searoom::pipeline;
 use searoom::report::assessment_text;
 use searoom::report::document::AssessmentDocument;
 use searoom::report::figure::assessment_figure;
-use searoom::scenario::{Scenario, ScenarioError};
+use searoom::scenario::Scenario;
 
 use super::args::AssessArgs;
 use super::figure;
 use super::output::Output;
 use super::rows;
 use super::runner::guarded;
+use super::scenes::scenario_file;
 use super::status::Status;
 
 /// Assesses one file.
@@ -55,21 +56,21 @@ pub fn assess(args: &AssessArgs, output: &Output) -> Status {
 }
 
 /// Every file that is asked for; what is wrong with any of them.
-fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<ScenarioError>> {
+fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<String>> {
     let mut errors = Vec::new();
-    let scenario = Scenario::read(&args.scenario).map_err(|e| errors.push(e));
+    let scenario = scenario_file(&args.scenario).map_err(|e| errors.push(e));
     let mut points = args.at.clone();
     if let Some(file) = &args.points {
         match rows::read(file, &rows::POINT) {
             Ok(rows) => points.extend(rows),
-            Err(error) => errors.push(error),
+            Err(error) => errors.push(error.to_string()),
         }
     }
     let mut velocities = args.velocity.clone();
     if let Some(file) = &args.velocities {
         match rows::read(file, &rows::VELOCITY) {
             Ok(rows) => velocities.extend(rows),
-            Err(error) => errors.push(error),
+            Err(error) => errors.push(error.to_string()),
         }
     }
     let query = Query {

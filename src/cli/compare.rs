@@ -12,7 +12,7 @@ use searoom::report::{
     COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_markdown, comparison_table,
     write_atomically,
 };
-use searoom::scenario::{Scenario, ScenarioError};
+use searoom::scenario::Scenario;
 
 use super::args::CompareArgs;
 use super::figure;
@@ -20,6 +20,7 @@ use super::files::{self, Found};
 use super::output::Output;
 use super::products::{Products, ScenarioCompared, Wanted};
 use super::runner::guarded;
+use super::scenes::{note_foreign, scenario_file};
 use super::status::Status;
 
 /// A scenario and who is to sail it, or why it is none.
@@ -48,6 +49,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
         return Status::BadInput;
     }
     let all = files::find(&args.paths, &files::SCENARIOS, output);
+    note_foreign(&args.paths, output);
     let found: Vec<Found> = all.iter().flatten().cloned().collect();
     // one figure, of all scenarios
     let wanted = Wanted {
@@ -111,10 +113,10 @@ impl Asked {
 fn ask(found: &Found, args: &CompareArgs) -> Asked {
     let name = found.file.display().to_string();
     let stem = found.stem.clone();
-    let read = guarded(|| Scenario::read(&found.file));
+    let read = guarded(|| scenario_file(&found.file));
     let mut scenario = match read {
         Ok(Ok(scenario)) => scenario,
-        Ok(Err(error)) => return Asked::refused(name, sentence(&error)),
+        Ok(Err(error)) => return Asked::refused(name, error),
         Err(fault) => return Asked::refused(name.clone(), format!("{name}: {fault}")),
     };
     args.asked.apply_rules(&mut scenario);
@@ -135,10 +137,6 @@ fn ask(found: &Found, args: &CompareArgs) -> Asked {
         inapplicable: found.inapplicable,
         scenario: Ok(scenario),
     }
-}
-
-fn sentence(error: &ScenarioError) -> String {
-    error.to_string()
 }
 
 fn is_wanted(method: &Method, args: &CompareArgs) -> bool {

@@ -39,6 +39,12 @@ pub const ANY_FORMAT: Kinds = Kinds {
     said: ".toml, .json or .xml",
 };
 
+/// Foreign files alone.
+pub const FOREIGN: Kinds = Kinds {
+    endings: &["json", "xml"],
+    said: ".json or .xml",
+};
+
 impl Kinds {
     fn hold(&self, file: &Path) -> bool {
         let ending = file.extension().and_then(|ending| ending.to_str());
@@ -113,6 +119,15 @@ fn stem(relative: &Path) -> String {
         .map(|part| part.as_os_str().to_string_lossy().into_owned())
         .collect();
     parts.join("__")
+}
+
+/// The files of these kinds below a folder; none of one that cannot be searched.
+pub fn below(folder: &Path, kinds: &Kinds) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    match walk(folder, kinds, &mut files) {
+        Ok(()) => files,
+        Err(_) => Vec::new(),
+    }
 }
 
 /// Files of these kinds, depth first in order of names. Hidden entries are left out; links to

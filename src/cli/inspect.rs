@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use comfy_table::{ContentArrangement, Table, presets};
 use searoom::recording::{EntityTable, Recorded, TimelineContents};
 use serde::Serialize;
@@ -39,7 +39,8 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
 /// Reads a recording. Whatever goes wrong within the decoder is a fault of the file.
 pub fn read(path: &Path) -> anyhow::Result<Recorded> {
     match guarded(|| Recorded::read(path)) {
-        Ok(read) => Ok(read?),
+        // the message names its cause already
+        Ok(read) => read.map_err(|error| anyhow!("{error}")),
         Err(fault) => bail!("{}: damaged: its decoder gave up ({fault})", path.display()),
     }
 }
@@ -59,7 +60,7 @@ fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
     }
     if recorded.comparison().is_some() {
         bail!(
-            "{}: the recording of a comparison, which holds no plan document; --json prints its own",
+            "{}: the recording of a comparison, which holds no plan document; `searoom inspect --json` prints its own",
             path.display()
         );
     }
@@ -222,6 +223,7 @@ impl TimelineDocument {
             first,
             last,
         } = self;
+        let [first, last] = [first, last].map(|time| (time * 1e3).round() / 1e3);
         format!("{name} {first} to {last} {unit}")
             .trim_end()
             .to_owned()

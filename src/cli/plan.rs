@@ -1,14 +1,13 @@
 //! `searoom plan`: one scenario.
 
 use searoom::pipeline::{NoReturn, Run};
-use searoom::report::document::PlanDocument;
 use searoom::report::page::Report;
-use searoom::report::{no_return_line, plan_text};
+use searoom::report::{no_return_line, no_return_reason, plan_text};
 
 use super::args::PlanArgs;
 use super::files::Found;
 use super::output::Output;
-use super::products::Products;
+use super::products::{Products, document};
 use super::runner::{Attempt, attempt};
 use super::status::Status;
 use super::{files, scenes};
@@ -58,15 +57,16 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
                     output.note(&note);
                 }
                 let no_return = args.no_return.then(|| run.no_return()).flatten();
+                if args.no_return && no_return.is_none() {
+                    output.note(&no_return_reason(&run));
+                }
                 let shown = if args.shared.written.json {
-                    let mut document = PlanDocument::of(&run);
-                    document.time_of_no_return_s = no_return.map(NoReturn::time);
-                    output.document(&document)
+                    output.document(&document(&run, no_return))
                 } else {
                     let said = no_return.map(|found| format!("\n{}", no_return_line(found)));
                     output.result(&format!("{}{}", plan_text(&run), said.unwrap_or_default()))
                 };
-                let written = match write(&products, &scene.found, &run) {
+                let written = match write(&products, &scene.found, &run, no_return) {
                     Ok(()) => Status::Good,
                     Err((status, error)) => {
                         output.error(&error);
@@ -89,8 +89,13 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
     status
 }
 
-fn write(products: &Products, found: &Found, run: &Run) -> Result<(), (Status, String)> {
-    products.write(&found.stem, run)?;
+fn write(
+    products: &Products,
+    found: &Found,
+    run: &Run,
+    no_return: Option<NoReturn>,
+) -> Result<(), (Status, String)> {
+    products.write(&found.stem, run, no_return)?;
     let mut report = Report::new();
     if products.wants_report() {
         let subject = products.subject(&found.stem, found.file.display().to_string());

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail};
 use searoom::comparison::Entry;
-use searoom::pipeline::Run;
+use searoom::pipeline::{NoReturn, Run};
 use searoom::report::document::{ComparisonDocument, PlanDocument};
 use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
 use searoom::report::page::{Report, Subject, link_from};
@@ -98,9 +98,14 @@ impl Products {
         })
     }
 
-    /// Writes what was asked for; on failure the status and the reason.
-    pub fn write(&self, stem: &str, run: &Run) -> Result<(), (Status, String)> {
-        match guarded(|| self.try_write(stem, run)) {
+    /// Writes what was asked for, with the time of no return where one was sought; on failure the status and the reason.
+    pub fn write(
+        &self,
+        stem: &str,
+        run: &Run,
+        no_return: Option<NoReturn>,
+    ) -> Result<(), (Status, String)> {
+        match guarded(|| self.try_write(stem, run, no_return)) {
             Ok(Ok(())) => Ok(()),
             Ok(Err(error)) => Err((Status::BadInput, format!("{error:#}"))),
             Err(fault) => Err((Status::InternalFault, fault)),
@@ -147,9 +152,9 @@ impl Products {
         }
     }
 
-    fn try_write(&self, stem: &str, run: &Run) -> anyhow::Result<()> {
+    fn try_write(&self, stem: &str, run: &Run, no_return: Option<NoReturn>) -> anyhow::Result<()> {
         if let Some(place) = &self.recordings {
-            record(run, &place.file(stem, "rrd"))?;
+            record(run, no_return, &place.file(stem, "rrd"))?;
         }
         if let Some(place) = &self.figures {
             let file = place.file(stem, "svg");
@@ -160,11 +165,19 @@ impl Products {
         }
         if let Some(folder) = &self.plans {
             let file = folder.join(format!("{stem}.json"));
-            let document = json(&PlanDocument::of(run))?;
+            let document = json(&document(run, no_return))?;
             // the message names its cause already
             write_atomically(&file, document.as_bytes()).map_err(|error| anyhow!("{error}"))?;
         }
         Ok(())
+    }
+}
+
+/// The plan document of a run, with the time of no return where one was sought.
+pub fn document(run: &Run, no_return: Option<NoReturn>) -> PlanDocument {
+    PlanDocument {
+        time_of_no_return_s: no_return.map(NoReturn::time),
+        ..PlanDocument::of(run)
     }
 }
 
@@ -237,9 +250,9 @@ fn make(folder: &Path) -> anyhow::Result<()> {
 }
 
 #[cfg(feature = "recording")]
-fn record(run: &Run, file: &Path) -> anyhow::Result<()> {
+fn record(run: &Run, no_return: Option<NoReturn>, file: &Path) -> anyhow::Result<()> {
     // the message names its cause already
-    let document = json(&PlanDocument::of(run))?;
+    let document = json(&document(run, no_return))?;
     searoom::recording::write(run, Some(&document), file).map_err(|error| anyhow!("{error}"))
 }
 
@@ -262,6 +275,6 @@ fn record_comparison(_: &ScenarioCompared, file: &Path) -> anyhow::Result<()> {
 }
 
 #[cfg(not(feature = "recording"))]
-fn record(_: &Run, file: &Path) -> anyhow::Result<()> {
+fn record(_: &Run, _: Option<NoReturn>, file: &Path) -> anyhow::Result<()> {
     bail!("{}: built without recordings", file.display())
 }

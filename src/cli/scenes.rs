@@ -1,11 +1,11 @@
 //! The scenarios in the files that were found: one in a scenario file, one or many in a foreign one.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use searoom::scenario::formats::{Assumed, Contents, Declared, Imported, Situation};
+use searoom::scenario::formats::{Assumed, Contents, Declared, Format, Imported, Situation};
 use searoom::scenario::{Scenario, ScenarioError};
 
-use super::files::Found;
+use super::files::{self, Found};
 use super::output::Output;
 
 /// A scenario that was asked for, not made yet.
@@ -146,6 +146,43 @@ fn of_file(
             scenes.push(Err(unread(said)));
         }
         Err(error) => scenes.push(Err(unread(error.to_string()))),
+    }
+}
+
+/// The scenario of a command that takes scenario files alone, or why there is none, the file named.
+pub fn scenario_file(file: &Path) -> Result<Scenario, String> {
+    let read = Contents::read(file, &Assumed::default()).map_err(|error| error.to_string())?;
+    let is = match read {
+        Contents::Scenario => return Scenario::read(file).map_err(|error| error.to_string()),
+        Contents::Situations { format, .. } => {
+            let foreign = match format {
+                Format::Scenario => "situations",
+                Format::Dnv => "a DNV traffic situation",
+                Format::Imazu => "Imazu's cases",
+                Format::CommonOcean => "a CommonOcean scenario",
+            };
+            format!("{foreign}; `searoom import` makes scenario files of it")
+        }
+        Contents::Other(what) => format!("{what}; no scenario in it"),
+    };
+    Err(format!("{}: {is}", file.display()))
+}
+
+/// Says how many foreign files a command that takes scenario files alone leaves out of each folder.
+pub fn note_foreign(paths: &[PathBuf], output: &Output) {
+    for folder in paths.iter().filter(|path| path.is_dir()) {
+        let is_foreign = |file: &PathBuf| {
+            let read = Contents::read(file, &Assumed::default());
+            matches!(read, Ok(Contents::Situations { .. }))
+        };
+        let all = files::below(folder, &files::FOREIGN);
+        let count = all.into_iter().filter(is_foreign).count();
+        if count > 0 {
+            let (folder, plural) = (folder.display(), if count == 1 { "" } else { "s" });
+            output.note(&format_args!(
+                "{folder}: {count} file{plural} of foreign formats left out; `searoom import` makes scenario files of them"
+            ));
+        }
     }
 }
 

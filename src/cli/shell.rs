@@ -38,12 +38,25 @@ pub fn man(output: &Output) -> Status {
         })
     });
     match written {
-        Ok(()) => print(text, output),
+        // no command has a page of its own
+        Ok(()) => print(one_page(text), output),
         Err(error) => {
             output.error(&format_args!("the manual cannot be written: {error}"));
             Status::InternalFault
         }
     }
+}
+
+/// References to pages of the commands become the names of the commands.
+fn one_page(text: Vec<u8>) -> Vec<u8> {
+    let text = String::from_utf8_lossy(&text);
+    let lines = text.lines().map(|line| {
+        let command = line
+            .strip_prefix("searoom\\-")
+            .and_then(|l| l.strip_suffix("(1)"));
+        command.map_or_else(|| line.to_owned(), |command| format!("searoom {command}"))
+    });
+    lines.collect::<Vec<_>>().join("\n").into_bytes()
 }
 
 fn print(text: Vec<u8>, output: &Output) -> Status {

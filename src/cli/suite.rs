@@ -120,7 +120,7 @@ fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, 
     match attempt(scene, &args.shared, assumed) {
         Attempt::Run(run, notes) => {
             tally.run(file.clone(), &run, notes);
-            if let Err((status, error)) = products.write(&scene.found.stem, &run) {
+            if let Err((status, error)) = products.write(&scene.found.stem, &run, None) {
                 tally.reach(status);
                 tally.errors.push(error);
             }

@@ -55,7 +55,8 @@ pub struct ComparisonRow {
     pub method: Method,
     /// The risk that was accepted.
     pub max_risk: f64,
-    /// How it ended, in the contract's word; of a baseline `"clear"`, `"collides"` or `"infeasible"`.
+    /// How it ended, in the contract's word; of a baseline `"clear"`, `"collides"` or `"infeasible"`, and
+    /// `"relaxed"` where it enters a set within the accepted risk.
     pub outcome: &'static str,
     /// Why there is no motion.
     pub reason: Option<String>,
@@ -98,6 +99,9 @@ impl ComparisonRow {
             Sailed::Planned(run) => Some(run),
             Sailed::Baseline(_) | Sailed::Nothing(_) => None,
         };
+        let largest_risk = (entry.risks().iter())
+            .map(|peak| peak.risk)
+            .max_by(f64::total_cmp);
         let conduct = entry.conduct(scenario);
         let mut broken: Vec<_> = conduct.iter().flat_map(|c| c.broken()).collect();
         broken.sort_unstable();
@@ -107,8 +111,14 @@ impl ComparisonRow {
             max_risk: entry.contender.max_risk,
             outcome: match &entry.result {
                 Sailed::Planned(run) => Verdict::of(run).word(),
-                Sailed::Baseline(_) if verified == Some(true) => "clear",
-                Sailed::Baseline(_) => "collides",
+                Sailed::Baseline(_) if verified != Some(true) => "collides",
+                // clear of the level sets alone
+                Sailed::Baseline(_)
+                    if entry.contender.max_risk > 0.0 && largest_risk > Some(0.0) =>
+                {
+                    Verdict::Relaxed.word()
+                }
+                Sailed::Baseline(_) => "clear",
                 Sailed::Nothing(_) => Verdict::Infeasible.word(),
             },
             reason: match &entry.result {
@@ -124,9 +134,7 @@ impl ComparisonRow {
             delay: (evaluation.filter(|_| entry.arrived())).and_then(|e| finite(e.delay)),
             length: evaluation.and_then(|e| finite(e.length)),
             clearance: evaluation.and_then(|e| finite(e.min_clearance)),
-            largest_risk: (entry.risks().iter())
-                .map(|peak| peak.risk)
-                .max_by(f64::total_cmp),
+            largest_risk,
             largest_turn: entry
                 .trajectory()
                 .and_then(|t| largest_alteration(t, scenario.own_ship.pose.heading)),

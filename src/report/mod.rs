@@ -21,7 +21,7 @@ pub use comparison::{
     COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_markdown, comparison_table,
 };
 pub use lint::lint_text;
-pub use no_return::no_return_line;
+pub use no_return::{no_return_line, no_return_reason};
 pub use summary::{Meeting, Summary, Turn, Verdict};
 pub use table::{Row, plan_text, suite_table};
 pub use verification::verification_text;

@@ -1,6 +1,7 @@
 //! The time of no return, in words.
 
-use crate::pipeline::{NO_RETURN_STEP_S, NoReturn};
+use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
+use crate::planner::PlannerKind;
 
 /// What a plan's text says of the time of no return.
 pub fn no_return_line(found: NoReturn) -> String {
@@ -15,4 +16,17 @@ pub fn no_return_line(found: NoReturn) -> String {
         ),
     };
     format!("  {:<13}{said}", "no return")
+}
+
+/// Why [`Run::no_return`] gives nothing.
+pub fn no_return_reason(run: &Run) -> String {
+    match run.scenario.planner {
+        PlannerKind::SpaceTime => {
+            "no time of no return: the desired trajectory cannot be followed".to_owned()
+        }
+        other => format!(
+            "no time of no return: it is sought for plans of the space-time planner, this one is of the {} planner",
+            other.word()
+        ),
+    }
 }

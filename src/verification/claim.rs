@@ -14,6 +14,9 @@ use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 /// The planner whose plans keep to paths.
 const PATH_TIME: &str = "path-time";
 
+/// Keys of another document that are named.
+const KEYS: usize = 5;
+
 /// One field of a document that is not as it has to be.
 ///
 /// # Examples
@@ -109,10 +112,7 @@ impl Claim {
     pub fn read(text: &str) -> Result<Self, ClaimError> {
         let mut json = serde_json::Deserializer::from_str(text);
         let file: PlanFile =
-            serde_path_to_error::deserialize(&mut json).map_err(|error| ClaimError::Shape {
-                path: error.path().to_string(),
-                reason: error.inner().to_string(),
-            })?;
+            serde_path_to_error::deserialize(&mut json).map_err(|error| unread(text, &error))?;
         json.end().map_err(|error| ClaimError::Shape {
             path: ".".to_owned(),
             reason: error.to_string(),
@@ -177,6 +177,29 @@ impl Claim {
             faults,
             file,
         })
+    }
+}
+
+/// Why a text could not be read: it is no JSON, another document, or a plan document with a broken field.
+fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> ClaimError {
+    let shape = |reason: String| ClaimError::Shape {
+        path: error.path().to_string(),
+        reason,
+    };
+    let document: serde_json::Value = match serde_json::from_str(text) {
+        Ok(document) => document,
+        Err(error) => {
+            return shape(format!("found no JSON ({error}); allowed: a plan document"));
+        }
+    };
+    match (document.as_object(), document.get("format")) {
+        (_, Some(_)) => shape(error.inner().to_string()),
+        (Some(object), None) => {
+            let keys: Vec<&str> = object.keys().take(KEYS).map(String::as_str).collect();
+            let found = format!("none in a document with the keys {}", keys.join(", "));
+            fault("format", found, FORMAT)
+        }
+        (None, None) => shape("found no JSON object; allowed: a plan document".to_owned()),
     }
 }
 

@@ -130,6 +130,43 @@ fn a_format_is_told_by_what_is_in_the_file() {
     searoom(&["check", &dnv, &toml]).success();
 }
 
+/// Commands that take scenario files alone say in one line what a foreign file is, and how many they leave out of a folder.
+#[test]
+fn scenario_files_alone_are_compared_and_assessed() {
+    for (file, is) in [
+        ("dnv/traffic_situation_01.json", "a DNV traffic situation"),
+        ("imazu/imazu.json", "Imazu's cases"),
+        ("commonocean/sample-head-on.xml", "a CommonOcean scenario"),
+    ] {
+        let file = format!("scenarios/{file}");
+        for command in ["compare", "assess"] {
+            let said = stderr(&searoom(&[command, &file]).code(2));
+            assert!(said.starts_with(&format!("error: {file}: ")), "{said}");
+            assert!(
+                said.contains(is) && said.contains("`searoom import`"),
+                "{said}"
+            );
+            assert_eq!(said.lines().count(), 1, "{said}");
+        }
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), "a.toml", HEAD_ON);
+    write(folder.path(), "b.json", DNV);
+    write(folder.path(), "c/d.json", IMAZU);
+    write(
+        folder.path(),
+        "map.json",
+        r#"{ "type": "FeatureCollection", "features": [] }"#,
+    );
+    let compared = searoom(&["compare", text(folder.path()), "--search", "a-star"]).success();
+    let said = stderr(&compared);
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(
+        said.contains("2 files of foreign formats left out; `searoom import`"),
+        "{said}"
+    );
+}
+
 /// What is imported is what is run: the same documents, but for the file, the clock and what was noted.
 #[test]
 fn imported_files_run_as_their_originals() {

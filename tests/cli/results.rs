@@ -163,6 +163,87 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
     }
 }
 
+/// Who enters a whole set within the accepted risk is relaxed, whether a planner chose it or not.
+#[test]
+fn a_baseline_that_takes_an_accepted_risk_is_relaxed() {
+    let compared = document(
+        &searoom(&[
+            "compare",
+            "scenarios/colregs/give-way.toml",
+            "--planner",
+            "space-time",
+            "--max-risk",
+            "0,0.4",
+            "--json",
+        ])
+        .success(),
+    );
+    let entries = compared["comparisons"][0]["entries"].as_array();
+    let outcomes: Vec<(&str, f64)> = (entries.expect("a list").iter())
+        .filter(|entry| entry["method"] == "constant velocity")
+        .map(|entry| {
+            assert_eq!(entry["verified"], true);
+            let risk = entry["cost"]["max_risk"].as_f64().expect("a risk");
+            (entry["outcome"].as_str().expect("a word"), risk)
+        })
+        .collect();
+    let [("clear", without), ("relaxed", with)] = outcomes[..] else {
+        panic!("{outcomes:?}");
+    };
+    assert!(without == 0.0 && with > 0.3, "{without}, {with}");
+}
+
+/// A time of no return that cannot be sought is no silence.
+#[test]
+fn a_plan_on_a_path_says_why_it_has_no_time_of_no_return() {
+    let scenario = "scenarios/harbour/ferry-crossing.toml";
+    let plan = searoom(&["plan", scenario, "--no-return", "--json"])
+        .success()
+        .stderr(contains("this one is of the path-time planner"));
+    assert!(document(&plan).get("time_of_no_return_s").is_none());
+}
+
+/// What is no plan document is said to be none, and what it is.
+#[test]
+fn other_documents_are_no_plans() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let compared = searoom(&[
+        "compare",
+        "scenarios/colregs/head-on.toml",
+        "--planner",
+        "path-time",
+        "--json",
+    ]);
+    let comparison = write(folder.path(), "comparison.json", stdout(&compared.code(1)));
+    for (file, found) in [
+        (
+            "README.md",
+            "found no JSON (expected value at line 1 column 1); allowed: a plan document",
+        ),
+        (
+            &comparison,
+            "format: found none in a document with the keys comparisons; allowed: searoom-plan/1",
+        ),
+    ] {
+        searoom(&["verify", file]).code(2).stderr(contains(found));
+    }
+}
+
+/// A heading holds for what follows it.
+#[test]
+fn options_stand_under_their_own_heading() {
+    for (command, option) in [
+        ("plan", "--no-return"),
+        ("suite", "--plans"),
+        ("suite", "--lint"),
+    ] {
+        let help = stdout(&searoom(&[command, "--help"]).success());
+        let (own, foreign) = help.split_once("Foreign files").expect("a heading");
+        assert!(own.contains(option) && !foreign.contains(option), "{help}");
+        assert!(foreign.contains("--variants"), "{help}");
+    }
+}
+
 #[test]
 fn shells_and_manuals_know_every_command() {
     let commands = [
@@ -189,6 +270,11 @@ fn shells_and_manuals_know_every_command() {
         );
     }
     assert!(page.contains("\\-\\-max\\-risk"));
+    // there is one page, and no other that it could name
+    assert!(
+        page.contains("searoom verify") && !page.contains("(1)"),
+        "{page}"
+    );
 }
 
 #[test]
@@ -346,6 +432,31 @@ mod recordings {
         assert!(whole["escape"]["latest_s"].is_f64(), "{whole}");
     }
 
+    /// What `--no-return` adds to the document is in the recording, too.
+    #[test]
+    fn the_time_of_no_return_is_recorded() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = text(&folder.path().join("a.rrd")).to_owned();
+        let scenario = "scenarios/colregs/give-way.toml";
+        let plan = stdout(
+            &searoom(&["plan", scenario, "--no-return", "--json", "--rrd", &file]).success(),
+        );
+        assert!(plan.contains("\"time_of_no_return_s\": "), "{plan}");
+        let back = searoom(&["inspect", "--plan", &file]).success();
+        assert_eq!(stdout(&back), plan);
+        // times are shown to the millisecond
+        let said = stdout(&searoom(&["inspect", &file]).success());
+        let times = said.lines().find(|line| line.starts_with("Timelines: "));
+        let decimals = times
+            .expect("a line")
+            .split(' ')
+            .filter_map(|word| word.split_once('.'));
+        assert!(
+            decimals.into_iter().all(|(_, digits)| digits.len() <= 3),
+            "{said}"
+        );
+    }
+
     /// Bytes of a recording, with the document in it.
     const MOST: u64 = 300_000;
 
@@ -445,6 +556,9 @@ mod recordings {
         searoom(&["inspect", "--plan", text(&file)])
             .code(2)
             .stderr(contains("the recording of a comparison"));
+        searoom(&["verify", text(&file)])
+            .code(2)
+            .stderr(contains("`searoom inspect --json` prints its own"));
         searoom(&["compare", "scenarios/colregs", "--rrd", text(&file)])
             .code(2)
             .stderr(contains("name a folder"));
@@ -515,9 +629,11 @@ mod recordings {
             *byte ^= 0x55;
         }
         refused(&damaged, "damaged");
-        searoom(&["inspect", "no-such.rrd"])
-            .code(2)
-            .stderr(contains("no-such.rrd: cannot be read"));
+        searoom(&["inspect", "no-such.rrd"]).code(2).stderr(
+            contains("No such file")
+                .count(1)
+                .and(contains("no-such.rrd: cannot be read")),
+        );
         // without its last message, in which the document is
         let mut at = 12;
         let mut last = at;
