@@ -1,4 +1,4 @@
-//! docs/documents.md names every key of the documents.
+//! docs/documents.md names every key of the documents, docs/verify.md those of a verification.
 
 use std::collections::BTreeSet;
 
@@ -6,14 +6,15 @@ use assert_cmd::Command;
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../docs/documents.md");
+const VERIFICATION: &str = include_str!("../docs/verify.md");
 
 fn keys(value: &Value, found: &mut BTreeSet<String>) {
     match value {
         Value::Object(map) => {
             for (key, inner) in map {
                 found.insert(key.clone());
-                // pages of their own have what is in these
-                if key != "optimal_control" && !(key == "targets" && inner.is_array()) {
+                // a page of its own has what is in this
+                if key != "optimal_control" {
                     keys(inner, found);
                 }
             }
@@ -23,13 +24,17 @@ fn keys(value: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
-fn keys_of(args: &[&str]) -> BTreeSet<String> {
+fn printed(args: &[&str]) -> Vec<u8> {
     let output = Command::new(env!("CARGO_BIN_EXE_searoom"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(args)
         .output()
         .expect("runs");
-    let document: Value = serde_json::from_slice(&output.stdout).expect("one document");
+    output.stdout
+}
+
+fn keys_of(args: &[&str]) -> BTreeSet<String> {
+    let document: Value = serde_json::from_slice(&printed(args)).expect("one document");
     let mut found = BTreeSet::new();
     keys(&document, &mut found);
     found
@@ -42,13 +47,52 @@ fn every_key_is_on_the_page() {
         "scenarios/colregs/head-on.toml",
         "scenarios/paper/figure_9.toml",
         "scenarios/harbour/alternative-path.toml",
+        "scenarios/uncertainty/spells.toml",
     ] {
         all.extend(keys_of(&["plan", scenario, "--json"]));
     }
+    all.extend(keys_of(&["compare", "scenarios/colregs", "--json"]));
     assert!(all.len() > 90, "{all:?}");
-    let missing: Vec<_> = all
+    named(PAGE, &all);
+}
+
+#[test]
+fn every_key_of_a_verification_is_on_its_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plan = folder.path().join("plan.json");
+    let printed = printed(&["plan", "scenarios/harbour/munkholmen.toml", "--json"]);
+    std::fs::write(&plan, printed).expect("written");
+    let plan = plan.to_str().expect("text");
+    named(VERIFICATION, &keys_of(&["verify", plan, "--json"]));
+}
+
+#[cfg(feature = "recording")]
+#[test]
+fn every_key_of_a_recording_is_on_the_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).to_str().expect("text").to_owned();
+    let [first, second] = ["head-on", "give-way"].map(|name| {
+        let recording = file(&format!("{name}.rrd"));
+        let scenario = format!("scenarios/colregs/{name}.toml");
+        printed(&["plan", &scenario, "--rrd", &recording]);
+        recording
+    });
+    let mut all = keys_of(&["inspect", "--json", &first]);
+    all.extend(keys_of(&[
+        "inspect",
+        "--json",
+        "--csv",
+        "curves/clearance_m",
+        &first,
+    ]));
+    all.extend(keys_of(&["inspect", "--json", &first, &second]));
+    named(PAGE, &all);
+}
+
+fn named(page: &str, keys: &BTreeSet<String>) {
+    let missing: Vec<_> = keys
         .iter()
-        .filter(|key| !PAGE.contains(&format!("`{key}`")))
+        .filter(|key| !page.contains(&format!("`{key}`")))
         .collect();
     assert!(missing.is_empty(), "{missing:?}");
 }
