@@ -131,6 +131,7 @@ pub mod geometry;
 pub mod lint;
 pub mod map;
 pub mod obstacle;
+mod output;
 pub mod pipeline;
 pub mod planner;
 #[cfg(feature = "recording")]

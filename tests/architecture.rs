@@ -16,6 +16,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("frame", &[]),
     ("tolerance", &[]),
     ("search", &[]),
+    ("output", &[]),
     // vectors and their products live in `frame`, which knows neither ship nor time
     ("geometry", &["tolerance", "frame"]),
     ("trajectory", &["frame", "tolerance", "geometry"]),
@@ -185,6 +186,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "comparison",
             "lint",
             "simulation",
+            "output",
         ],
     ),
     (
@@ -205,6 +207,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "pipeline",
             "comparison",
             "simulation",
+            "output",
         ],
     ),
 ];

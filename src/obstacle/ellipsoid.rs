@@ -356,7 +356,7 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
         match &self.flat {
             Some(flat) => flat.peak_risk(segment),
-            None => peak_by_bisection(segment, |risk| {
+            None => peak_by_bisection(segment.start_time, |risk| {
                 self.at_risk(risk).first_contact(segment, 0.0)
             }),
         }

@@ -1,5 +1,7 @@
 //! The polytope obstacle `O = {(x, t) : t >= 0, x in O_0 + t V}`, paper eqs. (2)-(9), in support form.
 
+use std::sync::OnceLock;
+
 use super::cpa::{ClosestApproach, from_edge, polytope_approach};
 use super::risk::{
     FaceSpread, Line, PeakRisk, level_of, peak_by_bisection, polytope_alpha, polytope_peak,
@@ -129,18 +131,26 @@ pub struct MovingVertex {
 /// assert!((after_10_s.area() - 40.0 * 40.0).abs() < 1e-6);
 /// # Ok::<(), searoom::geometry::GeometryError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct PolytopeObstacle {
     name: String,
     initial: ConvexPolygon,
     velocity: ConvexPolygon,
     faces: Vec<HalfSpace>,
     spreads: Vec<FaceSpread>,
-    moving: Vec<MovingVertex>,
+    /// Found when they are asked for: level sets that are only tested never are.
+    moving: OnceLock<Vec<MovingVertex>>,
+}
+
+impl PartialEq for PolytopeObstacle {
+    fn eq(&self, other: &Self) -> bool {
+        // all else follows
+        self.name == other.name && self.initial == other.initial && self.velocity == other.velocity
+    }
 }
 
 impl PolytopeObstacle {
-    /// From the two sets, in O((n + m)²): faces and moving vertices are found once. Points and segments
+    /// From the two sets, in O((n + m)²): faces are found once, moving vertices when they are first asked for. Points and segments
     /// are exact.
     pub fn new(name: impl Into<String>, initial: ConvexPolygon, velocity: ConvexPolygon) -> Self {
         let with_angle = |n: Vector| (n.y.atan2(n.x), n);
@@ -169,7 +179,7 @@ impl PolytopeObstacle {
         Self {
             name: name.into(),
             spreads: faces.iter().map(|f| FaceSpread::of(f, centroid)).collect(),
-            moving: moving_vertices(&initial, &velocity, &faces),
+            moving: OnceLock::new(),
             initial,
             velocity,
             faces,
@@ -198,11 +208,12 @@ impl PolytopeObstacle {
 
     /// The vertices of the sections for t > 0, counter-clockwise: at most n + m.
     pub fn moving_vertices(&self) -> Vec<MovingVertex> {
-        self.moving.clone()
+        self.moving().to_vec()
     }
 
     pub(super) fn moving(&self) -> &[MovingVertex] {
-        &self.moving
+        self.moving
+            .get_or_init(|| moving_vertices(&self.initial, &self.velocity, &self.faces))
     }
 
     /// The velocity obstacle as a region of half-planes, for own ship at `position` at t = 0.
@@ -301,9 +312,10 @@ impl SpaceTimeObstacle for PolytopeObstacle {
             return inside;
         }
         let at = |v: &MovingVertex| v.origin + v.velocity * time;
-        let mut from = at(&self.moving[self.moving.len() - 1]);
+        let moving = self.moving();
+        let mut from = at(&moving[moving.len() - 1]);
         let mut nearest = Vector::repeat(f64::INFINITY);
-        for vertex in &self.moving {
+        for vertex in moving {
             let to = at(vertex);
             let offset = from_edge(position, from, to);
             if offset.norm_squared() < nearest.norm_squared() {
@@ -343,7 +355,7 @@ impl SpaceTimeObstacle for PolytopeObstacle {
         } else {
             // contact asks the faces alone
             let mut level = self.clone();
-            peak_by_bisection(segment, |risk| {
+            peak_by_bisection(segment.start_time, |risk| {
                 let alpha = level_of(risk);
                 for (i, face) in level.faces.iter_mut().enumerate() {
                     let nominal = self.spreads[i].nominal_rate;

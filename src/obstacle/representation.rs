@@ -10,7 +10,7 @@ use super::{
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, SignedDistance};
 use crate::target::VelocitySpell;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, Trajectory};
 
 /// Sides of the polygon that stands for a section that is an ellipse.
 const SECTION_SIDES: usize = 64;
@@ -184,6 +184,10 @@ impl SpaceTimeObstacle for Obstacle {
 
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
         self.object().peak_risk(segment)
+    }
+
+    fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
+        self.object().peak_risk_along(trajectory)
     }
 
     fn at_risk(&self, risk: f64) -> Self {

@@ -278,13 +278,13 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
 /// exact contact. `contact` gives the first contact with the set of a risk. Errs to the high side by at most
 /// [`tolerance::RISK`]; about 40 contacts.
 pub(super) fn peak_by_bisection(
-    segment: &Segment,
+    start_time: f64,
     mut contact: impl FnMut(f64) -> Option<f64>,
 ) -> PeakRisk {
     let Some(first) = contact(0.0) else {
         return PeakRisk {
             risk: 0.0,
-            time: segment.start_time,
+            time: start_time,
         };
     };
     if let Some(time) = contact(1.0) {

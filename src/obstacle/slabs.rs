@@ -2,12 +2,13 @@
 
 use super::cpa::{ClosestApproach, usable_horizon};
 use super::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
+use super::space_time_obstacle::largest_risk_of_parts;
 use super::{PolytopeObstacle, SpaceTimeObstacle, Support};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, SignedDistance};
 use crate::target::VelocitySpell;
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, Trajectory};
 
 /// Why velocity sets do not follow one another.
 ///
@@ -341,8 +342,21 @@ impl SpaceTimeObstacle for SlabObstacle {
 
     /// By bisection over exact contacts, to [`tolerance::RISK`].
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
-        peak_by_bisection(segment, |risk| {
+        peak_by_bisection(segment.start_time, |risk| {
             self.at_risk(risk).first_contact(segment, 0.0)
+        })
+    }
+
+    /// The same, each level made once for all segments.
+    fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
+        if trajectory.steered().is_some() {
+            return largest_risk_of_parts(self, trajectory);
+        }
+        peak_by_bisection(trajectory.start_time(), |risk| {
+            let level = self.at_risk(risk);
+            let segments = trajectory.segments().iter();
+            let contacts = segments.filter_map(|s| level.first_contact(s, 0.0));
+            contacts.min_by(f64::total_cmp)
         })
     }
 

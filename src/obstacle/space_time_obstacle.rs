@@ -115,36 +115,7 @@ pub trait SpaceTimeObstacle {
     /// The largest risk along a trajectory: that of its segments, the first of those that tie. Along a motion under
     /// forces the largest of `LOOKS` instants a piece at which it is deeper than [`tolerance::DEPTH_M`] in the set.
     fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
-        let mut peak = PeakRisk {
-            risk: 0.0,
-            time: trajectory.start_time(),
-        };
-        for piece in trajectory
-            .steered()
-            .iter()
-            .flat_map(|motion| motion.pieces())
-        {
-            for look in 0..=LOOKS {
-                let part = look as f64 / LOOKS as f64;
-                let (position, time) = (
-                    piece.position(part),
-                    piece.start_time + part * piece.duration,
-                );
-                let risk = self.risk(position, time);
-                if risk > peak.risk
-                    && !(self.signed_distance(position, time).distance >= -tolerance::DEPTH_M)
-                {
-                    peak = PeakRisk { risk, time };
-                }
-            }
-        }
-        for segment in trajectory.segments() {
-            let here = self.peak_risk(segment);
-            if here.risk > peak.risk {
-                peak = here;
-            }
-        }
-        peak
+        largest_risk_of_parts(self, trajectory)
     }
 
     /// The set `O_alpha` with `alpha = 1 - risk`: to stay out of it is to stay at or below `risk`. Risk 0 is
@@ -161,4 +132,41 @@ pub trait SpaceTimeObstacle {
     /// True when `velocity`, kept from `position` at t = 0, meets the set within `[0, horizon]`: membership of
     /// the velocity obstacle `{v : position + v t in O_t for some t}`. `horizon` may be infinite.
     fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool;
+}
+
+/// The largest risk of the pieces and segments of a trajectory, one by one.
+pub(super) fn largest_risk_of_parts<S: SpaceTimeObstacle + ?Sized>(
+    set: &S,
+    trajectory: &Trajectory,
+) -> PeakRisk {
+    let mut peak = PeakRisk {
+        risk: 0.0,
+        time: trajectory.start_time(),
+    };
+    for piece in trajectory
+        .steered()
+        .iter()
+        .flat_map(|motion| motion.pieces())
+    {
+        for look in 0..=LOOKS {
+            let part = look as f64 / LOOKS as f64;
+            let (position, time) = (
+                piece.position(part),
+                piece.start_time + part * piece.duration,
+            );
+            let risk = set.risk(position, time);
+            if risk > peak.risk
+                && !(set.signed_distance(position, time).distance >= -tolerance::DEPTH_M)
+            {
+                peak = PeakRisk { risk, time };
+            }
+        }
+    }
+    for segment in trajectory.segments() {
+        let here = set.peak_risk(segment);
+        if here.risk > peak.risk {
+            peak = here;
+        }
+    }
+    peak
 }

@@ -325,7 +325,8 @@ impl Ladder<'_> {
         };
         let left = |set| inside::left_for_good(set, &plan.trajectory);
         let released = hard.iter().map(left).collect();
-        let timed_out = matches!(attempt.planned.outcome, Outcome::Deadline(_));
+        let timed_out =
+            matches!(attempt.planned.outcome, Outcome::Deadline(_)) || self.left().is_zero();
         let outcome = if timed_out {
             Outcome::Deadline(Some(plan.clone()))
         } else {

@@ -73,7 +73,6 @@ mod comparison;
 mod curves;
 mod document;
 mod explored;
-mod file;
 mod forces;
 mod frames;
 mod land;
@@ -102,6 +101,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use rerun::{EntityPath, EntityPathPart, RecordingInfo, RecordingStreamResult};
 
+use crate::output::{folder_of, write_whole};
 use crate::pipeline::Run;
 use curves::Curves;
 use recorder::Recorder;
@@ -184,7 +184,8 @@ fn put(
         path: path.to_owned(),
         source,
     })?;
-    file::write_whole(path, &bytes).map_err(|source| RecordingError::Write {
+    let written = std::fs::create_dir_all(folder_of(path)).and_then(|()| write_whole(path, &bytes));
+    written.map_err(|source| RecordingError::Write {
         path: path.to_owned(),
         source,
     })

@@ -8,6 +8,7 @@ use super::part::parts;
 use super::route::Route;
 use crate::frame::{Pose, Side};
 use crate::obstacle::Obstacle;
+use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::planner::{Plan, Problem};
 use crate::trajectory::{Segment, Trajectory};
@@ -35,10 +36,10 @@ const HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
 /// that leaves them so and then follows the path, or that follows the path at once. `None` where the path itself, as own ship can sail it, is
 /// too long for the horizon or leads ashore. The caller finds out from when on it is clear of what. Some milliseconds, and up to twenty plans.
 pub fn escape(problem: &Problem) -> Option<Plan> {
-    let clock = crate::planner::clock::Clock::new(problem.deadline);
+    let clock = Clock::new(problem.deadline);
     let parts = parts(problem.obstacles, problem.horizon);
     let hazards = within_reach(problem, &parts);
-    let ways = ways_out(problem, &hazards);
+    let ways = ways_out(problem, &hazards, clock);
     for way in ways.iter().take(MOST_WAYS) {
         for hold in HOLDS_S {
             if clock.is_up() {
@@ -90,8 +91,8 @@ struct WayOut {
     turn: f64,
 }
 
-/// Every way out, the soonest first; of equal ones the least turn, and to starboard.
-fn ways_out(problem: &Problem, hazards: &[Hazard]) -> Vec<WayOut> {
+/// Every way out, or one when the clock is up, the soonest first; of equal ones the least turn, and to starboard.
+fn ways_out(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Vec<WayOut> {
     let own = problem.own;
     let inside = |h: &&Hazard| {
         h.slack(own.pose.position, 0.0)
@@ -111,10 +112,12 @@ fn ways_out(problem: &Problem, hazards: &[Hazard]) -> Vec<WayOut> {
         })
     };
     let mut ways = Vec::new();
-    for speed in own.speeds.iter().copied().filter(|u| *u > 0.0) {
+    // the greatest speed first: it is out soonest as a rule
+    for speed in own.speeds.iter().rev().copied().filter(|u| *u > 0.0) {
         for step in 0..=TURNS {
             for side in [Side::Starboard, Side::Port] {
-                if step == 0 && side == Side::Port {
+                // out of time: the first way out is the one
+                if step == 0 && side == Side::Port || clock.is_up() && !ways.is_empty() {
                     continue;
                 }
                 let turn = side.turn_sign() * TURN_RAD * f64::from(step);

@@ -11,8 +11,53 @@ use super::super::file::Range;
 /// Nodes of a file, text and white space counted: what 16 MiB of a recorded scenario hold, and 200 MB of memory at most.
 const NODES: u32 = 2_000_000;
 
+/// Attributes of one element at most: the parser compares each with all others.
+const ATTRIBUTES: usize = 1_000;
+
+/// The line of the first element of more attributes than there may be, before anything is parsed.
+fn crowded(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    // where what begins at `from` and ends so is over
+    let after =
+        |from: usize, end: &str| text.get(from..)?.find(end).map(|at| from + at + end.len());
+    let mut at = 0;
+    while let Some(open) = text.get(at..).and_then(|rest| rest.find('<')) {
+        at += open;
+        let rest = &text[at..];
+        let skipped = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+        if let Some((_, end)) = skipped
+            .into_iter()
+            .find(|(begin, _)| rest.starts_with(begin))
+        {
+            at = after(at, end)?;
+            continue;
+        }
+        let (begun, mut count) = (at, 0);
+        while *bytes.get(at)? != b'>' {
+            if let quote @ (b'"' | b'\'') = bytes[at] {
+                at = after(at + 1, if quote == b'"' { "\"" } else { "'" })?;
+                count += 1;
+                if count > ATTRIBUTES {
+                    return Some(1 + text[..begun].matches('\n').count());
+                }
+            } else {
+                at += 1;
+            }
+        }
+    }
+    None
+}
+
 /// Reads a text. A document type, in which entities would be declared, is refused: nothing expands.
 pub(super) fn parse(text: &str) -> Result<Document<'_>, Fault> {
+    if let Some(line) = crowded(text) {
+        return Err(Fault {
+            path: String::new(),
+            found: format!("an element of more than {ATTRIBUTES} attributes"),
+            allowed: format!("at most {ATTRIBUTES}"),
+            line: Some(line),
+        });
+    }
     let options = ParsingOptions {
         allow_dtd: false,
         nodes_limit: NODES,
@@ -171,5 +216,27 @@ pub(super) fn shown(text: &str) -> String {
         format!("{:?}…", text.chars().take(SHOWN).collect::<String>())
     } else {
         format!("{text:?}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_element_of_very_many_attributes_is_refused_before_it_is_parsed() {
+        let element = |count: usize| {
+            let attributes: String = (0..count).map(|k| format!(" a{k}='>\"'")).collect();
+            format!("<?xml version='1.0'?>\n<!-- it's -->\n<x{attributes}><y b=\"'\"/>é</x>")
+        };
+        assert!(parse(&element(ATTRIBUTES)).is_ok());
+        let fault = parse(&element(ATTRIBUTES + 1)).expect_err("too many");
+        assert_eq!(fault.line, Some(3));
+        assert!(fault.found.contains("attributes"), "{}", fault.found);
+        let many = element(100_000);
+        assert!(crowded(&many).is_some());
+        for cut in (0..400).filter_map(|n| many.get(..n)) {
+            assert_eq!(crowded(cut), None);
+        }
     }
 }
