@@ -239,7 +239,6 @@ fn is_said_only(pointer: &str) -> bool {
     ]
     .iter()
     .any(|part| pointer.starts_with(part))
-        || pointer.contains("undisturbed")
         // the largest risk may last
         || pointer.contains("max_risk_t_s")
         || ["roles", "scores", "breaches", "monitors"]
@@ -306,7 +305,8 @@ fn every_number_of_the_motion_and_its_figures_is_held() {
                     .iter()
                     .any(|k| pointer.ends_with(k));
             // the barge is touched for a while: any time of that while is one of the closest approach
-            let lasting = name == "canal" && pointer == "/encounters/0/tcpa_s";
+            let lasting = (name == "canal" && pointer == "/encounters/0/tcpa_s")
+                || pointer.ends_with("/undisturbed_tcpa_s");
             // by how much a shape was drawn back
             let drawn = pointer.strip_suffix("/amount").is_some_and(|given_up| {
                 document.pointer(&format!("{given_up}/kind")) != Some(&json!("risk"))
@@ -1324,6 +1324,258 @@ fn a_risk_is_within_what_was_accepted_and_has_a_time() {
     );
 }
 
+fn give_up(document: &mut Value, kind: &str, target: &str, amount: f64) {
+    let given_up = json!({ "kind": kind, "target": target, "amount": amount });
+    list(document, "/relaxations").push(given_up);
+}
+
+/// What the words of a document say agrees with what is in it, and figures that no motion bears on are computed too.
+#[test]
+fn every_claim_of_a_document_is_held() {
+    let clear = document(scenario("colregs/head-on.toml"));
+    let relaxed = inside();
+    assert_eq!(relaxed["outcome"], "relaxed");
+    let along = document(scenario("harbour/ferry-crossing.toml"));
+    let forces = document(scenario("forces/give-way.toml"));
+    let land = document(scenario("harbour/munkholmen.toml"));
+    let sets = document(scenario("uncertainty/spells.toml"));
+    let ellipses = document(scenario("uncertainty/ellipse.toml"));
+    let cases: Vec<(&Value, Alteration)> = vec![
+        (
+            &clear,
+            (
+                "solved as infeasible",
+                |d| d["outcome"] = json!("infeasible"),
+                "outcome",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "solved as relaxed",
+                |d| d["outcome"] = json!("relaxed"),
+                "outcome",
+            ),
+        ),
+        (
+            &relaxed,
+            (
+                "relaxed as solved",
+                |d| d["outcome"] = json!("solved"),
+                "outcome",
+            ),
+        ),
+        (
+            &relaxed,
+            (
+                "relaxed as infeasible",
+                |d| d["outcome"] = json!("infeasible"),
+                "outcome",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "no plan",
+                |d| {
+                    d["trajectory"] = Value::Null;
+                    d["cost"] = Value::Null;
+                },
+                "it is infeasible or deadline",
+            ),
+        ),
+        (
+            &along,
+            (
+                "along paths, as free",
+                |d| d["planner"] = json!("space-time"),
+                "planner",
+            ),
+        ),
+        (
+            &forces,
+            (
+                "forces, as free",
+                |d| d["planner"] = json!("space-time"),
+                "planner",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "free, as of forces",
+                |d| d["planner"] = json!("optimal-control"),
+                "planner",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "no risk, given up",
+                |d| {
+                    give_up(d, "risk", "target", 0.0);
+                    d["outcome"] = json!("relaxed");
+                },
+                "amount: the document says 0, it is nothing",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "rules that nobody asked for",
+                |d| {
+                    d["compliance"] = json!("shape");
+                    give_up(d, "compliance", "target", 1.0);
+                    d["outcome"] = json!("relaxed");
+                },
+                "no part of compliance 'shape'",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "a shape that nobody asked for",
+                |d| {
+                    d["compliance"] = json!("none");
+                    give_up(d, "domain", "target", 1.0);
+                    d["outcome"] = json!("relaxed");
+                },
+                "no part of compliance 'none'",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "a shape, twice",
+                |d| {
+                    d["compliance"] = json!("shape");
+                    give_up(d, "domain", "target", 1.0);
+                    give_up(d, "domain", "target", 2.0);
+                    d["outcome"] = json!("relaxed");
+                },
+                "'domain' twice",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "farther apart",
+                |d| d["encounters"][0]["undisturbed_dcpa_m"] = json!(5000.0),
+                "undisturbed_dcpa_m",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "no distance",
+                |d| d["encounters"][0]["undisturbed_dcpa_m"] = Value::Null,
+                "undisturbed_dcpa_m",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "before the start",
+                |d| d["encounters"][0]["undisturbed_tcpa_s"] = json!(-1.0),
+                "undisturbed_tcpa_s",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "at the start",
+                |d| d["encounters"][0]["undisturbed_tcpa_s"] = json!(0.0),
+                "undisturbed_tcpa_s",
+            ),
+        ),
+        (
+            &sets,
+            (
+                "sets, farther apart",
+                |d| add(&mut d["encounters"][0]["undisturbed_dcpa_m"], 1e-3),
+                "undisturbed_dcpa_m",
+            ),
+        ),
+        (
+            &ellipses,
+            (
+                "ellipses, farther apart",
+                |d| d["encounters"][0]["undisturbed_dcpa_m"] = json!(5000.0),
+                "undisturbed_dcpa_m",
+            ),
+        ),
+        (
+            &ellipses,
+            (
+                "ellipses, nearer",
+                |d| add(&mut d["encounters"][0]["undisturbed_dcpa_m"], -1e-3),
+                "undisturbed_tcpa_s",
+            ),
+        ),
+        (
+            &clear,
+            (
+                "land where none is",
+                |d| d["cost"]["min_land_distance_m"] = json!(7.0),
+                "min_land_distance_m",
+            ),
+        ),
+        (
+            &land,
+            (
+                "land that is nearer",
+                |d| scale(&mut d["cost"]["min_land_distance_m"], 0.5),
+                "min_land_distance_m",
+            ),
+        ),
+    ];
+    for (original, (what, alter, word)) in cases {
+        assert!(!is_caught(original), "{what}");
+        let mut document = original.clone();
+        alter(&mut document);
+        let found = checked(&document).violations;
+        let told = found.iter().any(|v| v.what.contains(word));
+        assert!(told, "{what}: {found:#?}");
+    }
+    let mut late = clear.clone();
+    for outcome in ["solved", "deadline"] {
+        late["outcome"] = json!(outcome);
+        assert!(!is_caught(&late), "{outcome}");
+    }
+}
+
+/// A ship at rest on the last waypoint lies neither to port nor to starboard of one that arrives there.
+#[test]
+fn a_ship_on_the_last_waypoint_may_lie_on_either_side() {
+    let plan = |compliance: Compliance, end: [f64; 2], course: f64| {
+        let [east, north] = end;
+        let text = format!(
+            r#"title = "berth"
+            horizon_s = 1601.0
+            own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 76, speed_mps = 5, length_m = 30, beam_m = 8,
+                turning_radius_m = 100, safety_margin_m = 20 }}
+            mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {east}, north_m = {north} }}] }}
+            [[targets]]
+            name = "berthed"
+            position = {{ east_m = {east}, north_m = {north} }}
+            course_deg = {course}
+            speed_mps = 0
+            length_m = 60
+            beam_m = 12
+            speed_spread_mps = 0.5
+            course_spread_deg = 5"#
+        );
+        let mut scenario = Scenario::parse(&text).expect("a scenario");
+        scenario.compliance = compliance;
+        document(scenario)
+    };
+    for k in 0..6 {
+        let end = [1000.0 + 37.0 * f64::from(k), 311.0 - 113.0 * f64::from(k)];
+        let found = checked(&plan(Compliance::Shape, end, 201.0 + 31.0 * f64::from(k)));
+        assert!(found.violations.is_empty(), "{k}: {:#?}", found.violations);
+    }
+}
+
 #[test]
 fn what_is_no_plan_document_is_named() {
     let original = document(scenario("colregs/head-on.toml"));
@@ -1375,6 +1627,34 @@ fn what_is_no_plan_document_is_named() {
         (
             said(&|d| d["targets"][0]["representation"] = json!("box")),
             "targets[0].representation: found 'box'",
+        ),
+        (
+            said(&|d| d["planner"] = json!("x")),
+            "planner: found 'x'; allowed: space-time, path-time, optimal-control",
+        ),
+        (
+            said(&|d| d["compliance"] = json!("x")),
+            "compliance: found 'x'; allowed: none, shape, rules",
+        ),
+        (
+            said(&|d| d["objective"] = json!("x")),
+            "objective: found 'x'; allowed: space-time-error, time, length, length-risk, stage-cost",
+        ),
+        (
+            said(&|d| d["outcome"] = json!("x")),
+            "outcome: found 'x'; allowed: solved, relaxed, infeasible, deadline",
+        ),
+        (
+            said(&|d| give_up(d, "bogus", "target", 1.0)),
+            "relaxations[0].kind: found 'bogus'; allowed: compliance, domain, risk",
+        ),
+        (
+            said(&|d| give_up(d, "risk", "nobody", 0.9)),
+            "relaxations[0].target: found 'nobody'; allowed: target",
+        ),
+        (
+            said(&|d| give_up(d, "domain", "target", -5.0)),
+            "relaxations[0].amount: found -5; allowed: a number that is not negative",
         ),
         (
             said(&|d| d["trajectory"]["segments"] = Value::Null),

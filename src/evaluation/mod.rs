@@ -15,11 +15,13 @@ mod space_time_set;
 mod stage_cost;
 mod steered;
 mod turn;
+mod undisturbed;
 
 pub use request::{Freedom, Request};
 pub use space_time_set::{SetShape, SpaceTimeSet};
 pub(crate) use stage_cost::{StageWeights, stage_cost};
 pub use steered::{Steering, evaluate_steered};
+pub(crate) use undisturbed::{undisturbed_distance, undisturbed_legs};
 
 use clearance::{Body, least_distance};
 use least::Least;
@@ -30,7 +32,7 @@ use shore::least_land_distance;
 use space_time_set::{MovingSet, since};
 use turn::{Turn, least_while_turning, turns};
 
-use crate::frame::{Side, relative_bearing};
+use crate::frame::{Side, cross, direction};
 use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
@@ -117,7 +119,8 @@ pub struct Passage {
     pub dcpa: f64,
     /// And when, seconds.
     pub tcpa: f64,
-    /// Side of own ship on which the target lies then; dead ahead and astern count as starboard.
+    /// Side of own ship on which the target lies then; dead ahead and astern, to [`tolerance::DEPTH_M`], count as
+    /// starboard.
     pub passing_side: Side,
     /// Least distance between own hull and any hull the target may have, metres; negative in overlap.
     /// For explicit sets: from own position to the set.
@@ -439,9 +442,10 @@ fn passage<P: Piece>(
             .iter()
             .find(|s| closest.time <= s.end_time())
             .map_or(Side::Starboard, |s| {
-                let bearing =
-                    relative_bearing(&s.pose_at(closest.time), target.position_at(closest.time));
-                if bearing < 0.0 && bearing > -std::f64::consts::PI {
+                let pose = s.pose_at(closest.time);
+                let off = target.position_at(closest.time) - pose.position;
+                // athwart by so little, the side is one of rounding
+                if cross(direction(pose.heading), off) > tolerance::DEPTH_M {
                     Side::Port
                 } else {
                     Side::Starboard

@@ -12,7 +12,21 @@ use crate::trajectory::{DesiredTrajectory, Segment, Steered};
 use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 
 /// The planner whose plans keep to paths.
-const PATH_TIME: &str = "path-time";
+pub(super) const PATH_TIME: &str = "path-time";
+/// The planner whose plans are of forces.
+pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
+
+const PLANNERS: [&str; 3] = ["space-time", PATH_TIME, OPTIMAL_CONTROL];
+const COMPLIANCES: [&str; 3] = ["none", "shape", "rules"];
+const OBJECTIVES: [&str; 5] = [
+    "space-time-error",
+    "time",
+    "length",
+    "length-risk",
+    "stage-cost",
+];
+const OUTCOMES: [&str; 4] = ["solved", "relaxed", "infeasible", "deadline"];
+const KINDS: [&str; 3] = ["compliance", "domain", "risk"];
 
 /// Keys of another document that are named.
 const KEYS: usize = 5;
@@ -120,6 +134,10 @@ impl Claim {
         if file.format != FORMAT {
             return Err(fault("format", format!("'{}'", file.format), FORMAT));
         }
+        word("planner", &file.planner, &PLANNERS)?;
+        word("compliance", &file.compliance, &COMPLIANCES)?;
+        word("objective", &file.objective, &OBJECTIVES)?;
+        word("outcome", &file.outcome, &OUTCOMES)?;
         within(
             "horizon_s",
             file.horizon_s,
@@ -154,6 +172,13 @@ impl Claim {
             .enumerate()
             .map(|(index, t)| target(&format!("targets[{index}]"), t))
             .collect::<Result<Vec<_>, _>>()?;
+        let names: Vec<&str> = targets.iter().map(|t| t.name.as_str()).collect();
+        for (index, given_up) in file.relaxations.iter().enumerate() {
+            let at = |key: &str| format!("relaxations[{index}].{key}");
+            word(&at("kind"), &given_up.kind, &KINDS)?;
+            word(&at("target"), &given_up.target, &names)?;
+            not_negative(&at("amount"), given_up.amount)?;
+        }
         let (sets, mut faults) = sets::read(&file.obstacles, &file.relaxations, file.horizon_s)?;
         let land = file
             .land
@@ -209,6 +234,18 @@ pub(super) fn fault(path: &str, found: impl std::fmt::Display, allowed: &str) ->
         found: found.to_string(),
         allowed: allowed.to_owned(),
     })
+}
+
+/// One of the words that there are.
+fn word(path: &str, found: &str, allowed: &[&str]) -> Result<(), ClaimError> {
+    if allowed.contains(&found) {
+        return Ok(());
+    }
+    let allowed = match allowed {
+        [] => "nothing".to_owned(),
+        words => words.join(", "),
+    };
+    Err(fault(path, format!("'{found}'"), &allowed))
 }
 
 fn within(path: &str, value: f64, least: f64, most: f64) -> Result<f64, ClaimError> {

@@ -4,9 +4,10 @@ use super::claim::{Claim, ClaimedMotion};
 use super::figures::near;
 use super::untrue;
 use crate::evaluation::{Evaluation, Violation};
-use crate::frame::{Pose, relative_bearing, wrap};
+use crate::frame::{Pose, Vector, wrap};
 use crate::geometry::Ellipse;
 use crate::target::{Motion, Target};
+use crate::tolerance;
 use nalgebra::Matrix2;
 
 /// Per target: the least distance, that it is so near at the time given, and the side.
@@ -62,25 +63,32 @@ pub(super) fn check(
             ));
             continue;
         }
-        let bearing = |pose: &Pose| relative_bearing(pose, target.position_at(tcpa));
-        let side = |pose: &Pose| {
-            if (-std::f64::consts::PI < bearing(pose)) && bearing(pose) < 0.0 {
-                "port"
-            } else {
-                "starboard"
-            }
-        };
         let side_said = said.passing_side.as_deref().unwrap_or("nothing");
-        if !poses.iter().any(|pose| side(pose) == side_said) {
-            let so = poses.first().map_or("unknown", side);
+        let abeam = |pose: &Pose| port_of(pose, target.position_at(tcpa));
+        // dead ahead and astern count as starboard, as far as rounding does not make it either
+        let may_be = |pose: &Pose| match side_said {
+            "port" => abeam(pose) >= 0.0,
+            "starboard" => abeam(pose) <= 2.0 * tolerance::DEPTH_M,
+            _ => false,
+        };
+        if !poses.iter().any(may_be) {
+            let to_port = poses.first().is_some_and(|p| abeam(p) > tolerance::DEPTH_M);
+            let so = if to_port { "port" } else { "starboard" };
             found.push(untrue(&label("passing_side"), side_said, so));
         }
     }
     found
 }
 
+/// Metres by which a place lies to port of the line ahead through a pose.
+fn port_of(pose: &Pose, place: Vector) -> f64 {
+    let (sin, cos) = pose.heading.sin_cos();
+    let offset = place - pose.position;
+    cos * offset.y - sin * offset.x
+}
+
 /// Between the hulls, or from own position to the set.
-fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -> f64 {
+pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -> f64 {
     match target.ship() {
         Some(ship) => claim
             .own

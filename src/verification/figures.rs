@@ -3,8 +3,9 @@
 use super::claim::{Claim, ClaimedMotion};
 use super::untrue;
 use crate::evaluation::{Evaluation, Steering, Violation, stage_cost};
+use crate::frame::Vector;
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Node, Segment};
 
 /// Costs, the mission's own figures and the path-time profile.
 pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
@@ -88,11 +89,57 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     {
         found.push(untrue("cost.min_land_distance_m", said, land));
     }
+    if let Some(said) = cost
+        .min_land_distance_m
+        .filter(|said| !(land.is_finite() && near(*said, land)))
+    {
+        let beyond = beyond_reach(claim);
+        if !(said >= beyond || near(said, beyond)) {
+            let so = format!("{land}, or of land beyond reach {beyond} at least");
+            found.push(untrue("cost.min_land_distance_m", said, so));
+        }
+    }
     if cost.min_land_distance_m.is_none() && land.is_finite() {
         found.push(untrue("cost.min_land_distance_m", "nothing", land));
     }
     found.extend(profile(claim));
     found
+}
+
+/// Metres from own hull to land that a document does not hold, at least. It holds all that comes into the square about the
+/// middle between start and end whose half side is half of the way that she can sail, and her footprint.
+fn beyond_reach(claim: &Claim) -> f64 {
+    let own = &claim.own;
+    let (start, end) = (own.pose.position, claim.desired.end());
+    let way = (own.max_speed() * claim.file.horizon_s).max((end - start).norm());
+    let middle = (start + end) * 0.5;
+    let off = |p: Vector| (p - middle).abs().max();
+    let farthest = match &claim.motion {
+        // an arc is no farther from an end than half of its way
+        Some(ClaimedMotion::Segments(segments)) => {
+            let most = |s: &Segment| off(s.start.position).max(off(s.end().position)) + bulge(s);
+            segments.iter().map(most).fold(0.0, f64::max)
+        }
+        // between two nodes within the distance of these
+        Some(ClaimedMotion::Steered { motion, .. }) => {
+            let nodes = motion.nodes().windows(2);
+            let most = |w: &[Node]| {
+                let [a, b] = [w[0].pose.position, w[1].pose.position];
+                off(a).max(off(b)) + (b - a).norm()
+            };
+            nodes.map(most).fold(0.0, f64::max)
+        }
+        None => 0.0,
+    };
+    0.5 * way + claim.file.own_ship.land_margin_m - farthest
+}
+
+fn bulge(segment: &Segment) -> f64 {
+    if segment.turn_rate == 0.0 {
+        0.0
+    } else {
+        0.5 * segment.length()
+    }
 }
 
 /// The stage cost of a motion under forces.

@@ -176,6 +176,8 @@ pub(super) struct EncounterFile {
     pub target: String,
     pub dcpa_m: Option<f64>,
     pub tcpa_s: Option<f64>,
+    pub undisturbed_dcpa_m: Option<f64>,
+    pub undisturbed_tcpa_s: Option<f64>,
     pub passing_side: Option<String>,
     pub max_risk: Option<f64>,
     pub max_risk_t_s: Option<f64>,

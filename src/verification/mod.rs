@@ -22,10 +22,12 @@ mod escape;
 mod figures;
 mod file;
 mod motion;
+mod outcome;
 mod reached;
 mod risk;
 mod samples;
 mod sets;
+mod undisturbed;
 
 pub use claim::{ClaimError, ClaimFault};
 
@@ -121,6 +123,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
     });
     violations.extend(coverage::check(&claim));
     violations.extend(entered::check(&claim));
+    violations.extend(outcome::check(&claim));
     if let (Some(evaluation), Some(motion)) = (&evaluation, &claim.motion) {
         violations.extend(evaluation.violations.iter().cloned());
         if motion.is_sound() {
@@ -130,6 +133,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
             violations.extend(samples::check(&claim, motion));
             violations.extend(encounters::check(&claim, motion, evaluation));
         }
+        violations.extend(undisturbed::check(&claim));
     }
     // a NaN has no place in time and goes last
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));

@@ -65,12 +65,13 @@ fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violati
 /// Whoever's risk is taken is named among what was given up, with that risk.
 fn given_up(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
     let mut named = claim.file.relaxations.iter();
-    let amount = named
-        .find(|r| r.kind == KIND && r.target == encounter.target)
-        .map(|r| r.amount);
+    let named = named.find(|r| r.kind == KIND && r.target == encounter.target);
     let what = format!("relaxation of '{}', amount", encounter.target);
-    match amount {
-        Some(amount) if !near(amount, said) => Some(untrue(&what, amount, said)),
+    match named {
+        Some(risk) if !near(risk.amount, said) => Some(untrue(&what, risk.amount, said)),
+        Some(risk) if said == 0.0 && risk.until_s.is_none() => {
+            Some(untrue(&what, risk.amount, "nothing"))
+        }
         None if said > 0.0 => Some(untrue(&what, "nothing", said)),
         _ => None,
     }

@@ -1,0 +1,62 @@
+//! Does the answer that a document names agree with what is in it?
+
+use super::claim::{Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
+use super::untrue;
+use crate::evaluation::Violation;
+
+/// The outcome with and without a motion and something given up, the planner with the parts that only its plans have, and
+/// each thing given up once, where it was asked for.
+pub(super) fn check(claim: &Claim) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let file = &claim.file;
+    let outcome = file.outcome.as_str();
+    let allowed = match (&claim.motion, file.relaxations.is_empty()) {
+        (None, _) => ["infeasible", "deadline"],
+        (Some(_), true) => ["solved", "deadline"],
+        (Some(_), false) => ["relaxed", "deadline"],
+    };
+    if !allowed.contains(&outcome) {
+        found.push(untrue("outcome", outcome, allowed.join(" or ")));
+    }
+    let mut planner = |wrong: bool, so: &str| {
+        if wrong {
+            found.push(untrue("planner", &file.planner, so));
+        }
+    };
+    let forces = file.planner == OPTIMAL_CONTROL;
+    planner(
+        file.optimal_control.is_some() && !forces,
+        "that of a document with optimal_control",
+    );
+    planner(
+        file.path_time.is_some() && file.planner != PATH_TIME,
+        "that of a document with path_time",
+    );
+    planner(
+        forces && matches!(claim.motion, Some(ClaimedMotion::Segments(_))),
+        "that of a plan of segments",
+    );
+    for (index, given_up) in file.relaxations.iter().enumerate() {
+        let what = format!("relaxation of '{}'", given_up.target);
+        let asked = match given_up.kind.as_str() {
+            "compliance" => file.compliance == "rules",
+            "domain" => file.compliance != "none",
+            _ => true,
+        };
+        if !asked {
+            let so = format!("no part of compliance '{}'", file.compliance);
+            found.push(untrue(&what, &given_up.kind, so));
+        }
+        let again = |r: &&super::file::RelaxationFile| {
+            r.kind == given_up.kind && r.target == given_up.target
+        };
+        if file.relaxations[..index].iter().any(|r| again(&r)) {
+            found.push(untrue(
+                &what,
+                format!("'{}' twice", given_up.kind),
+                "given up once",
+            ));
+        }
+    }
+    found
+}

@@ -1,0 +1,89 @@
+//! Are the undisturbed closest approaches of a document those of its mission?
+
+use super::claim::Claim;
+use super::encounters::distance;
+use super::figures::near;
+use super::untrue;
+use crate::evaluation::{Violation, undisturbed_distance, undisturbed_legs};
+use crate::geometry::ConvexPolygon;
+use crate::target::{Motion, Target};
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// Of the way that both make meanwhile. Undisturbed distances are found by narrowing down the time, to this part of it.
+const RESOLUTION: f64 = 1e-9;
+
+/// Instants of a leg at which ellipses are looked at.
+const INSTANTS: u32 = 64;
+
+/// Per target: the least distance along the desired trajectory, and that it is so near at the time given.
+pub(super) fn check(claim: &Claim) -> Vec<Violation> {
+    let legs = undisturbed_legs(&claim.desired, claim.file.horizon_s);
+    let all = claim.file.encounters.iter().zip(&claim.targets);
+    all.filter_map(|(said, target)| {
+        let label = |key: &str| format!("encounter with '{}', {key}", target.name);
+        let missed = RESOLUTION * legs.iter().map(|leg| way(target, leg)).sum::<f64>();
+        let (least, most) = match undisturbed_distance(&claim.own, &legs, target) {
+            Some(so) => (so, so + missed),
+            None => (f64::NEG_INFINITY, sampled(claim, target, &legs)),
+        };
+        let Some(dcpa) = said.undisturbed_dcpa_m else {
+            return Some(untrue(&label("undisturbed_dcpa_m"), "nothing", most));
+        };
+        let within = (dcpa >= least || near(dcpa, least)) && (dcpa <= most || near(dcpa, most));
+        if !within {
+            return Some(untrue(&label("undisturbed_dcpa_m"), dcpa, most));
+        }
+        let tcpa = said.undisturbed_tcpa_s.unwrap_or(f64::NAN);
+        let slack = tolerance::TIME_S * (1.0 + tcpa.abs());
+        let mut then = legs
+            .iter()
+            .filter(|s| s.start_time - slack <= tcpa && tcpa <= s.end_time() + slack)
+            .map(|s| at(claim, target, s, tcpa));
+        (!then.any(|then| near(then, dcpa))).then(|| {
+            let so = format!("a time along the mission at which the distance is {dcpa} m");
+            untrue(&label("undisturbed_tcpa_s"), tcpa, so)
+        })
+    })
+    .collect()
+}
+
+/// Metres between the hulls, or from own position to the set, at a time of a leg.
+fn at(claim: &Claim, target: &Target, leg: &Segment, time: f64) -> f64 {
+    let pose = leg.pose_at(time);
+    match target.outer_set_at(time) {
+        Some(set) => set.signed_distance(pose.position),
+        None => distance(claim, target, &pose, time),
+    }
+}
+
+/// The least of some instants: no less than the least of all.
+fn sampled(claim: &Claim, target: &Target, legs: &[Segment]) -> f64 {
+    let instants = |leg: &Segment| {
+        let (start, step) = (leg.start_time, leg.duration / f64::from(INSTANTS));
+        (0..=INSTANTS).map(move |k| start + step * f64::from(k))
+    };
+    let distances = legs
+        .iter()
+        .flat_map(|leg| instants(leg).map(|time| at(claim, target, leg, time)));
+    distances.fold(f64::INFINITY, f64::min)
+}
+
+/// Metres that own ship and a target make together along a leg, at most.
+fn way(target: &Target, leg: &Segment) -> f64 {
+    let speed = match &target.motion {
+        Motion::Ship(ship) => ship.speed,
+        Motion::Sets { velocity, .. } => fastest(velocity),
+        Motion::Spells { spells, .. } => {
+            let all = spells.iter().map(|s| fastest(&s.velocities));
+            all.fold(0.0, f64::max)
+        }
+        Motion::Ellipses { .. } => 0.0,
+    };
+    (leg.speed + speed) * leg.duration
+}
+
+fn fastest(velocities: &ConvexPolygon) -> f64 {
+    let speeds = velocities.vertices().iter().map(|v| v.norm());
+    speeds.fold(0.0, f64::max)
+}
