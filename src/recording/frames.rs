@@ -1,13 +1,24 @@
 //! The messages of a file, before any is decoded: the decoder is silent about a file that was cut.
 
+use re_protos::common::v1alpha1::Compression;
+use re_protos::external::prost::Message;
+use re_protos::log_msg::v1alpha1::ArrowMsg;
+
 /// "RRF2", a version, options.
-const HEADER: usize = 12;
+pub(super) const HEADER: usize = 12;
 
 /// A kind and a length, little-endian.
 const MESSAGE: usize = 16;
 
 /// The kind of the last message where there is a footer.
 const END: u64 = 0;
+
+/// The kind of a message with a chunk.
+const CHUNK: u64 = 2;
+
+/// Bytes that a byte of LZ4 stands for at most, and that a message is longer by all the same.
+const LARGEST_RATIO: u64 = 255;
+const SLACK: u64 = 64;
 
 /// How the files begin.
 const MAGIC: &[u8] = b"RRF2";
@@ -48,6 +59,12 @@ pub(super) fn fault(bytes: &[u8]) -> Option<String> {
         match end.filter(|end| *end <= total) {
             // behind the footer comes a frame of another form, and a further stream may follow
             Some(_) if kind == END => return None,
+            // the decoder would ask for as much memory as it is told
+            Some(end) if kind == CHUNK && is_beyond_packing(&bytes[start..end]) => {
+                return Some(format!(
+                    "damaged: a message at byte {at} of {total} is said to unpack to more than it can"
+                ));
+            }
             Some(end) => at = end,
             None => {
                 return Some(format!(
@@ -57,6 +74,14 @@ pub(super) fn fault(bytes: &[u8]) -> Option<String> {
         }
     }
     None
+}
+
+/// True of a packed chunk that says it is larger than anything of its length can be. What is no chunk at all is left to the decoder.
+fn is_beyond_packing(message: &[u8]) -> bool {
+    ArrowMsg::decode(message).is_ok_and(|chunk| {
+        let most = LARGEST_RATIO * chunk.payload.len() as u64 + SLACK;
+        chunk.compression == i32::from(Compression::Lz4) && chunk.uncompressed_size > most
+    })
 }
 
 #[cfg(test)]
@@ -92,5 +117,24 @@ mod tests {
         ] {
             assert!(fault(&wrong).is_some());
         }
+    }
+
+    #[test]
+    fn a_chunk_that_says_it_is_larger_than_it_can_be_is_not_decoded() {
+        let chunk = |uncompressed_size: u64| {
+            let chunk = ArrowMsg {
+                compression: Compression::Lz4.into(),
+                payload: vec![0; 100].into(),
+                uncompressed_size,
+                ..ArrowMsg::default()
+            };
+            let payload = chunk.encode_to_vec();
+            let mut bytes = b"RRF2\0\x24\x03\0\x01\x02\0\0".to_vec();
+            bytes.extend(CHUNK.to_le_bytes());
+            bytes.extend((payload.len() as u64).to_le_bytes());
+            [bytes, payload].concat()
+        };
+        assert_eq!(fault(&chunk(20_000)), None);
+        assert!(fault(&chunk(1 << 50)).is_some_and(|f| f.contains("damaged")));
     }
 }

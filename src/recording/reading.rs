@@ -152,10 +152,14 @@ impl Recorded {
             return Err(unread(std::io::Error::new(kind, "not a regular file")));
         }
         let mut bytes = Vec::new();
-        let file = std::fs::File::open(path).map_err(unread)?;
-        file.take(FILE_BYTES + 1)
-            .read_to_end(&mut bytes)
-            .map_err(unread)?;
+        let mut file = std::fs::File::open(path).map_err(unread)?;
+        // what is no recording is not read to its end
+        let mut head = file.by_ref().take(frames::HEADER as u64);
+        head.read_to_end(&mut bytes).map_err(unread)?;
+        if frames::is_recording(&bytes) {
+            let mut rest = file.take(FILE_BYTES + 1 - bytes.len() as u64);
+            rest.read_to_end(&mut bytes).map_err(unread)?;
+        }
         if bytes.len() as u64 > FILE_BYTES {
             return Err(broken("more than 1 GiB".to_owned()));
         }
