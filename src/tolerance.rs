@@ -49,6 +49,9 @@ pub const LIMIT: f64 = 1e-9;
 /// microseconds, which is how exactly a plan ends on time.
 pub const ARRIVAL_M: f64 = 1e-5;
 
+/// Metres. Sets narrower than twice this are grown by it before they are planned around.
+pub const HALF_WIDTH_M: f64 = 5e-4;
+
 /// Metres. A shape that is drawn back to let own ship start outside leaves her this much room.
 pub const START_M: f64 = 1e-3;
 

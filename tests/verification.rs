@@ -1,4 +1,12 @@
 //! The check of plan documents: what the planners wrote passes, and whatever is altered in it is caught.
+//!
+//! More wild scenes than the few that are always looked at:
+//!
+//! ```sh
+//! SEAROOM_WILD=2000 cargo test --release --no-default-features --test verification wild -- --nocapture
+//! ```
+
+mod wild;
 
 use std::path::{Path, PathBuf};
 
@@ -1719,4 +1727,33 @@ fn a_document_without_a_plan_is_not_verified_and_not_refused() {
     let text = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
     let found = verify(&text).expect("a document");
     assert!(!found.verified() && found.evaluation.is_none() && found.violations.is_empty());
+}
+
+/// What a planner says of its plan holds of the document, and every plan is verified. The counts are printed.
+#[test]
+fn plans_of_wild_scenes_are_verified_by_their_documents() {
+    let text = std::env::var("SEAROOM_WILD").unwrap_or_default();
+    let count = if text.is_empty() { "24" } else { &text };
+    let count: u64 = count
+        .parse()
+        .unwrap_or_else(|_| panic!("SEAROOM_WILD={text} is not a count"));
+    let (mut plans, mut relaxed) = (0, 0);
+    for seed in 0..count {
+        let text = wild::scene(seed);
+        let scenario = Scenario::parse(&text).unwrap_or_else(|e| panic!("{text}\n{e:?}"));
+        let run = pipeline::run(scenario);
+        let Some(evaluation) = &run.evaluation else {
+            continue;
+        };
+        assert!(evaluation.verified(), "{text}\n{:?}", evaluation.violations);
+        let document = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
+        let found = verify(&document).expect("a plan document");
+        assert!(found.verified(), "{text}\n{:?}", found.violations);
+        plans += 1;
+        relaxed += usize::from(!run.relaxations.is_empty());
+    }
+    println!(
+        "{count} wild scenes: {plans} plans, {relaxed} of them relaxed; all verified by their documents"
+    );
+    assert!(plans > relaxed && relaxed > 0);
 }

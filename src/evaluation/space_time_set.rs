@@ -149,7 +149,7 @@ impl SetShape {
     }
 
     /// False when a section is a point or a segment for a while.
-    pub(super) fn has_interior(&self) -> bool {
+    pub(crate) fn has_interior(&self) -> bool {
         match self {
             Self::Polygons { initial, spells } => MovingSlabs::new(initial, spells).has_interior(),
             Self::Ellipses { initial, velocity } => {

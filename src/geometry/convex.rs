@@ -248,11 +248,14 @@ impl ConvexPolygon {
         Self::from_ccw(points)
     }
 
-    /// The set moved by `shift`.
+    /// The set moved by `shift`. Vertices that rounding makes one there are one.
     pub fn translated(&self, shift: Vector) -> Self {
-        Self {
-            vertices: self.vertices.iter().map(|p| p + shift).collect(),
+        let vertices: Vec<Vector> = self.vertices.iter().map(|p| p + shift).collect();
+        let next = vertices.iter().cycle().skip(1);
+        if vertices.len() > 1 && vertices.iter().zip(next).any(|(a, b)| a == b) {
+            return Self::from_ccw(vertices);
         }
+        Self { vertices }
     }
 
     /// The set turned by `angle` radians about the origin.

@@ -12,6 +12,7 @@ mod ellipse_sum;
 mod ellipsoid;
 mod ellipsoid_contact;
 mod ellipsoid_velocities;
+mod interior;
 mod meeting;
 mod polytope;
 mod projection;

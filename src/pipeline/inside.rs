@@ -15,13 +15,7 @@ pub(super) fn motion(kind: PlannerKind, problem: &Problem) -> Option<Planned> {
     match kind {
         PlannerKind::SpaceTime => {
             let plan = space_time::escape(problem)?;
-            Some(Planned {
-                outcome: Outcome::Solved(plan),
-                stats: crate::planner::SearchStats::default(),
-                explored: crate::planner::ExploredGraph::new(),
-                path_time: None,
-                escape: None,
-            })
+            Some(Planned::of(Outcome::Solved(plan)))
         }
         PlannerKind::PathTime => {
             let both = [false, true].map(|hurrying| path_time::undisturbed(problem, hurrying));
@@ -43,6 +37,8 @@ pub(super) fn motion(kind: PlannerKind, problem: &Problem) -> Option<Planned> {
 /// the late side, by some nanoseconds.
 pub(super) fn left_for_good(set: &Obstacle, trajectory: &Trajectory) -> Option<f64> {
     let end = trajectory.end_time();
+    // what has no interior is not to be touched, not even crossed
+    let set = set.outer_where_flat();
     let contact = |from: f64| {
         let later = trajectory.segments().iter().filter(|s| s.end_time() > from);
         let mut later = later.map(|s: &Segment| s.between(from, s.end_time()));

@@ -17,8 +17,7 @@ use super::shares::HALF;
 use crate::obstacle::{Coast, Obstacle, SpaceTimeObstacle};
 use crate::planner::optimal_control::{self, ControlReport, Controlled};
 use crate::planner::{
-    ExploredGraph, NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, SearchStats,
-    path_time, space_time,
+    NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time,
 };
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
@@ -249,13 +248,7 @@ impl Ladder<'_> {
             whole,
             obstacles,
             risk,
-            planned: Planned {
-                outcome,
-                stats: SearchStats::default(),
-                explored: ExploredGraph::new(),
-                path_time: None,
-                escape: None,
-            },
+            planned: Planned::of(outcome),
             control: None,
             why: None,
         };

@@ -164,7 +164,7 @@ pub fn run(scenario: Scenario) -> Run {
     let risks: Vec<PeakRisk> = answer.trajectory().map_or_else(Vec::new, |trajectory| {
         let whole = answer.whole.iter();
         whole
-            .map(|set| peak_risk(set, trajectory, answer.risk))
+            .map(|set| peak_risk(&set.outer_where_flat(), trajectory, answer.risk))
             .collect()
     });
     let mut relaxations = relaxation::relaxations(&sets, &answer.cuts, &risks, &answer.released);

@@ -19,7 +19,7 @@ use std::time::Duration;
 use crate::colregs::{Duty, Encountered};
 use crate::frame::{Side, Vector};
 use crate::obstacle::{Coast, Obstacle};
-use crate::trajectory::{DesiredTrajectory, Trajectory};
+use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::OwnShip;
 
 /// Which search runs over the graph.
@@ -230,6 +230,22 @@ pub struct Plan {
     pub graph_cost: Option<f64>,
 }
 
+impl Plan {
+    /// A motion for the least space-time error, which is computed anew for all of it: searches compare by coarser quadrature.
+    /// `None` of what is no trajectory.
+    pub(crate) fn measured(
+        problem: &Problem,
+        motion: Vec<Segment>,
+        graph_cost: Option<f64>,
+    ) -> Option<Self> {
+        Some(Self {
+            cost: cost::whole_space_time_error(problem.desired, &motion, problem.time_weight),
+            trajectory: Trajectory::new(motion).ok()?,
+            graph_cost,
+        })
+    }
+}
+
 /// What ends the hold of a ship that stands on: the plan is to hold course and speed until then, and this escape after it.
 ///
 /// # Examples
@@ -342,4 +358,17 @@ pub struct Planned {
     pub path_time: Option<Box<path_time::PathTimeDiagram>>,
     /// Where own ship stands on (Rule 17).
     pub escape: Option<Escape>,
+}
+
+impl Planned {
+    /// An answer that no search led to.
+    pub(crate) fn of(outcome: Outcome) -> Self {
+        Self {
+            outcome,
+            stats: SearchStats::default(),
+            explored: ExploredGraph::new(),
+            path_time: None,
+            escape: None,
+        }
+    }
 }

@@ -13,7 +13,7 @@ use super::untrue;
 use crate::evaluation::{Request, SetShape, SpaceTimeSet, Violation, least_margins};
 use crate::frame::direction;
 use crate::geometry::ConvexPolygon;
-use crate::target::VelocitySpell;
+use crate::target::{Motion, VelocitySpell};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -101,6 +101,9 @@ fn taken(
     if accepted == 0.0 && set.from == 0.0 {
         return None;
     }
+    if set.from > 0.0 && has_changing_velocities(claim, &encounter.target) {
+        return None;
+    }
     let whole = before_release(set)?;
     let margin = |risk: f64, segments: &[Segment]| {
         let sets = [scaled(&whole, (1.0 - risk).max(0.0) / (1.0 - accepted))];
@@ -122,8 +125,14 @@ fn taken(
     let then: Vec<Segment> = around(segments, time)
         .map(|s| s.between(time.max(s.start_time), time.min(s.end_time())))
         .collect();
+    // what has no interior was grown before it was planned around, by a polygon around a disc
+    let near = if is_flat(&whole.shape, time) {
+        tolerance::DEPTH_M + 1.1 * tolerance::HALF_WIDTH_M
+    } else {
+        tolerance::DEPTH_M
+    };
     // negated on purpose: a NaN is not in the set
-    if below > 0.0 && !(margin(below, &then) <= tolerance::DEPTH_M) {
+    if below > 0.0 && !(margin(below, &then) <= near) {
         let so = format!("less at {time} s");
         return Some(Violation {
             time,
@@ -133,9 +142,31 @@ fn taken(
     None
 }
 
+/// True of a set whose section at a time is a point or a segment, to rounding.
+fn is_flat(shape: &SetShape, time: f64) -> bool {
+    match shape {
+        SetShape::Polygons { initial, spells } if spells.len() == 1 => {
+            let section = initial.minkowski_sum(&spells[0].velocities.scaled(time));
+            let mut normals = section.normals().into_iter();
+            normals.any(|n| section.support(n) + section.support(-n) < tolerance::DEPTH_M)
+        }
+        SetShape::Polygons { .. } | SetShape::Ellipses { .. } => !shape.has_interior(),
+    }
+}
+
+/// True of a target whose set has several velocity sets one after another: the last one does not tell what was before.
+fn has_changing_velocities(claim: &Claim, name: &str) -> bool {
+    let mut targets = claim.targets.iter().filter(|t| t.name == name);
+    targets.any(|target| match &target.motion {
+        Motion::Ship(ship) => ship.turn_rate > 0.0,
+        Motion::Spells { .. } => true,
+        Motion::Sets { .. } | Motion::Ellipses { .. } => false,
+    })
+}
+
 /// The set from the start on, of which a document has what is left when it has been left. A vertex of the section is one of the
-/// initial set that has moved with the extreme velocity of the same direction. `None` for ellipses and for several velocity sets one
-/// after another: of these it cannot be told.
+/// initial set that has moved with the extreme velocity of the same direction. `None` for ellipses and for several velocity sets: of these it
+/// cannot be told.
 fn before_release(set: &SpaceTimeSet) -> Option<SpaceTimeSet> {
     if set.from == 0.0 {
         return Some(set.clone());

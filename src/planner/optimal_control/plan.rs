@@ -16,10 +16,7 @@ use super::task::{Controls, Profile, Task};
 use super::transcription::Weights;
 use crate::frame::Vector;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::planner::{
-    ControlSettings, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats,
-    space_time,
-};
+use crate::planner::{ControlSettings, NoPlan, Outcome, Plan, Planned, Problem, space_time};
 use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
 use crate::vessel::{CyberShip2, FULL_SCALE, FroudeScaled, Manoeuvring, StateVector, VesselKind};
@@ -139,13 +136,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             None => self.find(&mut report),
         };
         Controlled {
-            planned: Planned {
-                outcome,
-                stats: SearchStats::default(),
-                explored: ExploredGraph::new(),
-                path_time: None,
-                escape: None,
-            },
+            planned: Planned::of(outcome),
             report,
         }
     }

@@ -34,7 +34,7 @@ pub(crate) struct State {
 #[derive(Debug)]
 pub(crate) struct Graph<'a> {
     pub scene: &'a Scene<'a>,
-    measure: Measure<'a>,
+    pub measure: Measure<'a>,
     informed: bool,
     pub nodes: Vec<Node>,
     settled: Vec<bool>,

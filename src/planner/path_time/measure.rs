@@ -8,7 +8,7 @@ use crate::obstacle::PathTime;
 use crate::planner::cost::space_time_error;
 use crate::planner::{Objective, Problem, SearchKind};
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, Trajectory};
 
 /// Metres per second. Of ways of one length the earliest is the best: a thousand seconds weigh a millimetre.
 const METRES_PER_SECOND: f64 = 1e-6;
@@ -53,6 +53,14 @@ impl<'a> Measure<'a> {
                 };
                 space_time_error(self.problem.desired, &segment, self.problem.time_weight)
             }
+        }
+    }
+
+    /// The cost of a plan, without what prefers the earliest of one length.
+    pub(crate) fn told(&self, searched: f64, trajectory: &Trajectory) -> f64 {
+        match self.problem.objective {
+            Objective::Length | Objective::LengthRisk { .. } => trajectory.length(),
+            Objective::Time | Objective::SpaceTimeError => searched,
         }
     }
 

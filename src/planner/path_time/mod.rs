@@ -56,13 +56,7 @@ const SLICE: usize = 50;
 /// along the paths; the space-time error is the least on the graph. The same problem gives the same plan unless the
 /// deadline strikes.
 pub fn plan(problem: &Problem) -> Planned {
-    let refuse = |reason| Planned {
-        outcome: Outcome::Infeasible(reason),
-        stats: SearchStats::default(),
-        explored: ExploredGraph::new(),
-        path_time: None,
-        escape: None,
-    };
+    let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let first = problem.desired.legs()[0].start;
     let away = (problem.own.pose.position - first).norm();
     // negated on purpose: a NaN is away
@@ -81,7 +75,6 @@ pub fn plan(problem: &Problem) -> Planned {
     if !(earliest <= problem.horizon + tolerance::TIME_S) {
         return Planned {
             path_time: diagram(&idle),
-            escape: None,
             ..refuse(NoPlan::PathTooLong {
                 earliest,
                 horizon: problem.horizon,
@@ -91,7 +84,6 @@ pub fn plan(problem: &Problem) -> Planned {
     if let Some(reason) = starts_inside(problem, &scene) {
         return Planned {
             path_time: diagram(&idle),
-            escape: None,
             ..refuse(reason)
         };
     }
@@ -150,6 +142,7 @@ pub fn plan(problem: &Problem) -> Planned {
     let plan = found.as_ref().and_then(|profile| {
         let trajectory = profile.trajectory(&scene, problem.own.pose)?;
         let cost = goal.map_or(0.0, |goal| search.nodes()[goal].cost);
+        let cost = graph.measure.told(cost, &trajectory);
         Some(Plan {
             trajectory,
             cost,

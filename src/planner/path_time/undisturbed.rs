@@ -4,7 +4,7 @@ use super::main_path;
 use super::scene::Scene;
 use crate::obstacle::PathTime;
 use crate::planner::cost::space_time_error;
-use crate::planner::{ExploredGraph, Objective, Outcome, Plan, Planned, Problem, SearchStats};
+use crate::planner::{Objective, Outcome, Plan, Planned, Problem};
 use crate::trajectory::PathNetwork;
 
 /// Along the main path, each leg at its desired speed, or own ship's greatest where that is less or where `hurrying`. `None` where the
@@ -48,15 +48,13 @@ pub fn undisturbed(problem: &Problem, hurrying: bool) -> Option<Planned> {
     };
     // the diagram has the sets that this motion is not clear of
     let barred = Scene::new(problem, &network);
+    let outcome = Outcome::Solved(Plan {
+        trajectory,
+        cost,
+        graph_cost: None,
+    });
     Some(Planned {
         path_time: Some(Box::new(profile.diagram(&barred, problem.own.pose))),
-        escape: None,
-        outcome: Outcome::Solved(Plan {
-            trajectory,
-            cost,
-            graph_cost: None,
-        }),
-        stats: SearchStats::default(),
-        explored: ExploredGraph::new(),
+        ..Planned::of(outcome)
     })
 }

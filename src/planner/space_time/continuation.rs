@@ -13,7 +13,7 @@ use super::selection::Selection;
 use super::template::{Ending, Slot};
 use crate::frame::{Pose, Side, wrap};
 use crate::planner::clock::Clock;
-use crate::planner::{ExploredGraph, NoPlan, Outcome, Planned, Problem, SearchStats};
+use crate::planner::{NoPlan, Outcome, Planned, Problem};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
@@ -64,13 +64,7 @@ fn refined(problem: &Problem, hazards: &[Hazard], motion: &[Segment], clock: Clo
         Some((Some(plan), false)) => Outcome::Solved(plan),
         _ => Outcome::Infeasible(NoPlan::NoTrajectory),
     };
-    Planned {
-        outcome,
-        stats: SearchStats::default(),
-        explored: ExploredGraph::new(),
-        path_time: None,
-        escape: None,
-    }
+    Planned::of(outcome)
 }
 
 /// A motion that runs along the route, leaves it, and comes back to it or to its end, as slots and lengths: sailed, it is the

@@ -17,7 +17,7 @@ use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::planner::{Plan, Problem};
 use crate::tolerance;
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::Segment;
 
 /// Radians of the turns that begin a piece.
 const TURNS_RAD: [f64; 7] = [0.0, 0.25, -0.25, 0.6, -0.6, 1.4, -1.4];
@@ -144,13 +144,7 @@ fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
         at = before;
     }
     motion.reverse();
-    let cost = search.reached[end].cost;
-    let trajectory = Trajectory::new(motion).ok()?;
-    Some(Plan {
-        trajectory,
-        cost,
-        graph_cost: None,
-    })
+    Plan::measured(search.problem, motion, None)
 }
 
 struct Detour<'a> {

@@ -9,9 +9,8 @@ use super::route::Route;
 use crate::frame::{Pose, Side};
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
-use crate::planner::cost::space_time_error;
 use crate::planner::{Plan, Problem};
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
 
 /// Radians between two turns that are tried, and how many to either side: to half a circle.
@@ -245,12 +244,5 @@ fn onward(
         start_time: s.start_time + begun,
         ..s
     }));
-    let cost = |s| space_time_error(problem.desired, s, problem.time_weight);
-    let cost = motion.iter().map(cost).sum();
-    let trajectory = Trajectory::new(motion).ok()?;
-    Some(Plan {
-        trajectory,
-        cost,
-        graph_cost: None,
-    })
+    Plan::measured(problem, motion, None)
 }

@@ -54,12 +54,12 @@ pub use detour::detour;
 pub use escape::{after_holding, escape, undisturbed};
 
 use super::clock::Clock;
-use super::{ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
+use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
 use crate::frame::Vector;
 use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
 use crate::tolerance;
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::Segment;
 use approach::FINE_CHORD_RAD;
 use effort::Effort;
 use graph::Graph;
@@ -129,28 +129,12 @@ fn already_there(problem: &Problem) -> Planned {
         speed: problem.own.max_speed(),
         turn_rate: 0.0,
     };
-    let plan = Trajectory::new(vec![stay]).map(|trajectory| Plan {
-        trajectory,
-        cost: 0.0,
-        graph_cost: None,
-    });
-    Planned {
-        outcome: plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved),
-        stats: SearchStats::default(),
-        explored: ExploredGraph::new(),
-        path_time: None,
-        escape: None,
-    }
+    let plan = Plan::measured(problem, vec![stay], None);
+    Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved))
 }
 
 fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned {
-    let refuse = |reason| Planned {
-        outcome: Outcome::Infeasible(reason),
-        stats: SearchStats::default(),
-        explored: ExploredGraph::new(),
-        path_time: None,
-        escape: None,
-    };
+    let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let own = problem.own;
     for hazard in hazards {
         if let Some(slack) = hazard.slack(own.pose.position, 0.0)
@@ -203,7 +187,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         && let Some(end) = first_conflict
         && let Some(held) = stand_on::hold(&scene, &undisturbed, end, clock)
     {
-        return held.planned();
+        return held.planned(problem);
     }
     let mut graph = Graph::new(problem, hazards, &route, &undisturbed, clock);
     let mut search = Search::new(graph.root());

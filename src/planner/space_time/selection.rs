@@ -14,7 +14,7 @@ use crate::frame::{Side, cross};
 use crate::planner::Plan;
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::Segment;
 
 /// Ahead of schedule first, then around the set: of use in every conflict.
 const RUSH: Canonical = Canonical {
@@ -381,11 +381,7 @@ impl<'a> Selection<'a> {
     /// The cheapest clear motion.
     pub(crate) fn plan(self) -> Option<Plan> {
         let best = self.best?;
-        Some(Plan {
-            trajectory: Trajectory::new(best.motion).ok()?,
-            cost: best.cost,
-            graph_cost: self.graph_cost,
-        })
+        Plan::measured(self.scene.problem, best.motion, self.graph_cost)
     }
 }
 

@@ -14,8 +14,8 @@ use crate::colregs::{APPARENT_TIME, APPARENT_TURN};
 use crate::frame::{Side, heading_of};
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
-use crate::planner::{Escape, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
-use crate::trajectory::{Segment, Trajectory};
+use crate::planner::{Escape, NoPlan, Outcome, Plan, Planned, Problem};
+use crate::trajectory::Segment;
 
 /// Turns of an escape, in multiples of the least that is readily apparent.
 const TURNS: [f64; 6] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0];
@@ -43,18 +43,12 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    pub(crate) fn planned(self) -> Planned {
-        let plan = Trajectory::new(self.motion).map(|trajectory| Plan {
-            trajectory,
-            cost: self.cost,
-            graph_cost: None,
-        });
+    pub(crate) fn planned(self, problem: &Problem) -> Planned {
+        let plan = Plan::measured(problem, self.motion, None);
+        let outcome = plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved);
         Planned {
-            outcome: plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved),
-            stats: SearchStats::default(),
-            explored: ExploredGraph::new(),
-            path_time: None,
             escape: Some(self.escape),
+            ..Planned::of(outcome)
         }
     }
 }

@@ -1,0 +1,119 @@
+//! Sets without an interior, grown until they have one: a motion can be deep in what is grown, a segment is crossed at no depth.
+
+use std::borrow::Cow;
+
+use super::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, Ellipse, outer_disc};
+use crate::tolerance::HALF_WIDTH_M;
+
+impl Obstacle {
+    /// An outer set that is at least a millimetre wide at every time: the set itself where it is, else grown by half a
+    /// millimetre. To be clear of it to rounding is not to touch the set.
+    pub(crate) fn outer_with_interior(&self) -> Self {
+        match self {
+            Self::Polytope(o) => widened(o).into(),
+            Self::Slabs(o) => outer_grown(o.initial())
+                .and_then(|grown| SlabObstacle::new(o.name(), grown, o.spells().to_vec()).ok())
+                .unwrap_or_else(|| o.clone())
+                .into(),
+            Self::Ellipsoid(o) => match o.flat() {
+                Some(flat) => widened(flat).into(),
+                None => widened_ellipsoid(o).into(),
+            },
+        }
+    }
+
+    /// [`Obstacle::outer_with_interior`] of a set whose sections are points or segments for a while; the set itself where they are
+    /// not, however narrow it is.
+    pub(crate) fn outer_where_flat(&self) -> Cow<'_, Self> {
+        if self.is_flat_for_a_while() {
+            Cow::Owned(self.outer_with_interior())
+        } else {
+            Cow::Borrowed(self)
+        }
+    }
+
+    fn is_flat_for_a_while(&self) -> bool {
+        let flat = |initial: &ConvexPolygon, velocity: &ConvexPolygon| {
+            initial.minkowski_sum(velocity).vertices().len() < 3
+        };
+        match self {
+            Self::Polytope(o) => flat(o.initial(), o.velocity()),
+            // sections do not become flat again
+            Self::Slabs(o) => flat(o.initial(), &o.spells()[0].velocities),
+            Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
+        }
+    }
+}
+
+/// `None` where it is wide enough.
+fn outer_grown(initial: &ConvexPolygon) -> Option<ConvexPolygon> {
+    let narrow = initial
+        .normals()
+        .iter()
+        .any(|n| initial.support(*n) + initial.support(-n) < 2.0 * HALF_WIDTH_M);
+    narrow.then(|| initial.minkowski_sum(&outer_disc(HALF_WIDTH_M, 0.0)))
+}
+
+fn widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
+    match outer_grown(obstacle.initial()) {
+        Some(grown) => PolytopeObstacle::new(obstacle.name(), grown, obstacle.velocity().clone()),
+        None => obstacle.clone(),
+    }
+}
+
+fn widened_ellipsoid(obstacle: &EllipsoidObstacle) -> EllipsoidObstacle {
+    let [a, b] = obstacle.initial().semi_axes();
+    if a.norm().min(b.norm()) < HALF_WIDTH_M {
+        let axes = [
+            Vector::new(HALF_WIDTH_M, 0.0),
+            Vector::new(0.0, HALF_WIDTH_M),
+        ];
+        let disc = Ellipse::from_axes(Vector::zeros(), axes);
+        let grown = EllipsoidObstacle::new("", *obstacle.initial(), disc).outer_section(1.0);
+        EllipsoidObstacle::new(obstacle.name(), grown, *obstacle.velocity())
+    } else {
+        obstacle.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Pose;
+    use crate::trajectory::Segment;
+
+    /// Own ship crosses a segment, a point's way and a flat ellipse at right angles: of the sets themselves she is in none.
+    #[test]
+    fn what_has_no_interior_is_met_where_it_is_crossed() {
+        let at = |x: f64, y: f64| Vector::new(x, y);
+        let polygon = |points: &[Vector]| ConvexPolygon::hull(points).expect("finite");
+        let still = polygon(&[at(0.0, 0.0)]);
+        let segment = polygon(&[at(50.0, -20.0), at(50.0, 20.0)]);
+        let flat = Ellipse::from_axes(at(50.0, 0.0), [at(0.0, 20.0), at(0.0, 0.0)]);
+        let rest = Ellipse::from_axes(Vector::zeros(), [Vector::zeros(); 2]);
+        let own = Segment {
+            start: Pose::new(Vector::zeros(), 0.0),
+            start_time: 0.0,
+            duration: 20.0,
+            speed: 5.0,
+            turn_rate: 0.0,
+        };
+        let sets: [Obstacle; 3] = [
+            PolytopeObstacle::new("segment", segment, still.clone()).into(),
+            PolytopeObstacle::new("point", polygon(&[at(50.0, 0.0)]), still).into(),
+            EllipsoidObstacle::new("flat", flat, rest).into(),
+        ];
+        for set in &sets {
+            assert_eq!(set.first_contact(&own, 1e-7), None, "{}", set.name());
+            let grown = set.outer_with_interior();
+            let met = grown.first_contact(&own, 1e-7).expect("a contact");
+            assert!((met - 10.0).abs() < 1e-3, "{met}");
+            assert_eq!(grown.name(), set.name());
+            assert_eq!(set.outer_where_flat().first_contact(&own, 1e-7), Some(met));
+            // what is wide enough is left as it is
+            assert_eq!(grown.outer_with_interior(), grown);
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Scenes as no harbour has them: sets of every kind anywhere, own ship within some, targets at rest on her path, risk taken.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+
+use rand::seq::IndexedRandom;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// A scenario file; the same seed gives the same scene.
+pub fn scene(seed: u64) -> String {
+    let mut scene = Scene {
+        rng: ChaCha8Rng::seed_from_u64(seed),
+        text: String::new(),
+    };
+    scene.write(seed);
+    scene.text
+}
+
+struct Scene {
+    rng: ChaCha8Rng,
+    text: String,
+}
+
+impl Scene {
+    fn one<T: Copy>(&mut self, of: &[T]) -> T {
+        *of.choose(&mut self.rng).expect("some")
+    }
+
+    fn line(&mut self, line: String) {
+        writeln!(self.text, "{line}").expect("text grows");
+    }
+
+    fn write(&mut self, seed: u64) {
+        let length = self.one(&[10.0, 50.0, 100.0, 200.0]);
+        let speed = self.rng.random_range(2.0..12.0);
+        let mut course = self.rng.random_range(-PI..PI);
+        let first = course;
+        let mut way = vec![[0.0, 0.0]];
+        for _ in 0..self.one(&[1, 1, 1, 2, 3]) {
+            let leg = self.rng.random_range(10.0..60.0) * length;
+            let [x, y] = way[way.len() - 1];
+            way.push([x + leg * f64::cos(course), y + leg * f64::sin(course)]);
+            course += self.rng.random_range(-0.8..0.8);
+        }
+        let distance = |w: &[[f64; 2]]| f64::hypot(w[1][0] - w[0][0], w[1][1] - w[0][1]);
+        let time = way.windows(2).map(distance).sum::<f64>() / speed;
+        let along = self.one(&["space-time", "space-time", "path-time"]);
+        let free = along == "space-time";
+        let horizon = time * self.one(&[1.2, 1.5, 2.0, 3.0]);
+        let off = self.one(&[0.0, 0.0, 0.0, 0.5]) * length;
+        let east = if free { off } else { 0.0 };
+        let radius = self.one(&[0.5, 1.0, 4.0, 8.0]) * length;
+        let slow = 0.5 * speed;
+        let speeds = self.one(&["", "", "speeds"]);
+        let margin = self.one(&[0.0, 0.2, 1.0, 3.0]) * length;
+        let points: Vec<String> = way.iter().map(position).collect();
+        self.line(format!("title = \"wild {seed}\"\nhorizon_s = {horizon:?}\n[own_ship]\nposition = {{ east_m = {east:?}, north_m = 0.0 }}"));
+        self.line(format!(
+            "course_deg = {:?}\nspeed_mps = {speed:?}\nlength_m = {length:?}\nbeam_m = {:?}",
+            compass(first),
+            length / 6.0
+        ));
+        self.line(format!(
+            "turning_radius_m = {radius:?}\nsafety_margin_m = {margin:?}"
+        ));
+        if !speeds.is_empty() {
+            self.line(format!("speeds_mps = [0.0, {slow:?}, {speed:?}]"));
+        }
+        self.line(format!(
+            "[mission]\nwaypoints = [{}]\n[planner]\nkind = \"{along}\"",
+            points.join(", ")
+        ));
+        let rules = if free {
+            &["shape", "none", "rules"][..]
+        } else {
+            &["shape", "none"]
+        };
+        let compliance = self.one(rules);
+        self.line(format!("compliance = \"{compliance}\""));
+        let risk = self.one(&[0.0, 0.0, 0.0, 0.05, 0.3, 0.8]);
+        self.line(format!("max_risk = {risk:?}"));
+        if !free {
+            let objective = self.one(&["space-time-error", "time", "length"]);
+            self.line(format!("objective = \"{objective}\""));
+        }
+        for index in 0..self.one(&[1, 1, 2, 3, 5]) {
+            self.target(index, length, speed, time, &way);
+        }
+    }
+
+    fn target(&mut self, index: usize, length: f64, speed: f64, time: f64, way: &[[f64; 2]]) {
+        let kinds = [
+            "ship", "ship", "turning", "sets", "ellipses", "spells", "at rest", "around",
+        ];
+        let kind = self.one(&kinds);
+        let end = way[way.len() - 1];
+        let course = self.rng.random_range(-PI..PI);
+        let share = self.rng.random_range(0.1..1.05);
+        let fast = self.one(&[0.3, 1.0, 1.5]) * speed * self.rng.random_range(0.3..1.0);
+        let (meets, share, fast) = match kind {
+            "at rest" => (end, 0.0, 0.0),
+            "around" => ([0.0, 0.0], 0.0, fast),
+            _ => ([end[0] * share, end[1] * share], share, fast),
+        };
+        let back = fast * share * time;
+        let mut beside = || self.rng.random_range(-1.0..1.0) * length;
+        let place = [
+            meets[0] - back * course.cos() + beside(),
+            meets[1] - back * course.sin() + beside(),
+        ];
+        let velocity = [fast * course.cos(), fast * course.sin()];
+        self.line(format!("[[targets]]\nname = \"{index} {kind}\""));
+        match kind {
+            "sets" => {
+                let (initial, spread) = (
+                    self.polygon(place, 2.0 * length),
+                    self.one(&[0.05, 0.2, 1e-7]),
+                );
+                let velocities = self.polygon(velocity, spread * speed);
+                self.line(format!("initial_set = {{ vertices_m = {initial} }}\nvelocity_set = {{ vertices_mps = {velocities} }}"));
+            }
+            "ellipses" => {
+                let (initial, spread) = (self.matrix(2.0 * length), self.matrix(0.1 * speed));
+                self.line(format!("initial_set = {{ center_m = {place:?}, shape_m2 = {initial} }}\nvelocity_set = {{ center_mps = {velocity:?}, shape_m2_per_s2 = {spread} }}"));
+            }
+            "spells" => {
+                let initial = self.polygon(place, 2.0 * length);
+                self.line(format!("initial_set = {{ vertices_m = {initial} }}"));
+                let last = self.one(&[2, 3, 5]);
+                let spells: Vec<String> = (1..=last)
+                    .map(|k| {
+                        let turned = self.rng.random_range(-0.3..0.3) + course;
+                        let velocity = [fast * turned.cos(), fast * turned.sin()];
+                        let velocities = self.polygon(velocity, 0.1 * speed);
+                        let until =
+                            time * (k as f64 - self.rng.random_range(0.0..0.9)) / last as f64;
+                        let until = if k == last {
+                            String::new()
+                        } else {
+                            format!("until_s = {until:?}, ")
+                        };
+                        format!("{{ {until}vertices_mps = {velocities} }}")
+                    })
+                    .collect();
+                self.line(format!("velocity_sets = [{}]", spells.join(", ")));
+            }
+            _ => {
+                let long = length * self.rng.random_range(0.3..2.0);
+                let spreads = [
+                    self.one(&[0.0, 0.1, 0.5, 1.5]),
+                    self.one(&[0.0, 2.0, 5.0, 20.0]),
+                    self.one(&[0.0, 0.0, 5.0, 20.0]),
+                ];
+                let domain = self.one(&["colregs", "colregs", "paper", "hull"]);
+                self.line(format!(
+                    "position = {}\ncourse_deg = {:?}\nspeed_mps = {fast:?}\nlength_m = {long:?}\nbeam_m = {:?}",
+                    position(&place),
+                    compass(course),
+                    long / 6.0
+                ));
+                let [speed_spread, course_spread, deviation] = spreads;
+                self.line(format!(
+                    "speed_spread_mps = {speed_spread:?}\ncourse_spread_deg = {course_spread:?}\nposition_std_m = {deviation:?}\ndomain = \"{domain}\""
+                ));
+                if kind == "turning" {
+                    let rate = self.one(&[0.01, 0.1, 0.5]);
+                    self.line(format!("turn_rate_deg_per_s = {rate:?}"));
+                } else {
+                    let representation = self.one(&["polytope", "polytope", "ellipsoid"]);
+                    self.line(format!("representation = \"{representation}\""));
+                }
+            }
+        }
+    }
+
+    /// Corners on a circle: points and segments too.
+    fn polygon(&mut self, [x, y]: [f64; 2], radius: f64) -> String {
+        let count = self.one(&[1, 2, 3, 4, 5, 8]);
+        let mut angles: Vec<f64> = (0..count)
+            .map(|_| self.rng.random_range(0.0..TAU))
+            .collect();
+        angles.sort_by(f64::total_cmp);
+        let corner = |a: &f64| format!("[{:?}, {:?}]", x + radius * a.cos(), y + radius * a.sin());
+        let corners: Vec<String> = angles.iter().map(corner).collect();
+        format!("[{}]", corners.join(", "))
+    }
+
+    /// A A' of a random A.
+    fn matrix(&mut self, size: f64) -> String {
+        let [a, b, c, d] = [(); 4].map(|()| self.rng.random_range(-size..size));
+        let across = a * c + b * d;
+        format!(
+            "[[{:?}, {across:?}], [{across:?}, {:?}]]",
+            a * a + b * b,
+            c * c + d * d
+        )
+    }
+}
+
+fn position(p: &[f64; 2]) -> String {
+    format!("{{ east_m = {:?}, north_m = {:?} }}", p[0], p[1])
+}
+
+/// Degrees clockwise from north of a heading in radians from east.
+fn compass(heading: f64) -> f64 {
+    (90.0 - heading.to_degrees()).rem_euclid(360.0)
+}
