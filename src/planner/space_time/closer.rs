@@ -64,16 +64,13 @@ struct Ways {
 }
 
 impl Ways {
-    fn new(heading: f64, headings: &[f64; WAYS], radius: f64) -> Self {
-        let angles = headings.map(|h| between(heading, h));
-        let (mut cosines, mut sines) = ([0.0; WAYS], [0.0; WAYS]);
-        for (k, angle) in angles.iter().enumerate() {
-            (sines[k], cosines[k]) = angle.sin_cos();
-        }
+    /// `ahead` is where the heading leads.
+    fn new(heading: f64, ahead: Vector, view: &View, radius: f64) -> Self {
+        let angles = view.headings.map(|h| between(heading, h));
         Self {
             angles,
-            cosines,
-            sines,
+            cosines: view.directions.map(|d| ahead.dot(&d)),
+            sines: view.directions.map(|d| cross(ahead, d).abs()),
             greatest: angles.into_iter().fold(0.0, f64::max),
             radius,
         }
@@ -143,7 +140,9 @@ impl<'a> Closer<'a> {
         // from here the point on schedule is at `(lag + u_d tau, -across)`, along and across the leg
         let view = &self.views[usize::from(across.is_sign_positive())];
         let heading = wrap(pose.heading - self.course);
-        let ways = Ways::new(heading, &view.headings, self.radius);
+        let ahead = pose.ahead();
+        let (along, aside) = (leg.direction.dot(&ahead), cross(leg.direction, ahead));
+        let ways = Ways::new(heading, Vector::new(along, aside), view, self.radius);
         let slope = if lag >= 0.0 {
             leg.speed - u
         } else {
@@ -164,7 +163,7 @@ impl<'a> Closer<'a> {
             });
             ((across.abs() - made_good[0], late), beyond)
         };
-        let reached = self.reached(keep_out, pose, time);
+        let reached = self.reached(keep_out, pose, ahead, time);
         let turned = ways.angles[0].max(ways.angles[1]) * self.radius / u;
         let until = arrival.min(turned.max(keep_out.last_contact() - time));
         let interval = INTERVAL_S.max(until / MOST_INTERVALS);
@@ -198,8 +197,8 @@ impl<'a> Closer<'a> {
     }
 
     /// The earliest time at which own ship can be beyond each face of each body.
-    fn reached(&self, keep_out: &KeepOut, pose: &Pose, time: f64) -> Vec<f64> {
-        let (heading, ahead) = (wrap(pose.heading), pose.ahead());
+    fn reached(&self, keep_out: &KeepOut, pose: &Pose, ahead: Vector, time: f64) -> Vec<f64> {
+        let heading = wrap(pose.heading);
         keep_out
             .bodies()
             .iter()

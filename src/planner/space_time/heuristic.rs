@@ -23,7 +23,7 @@
 
 use super::closer::Closer;
 use super::keep_out::KeepOut;
-use crate::frame::{Pose, cross, direction, heading_of, to_port, wrap};
+use crate::frame::{Pose, Vector, cross, direction, heading_of, to_port};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
@@ -110,16 +110,18 @@ impl<'a> Heuristic<'a> {
             let (along, across) = (leg.direction.dot(&offset), cross(leg.direction, offset));
             let kappa = self.time_weight / (self.time_weight + leg.speed * leg.speed);
             let lag = leg.speed * (time - leg.start_time) - along;
-            let heading = wrap(pose.heading - heading_of(leg.direction));
+            let ahead = pose.ahead();
+            let cosine = leg.direction.dot(&ahead).clamp(-1.0, 1.0);
+            let sine = cross(leg.direction, ahead).clamp(-1.0, 1.0);
             let least_time = (self.desired.end() - pose.position).norm() / self.max_speed;
             let scale = 1.0 / self.desired.duration();
             let along = if lag >= 0.0 {
-                self.shrinking(lag, heading.abs(), leg.speed, least_time)
+                self.shrinking(lag, Vector::new(cosine, sine.abs()), leg.speed, least_time)
             } else {
                 squared_ramp(-lag, -(self.max_speed + leg.speed), least_time)
             };
-            // angle between the heading and the direction straight to the path
-            let toward = (-across.signum() * heading.sin()).clamp(-1.0, 1.0).acos();
+            // the heading as seen from the direction straight to the path
+            let toward = Vector::new(-across.signum() * sine, cosine.abs());
             let aside = self.shrinking(across.abs(), toward, 0.0, f64::INFINITY);
             return (aside.scaled(scale), along.scaled(kappa * scale));
         }
@@ -142,16 +144,18 @@ impl<'a> Heuristic<'a> {
     }
 
     /// Lower sum of the integral, up to `until`, of the squared positive part of
-    /// `start + growth tau - P(u_max tau)`, for a heading `angle` off the way that shrinks it.
-    fn shrinking(&self, start: f64, angle: f64, growth: f64, until: f64) -> Stretch {
+    /// `start + growth tau - P(u_max tau)`, for a heading off the way that shrinks it by an angle up to pi, of which `off` has the
+    /// cosine and the sine.
+    fn shrinking(&self, start: f64, off: Vector, growth: f64, until: f64) -> Stretch {
         let (u, r) = (self.max_speed, self.radius);
+        let angle = heading_of(off);
         let turning = (r * angle / u).min(until);
         let mut sum = 0.0;
         let mut before = start;
         let step = turning / STEPS as f64;
         if turning > 0.0 {
             // what is left to turn, by equal steps
-            let mut left = direction(angle);
+            let mut left = off;
             let (from, back) = (left.y, direction(-u * step / r));
             for k in 1..=STEPS {
                 left = back * left.x + to_port(back) * left.y;

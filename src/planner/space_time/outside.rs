@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::keep_out::KeepOut;
-use crate::frame::{Vector, heading_of};
+use crate::frame::{Vector, direction, heading_of};
 
 /// Radians from straight to the path toward straight ahead.
 const ASLANT: [f64; LIMITS] = [-1.0, -0.4, 0.2, 0.7, 1.1, 1.57];
@@ -15,8 +15,9 @@ pub(crate) const WAYS: usize = LIMITS + 2;
 /// What lies ahead from one side of the leg: headings are relative to the leg.
 #[derive(Debug)]
 pub(crate) struct View {
-    /// Radians, of every way.
+    /// Radians, of every way, and where it leads.
     pub headings: [f64; WAYS],
+    pub directions: [Vector; WAYS],
     pub limits: [Limit; LIMITS],
     /// Of the faces of all bodies, in order, with the limits.
     pairs: Vec<[Pair; LIMITS]>,
@@ -80,6 +81,7 @@ impl View {
             .collect();
         Self {
             headings,
+            directions: headings.map(direction),
             limits,
             pairs,
         }
