@@ -2,7 +2,7 @@
 //! folded in, and what the rules of the road add to it (`colregs.md` 3.2-3.3).
 
 use super::bevelled_box::BevelledBox;
-use super::encounter::Risk;
+use super::encounter::{Risk, risk_distance};
 use super::sweep::sweep;
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, outer_disc};
@@ -87,6 +87,11 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
         around,
     };
     let shaped = shape.at(1.0, 1.0);
+    debug_assert!(
+        risk.is_none() || keeps_the_design_inequality(own, target, shape.sweep, &shaped),
+        "swept by {:?}",
+        shape.sweep
+    );
     let reach = beyond(&shaped, &hard);
     let start = own.pose.position;
     let clear = |set: &ConvexPolygon| set.signed_distance(start) >= tolerance::START_M;
@@ -111,6 +116,24 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>) -> Shapes 
         full: shaped,
         reach,
     }
+}
+
+/// `colregs.md` 3.2: passing on the side that the rules forbid asks for at least two risk distances more than on the other, where
+/// the margin is kept. True of a shape that is not swept, and of one that has no size in numbers.
+fn keeps_the_design_inequality(
+    own: &OwnShip,
+    target: &ShipTrack,
+    sweep: Vector,
+    shaped: &ConvexPolygon,
+) -> bool {
+    let Some(bad) = sweep.try_normalize(0.0) else {
+        return true;
+    };
+    let centre = target.pose.position;
+    let reach = |n: Vector| shaped.support(n) - n.dot(&centre);
+    let rounding = 1e-9 * (1.0 + centre.norm() + sweep.norm());
+    let short = 2.0 * risk_distance(own, target) - (reach(bad) - reach(-bad));
+    short.is_nan() || short <= rounding && reach(-bad) >= own.safety_margin - rounding
 }
 
 impl Shapes {
