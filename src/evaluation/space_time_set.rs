@@ -207,27 +207,28 @@ pub(super) struct MovingSet {
 
 impl MovingSet {
     /// Matches vertices by asking both sets for their extreme point between each two neighbouring
-    /// normals. O((n + m)²).
+    /// normals, once around. O((n + m) log (n + m)).
     pub fn new(initial: &ConvexPolygon, velocity: &ConvexPolygon) -> Self {
-        let mut normals: Vec<Vector> = initial.normals();
-        normals.extend(velocity.normals());
-        normals.sort_by(|a, b| a.y.atan2(a.x).total_cmp(&b.y.atan2(b.x)));
-        let faces: Vec<Face> = normals
-            .iter()
-            .map(|&normal| Face {
-                normal,
-                initial: initial.support(normal),
-                rate: velocity.support(normal),
+        let normals = initial.normals().into_iter().chain(velocity.normals());
+        let mut normals: Vec<(f64, Vector)> = normals.map(|n| (n.y.atan2(n.x), n)).collect();
+        normals.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let normals: Vec<Vector> = normals.into_iter().map(|(_, normal)| normal).collect();
+        let next = normals.iter().cycle().skip(1);
+        let gaps: Vec<Vector> = (normals.iter().zip(next))
+            .map(|(a, b)| between(*a, *b))
+            .collect();
+        let supports = |set| extremes(set, &normals).zip(&normals);
+        let faces: Vec<Face> = supports(initial)
+            .zip(supports(velocity))
+            .map(|((initial, normal), (velocity, _))| Face {
+                normal: *normal,
+                initial: normal.dot(&initial),
+                rate: normal.dot(&velocity),
             })
             .collect();
-        let mut vertices: Vec<MovingVertex> = (0..normals.len())
-            .map(|i| {
-                let between = between(normals[i], normals[(i + 1) % normals.len()]);
-                MovingVertex {
-                    initial: extreme(initial, between),
-                    velocity: extreme(velocity, between),
-                }
-            })
+        let mut vertices: Vec<MovingVertex> = extremes(initial, &gaps)
+            .zip(extremes(velocity, &gaps))
+            .map(|(initial, velocity)| MovingVertex { initial, velocity })
             .collect();
         vertices.dedup();
         while vertices.len() > 1 && vertices[0] == vertices[vertices.len() - 1] {
@@ -279,15 +280,34 @@ fn between(a: Vector, b: Vector) -> Vector {
     (a + b) + to_starboard(b - a)
 }
 
-/// The vertex farthest in a direction; of equal ones the first.
-fn extreme(set: &ConvexPolygon, along: Vector) -> Vector {
-    let mut best = set.vertices()[0];
-    for p in set.vertices() {
-        if along.dot(p) > along.dot(&best) {
-            best = *p;
+/// The vertices farthest in directions that go around counter-clockwise, as those vertices do: each search goes on from the last
+/// one.
+fn extremes<'a>(
+    set: &'a ConvexPolygon,
+    directions: &'a [Vector],
+) -> impl Iterator<Item = Vector> + 'a {
+    let vertices = set.vertices();
+    let count = vertices.len();
+    let first = directions.first().map_or(0, |along| {
+        let mut best = 0;
+        for (index, p) in vertices.iter().enumerate() {
+            if along.dot(p) > along.dot(&vertices[best]) {
+                best = index;
+            }
         }
-    }
-    best
+        best
+    });
+    let mut at = first;
+    directions.iter().map(move |along| {
+        for _ in 0..count {
+            let next = (at + 1) % count;
+            if !(along.dot(&vertices[next]) > along.dot(&vertices[at])) {
+                break;
+            }
+            at = next;
+        }
+        vertices[at]
+    })
 }
 
 /// The point of a segment nearest to `p`.
