@@ -207,7 +207,8 @@ mod tests {
                 below,
             };
             let at = places(shown(), &[set], &[])[0];
-            assert!(at.x.abs() < 1e-9 && (at.y < -10.0) == below && at.y.abs() < 40.0);
+            let near = 10.0 + 2.0 * (GAP + f64::from(NOTE_SIZE));
+            assert!(at.x.abs() < 1e-9 && (at.y < -10.0) == below && at.y.abs() < near);
         }
     }
 }
