@@ -141,6 +141,7 @@ pub mod scenario;
 pub mod search;
 pub mod simulation;
 pub mod target;
+mod text;
 pub mod tolerance;
 pub mod trajectory;
 pub mod verification;

@@ -17,6 +17,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("tolerance", &[]),
     ("search", &[]),
     ("output", &[]),
+    ("text", &[]),
     // vectors and their products live in `frame`, which knows neither ship nor time
     ("geometry", &["tolerance", "frame"]),
     ("trajectory", &["frame", "tolerance", "geometry"]),
@@ -33,6 +34,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "trajectory",
             "target",
             "vessel",
+            "text",
         ],
     ),
     (
@@ -101,6 +103,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "target",
             "colregs",
             "planner",
+            "text",
         ],
     ),
     (

@@ -2,7 +2,7 @@
 
 use std::any::Any;
 use std::cell::RefCell;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, Location, catch_unwind};
 
 use searoom::pipeline::{self, Run};
 use searoom::scenario::ScenarioError;
@@ -32,7 +32,8 @@ pub enum Attempt {
 /// From here on a panic is a value of [`guarded`], not a text on standard error.
 pub fn keep_panics_quiet() {
     std::panic::set_hook(Box::new(|info| {
-        PLACE.set(info.location().map(ToString::to_string));
+        let place = |at: &Location| format!("{}:{}", below_src(at.file()), at.line());
+        PLACE.set(info.location().map(place));
     }));
 }
 
@@ -44,6 +45,15 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
             .unwrap_or_else(|| "an unknown place".to_owned());
         format!("internal fault at {place}: {}", message(payload.as_ref()))
     })
+}
+
+/// A source file without the folders of the machine that it was built on.
+fn below_src(file: &str) -> String {
+    let parts: Vec<&str> = file.split(['/', '\\']).collect();
+    let (name, folders) = parts.split_last().unwrap_or((&file, &[]));
+    let src = folders.iter().rposition(|folder| *folder == "src");
+    let below = src.map_or(&[][..], |src| &folders[src + 1..]);
+    [below, &[*name]].concat().join("/")
 }
 
 fn message(payload: &(dyn Any + Send)) -> &str {
@@ -75,5 +85,31 @@ pub fn attempt(scene: &Scene, shared: &Shared, assumed: &Assumed) -> Attempt {
     match guarded(work) {
         Ok(attempt) => attempt,
         Err(fault) => Attempt::Fault(format!("{}: {fault}", file.display())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_without_the_machine_that_it_was_built_on() {
+        for (file, place) in [
+            ("src/pipeline/mod.rs", "pipeline/mod.rs"),
+            (
+                "/a/cargo/registry/src/index/arrow-1.2/src/reader.rs",
+                "reader.rs",
+            ),
+            (
+                "/rustc/0a1b/library/core/src/slice/index.rs",
+                "slice/index.rs",
+            ),
+            (r"C:\a\src\cli\mod.rs", "cli/mod.rs"),
+            ("/a/target/build/out/made.rs", "made.rs"),
+            ("src", "src"),
+            ("", ""),
+        ] {
+            assert_eq!(below_src(file), place);
+        }
     }
 }

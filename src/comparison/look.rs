@@ -49,7 +49,7 @@ impl Look {
                     (PlannerKind::OptimalControl, _) => ("#e29ac3", STRONG, false),
                 }
             }
-            Method::HoldCourse => ("#999999", THIN, true),
+            Method::HoldCourse => ("#cc5de8", THIN, true),
             Method::ConstantVelocity => ("#8c6d31", THIN, true),
         };
         Self {

@@ -13,6 +13,7 @@ use rerun::external::re_log_types::{
 use rerun::log::Chunk;
 
 use super::APPLICATION;
+use super::digest::Digest;
 use super::recorder::Recorder;
 
 /// Of LZ4's twelve: those behind it gain a hundredth for four times the time.
@@ -49,15 +50,10 @@ pub fn packed(stores: Stores) -> Result<Vec<u8>, Failure> {
     let mut aside = parts.split_off(shown);
     let layout: Vec<ArrowMsg> = aside.drain(..laid_out).collect();
 
-    let name = digest(&parts);
-    let id = |kind: StoreKind, what: &str| {
-        StoreId::new(kind, APPLICATION, format!("{what}_{name:032x}"))
-    };
-    let (recording_id, layout_id, aside_id) = (
-        id(StoreKind::Recording, "rec"),
-        id(StoreKind::Blueprint, "layout"),
-        id(StoreKind::Blueprint, "aside"),
-    );
+    let digest = Digest::of(parts.iter().map(|part| &part.payload[..]));
+    let recording_id = StoreId::new(StoreKind::Recording, APPLICATION, digest.recording());
+    let beside = |what| StoreId::new(StoreKind::Blueprint, APPLICATION, digest.store(what));
+    let (layout_id, aside_id) = (beside("layout"), beside("aside"));
     // the head of the stream, which says that LZ4 is used
     let mut encoder = Encoder::local()?;
     encoder.do_not_emit_footer();
@@ -113,17 +109,6 @@ fn part(chunk: Chunk) -> Result<ArrowMsg, Failure> {
     part.payload = compress(&part.payload, Some(LEVEL), false)?.into();
     part.compression = Compression::Lz4.into();
     Ok(part)
-}
-
-/// Of everything in the parts: FNV-1a, 128 bits.
-fn digest(parts: &[ArrowMsg]) -> u128 {
-    let bytes = parts.iter().flat_map(|part| part.payload.iter());
-    bytes.fold(
-        0x6c62_272e_07bb_0142_62b8_2175_6295_c58d,
-        |digest: u128, byte| {
-            (digest ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b)
-        },
-    )
 }
 
 #[cfg(test)]

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use rerun::external::re_log_encoding::DecoderApp;
-use rerun::external::re_log_types::{LogMsg, TimeType};
+use rerun::external::re_log_types::TimeType;
 use rerun::log::Chunk;
 
 use super::document::{joined, unpacked};
+use super::messages::Messages;
 use super::table::{EntityTable, text_of};
 use super::{APPLICATION, COMPARISON, DOCUMENT, TIMING, frames};
 
@@ -163,38 +163,33 @@ impl Recorded {
         if bytes.len() as u64 > FILE_BYTES {
             return Err(broken("more than 1 GiB".to_owned()));
         }
-        if let Some(fault) = frames::fault(&bytes) {
-            return Err(broken(fault));
-        }
-        Self::decode(&bytes).map_err(|reason| broken(format!("damaged: {reason}")))
+        let frames = frames::frames(&bytes).map_err(broken)?;
+        let damaged = |reason| broken(format!("damaged: {reason}"));
+        let messages = Messages::of(&frames).map_err(damaged)?;
+        Self::of(messages, bytes.len() as u64).map_err(damaged)
     }
 
-    fn decode(bytes: &[u8]) -> Result<Self, String> {
+    fn of(messages: Messages, bytes: u64) -> Result<Self, String> {
         let mut read = Self {
             application: String::new(),
             version: None,
-            bytes: bytes.len() as u64,
+            bytes,
             chunks: BTreeMap::new(),
             document: None,
             comparison: None,
         };
         let mut timing = None;
-        for message in DecoderApp::decode_lazy(bytes) {
-            match message.map_err(|e| e.to_string())? {
-                LogMsg::SetStoreInfo(info) if info.info.store_id.is_recording() => {
-                    read.application = info.info.store_id.application_id().to_string();
-                    read.version = info.info.store_version.map(|v| v.to_string());
-                }
-                LogMsg::ArrowMsg(store, message) => {
-                    let chunk = Chunk::from_arrow_msg(&message).map_err(|e| e.to_string())?;
-                    let path = chunk.entity_path().to_string();
-                    if store.is_recording() {
-                        read.chunks.entry(path).or_default().push(chunk);
-                    } else if path == format!("/{TIMING}") {
-                        timing = text_of(&[chunk]);
-                    }
-                }
-                LogMsg::SetStoreInfo(_) | LogMsg::BlueprintActivationCommand(_) => {}
+        let mut recordings = messages.stores.into_iter();
+        if let Some(info) = recordings.rfind(|info| info.store_id.is_recording()) {
+            read.application = info.store_id.application_id().to_string();
+            read.version = info.store_version.map(|v| v.to_string());
+        }
+        for (store, chunk) in messages.chunks {
+            let path = chunk.entity_path().to_string();
+            if store.is_recording() {
+                read.chunks.entry(path).or_default().push(chunk);
+            } else if path == format!("/{TIMING}") {
+                timing = text_of(&[chunk]);
             }
         }
         // the order of writing, which row ids keep, whatever the order in the file

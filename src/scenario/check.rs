@@ -6,13 +6,14 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use super::control::control_settings;
-use super::file::{Entry, Source, TEXT};
+use super::file::{Entry, Source};
 use super::plane::{POSITION, Plane};
 use super::section::Section;
 use super::targets::targets;
 use super::{Compliance, Land, Scenario, land, limits};
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use crate::text::LINE;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip, VesselKind};
 
@@ -29,7 +30,7 @@ const DEFAULT_DEADLINE: f64 = 5.0;
 /// The scenario of a file's outermost table. `None` only when a fault was noted; a scenario that
 /// comes with faults is of no use.
 pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
-    let title = root.require("title", TEXT).and_then(|entry| entry.text());
+    let title = root.require("title", LINE).and_then(|entry| entry.text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
     let plane = Plane::new(&mut root);
     let map = land::map(&mut root, &plane, folder);

@@ -13,12 +13,7 @@ use toml::de::DeValue;
 use super::fault::Fault;
 use super::section::Section;
 use crate::frame::Vector;
-
-/// What [`Entry::text`] takes.
-pub(super) const TEXT: &str = "a text of 1 to 200 characters on one line";
-
-/// Characters of a text.
-const TEXT_CHARS: usize = 200;
+use crate::text::{LINE, is_line, is_unprintable};
 
 /// Limits nearer to zero are written with a power of ten.
 const SHORT: f64 = 1e-9;
@@ -153,15 +148,15 @@ impl<'a, 'i> Entry<'a, 'i> {
     /// Text that is not blank, without control characters, not longer than a line.
     pub(super) fn text(&self) -> Option<String> {
         match self.value.get_ref().as_str() {
-            Some(text) if is_text(text) => Some(text.to_owned()),
-            _ => self.refuse(TEXT),
+            Some(text) if is_line(text) => Some(text.to_owned()),
+            _ => self.refuse(LINE),
         }
     }
 
     /// The name of a file, from a folder if it is relative.
     pub(super) fn file_in(&self, folder: &Path) -> Option<PathBuf> {
         match self.value.get_ref().as_str() {
-            Some(name) if !name.trim().is_empty() && !name.chars().any(unprintable) => {
+            Some(name) if !name.trim().is_empty() && !name.chars().any(is_unprintable) => {
                 Some(folder.join(name))
             }
             _ => self.refuse("the name of a file, relative to the folder of this one"),
@@ -257,15 +252,4 @@ fn describe(value: &DeValue) -> String {
         DeValue::Array(values) => format!("a list of {}", values.len()),
         DeValue::Table(_) => "a table".to_owned(),
     }
-}
-
-/// True for what [`Entry::text`] takes: not blank, without control characters, not longer than a line.
-pub(super) fn is_text(text: &str) -> bool {
-    !text.trim().is_empty() && !text.chars().any(unprintable) && text.chars().count() <= TEXT_CHARS
-}
-
-/// Control characters, and those that break a line or turn its direction.
-fn unprintable(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }

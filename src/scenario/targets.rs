@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use super::check::{hull, pose};
 use super::explicit_sets;
-use super::file::{Entry, TEXT};
+use super::file::Entry;
 use super::limits;
 use super::plane::Plane;
 use super::section::Section;
 use crate::frame::radians_from_deg;
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
+use crate::text::LINE;
 
 /// The targets; none is a list of none.
 pub(super) fn targets(root: &mut Section, plane: &Plane) -> Option<Vec<Target>> {
@@ -24,7 +25,7 @@ pub(super) fn targets(root: &mut Section, plane: &Plane) -> Option<Vec<Target>> 
             targets.push(None);
             continue;
         };
-        let name = section.require("name", TEXT);
+        let name = section.require("name", LINE);
         let text = name.as_ref().and_then(|name| name.text());
         if let (Some(name), Some(text)) = (&name, &text)
             && let first = *names.entry(text.clone()).or_insert(index)

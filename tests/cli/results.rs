@@ -642,7 +642,11 @@ mod recordings {
             let length = u64::from_le_bytes(bytes[at + 8..at + 16].try_into().expect("eight"));
             at += 16 + usize::try_from(length).expect("small");
         }
-        fs::write(&broken, &bytes[..last]).expect("written");
+        refused(&bytes[..last], "damaged: its bytes are not those");
+        // written by a program that has none
+        let scenario = ::searoom::scenario::Scenario::read(HEAD_ON.as_ref()).expect("a scenario");
+        let run = ::searoom::pipeline::run(scenario);
+        ::searoom::recording::write(&run, None, broken.as_ref()).expect("written");
         searoom(&["inspect", &broken])
             .success()
             .stdout(contains("no plan document in it"));

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::thresholds::{Entry, Thresholds, published};
+use crate::text::{LINE, is_line};
 
 /// One thing wrong in a file of thresholds: where, what was found, what is allowed.
 ///
@@ -153,7 +154,7 @@ const ROUNDING: f64 = 1e-9;
 impl Kind {
     fn allowed(self) -> String {
         match self {
-            Self::Text => "a text that is not empty".to_owned(),
+            Self::Text => LINE.to_owned(),
             Self::Number(low, high) => format!("a number from {low} to {high}"),
             Self::Count(low, high) => format!("a whole number from {low} to {high}"),
         }
@@ -161,7 +162,7 @@ impl Kind {
 
     fn allows(self, value: &Value) -> bool {
         match (self, value) {
-            (Self::Text, Value::String(text)) => !text.trim().is_empty(),
+            (Self::Text, Value::String(text)) => is_line(text),
             (Self::Number(low, high), value) => {
                 number(value).is_some_and(|n| (low..=high).contains(&n))
             }
@@ -254,11 +255,9 @@ impl Thresholds {
         let known = |key: &str| key == "like" || KEYS.iter().any(|(name, _)| *name == key);
         for (key, value) in own.iter().filter(|(key, _)| !known(key)) {
             let keys: Vec<&str> = KEYS.iter().map(|(name, _)| *name).collect();
-            faults.push(fault(
-                key,
-                shown(value),
-                &format!("like, {}", keys.join(", ")),
-            ));
+            let key = key.escape_debug().to_string();
+            let allowed = format!("like, {}", keys.join(", "));
+            faults.push(fault(&key, shown(value), &allowed));
         }
         whole.remove("like");
         if faults.is_empty() {
@@ -349,6 +348,19 @@ mod tests {
             "ahead_s: found nan; allowed: a number from 0 to 86400"
         );
         assert!(several[3].starts_with("head_on: found 5; allowed: like, name"));
+        for (written, shown) in [
+            (r"a\nb", r"a\nb"),
+            (r"\u001b[31mred", r"\u{1b}[31mred"),
+            (r"\u202eback", r"\u{202e}back"),
+            (" ", " "),
+        ] {
+            assert_eq!(
+                faults(&format!("name = \"{written}\"")),
+                [format!("name: found \"{shown}\"; allowed: {LINE}")]
+            );
+        }
+        let key = faults("name = 'm'\n\"a\\u001b\" = 1");
+        assert!(key[0].starts_with(r"a\u{1b}: found 1"), "{key:?}");
         assert!(faults("name = 'searoom'")[0].contains("another name than searoom"));
         assert_eq!(
             faults("name = 'm'\nnear_miss_lengths = 1.5\nweight_least = 0.3"),

@@ -1,8 +1,8 @@
 //! The figure of an assessment.
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
+use super::names::{Named, places};
 use super::outline::{Stroke, curve, mark};
-use super::panel::{AREA, NOTE_SIZE};
 use super::sections::{seconds, sections_beside};
 use super::{Figure, Panel, Window};
 use crate::assessment::Situation;
@@ -18,6 +18,9 @@ const OWN: Stroke = Stroke {
     width: 1.6,
     dashed: false,
 };
+
+/// Points of the track that names keep clear of.
+const TRACK: usize = 200;
 
 /// Panels beside one another.
 const COLUMNS: usize = 2;
@@ -36,7 +39,7 @@ pub fn assessment_figure(situation: &Situation, times: &[f64]) -> Figure {
     let mut sections = sections_beside("Sections", targets, times, &track);
     sections.plots.push(curve(&track, false, OWN));
     sections.line_key("own course held", OWN);
-    name(&mut sections, situation);
+    name(&mut sections, situation, track);
     let window = sections.window();
     let limit = FASTEST * situation.max_speed.max(situation.speed).max(1.0);
     let velocities = VelocityWindow {
@@ -71,38 +74,25 @@ const OWN_ON_FIELD: Stroke = Stroke {
     ..OWN
 };
 
-/// The targets' names beside where they begin, on the side that they leave.
-fn name(panel: &mut Panel, situation: &Situation) {
-    // a word stands on its line
-    let [above, below] = [0.02, 0.045].map(|share| share * panel.window().size().y);
+/// The targets' names beside where they begin, rather on the side that they leave.
+fn name(panel: &mut Panel, situation: &Situation, track: [Vector; 2]) {
     let [east, north] = [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
-    // how wide a letter is and how high a line, about
-    let letter = panel.window().size().x * 0.6 * f64::from(NOTE_SIZE) / AREA[0];
-    let line = panel.window().size().y * 1.3 * f64::from(NOTE_SIZE) / AREA[1];
-    let mut taken: Vec<(Vector, f64)> = Vec::new();
-    for target in situation.obstacles {
+    let named = situation.obstacles.iter().map(|target| {
         let section = target.section(0.0);
-        let middle = |n: Vector| 0.5 * (section.support(n) - section.support(-n));
         let rate = |n: Vector| target.support(n, 0.0).rate;
-        let northward = rate(north) > rate(-north);
-        let height = if northward {
-            -section.support(-north) - below
-        } else {
-            section.support(north) + above
-        };
-        // away from a name that stands there already
-        let half = 0.5 * letter * target.name().chars().count() as f64;
-        let way = if northward { -line } else { line };
-        let mut at = Vector::new(middle(east), height);
-        let meets = |at: Vector, (p, other): &(Vector, f64)| {
-            (p.x - at.x).abs() < half + other && (p.y - at.y).abs() < 0.9 * line
-        };
-        for _ in 0..2 * taken.len() {
-            if taken.iter().any(|other| meets(at, other)) {
-                at.y += way;
-            }
+        Named {
+            name: target.name(),
+            extent: Window {
+                low: -Vector::new(section.support(-east), section.support(-north)),
+                high: Vector::new(section.support(east), section.support(north)),
+            },
+            below: rate(north) > rate(-north),
         }
-        taken.push((at, half));
-        panel.note(target.name(), at);
+    });
+    let named: Vec<Named> = named.collect();
+    let along = |k: usize| track[0].lerp(&track[1], k as f64 / TRACK as f64);
+    let track: Vec<Vector> = (0..=TRACK).map(along).collect();
+    for (set, at) in named.iter().zip(places(panel.window(), &named, &track)) {
+        panel.note(set.name, at);
     }
 }

@@ -1,8 +1,6 @@
 //! Contenders side by side: where they go, how near they come, and in a sweep what a risk buys.
 
-use std::collections::BTreeMap;
-
-use super::outline::{Stroke, area, curve, mark, sampled_boundary};
+use super::outline::{SYMBOLS, Stroke, area, curve, sampled_boundary, symbols};
 use super::path_time::{ProfileLine, path_time_panel};
 use super::plan::{DESIRED, LAND, land_areas};
 use super::sections::PLAN;
@@ -11,6 +9,7 @@ use crate::comparison::{Entry, Look, Method, Sailed};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::SpaceTimeObstacle;
+use crate::pipeline::Relaxation;
 use crate::scenario::Scenario;
 
 /// Of the targets' sets.
@@ -24,6 +23,9 @@ const STEP: f64 = 2.0;
 
 /// Of the largest least distance: how far up distances are shown.
 const SHOWN: f64 = 4.0;
+
+/// Pixels of the smallest symbol.
+const LEAST_SYMBOL: f64 = 3.4;
 
 /// One row of panels per scenario: chart, distance from the nearest target over time, and where several risks were accepted cost
 /// over risk.
@@ -239,28 +241,27 @@ fn parts_below(line: &[Vector], top: f64) -> Vec<Vec<Vector>> {
     parts
 }
 
-/// Cost over accepted risk, a line per planner: the baselines, which do not follow the mission, would flatten them.
+/// Cost over accepted risk, a line per planner: the baselines, which do not follow the mission, would flatten them. A plan that goes
+/// beyond the risk has no point.
 fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
-    // keyed by the order of the methods
-    let mut lines: BTreeMap<usize, (Method, Vec<Vector>)> = BTreeMap::new();
-    let mut order: Vec<Method> = Vec::new();
+    let mut lines: Vec<(Method, Vec<Vector>)> = Vec::new();
     let is_planned = |e: &&Entry| matches!(e.contender.method, Method::Planner { .. });
     for entry in entries.iter().filter(is_planned) {
         let method = entry.contender.method;
-        let index = order.iter().position(|m| *m == method).unwrap_or_else(|| {
-            order.push(method);
-            order.len() - 1
+        let known = lines.iter().position(|(m, _)| *m == method);
+        let index = known.unwrap_or_else(|| {
+            lines.push((method, Vec::new()));
+            lines.len() - 1
         });
-        let verified = entry.evaluation().filter(|e| e.verified());
-        if let Some(cost) = verified
-            .map(|e| e.space_time_error)
-            .filter(|c| c.is_finite())
-        {
-            let line = lines.entry(index).or_insert((method, Vec::new()));
-            line.1.push(Vector::new(entry.contender.max_risk, cost));
-        }
+        let cost = cost_within_risk(entry);
+        lines[index]
+            .1
+            .extend(cost.map(|cost| Vector::new(entry.contender.max_risk, cost)));
     }
-    let points = lines.values().flat_map(|(_, line)| line).copied();
+    for (_, line) in &mut lines {
+        line.sort_by(|a, b| a.x.total_cmp(&b.x));
+    }
+    let points = lines.iter().flat_map(|(_, line)| line).copied();
     let (mut right, mut top) = (0.0_f64, 0.0_f64);
     for p in points {
         right = right.max(p.x);
@@ -274,13 +275,81 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
         ),
     };
     let title = format!("{}: cost of safety", scenario.title);
-    let mut panel = Panel::free(title, ["Accepted risk", "Space-time error J [m²]"], window);
-    for (method, line) in lines.values().rev() {
+    let mut panel = Panel::free(
+        title,
+        ["Accepted risk [-]", "Space-time error J [m²]"],
+        window,
+    );
+    for (index, (method, line)) in lines.iter().enumerate() {
+        let (Some(first), Some(last)) = (line.first(), line.last()) else {
+            panel.line_key(&format!("{method}: none within the risk"), stroke(*method));
+            continue;
+        };
+        // costs, as lines may lie on one another
+        let label = format!("{method}: {:.0} to {:.0} m²", first.y, last.y);
+        let symbol = SYMBOLS[index % SYMBOLS.len()];
+        panel.symbol_key(&label, symbol, stroke(*method).colour);
+    }
+    // those that often lie under others are wide, and have larger symbols
+    for (index, (method, line)) in lines.iter().enumerate().rev() {
         let stroke = stroke(*method);
+        let symbol = SYMBOLS[index % SYMBOLS.len()];
         panel.plots.push(curve(line, false, stroke));
-        for p in line {
-            panel.plots.push(mark(*p, stroke.colour));
-        }
+        let size = LEAST_SYMBOL + stroke.width / 2.0;
+        panel.plots.push(symbols(line, symbol, size, stroke.colour));
     }
     panel
+}
+
+/// What a verified plan costs that keeps to the accepted risk.
+fn cost_within_risk(entry: &Entry) -> Option<f64> {
+    let Sailed::Planned(run) = &entry.result else {
+        return None;
+    };
+    let beyond = |r: &Relaxation| matches!(r, Relaxation::Risk { until: Some(_), .. });
+    if run.relaxations.iter().any(beyond) {
+        return None;
+    }
+    let verified = run.evaluation.as_ref().filter(|e| e.verified());
+    verified
+        .map(|e| e.space_time_error)
+        .filter(|c| c.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::comparison::Contender;
+    use crate::planner::{PlannerKind, SearchKind};
+    use crate::target::Representation;
+
+    /// Head-on there is no way along the path: what is sailed there runs into the target, whatever may be risked.
+    #[test]
+    fn what_goes_beyond_the_risk_has_no_point() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let scenario = Scenario::read(&root.join("scenarios/colregs/head-on.toml")).expect("valid");
+        let entries: Vec<Entry> = [PlannerKind::SpaceTime, PlannerKind::PathTime]
+            .into_iter()
+            .flat_map(|kind| [0.1, 0.0].map(|max_risk| (kind, max_risk)))
+            .map(|(kind, max_risk)| {
+                let method = Method::Planner {
+                    kind,
+                    search: SearchKind::AStar,
+                    representation: Some(Representation::Polytope),
+                };
+                Contender { method, max_risk }.run(&scenario)
+            })
+            .collect();
+        let costs: Vec<Option<f64>> = entries.iter().map(cost_within_risk).collect();
+        let (Some(risked), Some(clear)) = (costs[0], costs[1]) else {
+            panic!("{costs:?}");
+        };
+        assert!(clear > risked && costs[2..] == [None, None], "{costs:?}");
+        let svg = comparison_figure(&[(&scenario, &entries)]).svg();
+        assert!(svg.contains("path-time: none within the risk"));
+        // from the least risk on, whatever the order that was asked for
+        assert!(svg.contains(&format!("space-time, A*: {clear:.0} to {risked:.0} m²")));
+    }
 }

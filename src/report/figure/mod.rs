@@ -7,6 +7,7 @@ mod assessment;
 mod comparison;
 mod field;
 mod motion;
+mod names;
 mod outline;
 mod panel;
 mod path_time;

@@ -1,6 +1,6 @@
 //! Sets as curves and areas that can be drawn.
 
-use kuva::plot::{BandPlot, LinePlot, ScatterPlot};
+use kuva::plot::{BandPlot, LinePlot, MarkerShape, ScatterPlot};
 use kuva::render::plots::Plot;
 
 use crate::frame::Vector;
@@ -61,6 +61,25 @@ pub fn curve(points: &[Vector], closed: bool, stroke: Stroke) -> Plot {
 pub fn mark(at: Vector, colour: &str) -> Plot {
     let point = ScatterPlot::new().with_data([(at.x, at.y)]);
     Plot::Scatter(point.with_color(colour).with_size(4.5))
+}
+
+/// What tells the points of one curve from those of another where both lie in one place.
+pub(super) const SYMBOLS: [MarkerShape; 8] = [
+    MarkerShape::Circle,
+    MarkerShape::Square,
+    MarkerShape::Diamond,
+    MarkerShape::Triangle,
+    MarkerShape::Star,
+    MarkerShape::TriangleDown,
+    MarkerShape::Cross,
+    MarkerShape::Plus,
+];
+
+/// Points with a symbol each, `size` pixels from its middle to its edge.
+pub(super) fn symbols(at: &[Vector], symbol: MarkerShape, size: f64, colour: &str) -> Plot {
+    let points = ScatterPlot::new().with_data(at.iter().map(|p| (p.x, p.y)));
+    let points = points.with_color(colour).with_size(size);
+    Plot::Scatter(points.with_marker(symbol))
 }
 
 /// A filled convex polygon: the band between its lower and its upper chain. `None` where it has no area.

@@ -1,5 +1,6 @@
 //! One pair of axes.
 
+use kuva::plot::MarkerShape;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::Layout;
@@ -114,6 +115,16 @@ impl Panel {
             label: label.to_owned(),
             color: colour.to_owned(),
             shape: LegendShape::Circle,
+            dasharray: None,
+        });
+    }
+
+    /// What [`super::outline::symbols`] draws.
+    pub(super) fn symbol_key(&mut self, label: &str, symbol: MarkerShape, colour: &str) {
+        self.legend.push(LegendEntry {
+            label: label.to_owned(),
+            color: colour.to_owned(),
+            shape: LegendShape::Marker(symbol),
             dasharray: None,
         });
     }

@@ -7,7 +7,8 @@ use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
 use super::super::fault::Fault;
-use super::super::file::{Range, TEXT, is_text};
+use super::super::file::Range;
+use crate::text::{LINE, is_line};
 
 /// What a JSON file says; a key that is there twice is an error, for one of the two would be dropped silently.
 pub(super) fn parse(text: &str) -> Result<Value, Fault> {
@@ -230,9 +231,9 @@ impl<'a> Json<'a> {
     /// A text that may be a name.
     pub(super) fn text(&self) -> Option<&'a str> {
         let text = self.value.as_str().map(str::trim);
-        let sound = text.filter(|text| is_text(text));
+        let sound = text.filter(|text| is_line(text));
         if sound.is_none() {
-            self.fault(shown(self.value), TEXT);
+            self.fault(shown(self.value), LINE);
         }
         sound
     }

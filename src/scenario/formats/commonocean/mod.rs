@@ -10,12 +10,13 @@ use std::cell::RefCell;
 use roxmltree::Document;
 
 use super::super::fault::Fault;
-use super::super::file::{Range, is_text};
+use super::super::file::Range;
 use super::super::limits;
 use super::situation::{Declared, HullSaid, Other, Own, Situation};
 use super::track::{RouteLeg, RoutePoint, Track};
 use super::xml::{Xml, shown};
 use crate::frame::{Vector, wrap};
+use crate::text::is_line;
 use crate::vessel::Hull;
 use shape::{Shape, shapes};
 use state::{State, state};
@@ -76,7 +77,7 @@ pub(super) fn situations(
     }
     let step = root.attribute_number("timeStepSize", STEP, "s");
     let name = match root.attribute("benchmarkID") {
-        Some(id) if is_text(id) => Some(id.trim()),
+        Some(id) if is_line(id) => Some(id.trim()),
         Some(id) => {
             root.fault(
                 format_args!("benchmarkID {}", shown(id)),
