@@ -15,6 +15,9 @@ const HEADER: [&str; 6] = [
     "tCPA\n[s]",
 ];
 
+/// Where there is no figure.
+const NOTHING: &str = "–";
+
 /// Violations that are listed; the rest is counted.
 const LISTED: usize = 20;
 
@@ -27,6 +30,9 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
         ),
         (Some(_), 0) if checked.max_risk > 0.0 => {
             format!("verified, at an accepted risk of {}", checked.max_risk)
+        }
+        (Some(_), 0) if checked.claimed_from.iter().any(|from| *from > 0.0) => {
+            "verified, but for what it enters".to_owned()
         }
         (Some(_), 0) => "verified".to_owned(),
         (Some(_), 1) => "REJECTED, 1 fault".to_owned(),
@@ -55,6 +61,19 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
         checked.land,
         plural(checked.land),
     ));
+    let mut entered: Vec<(&String, f64)> = (checked.targets.iter())
+        .zip(checked.claimed_from.iter().copied())
+        .filter(|(_, from)| *from > 0.0)
+        .collect();
+    entered.sort_by(|a, b| a.1.total_cmp(&b.1));
+    lines.extend(entered.into_iter().map(|(target, from)| {
+        let until = if from < evaluation.duration {
+            format!("before {from:.1} s")
+        } else {
+            "at all".to_owned()
+        };
+        format!("The set of '{target}' is entered: nothing is claimed of it {until}")
+    }));
     if evaluation.min_land_distance.is_finite() {
         lines.push(format!(
             "Least distance from land {} m, at {:.1} s",
@@ -77,7 +96,10 @@ fn margins(checked: &Verification, colour: bool) -> String {
     let passages = checked.evaluation.as_ref().map_or(&[][..], |e| &e.passages);
     let mut table = figures(&HEADER, 1..HEADER.len(), colour);
     for (target, passage) in checked.targets.iter().zip(passages) {
-        let margin = Cell::new(millimetres(passage.min_margin));
+        // a NaN is shown
+        let claimed = passage.min_margin != f64::INFINITY;
+        let or_nothing = |text: String| if claimed { text } else { NOTHING.to_owned() };
+        let margin = Cell::new(or_nothing(millimetres(passage.min_margin)));
         table.add_row(vec![
             Cell::new(target),
             if passage.min_margin >= -crate::tolerance::DEPTH_M {
@@ -85,7 +107,7 @@ fn margins(checked: &Verification, colour: bool) -> String {
             } else {
                 margin.fg(Color::Red)
             },
-            Cell::new(format!("{:.1}", passage.min_margin_time)),
+            Cell::new(or_nothing(format!("{:.1}", passage.min_margin_time))),
             Cell::new(metres(passage.min_clearance)),
             Cell::new(metres(passage.dcpa)),
             Cell::new(format!("{:.1}", passage.tcpa)),

@@ -73,6 +73,8 @@ pub struct Verification {
     pub max_risk: f64,
     /// Names of the targets, in the document's order: that of the passages.
     pub targets: Vec<String>,
+    /// Seconds, per target in the same order: of her set nothing is claimed before; 0 where all is.
+    pub claimed_from: Vec<f64>,
     /// The judgement of the motion; `None` for a document without one.
     pub evaluation: Option<Evaluation>,
     /// Segments, or intervals between nodes.
@@ -135,6 +137,10 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         }
         violations.extend(undisturbed::check(&claim));
     }
+    let claimed_from = |name: &str| {
+        let own = claim.sets.iter().filter(|set| set.name == name);
+        own.map(|set| set.from).fold(0.0, f64::max)
+    };
     // a NaN has no place in time and goes last
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(Verification {
@@ -143,6 +149,11 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         outcome: claim.file.outcome.clone(),
         max_risk: claim.file.max_risk,
         targets: claim.targets.iter().map(|t| t.name.clone()).collect(),
+        claimed_from: claim
+            .targets
+            .iter()
+            .map(|t| claimed_from(&t.name))
+            .collect(),
         pieces: claim.motion.as_ref().map_or(0, ClaimedMotion::pieces),
         sets: claim.sets.len(),
         land: claim.land.len(),

@@ -444,7 +444,10 @@ fn no_plan_is_an_answer() {
         let file = write(folder.path(), "plan.json", text);
         searoom(&["verify", &file])
     };
-    check(&text).success();
+    check(&text)
+        .success()
+        .stdout(contains("verified, but for what it enters"))
+        .stdout(contains("nothing is claimed of it before"));
     // claimed from too early, not claimed at all, owned up to nowhere, or of a set that has shrunk meanwhile
     let earlier = text.replace(&until.to_string(), &(until - 1.0).to_string());
     check(&earlier).code(1).stdout(contains("set of"));

@@ -91,6 +91,8 @@ pub struct VerifiedPlanDocument {
 pub struct MarginDocument {
     /// Her name.
     pub target: String,
+    /// Nothing is claimed of her set before: the plan enters it. 0 where all is claimed.
+    pub claimed_from_s: f64,
     /// Least signed distance to the set that was kept out of.
     pub min_margin_m: Option<f64>,
     /// And when.
@@ -130,9 +132,11 @@ impl VerifiedPlanDocument {
                     t_s: finite(violation.time),
                 })
                 .collect(),
-            targets: (checked.targets.iter().zip(passages))
-                .map(|(target, passage)| MarginDocument {
+            targets: (checked.targets.iter().zip(&checked.claimed_from))
+                .zip(passages)
+                .map(|((target, claimed_from), passage)| MarginDocument {
                     target: target.clone(),
+                    claimed_from_s: *claimed_from,
                     min_margin_m: finite(passage.min_margin),
                     min_margin_t_s: finite(passage.min_margin_time),
                     min_clearance_m: finite(passage.min_clearance),
