@@ -65,7 +65,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         "*Clear*: a plan that enters no set that is declared, verified. *Relaxed*: of those, with shapes drawn back or not by the rules. *Judged*: of those, in \
          which own ship, as planned, is ever at risk and so has a role toward a target. *Complies*: neither judge of [rules.md](rules.md) finds a rule broken, thresholds of the profile \
          `searoom`; who is never at risk breaks none. *Score*: the mean over targets of the least of the scores. Milliseconds of planning on one core: a scene's is the \
-         median of {RUNS} plans; the columns are over scenes. All else is the same everywhere.\n"
+         median of {RUNS} plans; the columns are over scenes. All else is the same everywhere. A ship that stands on by the rules holds on until the latest moment of a certain escape, and the plan has that escape: the judges count it \
+         as an alteration, so that none complies ([rules.md](rules.md)).\n"
     );
     println!(
         "| suite | `compliance` | scenes | clear | relaxed | judged | complies | score | J, median, m² | ms, median | ms, 99 % | ms, worst |"

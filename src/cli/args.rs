@@ -14,8 +14,9 @@ use super::rows;
 
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///
-/// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan, 2 bad input
-/// or usage, 3 a fault of the program; the highest of a run wins.
+/// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan or with one that
+/// takes a risk or enters a set, a plan that is rejected, or recordings that differ, 2 bad input or
+/// usage, or a result that cannot be written, 3 a fault of the program; the highest of a run wins.
 #[derive(Debug, Parser)]
 #[command(name = "searoom", version, max_term_width = 100)]
 pub struct Arguments {

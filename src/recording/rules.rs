@@ -69,7 +69,8 @@ fn broken(conduct: &Conduct) -> Vec<Broken> {
     let is_violated = |f: &&Finding| f.verdict == Verdict::Violated;
     let monitors = conduct.findings.iter().filter(is_violated).map(|finding| {
         let time = finding.time.unwrap_or(0.0);
-        let short = -finding.robustness.unwrap_or(0.0);
+        // a difference has no negative zero
+        let short = 0.0 - finding.robustness.unwrap_or(0.0);
         let short = match finding.measure {
             Measure::Distance => format!("{short:.1} m"),
             Measure::Angle => format!("{:.0}°", deg_from_radians(short)),

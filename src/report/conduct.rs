@@ -32,9 +32,10 @@ pub(super) fn lines(run: &Run) -> Vec<(&'static str, String)> {
                 finding.time.unwrap_or(f64::NAN),
             );
             let short = match finding.measure {
-                Measure::Distance => format!("{:.1} m", -worst),
-                Measure::Angle => format!("{:.0}°", deg_from_radians(-worst)),
-                Measure::Time => format!("{:.0} s", -worst),
+                // a difference has no negative zero
+                Measure::Distance => format!("{:.1} m", 0.0 - worst),
+                Measure::Angle => format!("{:.0}°", deg_from_radians(0.0 - worst)),
+                Measure::Time => format!("{:.0} s", 0.0 - worst),
             };
             lines.push((
                 "",

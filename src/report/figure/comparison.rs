@@ -306,8 +306,8 @@ fn cost_within_risk(entry: &Entry) -> Option<f64> {
     let Sailed::Planned(run) = &entry.result else {
         return None;
     };
-    let beyond = |r: &Relaxation| matches!(r, Relaxation::Risk { until: Some(_), .. });
-    if run.relaxations.iter().any(beyond) {
+    let enters = run.released.iter().any(Option::is_some);
+    if enters || run.max_risk > entry.contender.max_risk {
         return None;
     }
     let verified = run.evaluation.as_ref().filter(|e| e.verified());
@@ -347,6 +347,13 @@ mod tests {
             panic!("{costs:?}");
         };
         assert!(clear > risked && costs[2..] == [None, None], "{costs:?}");
+        // neither has one that is clear of the level sets of a greater risk than may be taken
+        let forces = Scenario::read(&root.join("scenarios/forces/give-way.toml")).expect("valid");
+        let along = Contender {
+            max_risk: 0.2,
+            ..entries[2].contender.clone()
+        };
+        assert_eq!(cost_within_risk(&along.run(&forces)), None);
         let svg = comparison_figure(&[(&scenario, &entries)]).svg();
         assert!(svg.contains("path-time: none within the risk"));
         // from the least risk on, whatever the order that was asked for
