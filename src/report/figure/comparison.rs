@@ -9,7 +9,6 @@ use crate::comparison::{Entry, Look, Method, Sailed};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::SpaceTimeObstacle;
-use crate::pipeline::Relaxation;
 use crate::scenario::Scenario;
 
 /// Of the targets' sets.
