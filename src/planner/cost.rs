@@ -29,20 +29,24 @@ const SHORT_RAD: f64 = 1e-3;
 struct Cut {
     /// Radians: the longest piece to begin with.
     arc: f64,
-    /// Halvings of a stretch in which the nearest leg or its end changes.
-    halvings: u32,
+    /// Pieces at least.
+    pieces: f64,
 }
 
-/// While plans are looked for: changes are closed in on to a thousandth of the stretch.
+/// Halvings of a piece in which the nearest leg or its end changes: such changes are closed in on to a thousandth. Where
+/// rounding makes them, each piece costs this often two.
+const MAX_HALVINGS: u32 = 10;
+
+/// While plans are looked for.
 const SEARCHED: Cut = Cut {
     arc: PI / 4.0,
-    halvings: 10,
+    pieces: 1.0,
 };
 
 /// Of what is said of a plan.
 const TOLD: Cut = Cut {
     arc: PI / 64.0,
-    halvings: 25,
+    pieces: 16.0,
 };
 
 /// `(1/T_d) integral of e² dt` over one segment, m²: its part of the space-time error `J`. In closed form for
@@ -78,7 +82,7 @@ fn integral(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64, cu
     }
     let pieces = (segment.turn_rate.abs() * segment.duration / cut.arc)
         .ceil()
-        .max(1.0);
+        .max(cut.pieces);
     let duration = segment.duration / pieces;
     let stretch = Stretch {
         desired,
@@ -89,7 +93,7 @@ fn integral(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64, cu
     (0..pieces as usize)
         .map(|k| {
             let from = segment.start_time + duration * k as f64;
-            stretch.integral(from, duration, cut.halvings)
+            stretch.integral(from, duration, MAX_HALVINGS)
         })
         .sum()
 }

@@ -179,8 +179,16 @@ impl Recorded {
             comparison: None,
         };
         let mut timing = None;
-        let mut recordings = messages.stores.into_iter();
-        if let Some(info) = recordings.rfind(|info| info.store_id.is_recording()) {
+        let mut recordings: Vec<_> = messages.stores.into_iter().collect();
+        recordings.retain(|info| info.store_id.is_recording());
+        recordings.dedup_by(|a, b| a.store_id == b.store_id);
+        if recordings.len() > 1
+            && (recordings.iter())
+                .any(|info| info.store_id.application_id().as_str() == APPLICATION)
+        {
+            return Err(format!("{} recordings in one file", recordings.len()));
+        }
+        if let Some(info) = recordings.pop() {
             read.application = info.store_id.application_id().to_string();
             read.version = info.store_version.map(|v| v.to_string());
         }

@@ -8,6 +8,9 @@ use crate::frame::{LARGEST_ORIGIN_LAT_DEG, mps_from_knots};
 /// Bytes of a scenario file.
 pub(super) const FILE_BYTES: u64 = 16 * 1024 * 1024;
 
+/// Waypoints of a ship of a foreign file at most: of each leg of a target one more velocity set follows.
+pub(super) const ROUTE_POINTS: usize = 200;
+
 /// Points of one foreign route or recorded track.
 pub(super) const TRACK_POINTS: usize = 20_000;
 /// Ships of one foreign situation.

@@ -8,7 +8,7 @@
 use super::claim::Claim;
 use super::reached;
 use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
-use crate::frame::{Vector, direction};
+use crate::frame::{Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{Motion, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
@@ -16,6 +16,7 @@ use crate::tolerance;
 /// What a set may be too small for.
 const INITIAL: &str = "the initial set, m";
 const VELOCITY: &str = "the velocity set, m/s";
+const LEVEL: &str = "the velocities at the accepted risk, m/s";
 
 /// Standard deviations of the position that a set covers.
 pub(super) const POSITION_SIGMAS: f64 = 3.0;
@@ -24,7 +25,7 @@ pub(super) const POSITION_SIGMAS: f64 = 3.0;
 /// hundred-thousandth of the speed.
 const TANGENT_SPACING: f64 = std::f64::consts::PI / 720.0;
 
-/// Directions in which an ellipse is compared with an ellipse.
+/// Places around an ellipse at which it is compared with an ellipse.
 pub(super) const SAMPLED_DIRECTIONS: usize = 720;
 
 /// Every target without a set of her own, or with one that is too small; every set of nobody.
@@ -103,14 +104,22 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
                     need("her velocities, m/s", short, spell.start);
                 }
             }
+            if let ([only], true) = (&whole.spells[..], level < 1.0 && ship.turn_rate == 0.0) {
+                let known = about_centroid(&ship.outer_velocity_set(), level);
+                need(LEVEL, only.level.beyond_polygon(&known), 0.0);
+            }
         }
         Motion::Sets { initial, velocity } => {
             if at_start {
                 need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
             }
-            if velocities_known {
-                for spell in &whole.spells {
+            for spell in &whole.spells {
+                if velocities_known {
                     need(VELOCITY, spell.set.beyond_polygon(velocity), spell.start);
+                }
+                if level < 1.0 {
+                    let known = about_centroid(velocity, level);
+                    need(LEVEL, spell.level.beyond_polygon(&known), spell.start);
                 }
             }
         }
@@ -118,9 +127,13 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
             if at_start {
                 need(INITIAL, whole.initial.beyond_ellipse(initial), 0.0);
             }
-            if velocities_known {
-                for spell in &whole.spells {
+            for spell in &whole.spells {
+                if velocities_known {
                     need(VELOCITY, spell.set.beyond_ellipse(velocity), spell.start);
+                }
+                if level < 1.0 {
+                    let known = velocity.scaled_about_center(level);
+                    need(LEVEL, spell.level.beyond_ellipse(&known), spell.start);
                 }
             }
         }
@@ -138,6 +151,15 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
                             spell.set.beyond_polygon(&known.velocities),
                             spell.start,
                         );
+                    }
+                }
+            }
+            if level < 1.0 {
+                for spell in &whole.spells {
+                    let until = spell.until.min(claim.file.horizon_s);
+                    for known in overlapping(spells, spell.start, until) {
+                        let known = about_centroid(&known.velocities, level);
+                        need(LEVEL, spell.level.beyond_polygon(&known), spell.start);
                     }
                 }
             }
@@ -176,6 +198,8 @@ struct Spell {
     start: f64,
     until: f64,
     set: Bounded,
+    /// As the document has it.
+    level: Bounded,
 }
 
 impl Whole {
@@ -192,6 +216,7 @@ impl Whole {
                             start: from + start,
                             until: from + spell.until,
                             set: Bounded::Polygon(about_centroid(&spell.velocities, level.recip())),
+                            level: Bounded::Polygon(spell.velocities.clone()),
                         })
                         .collect(),
                 }
@@ -202,6 +227,7 @@ impl Whole {
                     start: from,
                     until: f64::INFINITY,
                     set: Bounded::Ellipse(velocity.scaled_about_center(level.recip())),
+                    level: Bounded::Ellipse(*velocity),
                 }],
             },
         }
@@ -233,15 +259,17 @@ impl Bounded {
         largest(set.vertices().iter().map(|p| self.distance(*p)))
     }
 
-    /// How far an ellipse reaches outside, in directions sampled evenly.
+    /// How far an ellipse reaches outside: exactly for a polygon, in the directions of [`sampled_directions`] for an ellipse.
     fn beyond_ellipse(&self, set: &Ellipse) -> f64 {
-        let support = |n: Vector| match self {
-            Self::Polygon(own) => own.support(n),
-            Self::Ellipse(own) => own.support(n),
-        };
-        let step = std::f64::consts::TAU / SAMPLED_DIRECTIONS as f64;
-        let directions = (0..SAMPLED_DIRECTIONS).map(|k| direction(step * k as f64));
-        largest(directions.map(|n| set.support(n) - support(n)))
+        match self {
+            Self::Polygon(own) => {
+                let normals = own.normals().into_iter();
+                largest(normals.map(|n| set.support(n) - own.support(n)))
+            }
+            Self::Ellipse(own) => {
+                largest(sampled_directions(own).map(|n| set.support(n) - own.support(n)))
+            }
+        }
     }
 
     /// How far a sector of velocities reaches outside: exactly for a polygon, by tangents that contain the sector for an ellipse.
@@ -255,6 +283,18 @@ impl Bounded {
             _ => largest(sector.outer_points().into_iter().map(|p| self.distance(p))),
         }
     }
+}
+
+/// Unit vectors all around, evenly, and the normals of an ellipse at places all around it: where it is a needle, nearly all are across.
+pub(super) fn sampled_directions(ellipse: &Ellipse) -> impl Iterator<Item = Vector> {
+    let [a, b] = ellipse.semi_axes();
+    let step = std::f64::consts::TAU / SAMPLED_DIRECTIONS as f64;
+    (0..SAMPLED_DIRECTIONS).flat_map(move |k| {
+        let z = direction(step * k as f64);
+        let tangent = b * z.x - a * z.y;
+        let normal = tangent.try_normalize(0.0).map(to_port);
+        [Some(z), normal].into_iter().flatten()
+    })
 }
 
 /// Every velocity with a speed and a course within bounds.

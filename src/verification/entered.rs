@@ -31,8 +31,9 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         if claim.file.max_risk > 0.0 {
             found.push(untrue("max_risk", claim.file.max_risk, 0.0));
         }
-        if !(given_up.amount > 0.0 && given_up.amount <= 1.0) {
-            found.push(untrue(&of("amount"), given_up.amount, "above 0, at most 1"));
+        // own ship may begin on its very edge
+        if !(given_up.amount >= 0.0 && given_up.amount <= 1.0) {
+            found.push(untrue(&of("amount"), given_up.amount, "from 0 to 1"));
         }
         let end = match &claim.motion {
             Some(ClaimedMotion::Segments(segments)) => segments.last().map(|s| s.end_time()),

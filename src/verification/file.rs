@@ -20,6 +20,8 @@ pub(super) struct PlanFile {
     pub land: Vec<Vec<[f64; 2]>>,
     pub targets: Vec<TargetFile>,
     pub obstacles: Vec<ObstacleFile>,
+    /// The first of them.
+    pub relaxation: Option<RelaxationFile>,
     pub relaxations: Vec<RelaxationFile>,
     pub cost: Option<CostFile>,
     pub trajectory: Option<TrajectoryFile>,
@@ -110,7 +112,7 @@ pub(super) struct ObstacleFile {
 }
 
 /// Something that was given up: what of it bears on what is claimed.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, PartialEq, Deserialize)]
 pub(super) struct RelaxationFile {
     pub kind: String,
     pub target: String,

@@ -36,6 +36,28 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         forces && matches!(claim.motion, Some(ClaimedMotion::Segments(_))),
         "that of a plan of segments",
     );
+    let objectives: &[&str] = match file.planner.as_str() {
+        OPTIMAL_CONTROL => &["stage-cost"],
+        PATH_TIME => &["space-time-error", "time", "length", "length-risk"],
+        _ => &["space-time-error"],
+    };
+    if !objectives.contains(&file.objective.as_str()) {
+        found.push(untrue(
+            "objective",
+            &file.objective,
+            objectives.join(" or "),
+        ));
+    }
+    let most_important = file.relaxations.first();
+    if file.relaxation.as_ref() != most_important {
+        let name = |r: Option<&super::file::RelaxationFile>| {
+            r.map_or("nothing".to_owned(), |r| {
+                format!("{} of '{}'", r.kind, r.target)
+            })
+        };
+        let so = format!("the first of relaxations, {}", name(most_important));
+        found.push(untrue("relaxation", name(file.relaxation.as_ref()), so));
+    }
     for (index, given_up) in file.relaxations.iter().enumerate() {
         let what = format!("relaxation of '{}'", given_up.target);
         let asked = match given_up.kind.as_str() {
@@ -46,6 +68,13 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         if !asked {
             let so = format!("no part of compliance '{}'", file.compliance);
             found.push(untrue(&what, &given_up.kind, so));
+        }
+        if given_up.kind == "domain" && given_up.amount == 0.0 {
+            found.push(untrue(
+                &what,
+                "a domain drawn back by 0",
+                "nothing given up",
+            ));
         }
         let again = |r: &&super::file::RelaxationFile| {
             r.kind == given_up.kind && r.target == given_up.target

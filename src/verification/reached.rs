@@ -1,14 +1,14 @@
 //! Where a target may be at a time, asked of a set that starts then.
 
 use super::claim::Claim;
-use super::coverage::{Bounded, POSITION_SIGMAS, SAMPLED_DIRECTIONS, Sector, largest};
-use crate::frame::{Vector, direction};
+use super::coverage::{Bounded, POSITION_SIGMAS, Sector, largest, sampled_directions};
+use crate::frame::Vector;
 use crate::target::{Motion, Target, VelocitySpell};
 
 /// Instants at which the velocities of a ship that turns are looked at.
 const INSTANTS: u32 = 1000;
 
-/// How far what a target may have reached at a time is beyond a set: along the normals of a polygon, in directions sampled evenly
+/// How far what a target may have reached at a time is beyond a set: along the normals of a polygon, in sampled directions
 /// for an ellipse. Of a ship that turns it is a lower bound, by what she turns in a thousandth of the time.
 pub(super) fn short(claim: &Claim, target: &Target, set: &Bounded, time: f64) -> f64 {
     match set {
@@ -16,11 +16,10 @@ pub(super) fn short(claim: &Claim, target: &Target, set: &Bounded, time: f64) ->
             let normals = polygon.normals().into_iter();
             largest(normals.map(|n| support(claim, target, n, time) - polygon.support(n)))
         }
-        Bounded::Ellipse(ellipse) => {
-            let step = std::f64::consts::TAU / SAMPLED_DIRECTIONS as f64;
-            let directions = (0..SAMPLED_DIRECTIONS).map(|k| direction(step * k as f64));
-            largest(directions.map(|n| support(claim, target, n, time) - ellipse.support(n)))
-        }
+        Bounded::Ellipse(ellipse) => largest(
+            sampled_directions(ellipse)
+                .map(|n| support(claim, target, n, time) - ellipse.support(n)),
+        ),
     }
 }
 

@@ -51,7 +51,7 @@ pub(super) fn read(
         let last = entries
             .get(index + 1)
             .is_none_or(|next| next.name != entry.name);
-        if last && !(to >= horizon - tolerance::TIME_S * (1.0 + horizon)) {
+        if last && !((to - horizon).abs() <= tolerance::TIME_S * (1.0 + horizon)) {
             note(
                 format!("valid until {to} s, expected the horizon, {horizon} s"),
                 to,

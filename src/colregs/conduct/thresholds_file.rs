@@ -202,13 +202,19 @@ impl Thresholds {
             file: file.to_owned(),
             faults,
         };
+        let unread = |source| ThresholdsError::Read {
+            file: file.to_owned(),
+            source,
+        };
+        // a pipe may never end
+        if !std::fs::metadata(file).map_err(unread)?.is_file() {
+            let kind = std::io::ErrorKind::InvalidInput;
+            return Err(unread(std::io::Error::new(kind, "not a regular file")));
+        }
         let mut text = String::new();
         File::open(file)
             .and_then(|open| open.take(MOST_BYTES + 1).read_to_string(&mut text))
-            .map_err(|source| ThresholdsError::Read {
-                file: file.to_owned(),
-                source,
-            })?;
+            .map_err(unread)?;
         if text.len() as u64 > MOST_BYTES {
             let found = format!("more than {MOST_BYTES} bytes");
             return Err(wrong(vec![fault("file", found, "no more than that")]));

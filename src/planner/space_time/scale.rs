@@ -21,6 +21,9 @@ const LARGEST_M: f64 = 640.0;
 /// Metres. What other radii are brought to, within a factor of the root of two.
 const USUAL_M: f64 = 130.0;
 
+/// Metres. The desired way is made no longer than this, lest a speck on it asks for more instants than there is memory.
+const LONGEST_M: f64 = 5e5;
+
 /// m/s. What speeds are brought to where lengths are scaled, likewise.
 const USUAL_MPS: f64 = 5.0;
 
@@ -64,7 +67,8 @@ impl Scale {
                 .clamp(-MOST_DOUBLINGS, MOST_DOUBLINGS)
                 .exp2()
         };
-        let length = power(radius / USUAL_M);
+        let least = power(problem.desired.length() / LONGEST_M).min(1.0);
+        let length = power(radius / USUAL_M).max(least);
         let speed = problem.desired.length() / problem.desired.duration();
         let time = length * power(USUAL_MPS / speed);
         Some(Self { length, time })

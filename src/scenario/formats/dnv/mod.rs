@@ -123,7 +123,7 @@ fn place(entry: &Json) -> Option<Geographic> {
 
 fn waypoints<'a>(ship: &Json<'a>, least: usize) -> Option<Vec<Json<'a>>> {
     ship.require("waypoints", "a list of waypoints")?
-        .list(least, limits::TRACK_POINTS, "waypoints")
+        .list(least, limits::ROUTE_POINTS, "waypoints")
 }
 
 /// The plane about own ship's first place.
