@@ -19,7 +19,7 @@ mod undisturbed;
 
 pub use request::{Freedom, Request};
 pub use space_time_set::{SetShape, SpaceTimeSet};
-pub(crate) use stage_cost::{StageWeights, stage_cost};
+pub(crate) use stage_cost::{StageWeights, stage_costs};
 pub use steered::{Steering, evaluate_steered};
 pub(crate) use undisturbed::{undisturbed_distance, undisturbed_legs};
 

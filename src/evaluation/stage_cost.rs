@@ -18,7 +18,29 @@ pub struct StageWeights {
 /// nodes with the ship's rates there: the definition of the planner, in code of its own and with the ship as published.
 /// O(nodes).
 /// Where a leg ends within an interval the sum is coarser.
-pub fn stage_cost(steering: &Steering, desired: &DesiredTrajectory, weights: &StageWeights) -> f64 {
+///
+/// Where a leg ends at a node or halfway between two, the one that counts there is one of rounding: what it is as the numbers are, and if
+/// legs end some roundings later and earlier.
+pub(crate) fn stage_costs(
+    steering: &Steering,
+    desired: &DesiredTrajectory,
+    weights: &StageWeights,
+) -> [f64; 3] {
+    let rounding = CORNER * (1.0 + desired.duration());
+    [[0.0, 0.0], [rounding, rounding], [rounding, -rounding]]
+        .map(|late| summed(steering, desired, weights, late))
+}
+
+/// Relative. How near the end of a leg an instant is at it.
+const CORNER: f64 = 1e-12;
+
+/// `late`: seconds by which legs end later than they say, for what ends and less for what begins at an instant, and for what is halfway.
+fn summed(
+    steering: &Steering,
+    desired: &DesiredTrajectory,
+    weights: &StageWeights,
+    [at_nodes, halfway]: [f64; 2],
+) -> f64 {
     let nodes = steering.motion.nodes();
     let mut sum = 0.0;
     for pair in nodes.windows(2) {
@@ -26,8 +48,8 @@ pub fn stage_cost(steering: &Steering, desired: &DesiredTrajectory, weights: &St
         let duration = pair[1].time - pair[0].time;
         let bend = steering.vessel.rates(&x, &u) - steering.vessel.rates(&y, &u);
         let middle = 0.5 * (x + y) + 0.125 * duration * bend;
-        let off = |at: &StateVector, time: f64, moment: Moment| {
-            let mut off = at - wanted(desired, time, moment);
+        let off = |at: &StateVector, time: f64, moment: Moment, late: f64| {
+            let mut off = at - wanted(desired, time, moment, late);
             off[2] = wrap(off[2]);
             (0..6)
                 .map(|i| weights.state[i] * off[i] * off[i])
@@ -35,8 +57,10 @@ pub fn stage_cost(steering: &Steering, desired: &DesiredTrajectory, weights: &St
         };
         let driven: f64 = (0..3).map(|i| weights.force[i] * u[i] * u[i]).sum();
         let half = pair[0].time + 0.5 * duration;
-        let ends = off(&x, pair[0].time, Moment::Later) + off(&y, pair[1].time, Moment::Earlier);
-        sum += duration * ((ends + 4.0 * off(&middle, half, Moment::Later)) / 6.0 + driven);
+        let ends = off(&x, pair[0].time, Moment::Later, -at_nodes)
+            + off(&y, pair[1].time, Moment::Earlier, at_nodes);
+        let middle = off(&middle, half, Moment::Later, halfway);
+        sum += duration * ((ends + 4.0 * middle) / 6.0 + driven);
     }
     sum
 }
@@ -49,11 +73,11 @@ enum Moment {
 }
 
 /// Where she is meant to be: on her leg, at its course and speed; at the end, at rest, once it is over.
-fn wanted(desired: &DesiredTrajectory, time: f64, moment: Moment) -> StateVector {
+fn wanted(desired: &DesiredTrajectory, time: f64, moment: Moment, late: f64) -> StateVector {
     let legs = desired.legs();
     let under_way = legs.iter().position(|leg| match moment {
-        Moment::Earlier => time <= leg.end_time(),
-        Moment::Later => time < leg.end_time(),
+        Moment::Earlier => time <= leg.end_time() + late,
+        Moment::Later => time < leg.end_time() + late,
     });
     let leg = &legs[under_way.unwrap_or(legs.len() - 1)];
     let speed = under_way.map_or(0.0, |index| legs[index].speed);

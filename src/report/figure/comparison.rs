@@ -350,7 +350,7 @@ mod tests {
         let forces = Scenario::read(&root.join("scenarios/forces/give-way.toml")).expect("valid");
         let along = Contender {
             max_risk: 0.2,
-            ..entries[2].contender.clone()
+            ..entries[2].contender
         };
         assert_eq!(cost_within_risk(&along.run(&forces)), None);
         let svg = comparison_figure(&[(&scenario, &entries)]).svg();
