@@ -9,8 +9,8 @@ use super::claim::Claim;
 use super::reached;
 use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
 use crate::frame::{Vector, direction, to_port};
-use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::target::{Motion, ShipTrack, Target, VelocitySpell};
+use crate::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
+use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
 
 /// What a set may be too small for.
@@ -105,7 +105,7 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
                 }
             }
             if let ([only], true) = (&whole.spells[..], level < 1.0 && ship.turn_rate == 0.0) {
-                let known = about_centroid(&ship.outer_velocity_set(), level);
+                let known = at_level(target, &ship.outer_velocity_set(), level);
                 need(LEVEL, only.level.beyond_polygon(&known), 0.0);
             }
         }
@@ -118,7 +118,7 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
                     need(VELOCITY, spell.set.beyond_polygon(velocity), spell.start);
                 }
                 if level < 1.0 {
-                    let known = about_centroid(velocity, level);
+                    let known = at_level(target, velocity, level);
                     need(LEVEL, spell.level.beyond_polygon(&known), spell.start);
                 }
             }
@@ -158,7 +158,7 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
                 for spell in &whole.spells {
                     let until = spell.until.min(claim.file.horizon_s);
                     for known in overlapping(spells, spell.start, until) {
-                        let known = about_centroid(&known.velocities, level);
+                        let known = at_level(target, &known.velocities, level);
                         need(LEVEL, spell.level.beyond_polygon(&known), spell.start);
                     }
                 }
@@ -238,6 +238,18 @@ impl Whole {
 pub(super) fn about_centroid(set: &ConvexPolygon, factor: f64) -> ConvexPolygon {
     let center = set.centroid();
     set.translated(-center).scaled(factor).translated(center)
+}
+
+/// What is known of a target's velocities at a level: scaled about the centre that her representation has.
+fn at_level(target: &Target, velocities: &ConvexPolygon, level: f64) -> ConvexPolygon {
+    match target.representation {
+        Representation::Polytope => about_centroid(velocities, level),
+        Representation::Ellipsoid => {
+            let center = outer_enclosing_ellipse(velocities).center();
+            let about = velocities.translated(-center);
+            about.scaled(level).translated(center)
+        }
+    }
 }
 
 pub(super) enum Bounded {
