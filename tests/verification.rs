@@ -1729,6 +1729,81 @@ fn a_document_without_a_plan_is_not_verified_and_not_refused() {
     assert!(!found.verified() && found.evaluation.is_none() && found.violations.is_empty());
 }
 
+/// Sets that hold what is known where it is looked at first, and not what is claimed.
+#[test]
+fn sets_that_only_seem_large_enough_are_too_small() {
+    let said = |document: &Value, expected: &str| {
+        let found = checked(document).violations;
+        let told = found.iter().any(|v| v.what.contains(expected));
+        assert!(told, "{expected}: {found:?}");
+    };
+    // an ellipse far longer than the true one, and a hair wide, between two directions
+    let mut needle = document(scenario("uncertainty/ellipse.toml"));
+    let (sin, cos) = 0.0043_f64.sin_cos();
+    let length: f64 = 1e10;
+    *at(&mut needle, "/obstacles/0/initial_set/shape_m2") = json!([
+        [length * cos * cos, length * cos * sin],
+        [length * cos * sin, length * sin * sin]
+    ]);
+    said(&needle, "too small for the initial set");
+    // velocities to one side: scaled back about their centre they hold all, but not those of half the risk
+    let text = std::fs::read_to_string(file("colregs/give-way.toml")).expect("a scenario");
+    let mut scenario = Scenario::parse(&text).expect("a scenario");
+    scenario.max_risk = 0.5;
+    let mut lopsided = document(scenario);
+    let corners: Vec<[f64; 2]> =
+        serde_json::from_value(lopsided["obstacles"][0]["velocity_set"]["vertices_mps"].clone())
+            .expect("corners");
+    let [low, high] = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| {
+        [0, 1].map(|k| corners.iter().map(|c| c[k]).reduce(pick).expect("some"))
+    });
+    let middle = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
+    // of the whole set, twice that of the level
+    let reach = (high[0] - low[0]).max(high[1] - low[1]);
+    let (east, half) = (middle[0] + 1.6 * reach, 1.4 * reach);
+    *at(&mut lopsided, "/obstacles/0/velocity_set/vertices_mps") = json!([
+        [east - half, middle[1] - half],
+        [east + half, middle[1] - half],
+        [east + half, middle[1] + half],
+        [east - half, middle[1] + half]
+    ]);
+    let found = checked(&lopsided).violations;
+    let whole = "too small for her velocities";
+    assert!(!found.iter().any(|v| v.what.contains(whole)), "{found:?}");
+    said(&lopsided, "the velocities at the accepted risk");
+}
+
+/// Words beside the motion: what was minimised, and what was given up first.
+#[test]
+fn an_objective_that_is_not_the_planners_and_another_relaxation_are_rejected() {
+    let clear = document(scenario("colregs/head-on.toml"));
+    for (key, value) in [
+        ("objective", json!("stage-cost")),
+        ("objective", json!("length-risk")),
+        (
+            "relaxation",
+            json!({ "kind": "risk", "target": "target", "amount": 0.9 }),
+        ),
+    ] {
+        let mut altered = clear.clone();
+        altered[key] = value;
+        let found = checked(&altered).violations;
+        assert!(
+            found.iter().any(|v| v.what.starts_with(key)),
+            "{key}: {found:?}"
+        );
+    }
+    let mut nothing = clear;
+    give_up(&mut nothing, "domain", "target", 0.0);
+    nothing["outcome"] = json!("relaxed");
+    nothing["relaxation"] = nothing["relaxations"][0].clone();
+    let found = checked(&nothing).violations;
+    assert!(
+        found.iter().any(|v| v.what.contains("drawn back by 0")),
+        "{found:?}"
+    );
+}
+
 /// What a planner says of its plan holds of the document, and every plan is verified. The counts are printed.
 #[test]
 fn plans_of_wild_scenes_are_verified_by_their_documents() {

@@ -351,6 +351,7 @@ mod recordings {
     use super::*;
 
     const HEAD_ON: &str = "scenarios/colregs/head-on.toml";
+    const GIVE_WAY: &str = "scenarios/colregs/give-way.toml";
 
     fn recorded(folder: &Path, name: &str, scenario: &str) -> (String, String) {
         let file = text(&folder.join(name)).to_owned();
@@ -623,6 +624,10 @@ mod recordings {
         refused(&bytes[..9], "cut off within the header");
         refused(&bytes[..bytes.len() / 2], "cut off");
         refused(&bytes[..bytes.len() - 1], "cut off");
+        // a whole one behind another would hide it
+        let (other, _) = recorded(folder.path(), "c.rrd", GIVE_WAY);
+        let other = fs::read(other).expect("a recording");
+        refused(&[&bytes[..], &other].concat(), "2 recordings in one file");
         // within the first payload that is compressed
         let mut damaged = bytes.clone();
         for byte in damaged[3000..3400].iter_mut() {
