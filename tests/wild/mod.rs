@@ -1,4 +1,12 @@
-//! Scenes as no harbour has them: sets of every kind anywhere, own ship within some, targets at rest on her path, risk taken.
+//! Scenes as no harbour has them: sets of every kind anywhere, own ship within some, targets at rest on its path, risk taken.
+
+mod anything;
+
+#[allow(
+    unused_imports,
+    reason = "the fuzz program takes these, the tests the scenes below"
+)]
+pub use anything::{PLANNERS, anything};
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
@@ -8,11 +16,9 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// A scenario file; the same seed gives the same scene.
+#[allow(dead_code, reason = "the fuzz program has wilder ones")]
 pub fn scene(seed: u64) -> String {
-    let mut scene = Scene {
-        rng: ChaCha8Rng::seed_from_u64(seed),
-        text: String::new(),
-    };
+    let mut scene = Scene::new(seed);
     scene.write(seed);
     scene.text
 }
@@ -20,9 +26,27 @@ pub fn scene(seed: u64) -> String {
 struct Scene {
     rng: ChaCha8Rng,
     text: String,
+    /// Metres, added to every place.
+    origin: [f64; 2],
+    /// Targets to choose from.
+    kinds: &'static [&'static str],
+    /// Domains of ships to choose from.
+    domains: &'static [&'static str],
 }
 
 impl Scene {
+    fn new(seed: u64) -> Self {
+        Self {
+            rng: ChaCha8Rng::seed_from_u64(seed),
+            text: String::new(),
+            origin: [0.0, 0.0],
+            kinds: &[
+                "ship", "ship", "turning", "sets", "ellipses", "spells", "at rest", "around",
+            ],
+            domains: &["colregs", "colregs", "paper", "hull"],
+        }
+    }
+
     fn one<T: Copy>(&mut self, of: &[T]) -> T {
         *of.choose(&mut self.rng).expect("some")
     }
@@ -90,10 +114,7 @@ impl Scene {
     }
 
     fn target(&mut self, index: usize, length: f64, speed: f64, time: f64, way: &[[f64; 2]]) {
-        let kinds = [
-            "ship", "ship", "turning", "sets", "ellipses", "spells", "at rest", "around",
-        ];
-        let kind = self.one(&kinds);
+        let kind = self.one(self.kinds);
         let end = way[way.len() - 1];
         let course = self.rng.random_range(-PI..PI);
         let share = self.rng.random_range(0.1..1.05);
@@ -104,10 +125,11 @@ impl Scene {
             _ => ([end[0] * share, end[1] * share], share, fast),
         };
         let back = fast * share * time;
+        let [east, north] = self.origin;
         let mut beside = || self.rng.random_range(-1.0..1.0) * length;
         let place = [
-            meets[0] - back * course.cos() + beside(),
-            meets[1] - back * course.sin() + beside(),
+            meets[0] - back * course.cos() + beside() + east,
+            meets[1] - back * course.sin() + beside() + north,
         ];
         let velocity = [fast * course.cos(), fast * course.sin()];
         self.line(format!("[[targets]]\nname = \"{index} {kind}\""));
@@ -152,7 +174,7 @@ impl Scene {
                     self.one(&[0.0, 2.0, 5.0, 20.0]),
                     self.one(&[0.0, 0.0, 5.0, 20.0]),
                 ];
-                let domain = self.one(&["colregs", "colregs", "paper", "hull"]);
+                let domain = self.one(self.domains);
                 self.line(format!(
                     "position = {}\ncourse_deg = {:?}\nspeed_mps = {fast:?}\nlength_m = {long:?}\nbeam_m = {:?}",
                     position(&place),
@@ -161,8 +183,9 @@ impl Scene {
                 ));
                 let [speed_spread, course_spread, deviation] = spreads;
                 self.line(format!(
-                    "speed_spread_mps = {speed_spread:?}\ncourse_spread_deg = {course_spread:?}\nposition_std_m = {deviation:?}\ndomain = \"{domain}\""
+                    "speed_spread_mps = {speed_spread:?}\ncourse_spread_deg = {course_spread:?}\nposition_std_m = {deviation:?}"
                 ));
+                self.domain(domain, long);
                 if kind == "turning" {
                     let rate = self.one(&[0.01, 0.1, 0.5]);
                     self.line(format!("turn_rate_deg_per_s = {rate:?}"));
@@ -172,6 +195,19 @@ impl Scene {
                 }
             }
         }
+    }
+
+    /// A named domain, or one of four distances.
+    fn domain(&mut self, name: &str, length: f64) {
+        if name != "custom" {
+            self.line(format!("domain = \"{name}\""));
+            return;
+        }
+        let [fore, aft, port, starboard] =
+            [(); 4].map(|()| self.one(&[0.0, 0.5, 2.0, 5.0]) * length);
+        self.line(format!(
+            "domain = {{ fore_m = {fore:?}, aft_m = {aft:?}, port_m = {port:?}, starboard_m = {starboard:?} }}"
+        ));
     }
 
     /// Corners on a circle: points and segments too.
