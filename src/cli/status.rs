@@ -9,7 +9,7 @@ use searoom::pipeline::{Relaxation, Run};
 pub enum Status {
     /// All planned and verified.
     Good,
-    /// At least one scenario without a collision-free plan: none, or one that enters a set at an accepted risk.
+    /// At least one scenario without a collision-free plan to the end: none, one that enters a set, or one that does not arrive.
     NoPlan,
     /// Bad input or usage, or a result that cannot be written.
     BadInput,
@@ -23,8 +23,10 @@ impl Status {
         match (run.planned.outcome.plan(), &run.evaluation) {
             (None, _) => Self::NoPlan,
             (Some(_), Some(evaluation)) if evaluation.verified() => {
-                let risked = |r: &Relaxation| matches!(r, Relaxation::Risk { .. });
-                if run.relaxations.iter().any(risked) {
+                let no_way = |r: &Relaxation| {
+                    matches!(r, Relaxation::Risk { .. } | Relaxation::Arrival { .. })
+                };
+                if run.relaxations.iter().any(no_way) {
                     Self::NoPlan
                 } else {
                     Self::Good

@@ -201,7 +201,8 @@ impl Entry {
     pub fn arrived(&self) -> bool {
         match &self.result {
             Sailed::Planned(run) => {
-                run.planned.outcome.plan().is_some()
+                let plan = run.planned.outcome.plan();
+                plan.is_some_and(|plan| plan.to_go == 0.0)
                     && run.scenario.planner != PlannerKind::OptimalControl
             }
             Sailed::Baseline(baseline) => baseline.arrived,

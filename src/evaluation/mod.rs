@@ -176,7 +176,7 @@ pub struct Evaluation {
     pub duration: f64,
     /// Metres.
     pub length: f64,
-    /// Arrival minus desired end, seconds.
+    /// Arrival minus desired end, seconds; NaN where no arrival is asked for.
     pub delay: f64,
     /// Least of the targets' clearances, metres; infinite without targets.
     pub min_clearance: f64,
@@ -225,7 +225,10 @@ pub fn evaluate(request: &Request) -> Evaluation {
         )),
         duration: end - segments.first().map_or(f64::NAN, |s| s.start_time),
         length: or_nan(segments.iter().map(Segment::length).sum()),
-        delay: end - request.desired.duration(),
+        delay: match request.freedom {
+            Freedom::PathsToHorizon(_) => f64::NAN,
+            Freedom::Limits | Freedom::Paths(_) | Freedom::Any => end - request.desired.duration(),
+        },
         min_clearance: or_nan(
             passages
                 .iter()

@@ -105,10 +105,18 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
     }
     match request.freedom {
         Freedom::Limits => limits(segments, own, &mut found),
-        Freedom::Paths(paths) => found.0.extend(along::check(segments, own, paths)),
+        Freedom::Paths(paths) | Freedom::PathsToHorizon(paths) => {
+            found.0.extend(along::check(segments, own, paths))
+        }
         Freedom::Any => return found.0,
     }
     let end_time = last.start_time + last.duration;
+    if let Freedom::PathsToHorizon(_) = request.freedom {
+        let off = (end_time - horizon).abs();
+        let allowed = tolerance::TIME_S * (1.0 + horizon);
+        found.limit("end", "s from the horizon", end_time, off, allowed);
+        return found.0;
+    }
     let short = (end_position(last) - desired.end()).norm();
     found.limit(
         "arrival",

@@ -48,6 +48,8 @@ pub enum Freedom<'a> {
     /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest, turning on the spot where she
     /// moves off along another leg.
     Paths(&'a [Vec<Vector>]),
+    /// The same, but to the horizon instead of to the last waypoint: what does not arrive.
+    PathsToHorizon(&'a [Vec<Vector>]),
     /// Anywhere at any speed and radius, on any course from the start on, and nowhere in particular: what is no plan, to be compared
     /// with plans.
     Any,

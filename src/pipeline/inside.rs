@@ -9,26 +9,15 @@ use crate::trajectory::{Segment, Trajectory};
 const LOOK_S: f64 = 1.0;
 const HALVINGS: usize = 30;
 
-/// A motion to the end of the path that need not be clear of anything, and is so from as early on as was found. `None` where
-/// there is none within the horizon.
+/// A motion that need not be clear of anything: off the path to its end, clear from as early on as was found; along paths the
+/// one that does least harm. `None` where there is none within the horizon.
 pub(super) fn motion(kind: PlannerKind, problem: &Problem) -> Option<Planned> {
     match kind {
         PlannerKind::SpaceTime => {
             let plan = space_time::escape(problem)?;
             Some(Planned::of(Outcome::Solved(plan)))
         }
-        PlannerKind::PathTime => {
-            let both = [false, true].map(|hurrying| path_time::undisturbed(problem, hurrying));
-            let until = |planned: &Planned| {
-                let trajectory = &planned.outcome.plan()?.trajectory;
-                let sets = problem.obstacles.iter();
-                sets.filter_map(|set| left_for_good(set, trajectory))
-                    .max_by(f64::total_cmp)
-            };
-            let last = |planned: &Planned| until(planned).unwrap_or(0.0);
-            let both = both.into_iter().flatten();
-            both.min_by(|a, b| last(a).total_cmp(&last(b)))
-        }
+        PlannerKind::PathTime => path_time::least_harm(problem),
         PlannerKind::OptimalControl => None,
     }
 }

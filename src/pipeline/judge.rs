@@ -17,7 +17,7 @@ pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajector
         released: &[],
         risk: scenario.max_risk,
     };
-    judge_plan(scenario, &kept, trajectory)
+    judge_plan(scenario, &kept, trajectory, true)
 }
 
 /// The same of an answer: at the risk that it takes, and of sets that it enters from when it has left them.
@@ -31,15 +31,23 @@ pub(super) fn judge_kept(
         released: &answer.released,
         risk: answer.risk,
     };
-    judge_plan(scenario, &kept, trajectory)
+    let plan = answer.planned.outcome.plan();
+    let arrives = plan.is_none_or(|plan| plan.to_go == 0.0);
+    judge_plan(scenario, &kept, trajectory, arrives)
 }
 
-fn judge_plan(scenario: &Scenario, claims: &Claims, trajectory: &Trajectory) -> Evaluation {
+fn judge_plan(
+    scenario: &Scenario,
+    claims: &Claims,
+    trajectory: &Trajectory,
+    arrives: bool,
+) -> Evaluation {
     let mut paths = vec![scenario.desired.waypoints()];
     paths.extend_from_slice(&scenario.alternatives);
     let freedom = match scenario.planner {
         PlannerKind::SpaceTime | PlannerKind::OptimalControl => Freedom::Limits,
-        PlannerKind::PathTime => Freedom::Paths(&paths),
+        PlannerKind::PathTime if arrives => Freedom::Paths(&paths),
+        PlannerKind::PathTime => Freedom::PathsToHorizon(&paths),
     };
     judged(scenario, claims, trajectory, freedom)
 }

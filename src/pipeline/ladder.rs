@@ -1,7 +1,7 @@
 //! The ladder: what is given up, step by step, so that there is always an answer.
 //!
 //! ```text
-//! compliant ─► the rules, shapes drawn back ─► shapes, but not the rules ─► shapes drawn back ─► hard sets at the least risk ─► a set entered, and left as soon as may be
+//! compliant ─► the rules, shapes drawn back ─► shapes, but not the rules ─► shapes drawn back ─► along paths: arrival ─► hard sets at the least risk ─► a set entered, and left as soon as may be
 //! ```
 //!
 //! Each rung is tried when those above gave no plan. A planner may find a way out of a larger set that it misses for the
@@ -102,6 +102,7 @@ impl Ladder<'_> {
             Self::clear_of_hard_sets,
             Self::around_hard_sets,
             Self::clear_of_half_the_shapes,
+            Self::waiting,
             Self::at_least_risk,
         ];
         for rung in lower {
@@ -153,6 +154,9 @@ impl Ladder<'_> {
         let mut control = None;
         let planned = match (self.scenario.planner, self.scenario.objective) {
             (PlannerKind::SpaceTime, _) => space_time::plan(&problem),
+            (PlannerKind::PathTime, _) if rung == Rung::Waiting => {
+                path_time::stay_clear(&problem, risk)
+            }
             (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
                 let problem = Problem {
                     obstacles: &whole,
@@ -259,6 +263,31 @@ impl Ladder<'_> {
         Some(self.with_more_kept(self.clear_of(&found, &kept, rung), &kept))
     }
 
+    /// A motion along paths that does not arrive in time, but is clear of the hard sets and of as much of the shapes as was found up to
+    /// the horizon. `None` where there is none.
+    fn waiting(&self, shaped: bool) -> Option<Attempt> {
+        if self.scenario.planner != PlannerKind::PathTime {
+            return None;
+        }
+        let risk = self.scenario.max_risk;
+        let at = |share: f64| {
+            let found = self.attempt(Rung::Waiting, &self.shares(share), risk);
+            let is_none = matches!(found.planned.outcome, Outcome::Infeasible(_));
+            (!is_none).then_some(found)
+        };
+        if shaped && let Some(found) = at(1.0) {
+            return Some(found);
+        }
+        let found = at(0.0)?;
+        match found.trajectory() {
+            Some(trajectory) if shaped => {
+                let kept = self.kept_along(trajectory, risk);
+                Some(self.clear_of(&found, &kept, Rung::Waiting))
+            }
+            _ => Some(found),
+        }
+    }
+
     /// The plan of an attempt refined for another risk; `None` where that is none.
     fn drawn_to(&self, attempt: &Attempt, risk: f64) -> Option<Attempt> {
         if self.scenario.planner != PlannerKind::SpaceTime {
@@ -276,10 +305,21 @@ impl Ladder<'_> {
         matches!(drawn.planned.outcome, Outcome::Solved(_)).then_some(drawn)
     }
 
-    /// The plan at the least risk that was found to leave a way, to [`RISK_STEP`].
+    /// The plan at the least risk that was found to leave a way, to [`RISK_STEP`]. Along paths a motion that does not arrive counts
+    /// as one, too.
     fn at_least_risk(&self, _: bool) -> Option<Attempt> {
         let none = self.shares(0.0);
-        let at = |risk: f64| self.attempt(Rung::Risk, &none, risk);
+        let at = |risk: f64| {
+            let found = self.attempt(Rung::Risk, &none, risk);
+            let along = self.scenario.planner == PlannerKind::PathTime;
+            if along && matches!(found.planned.outcome, Outcome::Infeasible(_)) {
+                return Attempt {
+                    rung: Rung::Risk,
+                    ..self.attempt(Rung::Waiting, &none, risk)
+                };
+            }
+            found
+        };
         let mut low = self.scenario.max_risk;
         let mut high = 1.0 - RISK_STEP;
         if low >= high {
@@ -305,8 +345,8 @@ impl Ladder<'_> {
         Some(best)
     }
 
-    /// The motion that leaves every set soonest for good, or holds on where none was found; without a motion the attempt as
-    /// it is.
+    /// The motion that leaves every set soonest for good, or holds on where none was found, or that does least harm along paths;
+    /// without a motion the attempt as it is.
     fn at_worst(&self, attempt: Attempt) -> Attempt {
         let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let problem = self.problem(&hard);

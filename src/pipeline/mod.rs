@@ -24,7 +24,7 @@ pub use shore::{coast, land_within_reach};
 
 use duty::rules_given_up;
 use judge::judge_kept;
-use ladder::Ladder;
+use ladder::{Attempt, Ladder};
 
 use std::time::{Duration, Instant};
 
@@ -167,7 +167,13 @@ pub fn run(scenario: Scenario) -> Run {
             .map(|set| peak_risk(&set.outer_where_flat(), trajectory, answer.risk))
             .collect()
     });
-    let mut relaxations = relaxation::relaxations(&sets, &answer.cuts, &risks, &answer.released);
+    let mut relaxations = relaxation::relaxations(
+        &sets,
+        &answer.cuts,
+        &risks,
+        &answer.released,
+        not_arrived(&answer),
+    );
     if scenario.compliance == Compliance::Rules && answer.rung > Rung::Rules {
         relaxations.extend(rules_given_up(&scenario, &sets));
     }
@@ -196,6 +202,30 @@ pub fn run(scenario: Scenario) -> Run {
         evaluation,
         plan_time,
     }
+}
+
+/// The arrival that a plan gives up, and for whom: who bars the way, else whose set is entered.
+fn not_arrived(answer: &Attempt) -> Option<Relaxation> {
+    let to_go = answer.planned.outcome.plan()?.to_go;
+    let barring = match answer.why.as_ref() {
+        Some(
+            NoPlan::Barred { target, .. }
+            | NoPlan::OutOfTime { target, .. }
+            | NoPlan::StartCovered { target, .. },
+        ) => Some(target.as_str()),
+        _ => None,
+    };
+    let entered = answer.whole.iter().zip(&answer.released);
+    let mut names = barring.into_iter().chain(
+        entered
+            .filter(|(_, released)| released.is_some())
+            .chain(answer.whole.iter().zip(&answer.released))
+            .map(|(set, _)| set.name()),
+    );
+    (to_go > 0.0).then(|| Relaxation::Arrival {
+        target: names.next().unwrap_or_default().to_owned(),
+        amount: to_go,
+    })
 }
 
 #[cfg(test)]

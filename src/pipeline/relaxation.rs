@@ -44,6 +44,13 @@ pub enum Relaxation {
         /// set. `None` where the plan is clear of the level set of the accepted risk all along.
         until: Option<f64>,
     },
+    /// The plan does not arrive before the horizon.
+    Arrival {
+        /// Name of the target whose set is in the way.
+        target: String,
+        /// Metres of the way that are left at the horizon.
+        amount: f64,
+    },
     /// The plan does not keep to the rules.
     Compliance {
         /// Name of a target that asks something of own ship.
@@ -53,12 +60,13 @@ pub enum Relaxation {
     },
 }
 
-/// What was given up of the sets, most important first: risks, the greatest first, then shapes, the largest cut first.
+/// What was given up of the sets, most important first: risks, the greatest first, then arrival, then shapes, the largest cut first.
 pub(super) fn relaxations(
     sets: &[TargetSets],
     cuts: &[f64],
     risks: &[PeakRisk],
     released: &[Option<f64>],
+    late: Option<Relaxation>,
 ) -> Vec<Relaxation> {
     let mut taken: Vec<(&TargetSets, f64, Option<f64>)> = (sets.iter())
         .zip(risks)
@@ -83,5 +91,5 @@ pub(super) fn relaxations(
         target: name(set),
         amount,
     });
-    risked.chain(cut).collect()
+    risked.chain(late).chain(cut).collect()
 }

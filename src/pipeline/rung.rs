@@ -30,6 +30,8 @@ pub enum Rung {
     Shapes,
     /// Clear of the hard sets, and of what is left of the shapes.
     Domains,
+    /// Clear of the hard sets and of what is left of the shapes up to the horizon, but not at the end by then: along paths.
+    Waiting,
     /// Clear of the level sets of the least risk that was found to leave a way.
     Risk,
     /// A hard set is entered or left, and nothing is claimed of it before.

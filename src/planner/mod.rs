@@ -221,13 +221,16 @@ pub struct SearchStats {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// From own ship's pose at t = 0 to the last waypoint.
+    /// From own ship's pose at t = 0 to the last waypoint, or to the horizon.
     pub trajectory: Trajectory,
     /// What was minimised, in the objective's unit.
     pub cost: f64,
     /// The first plan on the graph, before refinement, m²: for one target its cheapest, among several at most four times that;
     /// `None` where the graph had none.
     pub graph_cost: Option<f64>,
+    /// Metres of the shortest way to the last waypoint that are left at the end: 0 for a plan that arrives. One that does not
+    /// goes on to the horizon.
+    pub to_go: f64,
 }
 
 impl Plan {
@@ -242,6 +245,7 @@ impl Plan {
             cost: cost::whole_space_time_error(problem.desired, &motion, problem.time_weight),
             trajectory: Trajectory::new(motion).ok()?,
             graph_cost,
+            to_go: 0.0,
         })
     }
 }

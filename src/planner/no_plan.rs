@@ -85,7 +85,7 @@ pub enum NoPlan {
     },
     /// No motion along the paths is clear of every set; what bars the way where own ship came nearest to the end.
     #[error(
-        "no motion along the path is clear of every set: {to_go:.0} m before its end own ship, at the earliest, meets the set of '{target}' after {time:.1} s, which stays there {}",
+        "no motion along the path is clear of every set: {to_go:.0} m before its end own ship, at the earliest, meets the set of '{target}' after {time:.1} s, which is there or ahead {}",
         until_text(*until)
     )]
     Barred {
@@ -95,14 +95,16 @@ pub enum NoPlan {
         to_go: f64,
         /// Seconds.
         time: f64,
-        /// Seconds; `None` up to the horizon.
+        /// Seconds, until when its set is there or ahead on that leg; `None` up to the horizon.
         until: Option<f64>,
     },
     /// The sets leave a way, but not within the horizon.
     #[error(
-        "no motion along the path is clear of every set and at the end before the horizon of {horizon:.1} s"
+        "no motion along the path is clear of every set, that of '{target}' on the way, and at the end before the horizon of {horizon:.1} s"
     )]
     OutOfTime {
+        /// Name of the obstacle that is met first on the shortest way at the greatest speed.
+        target: String,
         /// Seconds.
         horizon: f64,
     },

@@ -361,6 +361,11 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
                 });
                 format!("the set of '{target}' is entered, at a risk of up to {amount:.3}{until}")
             }
+            Relaxation::Arrival { target, amount } => {
+                format!(
+                    "it does not arrive: {amount:.0} m are left at the horizon, '{target}' is in the way"
+                )
+            }
             Relaxation::Compliance { target, role } => {
                 format!(
                     "no plan complies with the rules as {} to '{target}'",
@@ -421,7 +426,10 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
                 "delay",
                 format!("{} s (arrives after {way})", signed(delay)),
             ),
-            None => say("horizon", format!("{way}; no arrival is asked for")),
+            None if run.control.is_some() => {
+                say("horizon", format!("{way}; no arrival is asked for"));
+            }
+            None => say("delay", format!("does not arrive ({way} at the horizon)")),
         }
         if let Some(clearance) = summary.clearance {
             say("clearance", format!("{} m", metres(clearance)));

@@ -26,7 +26,8 @@ const OBJECTIVES: [&str; 5] = [
     "stage-cost",
 ];
 const OUTCOMES: [&str; 4] = ["solved", "relaxed", "infeasible", "deadline"];
-const KINDS: [&str; 3] = ["compliance", "domain", "risk"];
+const KINDS: [&str; 4] = ["compliance", "domain", "risk", ARRIVAL];
+pub(super) const ARRIVAL: &str = "arrival";
 
 /// Keys of another document that are named.
 const KEYS: usize = 5;
@@ -122,6 +123,12 @@ pub(super) struct Claim {
 }
 
 impl Claim {
+    /// True where the document says that the plan does not arrive.
+    pub fn gives_up_arrival(&self) -> bool {
+        let mut given_up = self.file.relaxations.iter();
+        given_up.any(|r| r.kind == ARRIVAL)
+    }
+
     /// Reads a document; the first field that cannot be read or cannot be so is the error.
     pub fn read(text: &str) -> Result<Self, ClaimError> {
         let mut json = serde_json::Deserializer::from_str(text);

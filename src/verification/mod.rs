@@ -171,6 +171,7 @@ fn request(claim: &Claim) -> Request<'_> {
         segments,
         own: &claim.own,
         freedom: match &claim.paths {
+            Some(paths) if claim.gives_up_arrival() => Freedom::PathsToHorizon(paths),
             Some(paths) => Freedom::Paths(paths),
             None => Freedom::Limits,
         },

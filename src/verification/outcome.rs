@@ -1,6 +1,6 @@
 //! Does the answer that a document names agree with what is in it?
 
-use super::claim::{Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
+use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
 use super::untrue;
 use crate::evaluation::Violation;
 
@@ -63,10 +63,14 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
         let asked = match given_up.kind.as_str() {
             "compliance" => file.compliance == "rules",
             "domain" => file.compliance != "none",
+            ARRIVAL => file.planner == PATH_TIME,
             _ => true,
         };
         if !asked {
-            let so = format!("no part of compliance '{}'", file.compliance);
+            let so = format!(
+                "no part of compliance '{}' of this planner",
+                file.compliance
+            );
             found.push(untrue(&what, &given_up.kind, so));
         }
         if given_up.kind == "domain" && given_up.amount == 0.0 {

@@ -286,6 +286,8 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
                     trajectory: Trajectory::from(motion),
                     cost: grid.found.objective,
                     graph_cost: None,
+                    // no arrival is asked for
+                    to_go: 0.0,
                 })
                 .ok_or(NoPlan::NoRoute),
             Ended::Coarse => Err(NoPlan::Coarse {

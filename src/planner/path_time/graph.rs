@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::measure::Measure;
 use super::nodes::{Known, Mark, Node, Place};
-use super::scene::Scene;
+use super::scene::{Aim, Scene};
 use crate::obstacle::PathTime;
 use crate::planner::SearchKind;
 use crate::search::Space;
@@ -51,16 +51,9 @@ impl<'a> Graph<'a> {
         known: Known,
         measure: Measure<'a>,
         search: SearchKind,
+        root: Node,
     ) -> Self {
-        let start = Node {
-            place: Place::At(scene.network.start()),
-            time: 0.0,
-            on_edge_of: None,
-            // the desired trajectory begins there, then
-            due: true,
-            mark: Mark::Start,
-        };
-        let mut nodes = vec![start];
+        let mut nodes = vec![root];
         let mut number = |list: Vec<Node>| -> Vec<usize> {
             let first = nodes.len();
             nodes.extend(list);
@@ -105,9 +98,7 @@ impl<'a> Graph<'a> {
             list[first..].to_vec()
         };
         let mut candidates = ahead(&self.on[leg]);
-        for point in scene.network.same_place(end) {
-            candidates.extend(ahead(&self.at[*point]));
-        }
+        candidates.extend(ahead(&self.at[end]));
         for to in candidates {
             if self.settled[to] {
                 continue;
@@ -133,25 +124,35 @@ impl<'a> Graph<'a> {
             }
         }
         let arrival = here.time + (length - here.distance) / scene.max_speed;
-        // negated on purpose: a NaN is too late
-        if !(arrival + scene.network.to_go(end) / scene.max_speed
-            <= scene.horizon + tolerance::TIME_S)
-        {
-            return;
-        }
-        let to = self.nodes.len();
-        self.nodes.push(Node {
+        let mut node = Node {
             place: Place::At(end),
             time: arrival,
             on_edge_of: None,
             due: false,
             mark: Mark::Arrival,
-        });
-        self.settled.push(false);
-        let there = PathTime {
+        };
+        let mut there = PathTime {
             distance: length,
             time: arrival,
         };
+        // as far as she gets
+        if scene.aim == Aim::Last && arrival > scene.horizon {
+            there = PathTime {
+                distance: here.distance + (scene.horizon - here.time) * scene.max_speed,
+                time: scene.horizon,
+            };
+            node.place = Place::On {
+                leg,
+                distance: there.distance,
+            };
+            node.time = scene.horizon;
+        }
+        if !scene.in_time(node.left(scene), node.time) {
+            return;
+        }
+        let to = self.nodes.len();
+        self.nodes.push(node);
+        self.settled.push(false);
         self.offer(from, to, Some(leg), &[here, there], out);
     }
 
@@ -181,14 +182,10 @@ impl<'a> Graph<'a> {
         {
             return;
         }
-        let on_schedule = line.len() == 2 && self.nodes[from].due && self.nodes[to].due;
-        let step = if on_schedule && leg.is_some() {
-            self.measure.on_schedule(line[0], line[1])
-        } else {
-            line.windows(2)
-                .map(|p| self.measure.of(self.scene, place, p[0], p[1]))
-                .sum()
-        };
+        let step = line
+            .windows(2)
+            .map(|p| self.measure.of(self.scene, place, p[0], p[1]))
+            .sum();
         let state = State {
             node: to,
             from,
@@ -200,13 +197,23 @@ impl<'a> Graph<'a> {
         out.push((state, step));
     }
 
-    /// True when own ship, having been at the place before, could as well have waited there.
+    /// True when own ship, having been at the place before, could as well have waited there: on a path from which all may be
+    /// sailed that may be from here.
     fn waited_for(&self, point: usize, time: f64) -> bool {
-        self.scene.network.same_place(point).iter().any(|p| {
+        let network = self.scene.network;
+        let onward = network.onward(point);
+        let as_good = |p: &&usize| onward.iter().all(|leg| network.onward(**p).contains(leg));
+        network.same_place(point).iter().filter(as_good).any(|p| {
             self.reached[*p].iter().any(|before| {
                 *before <= time && self.scene.barrier_at(point, *before, time).is_none()
             })
         })
+    }
+
+    /// True at the end of the way; a round trip begins where it ends.
+    pub(crate) fn has_arrived(&self, state: &State) -> bool {
+        let place = self.nodes[state.node].place;
+        state.leg.is_some() && matches!(place, Place::At(point) if self.scene.network.is_end(point))
     }
 
     /// What the line into a state meets.
@@ -253,17 +260,14 @@ impl Space for Graph<'_> {
                     distance: 0.0,
                     time: self.nodes[from].time,
                 };
-                for same in network.same_place(point) {
-                    let first =
-                        self.at[*same].partition_point(|n| self.nodes[*n].time <= here.time);
-                    for &to in &self.at[*same][first..] {
-                        if !self.settled[to] {
-                            let there = PathTime {
-                                distance: 0.0,
-                                time: self.nodes[to].time,
-                            };
-                            self.offer(from, to, None, &[here, there], out);
-                        }
+                let first = self.at[point].partition_point(|n| self.nodes[*n].time <= here.time);
+                for &to in &self.at[point][first..] {
+                    if !self.settled[to] {
+                        let there = PathTime {
+                            distance: 0.0,
+                            time: self.nodes[to].time,
+                        };
+                        self.offer(from, to, None, &[here, there], out);
                     }
                 }
             }
@@ -273,9 +277,7 @@ impl Space for Graph<'_> {
     fn bound(&mut self, state: &State) -> f64 {
         let node = &self.nodes[state.node];
         let to_go = node.left(self.scene);
-        let earliest = node.time + to_go / self.scene.max_speed;
-        // negated on purpose: a NaN is too late
-        if !(earliest <= self.scene.horizon + tolerance::TIME_S) {
+        if !self.scene.in_time(to_go, node.time) {
             f64::INFINITY
         } else if self.informed {
             self.measure.bound(self.scene, to_go, node.time)
@@ -285,10 +287,9 @@ impl Space for Graph<'_> {
     }
 
     fn is_goal(&self, state: &State) -> bool {
-        let node = &self.nodes[state.node];
-        // a round trip begins where it ends
-        state.leg.is_some()
-            && matches!(node.place, Place::At(point) if self.scene.network.is_end(point))
+        self.has_arrived(state)
+            || self.scene.aim == Aim::Last
+                && self.nodes[state.node].time >= self.scene.horizon - tolerance::TIME_S
     }
 
     fn admits(&mut self, state: &State) -> bool {

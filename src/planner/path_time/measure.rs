@@ -1,14 +1,15 @@
 //! What is minimised over the graph.
 
+use super::due::Due;
 use super::nodes::{Mark, Node, Place};
 use super::recovery::Recovery;
-use super::scene::Scene;
+use super::scene::{Aim, Scene};
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::PathTime;
 use crate::planner::cost::space_time_error;
 use crate::planner::{Objective, Problem, SearchKind};
 use crate::tolerance;
-use crate::trajectory::{Segment, Trajectory};
+use crate::trajectory::Segment;
 
 /// Metres per second. Of ways of one length the earliest is the best: a thousand seconds weigh a millimetre.
 const METRES_PER_SECOND: f64 = 1e-6;
@@ -21,9 +22,10 @@ pub(crate) struct Measure<'a> {
 }
 
 impl<'a> Measure<'a> {
-    pub(crate) fn new(problem: &'a Problem<'a>) -> Self {
-        let informed =
-            problem.search == SearchKind::AStar && problem.objective == Objective::SpaceTimeError;
+    pub(crate) fn new(problem: &'a Problem<'a>, aim: Aim) -> Self {
+        let informed = problem.search == SearchKind::AStar
+            && problem.objective == Objective::SpaceTimeError
+            && aim == Aim::Arrive;
         Self {
             problem,
             recovery: informed.then(|| Recovery::new(problem)).flatten(),
@@ -39,6 +41,12 @@ impl<'a> Measure<'a> {
             Objective::SpaceTimeError => {
                 let (start, heading) = match place {
                     Place::On { leg, .. } => {
+                        let on_schedule = |due: &Due| {
+                            [from, to].map(|p| due.lag(p).abs() <= tolerance::LENGTH_M) == [true; 2]
+                        };
+                        if scene.dues[leg].as_ref().is_some_and(on_schedule) {
+                            return 0.0;
+                        }
                         let track = &scene.tracks[leg];
                         (track.at(from.distance), heading_of(track.direction))
                     }
@@ -53,24 +61,6 @@ impl<'a> Measure<'a> {
                 };
                 space_time_error(self.problem.desired, &segment, self.problem.time_weight)
             }
-        }
-    }
-
-    /// The cost of a plan, without what prefers the earliest of one length.
-    pub(crate) fn told(&self, searched: f64, trajectory: &Trajectory) -> f64 {
-        match self.problem.objective {
-            Objective::Length | Objective::LengthRisk { .. } => trajectory.length(),
-            Objective::Time | Objective::SpaceTimeError => searched,
-        }
-    }
-
-    /// The cost of following the schedule on one leg.
-    pub(crate) fn on_schedule(&self, from: PathTime, to: PathTime) -> f64 {
-        let (way, time) = (to.distance - from.distance, to.time - from.time);
-        match self.problem.objective {
-            Objective::Time => time,
-            Objective::Length | Objective::LengthRisk { .. } => way + METRES_PER_SECOND * time,
-            Objective::SpaceTimeError => 0.0,
         }
     }
 

@@ -10,17 +10,17 @@
 mod diagram;
 mod due;
 mod graph;
+mod harm;
 mod measure;
 mod nodes;
 mod profile;
 mod rays;
 mod recovery;
 mod scene;
-mod undisturbed;
 mod weighing;
 
 pub use diagram::{DiagramCorner, DiagramLeg, DiagramObstacle, PathTimeDiagram};
-pub use undisturbed::undisturbed;
+pub use harm::least_harm;
 pub use weighing::plan_weighing_risk;
 
 use std::time::Instant;
@@ -33,14 +33,15 @@ use super::{
 };
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
+use crate::planner::cost::space_time_error;
 use crate::search::{Fate, Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{PathNetwork, Segment};
 use graph::{Graph, State};
 use measure::Measure;
-use nodes::{Known, Mark, Place};
+use nodes::{Known, Mark, Node, Place};
 use profile::Profile;
-use scene::Scene;
+use scene::{Aim, Scene};
 
 /// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of what a checker rejects.
 const TOUCH_M: f64 = 1e-7;
@@ -56,6 +57,16 @@ const SLICE: usize = 50;
 /// along the paths; the space-time error is the least on the graph. The same problem gives the same plan unless the
 /// deadline strikes.
 pub fn plan(problem: &Problem) -> Planned {
+    planned(problem, Aim::Arrive, 0.0)
+}
+
+/// The same where own ship cannot arrive in time: a motion that is clear of every obstacle up to the horizon, of least
+/// space-time error until then, whatever the objective. `risk` is that of the obstacles.
+pub fn stay_clear(problem: &Problem, risk: f64) -> Planned {
+    planned(problem, Aim::Last, risk)
+}
+
+fn planned(problem: &Problem, aim: Aim, risk: f64) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let first = problem.desired.legs()[0].start;
     let away = (problem.own.pose.position - first).norm();
@@ -67,34 +78,51 @@ pub fn plan(problem: &Problem) -> Planned {
         Ok(network) => network,
         Err(error) => return refuse(NoPlan::NoNetwork(error)),
     };
-    let scene = Scene::new(problem, &network);
-    let idle = main_path(&scene);
-    let diagram = |profile: &Profile| Some(Box::new(profile.diagram(&scene, problem.own.pose)));
-    let earliest = network.to_go(network.start()) / scene.max_speed;
-    // negated on purpose: a NaN is too late
-    if !(earliest <= problem.horizon + tolerance::TIME_S) {
-        return Planned {
-            path_time: diagram(&idle),
-            ..refuse(NoPlan::PathTooLong {
-                earliest,
-                horizon: problem.horizon,
-            })
-        };
+    let scene = Scene::new(problem, &network, aim);
+    let refuse = |reason| Planned {
+        path_time: Some(Box::new(Profile::new().diagram(&scene, problem.own.pose))),
+        ..refuse(reason)
+    };
+    let to_go = network.to_go(network.start());
+    if !scene.in_time(to_go, 0.0) {
+        return refuse(NoPlan::PathTooLong {
+            earliest: to_go / scene.max_speed,
+            horizon: problem.horizon,
+        });
     }
     if let Some(reason) = starts_inside(problem, &scene) {
-        return Planned {
-            path_time: diagram(&idle),
-            ..refuse(reason)
-        };
+        return refuse(reason);
     }
+    search(problem, &scene, &Profile::new(), risk)
+}
+
+/// The best motion that begins with a profile, as far as it goes, and is clear of every obstacle after that.
+fn search(problem: &Problem, scene: &Scene, begun: &Profile, risk: f64) -> Planned {
     let started = Instant::now();
-    let measure = Measure::new(problem);
-    let mut known = Known::corners(&scene);
-    if problem.objective == Objective::SpaceTimeError {
-        rays::add_rays(&scene, &mut known);
+    let asked = Problem {
+        objective: match scene.aim {
+            Aim::Arrive => problem.objective,
+            Aim::Last => Objective::SpaceTimeError,
+        },
+        ..problem.clone()
+    };
+    let measure = Measure::new(&asked, scene.aim);
+    let begins = begun.end();
+    let root = Node {
+        place: begun.place(scene),
+        time: begins.time,
+        on_edge_of: None,
+        // the desired trajectory begins at the start, at t = 0
+        due: begun.knots.len() == 1,
+        mark: Mark::Start,
+    };
+    let mut known = Known::corners(scene);
+    if asked.objective == Objective::SpaceTimeError {
+        rays::add_rays(scene, &mut known, &root);
     }
+    known.share(scene);
     let waits_are_free = measure.waits_are_free();
-    let mut graph = Graph::new(&scene, known, measure, problem.search);
+    let mut graph = Graph::new(scene, known, measure, problem.search, root);
     let mut search = Search::new(graph.root());
     let mut timed_out = false;
     let goal = loop {
@@ -116,14 +144,14 @@ pub fn plan(problem: &Problem) -> Planned {
         further_expanded: 0,
     };
     let found = goal.map(|goal| {
-        let mut profile = Profile::new();
+        let mut profile = begun.clone();
         for index in &search.way_to(goal)[1..] {
             let state = &search.nodes()[*index].state;
             let (from, to) = (&graph.nodes[state.from], &graph.nodes[state.node]);
             match state.leg {
                 Some(leg) => {
-                    if let (Some(a), Some(b)) = (from.on(&scene, leg), ahead(&scene, to, leg)) {
-                        profile.sail(&scene, leg, a, state.via.unwrap_or(b));
+                    if let (Some(a), Some(b)) = (from.on(scene, leg), ahead(scene, to, leg)) {
+                        profile.sail(scene, leg, a, state.via.unwrap_or(b));
                         if let Some(via) = state.via {
                             profile.sail_on(via, b);
                         }
@@ -133,34 +161,63 @@ pub fn plan(problem: &Problem) -> Planned {
             }
         }
         if waits_are_free {
-            profile.pull_taut(&scene);
+            profile.pull_taut(scene);
         } else {
-            profile.tidy(&scene);
+            profile.tidy(scene);
         }
-        profile
+        let Node { place, .. } = graph.nodes[search.nodes()[goal].state.node];
+        let to_go = if graph.has_arrived(&search.nodes()[goal].state) {
+            0.0
+        } else {
+            place.to_go(scene)
+        };
+        Found {
+            profile,
+            to_go,
+            graph_cost: Some(search.nodes()[goal].cost),
+        }
     });
-    let plan = found.as_ref().and_then(|profile| {
-        let trajectory = profile.trajectory(&scene, problem.own.pose)?;
-        let cost = goal.map_or(0.0, |goal| search.nodes()[goal].cost);
-        let cost = graph.measure.told(cost, &trajectory);
-        Some(Plan {
-            trajectory,
-            cost,
-            graph_cost: Some(cost),
-        })
-    });
-    let outcome = match plan {
+    let plan = found.as_ref();
+    let outcome = match plan.and_then(|found| finished(problem, scene, found, risk)) {
         Some(plan) => Outcome::Solved(plan),
         None if timed_out => Outcome::Deadline(None),
         None => Outcome::Infeasible(farthest(problem, &graph, &search)),
     };
+    let idle = Profile::new();
+    let drawn = found.as_ref().map_or(&idle, |found| &found.profile);
     Planned {
         outcome,
         stats,
         explored: explored(&graph, search),
-        path_time: diagram(found.as_ref().unwrap_or(&idle)),
+        path_time: Some(Box::new(drawn.diagram(scene, problem.own.pose))),
         escape: None,
     }
+}
+
+/// A profile that is one of the answer.
+struct Found {
+    profile: Profile,
+    /// Metres to the last waypoint that are left at its end.
+    to_go: f64,
+    graph_cost: Option<f64>,
+}
+
+/// The motion of a profile, and what it costs at a risk.
+fn finished(problem: &Problem, scene: &Scene, found: &Found, risk: f64) -> Option<Plan> {
+    let trajectory = found.profile.trajectory(scene, problem.own.pose)?;
+    let error = |s| space_time_error(problem.desired, s, problem.time_weight);
+    let cost = match problem.objective {
+        Objective::SpaceTimeError => trajectory.segments().iter().map(error).sum(),
+        Objective::Time => trajectory.end_time(),
+        Objective::Length => trajectory.length(),
+        Objective::LengthRisk { weight } => trajectory.length() + weight * risk,
+    };
+    Some(Plan {
+        trajectory,
+        cost,
+        graph_cost: found.graph_cost.map(|_| cost),
+        to_go: found.to_go,
+    })
 }
 
 /// The place of a node at the end of a line on a leg.
@@ -173,18 +230,6 @@ fn ahead(scene: &Scene, node: &nodes::Node, leg: usize) -> Option<PathTime> {
         }),
         Place::On { .. } => node.on(scene, leg),
     }
-}
-
-/// The legs of the main path, not yet sailed.
-fn main_path(scene: &Scene) -> Profile {
-    let mut profile = Profile::new();
-    for (index, leg) in scene.network.legs().iter().enumerate() {
-        if leg.path == 0 {
-            profile.legs.push(index);
-            profile.begins.push(leg.start_distance);
-        }
-    }
-    profile
 }
 
 /// Why there is no plan when own ship is inside a set at t = 0.
@@ -242,12 +287,37 @@ fn farthest(problem: &Problem, graph: &Graph, search: &Search<State>) -> NoPlan 
             target: problem.obstacles[obstacle].name().to_owned(),
             to_go: node.left(scene) - (met.distance - from.distance),
             time: met.time,
-            until: finite(scene.covered_until(leg, obstacle, met)),
+            until: finite(scene.bars_until(leg, obstacle, met)),
         })
     });
-    barrier.unwrap_or(NoPlan::OutOfTime {
+    barrier.unwrap_or_else(|| NoPlan::OutOfTime {
+        target: first_met(scene)
+            .map_or_else(String::new, |o| problem.obstacles[o].name().to_owned()),
         horizon: problem.horizon,
     })
+}
+
+/// Whose set is met first on the shortest way at the greatest speed.
+fn first_met(scene: &Scene) -> Option<usize> {
+    let network = scene.network;
+    let (mut point, mut time) = (network.start(), 0.0);
+    for _ in network.legs() {
+        let on = |leg: &&usize| {
+            let leg = &network.legs()[**leg];
+            leg.length + network.to_go(leg.ends[1])
+        };
+        let leg = *(network.onward(point).iter()).min_by(|a, b| on(a).total_cmp(&on(b)))?;
+        let length = scene.tracks[leg].length;
+        let at = |distance: f64| PathTime {
+            distance,
+            time: time + distance / scene.max_speed,
+        };
+        if let Some((obstacle, _)) = scene.nearest_barrier(leg, at(0.0), at(length), true) {
+            return Some(obstacle);
+        }
+        (point, time) = (network.legs()[leg].ends[1], at(length).time);
+    }
+    None
 }
 
 /// The lines into a state as motions.

@@ -14,6 +14,19 @@ pub(crate) enum Place {
     At(usize),
 }
 
+impl Place {
+    /// Metres of the shortest way to the end; infinite where there is none.
+    pub(crate) fn to_go(self, scene: &Scene) -> f64 {
+        match self {
+            Self::On { leg, distance } => {
+                let leg = &scene.network.legs()[leg];
+                leg.length - distance + scene.network.to_go(leg.ends[1])
+            }
+            Self::At(point) => scene.network.to_go(point),
+        }
+    }
+}
+
 /// What a node is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Mark {
@@ -62,13 +75,7 @@ impl Node {
 
     /// Metres of the shortest way to the end.
     pub(crate) fn left(&self, scene: &Scene) -> f64 {
-        match self.place {
-            Place::On { leg, distance } => {
-                let leg = &scene.network.legs()[leg];
-                leg.length - distance + scene.network.to_go(leg.ends[1])
-            }
-            Place::At(point) => scene.network.to_go(point),
-        }
+        self.place.to_go(scene)
     }
 }
 
@@ -136,9 +143,7 @@ impl Known {
             due: mark == Mark::Due,
             mark,
         };
-        let latest = scene.horizon + tolerance::TIME_S - node.left(scene) / scene.max_speed;
-        // negated on purpose: a NaN is too late
-        if !(node.time >= 0.0 && node.time <= latest) {
+        if !(node.time >= 0.0 && scene.in_time(node.left(scene), node.time)) {
             return;
         }
         match place {
@@ -148,6 +153,19 @@ impl Known {
             }
             Place::On { .. } | Place::At(_) => {}
         }
+    }
+
+    /// Gives the nodes of each point to every other point at its place, too: own ship may be there on any of the paths.
+    pub(crate) fn share(&mut self, scene: &Scene) {
+        let own: Vec<usize> = self.at.iter().map(Vec::len).collect();
+        for point in 0..self.at.len() {
+            for other in &scene.network.same_place(point)[1..] {
+                let theirs = self.at[*other][..own[*other]].to_vec();
+                let place = Place::At(point);
+                self.at[point].extend(theirs.into_iter().map(|node| Node { place, ..node }));
+            }
+        }
+        self.in_order();
     }
 
     /// In order of time and place, each once.

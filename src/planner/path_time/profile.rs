@@ -2,6 +2,7 @@
 
 use super::TOUCH_M;
 use super::diagram::{DiagramCorner, DiagramLeg, DiagramObstacle, PathTimeDiagram};
+use super::nodes::Place;
 use super::scene::Scene;
 use crate::frame::{Pose, heading_of, wrap};
 use crate::obstacle::PathTime;
@@ -34,6 +35,71 @@ impl Profile {
             begins: Vec::new(),
             knots: vec![start],
         }
+    }
+
+    /// Where and when it ends, from the start.
+    pub(crate) fn end(&self) -> PathTime {
+        self.knots[self.knots.len() - 1]
+    }
+
+    /// Where it ends.
+    pub(crate) fn place(&self, scene: &Scene) -> Place {
+        let (Some(leg), Some(begin)) = (self.legs.last(), self.begins.last()) else {
+            return Place::At(scene.network.start());
+        };
+        let distance = self.end().distance - begin;
+        if distance >= scene.tracks[*leg].length - tolerance::LENGTH_M {
+            Place::At(scene.network.legs()[*leg].ends[1])
+        } else {
+            Place::On {
+                leg: *leg,
+                distance,
+            }
+        }
+    }
+
+    /// Metres of the shortest way from its end to the last waypoint.
+    pub(crate) fn to_go(&self, scene: &Scene) -> f64 {
+        match self.place(scene) {
+            Place::At(point) if !self.legs.is_empty() && scene.network.is_end(point) => 0.0,
+            place => place.to_go(scene),
+        }
+    }
+
+    /// Its beginning, until a time.
+    pub(crate) fn until(&self, scene: &Scene, time: f64) -> Self {
+        let mut begun = Self::new();
+        for (leg, from, to) in self.lines(scene) {
+            if from.time >= time {
+                break;
+            }
+            let share = ((time - from.time) / (to.time - from.time)).min(1.0);
+            let at = PathTime {
+                distance: from.distance + share * (to.distance - from.distance),
+                time: to.time.min(time),
+            };
+            if to.distance > from.distance {
+                begun.sail(scene, leg, from, at);
+            } else {
+                begun.wait(at.time);
+            }
+        }
+        begun
+    }
+
+    /// Its lines, leg by leg; of a wait where legs join, on one of them.
+    pub(crate) fn lines(&self, scene: &Scene) -> Vec<(usize, PathTime, PathTime)> {
+        let mut lines = Vec::new();
+        for pair in self.knots.windows(2) {
+            let pieces = self.pieces(scene, pair[0], pair[1]);
+            let count = if pair[1].distance > pair[0].distance {
+                pieces.len()
+            } else {
+                1
+            };
+            lines.extend(pieces.into_iter().take(count));
+        }
+        lines
     }
 
     /// Metres of the legs so far.
@@ -88,6 +154,13 @@ impl Profile {
             from.time + (to.time - from.time) * share
         };
         let mut pieces = Vec::new();
+        // who has not left the start is on whichever leg begins there
+        if let ([], Some(leg)) = (
+            &self.legs[..],
+            scene.network.onward(scene.network.start()).first(),
+        ) {
+            return vec![(*leg, from, to)];
+        }
         for (leg, begin) in self.legs.iter().zip(&self.begins) {
             let length = scene.tracks[*leg].length;
             let (low, high) = (from.distance.max(*begin), to.distance.min(begin + length));
@@ -149,7 +222,8 @@ impl Profile {
     pub(crate) fn trajectory(&self, scene: &Scene, start: Pose) -> Option<Trajectory> {
         let mut segments = Vec::new();
         let heading = |leg: usize| heading_of(scene.tracks[leg].direction);
-        let mut facing = self.legs.first().map_or(start.heading, |leg| heading(*leg));
+        // she turns as she moves off
+        let mut facing = start.heading;
         let still = Segment {
             start,
             start_time: 0.0,
@@ -157,9 +231,6 @@ impl Profile {
             speed: 0.0,
             turn_rate: 0.0,
         };
-        if self.knots.len() < 2 || wrap(facing - start.heading).abs() > tolerance::JOINT_RAD {
-            segments.push(still);
-        }
         for pair in self.knots.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let way = to.distance - from.distance;
@@ -176,6 +247,10 @@ impl Profile {
                 if speed > 0.0 {
                     facing = heading(leg);
                 }
+                if segments.is_empty() && wrap(facing - start.heading).abs() > tolerance::JOINT_RAD
+                {
+                    segments.push(still);
+                }
                 segments.push(Segment {
                     start: Pose::new(scene.tracks[leg].at(a.distance), facing),
                     start_time: a.time,
@@ -185,11 +260,26 @@ impl Profile {
                 });
             }
         }
+        if segments.is_empty() {
+            segments.push(still);
+        }
         Trajectory::with_corners(segments).ok()
     }
 
-    /// The diagram of the legs that are sailed.
+    /// The diagram of the legs that are sailed; where none are, of the main path.
     pub(crate) fn diagram(&self, scene: &Scene, start: Pose) -> PathTimeDiagram {
+        if self.legs.is_empty() {
+            let legs = scene.network.legs().iter().enumerate();
+            let main = legs.filter(|(_, leg)| leg.path == 0);
+            let (legs, begins) = main.map(|(index, leg)| (index, leg.start_distance)).unzip();
+            let knots = self.knots.clone();
+            let main = Self {
+                legs,
+                begins,
+                knots,
+            };
+            return main.diagram(scene, start);
+        }
         let mut facing = start.heading;
         let mut corners = Vec::new();
         let mut legs = Vec::with_capacity(self.legs.len());

@@ -6,8 +6,8 @@
 //! backward in time, toward the schedule, until they reach it or meet an obstacle.
 
 use super::due::Due;
-use super::nodes::{Known, Mark, Place};
-use super::scene::Scene;
+use super::nodes::{Known, Mark, Node, Place};
+use super::scene::{Aim, Scene};
 use crate::obstacle::PathTime;
 use crate::tolerance;
 
@@ -15,23 +15,26 @@ use crate::tolerance;
 const MAX_PIECES: usize = 100;
 
 /// Adds to the corners where the schedule meets legs' ends and obstacles' edges, and where the rays end.
-pub(crate) fn add_rays(scene: &Scene, known: &mut Known) {
+pub(crate) fn add_rays(scene: &Scene, known: &mut Known, root: &Node) {
     for (leg, due) in scene.dues.iter().enumerate() {
         if let Some(due) = due {
             schedule(scene, leg, due, known);
         }
     }
-    // the latest arrival: a schedule that is later is left for it
+    // the latest arrival: a schedule that is later is left for it; and where a motion that does not arrive may stay
+    let time = scene.horizon;
     for (leg, ends) in scene.network.legs().iter().map(|leg| leg.ends).enumerate() {
-        if scene.network.is_end(ends[1]) {
-            let last = PathTime {
-                distance: scene.tracks[leg].length,
-                time: scene.horizon,
-            };
-            known.add(scene, leg, last, None, Mark::Corner);
+        let ends = [(0.0, ends[0]), (scene.tracks[leg].length, ends[1])];
+        for (distance, point) in ends {
+            if scene.aim == Aim::Last || distance > 0.0 && scene.network.is_end(point) {
+                known.add(scene, leg, PathTime { distance, time }, None, Mark::Corner);
+            }
         }
     }
-    let corners: Vec<(usize, PathTime)> = sources(scene, known);
+    if let (Aim::Last, Place::On { leg, distance }) = (scene.aim, root.place) {
+        known.add(scene, leg, PathTime { distance, time }, None, Mark::Corner);
+    }
+    let corners: Vec<(usize, PathTime)> = sources(scene, known, root);
     for (leg, at) in corners {
         for forward in [true, false] {
             Ray { scene }.cast(leg, at, forward, known);
@@ -40,8 +43,8 @@ pub(crate) fn add_rays(scene: &Scene, known: &mut Known) {
     known.in_order();
 }
 
-/// The corners, each with a leg that it is on; those at points with every leg there. And the start.
-fn sources(scene: &Scene, known: &Known) -> Vec<(usize, PathTime)> {
+/// The corners, each with a leg that it is on; those at points with every leg there. And the root.
+fn sources(scene: &Scene, known: &Known, root: &Node) -> Vec<(usize, PathTime)> {
     let nodes = known.on.iter().chain(&known.at).flatten();
     let mut sources = Vec::new();
     for node in nodes.filter(|n| n.mark == Mark::Corner) {
@@ -66,12 +69,12 @@ fn sources(scene: &Scene, known: &Known) -> Vec<(usize, PathTime)> {
             }
         }
     }
-    let start = PathTime {
-        distance: 0.0,
-        time: 0.0,
+    let onward = match root.place {
+        Place::On { leg, .. } => &[leg][..],
+        Place::At(point) => scene.network.onward(point),
     };
-    let onward = scene.network.onward(scene.network.start());
-    sources.extend(onward.iter().map(|leg| (*leg, start)));
+    let begun = |leg: &usize| Some((*leg, root.on(scene, *leg)?));
+    sources.extend(onward.iter().filter_map(begun));
     sources
 }
 

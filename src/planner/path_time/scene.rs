@@ -9,7 +9,17 @@ use crate::obstacle::{
 };
 use crate::planner::Problem;
 use crate::planner::space_time::part::{Body, Part, parts};
+use crate::tolerance;
 use crate::trajectory::PathNetwork;
+
+/// Where a motion may end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Aim {
+    /// At the last waypoint, before the horizon.
+    Arrive,
+    /// There, or anywhere at the horizon.
+    Last,
+}
 
 /// An obstacle on one leg.
 #[derive(Debug, Clone)]
@@ -33,12 +43,13 @@ pub(crate) struct Scene<'a> {
     pub dues: Vec<Option<Due>>,
     pub max_speed: f64,
     pub horizon: f64,
+    pub aim: Aim,
 }
 
 impl<'a> Scene<'a> {
     /// Projects every part of every obstacle onto every leg that its positions up to the horizon come near. Sets without
     /// interior are widened, ellipsoids replaced by outer polytopes.
-    pub(crate) fn new(problem: &Problem, network: &'a PathNetwork) -> Self {
+    pub(crate) fn new(problem: &Problem, network: &'a PathNetwork, aim: Aim) -> Self {
         let tracks: Vec<Track> = network
             .legs()
             .iter()
@@ -106,7 +117,19 @@ impl<'a> Scene<'a> {
                 .collect(),
             max_speed: problem.own.max_speed(),
             horizon: problem.horizon,
+            aim,
         }
+    }
+
+    /// True where own ship may be at a time with so many metres to the end left.
+    pub(crate) fn in_time(&self, to_go: f64, time: f64) -> bool {
+        let needed = match self.aim {
+            Aim::Arrive => to_go / self.max_speed,
+            // a path that leads nowhere is no way
+            Aim::Last if to_go.is_finite() => 0.0,
+            Aim::Last => f64::INFINITY,
+        };
+        time + needed <= self.horizon + tolerance::TIME_S
     }
 
     /// The legs that begin or end at the place of a point, with the distance at which they do.
@@ -152,6 +175,21 @@ impl<'a> Scene<'a> {
             let at = |time| PathTime { distance, time };
             self.barrier(leg, at(from), at(to))
         })
+    }
+
+    /// Until when an obstacle that is met at a place of a leg is there, or ahead on the leg; infinite where that is up to the
+    /// horizon.
+    pub(crate) fn bars_until(&self, leg: usize, obstacle: usize, at: PathTime) -> f64 {
+        let seen = self.seen[leg].iter().filter(|s| s.obstacle == obstacle);
+        let ahead = seen
+            .flat_map(|s| s.body.corners())
+            .filter(|c| c.distance >= at.distance && c.time >= at.time);
+        let last = ahead.map(|c| c.time).fold(at.time, f64::max);
+        if last >= self.horizon - 1e-6 {
+            f64::INFINITY
+        } else {
+            last.max(self.covered_until(leg, obstacle, at))
+        }
     }
 
     /// Until when, waiting from `time` on at a place of a leg, an obstacle that covers it then goes on to; infinite when it does

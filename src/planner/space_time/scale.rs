@@ -210,6 +210,7 @@ impl Scale {
             trajectory: Trajectory::new(segments.map(|s| self.segment(s)).collect()).ok()?,
             cost: self.cost(plan.cost),
             graph_cost: plan.graph_cost.map(|c| self.cost(c)),
+            to_go: plan.to_go,
         })
     }
 

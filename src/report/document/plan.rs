@@ -221,6 +221,13 @@ fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
             unit: "1".to_owned(),
             until_s: *until,
         },
+        Relaxation::Arrival { target, amount } => RelaxationDocument {
+            kind: "arrival".to_owned(),
+            target: target.clone(),
+            amount: *amount,
+            unit: "m".to_owned(),
+            until_s: None,
+        },
         Relaxation::Compliance { target, .. } => RelaxationDocument {
             kind: "compliance".to_owned(),
             target: target.clone(),
@@ -276,7 +283,7 @@ pub(super) fn cost(run: &Run) -> Option<CostDocument> {
     Some(cost_of(
         evaluation,
         plan.cost,
-        run.control.is_none(),
+        run.control.is_none() && plan.to_go == 0.0,
         &run.risks,
     ))
 }

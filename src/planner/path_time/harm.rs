@@ -1,0 +1,183 @@
+//! Where no motion along the paths is clear of every set: the one that does least harm.
+//!
+//! Candidates: own ship stays where she is, or sails along a path at a share of her greatest speed to some place and stays
+//! there, or sails on to the end. The harm of each is what she does inside sets: metres sailed, and seconds at a tenth of her
+//! greatest speed, each weighed by the risk. So to stop and be passed by is better than to run through, and to leave a set is
+//! better than to stay in it. Of those that do about the least harm she takes the one from which she still arrives, or gets
+//! farthest; of these the one that sails least, at the least speed. From when it is clear for good, the planner goes on.
+
+use std::time::Instant;
+
+use super::profile::Profile;
+use super::scene::{Aim, Scene};
+use super::{Found, TOUCH_M, finished, search};
+use crate::obstacle::{Obstacle, PathTime, SpaceTimeObstacle};
+use crate::planner::{Outcome, Planned, Problem};
+use crate::trajectory::PathNetwork;
+
+/// Of the greatest speed.
+const SPEEDS: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+
+/// Places along a path at which she may stop.
+const STOPS: usize = 16;
+
+/// Risks whose level sets the harm is the mean over: so it is weighed by the risk.
+const LEVELS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+
+/// Of the greatest speed: metres that a second inside a set weighs as much as.
+const SECOND: f64 = 0.1;
+
+/// Times the least harm is about the least.
+const ABOUT: f64 = 1.1;
+
+/// See the head of the file. The obstacles are the whole sets. `None` where the paths are none. Some milliseconds.
+pub fn least_harm(problem: &Problem) -> Option<Planned> {
+    let started = Instant::now();
+    let network = PathNetwork::new(&problem.desired.waypoints(), problem.alternatives).ok()?;
+    let out_of_time = || started.elapsed() >= problem.deadline;
+    let levels = if out_of_time() {
+        &LEVELS[..1]
+    } else {
+        &LEVELS[..]
+    };
+    let scenes: Vec<Scene> = (levels.iter())
+        .map(|risk| {
+            let sets = problem.obstacles.iter().map(|set| set.at_risk(*risk));
+            let obstacles: Vec<Obstacle> = sets.collect();
+            let level = Problem {
+                obstacles: &obstacles,
+                ..problem.clone()
+            };
+            Scene::new(&level, &network, Aim::Last)
+        })
+        .collect();
+    let scene = &scenes[0];
+    let mut judged: Vec<Judged> = Vec::new();
+    for profile in candidates(scene) {
+        if judged.is_empty() || !out_of_time() {
+            judged.push(Judged::new(&scenes, profile));
+        }
+    }
+    let least = (judged.iter().map(|j| j.harm)).fold(f64::INFINITY, f64::min);
+    let best = (judged.into_iter())
+        .filter(|j| j.harm <= ABOUT * least)
+        .min_by(|a, b| a.left.total_cmp(&b.left))?;
+    if let Some(clear) = best.clear_from {
+        let begun = best.profile.until(scene, clear);
+        for aim in [Aim::Arrive, Aim::Last] {
+            let scene = Scene::new(problem, &network, aim);
+            let onward = search(problem, &scene, &begun, 1.0);
+            if onward.outcome.plan().is_some() {
+                return Some(onward);
+            }
+        }
+    }
+    let found = Found {
+        to_go: best.profile.to_go(scene),
+        profile: best.profile,
+        graph_cost: None,
+    };
+    let plan = finished(problem, scene, &found, 1.0)?;
+    Some(Planned {
+        path_time: Some(Box::new(found.profile.diagram(scene, problem.own.pose))),
+        ..Planned::of(Outcome::Solved(plan))
+    })
+}
+
+/// A candidate.
+struct Judged {
+    profile: Profile,
+    /// Metres.
+    harm: f64,
+    /// Seconds, from when on it is clear of every set; `None` where it is so all along.
+    clear_from: Option<f64>,
+    /// Metres to the end that are left at the horizon if nobody is in the way after that.
+    left: f64,
+}
+
+impl Judged {
+    fn new(scenes: &[Scene], profile: Profile) -> Self {
+        let scene = &scenes[0];
+        let mut harm = 0.0;
+        let mut clear_from: Option<f64> = None;
+        for (level, scene) in scenes.iter().enumerate() {
+            for (leg, from, to) in profile.lines(scene) {
+                let (way, time) = (to.distance - from.distance, to.time - from.time);
+                let weight = (way + SECOND * scene.max_speed * time) / scenes.len() as f64;
+                for seen in &scene.seen[leg] {
+                    let Some([enter, leave]) = seen.body.inside(from, to, TOUCH_M) else {
+                        continue;
+                    };
+                    harm += weight * (leave - enter);
+                    if level == 0 {
+                        // until the very edge
+                        let leave = seen.body.inside(from, to, 0.0).map_or(leave, |[_, l]| l);
+                        let left = from.time + leave * time;
+                        clear_from = Some(clear_from.map_or(left, |time| time.max(left)));
+                    }
+                }
+            }
+        }
+        let rest = profile.until(scene, clear_from.unwrap_or(f64::INFINITY));
+        let end = rest.end();
+        let further = scene.max_speed * (scene.horizon - end.time);
+        Self {
+            left: (rest.to_go(scene) - further).max(0.0),
+            profile,
+            harm,
+            clear_from,
+        }
+    }
+}
+
+/// From the one that sails least on.
+fn candidates(scene: &Scene) -> Vec<Profile> {
+    let network = scene.network;
+    let mut all = vec![along(scene, &[], 0.0, 0.0)];
+    for speed in SPEEDS.map(|share| share * scene.max_speed) {
+        for first in network.onward(network.start()) {
+            let path = network.legs()[*first].path;
+            let mut way = Vec::new();
+            for (leg, on) in network.legs().iter().enumerate().skip(*first) {
+                if on.path != path {
+                    break;
+                }
+                way.push(leg);
+                if network.is_end(on.ends[1]) {
+                    break;
+                }
+            }
+            let length: f64 = way.iter().map(|leg| scene.tracks[*leg].length).sum();
+            let reach = length.min(speed * scene.horizon);
+            let stops = (1..=STOPS).map(|k| reach * k as f64 / STOPS as f64);
+            all.extend(stops.map(|stop| along(scene, &way, speed, stop)));
+        }
+    }
+    all
+}
+
+/// Along legs at a speed for some metres, and there until the horizon; at the last waypoint the end.
+fn along(scene: &Scene, way: &[usize], speed: f64, stop: f64) -> Profile {
+    let mut profile = Profile::new();
+    let (mut time, mut left) = (0.0, stop);
+    for leg in way {
+        let length = scene.tracks[*leg].length;
+        // what rounding leaves is no way
+        let sailed = if left >= length - TOUCH_M {
+            length
+        } else {
+            left
+        };
+        let point = |distance, time| PathTime { distance, time };
+        let end = time + sailed / speed;
+        profile.sail(scene, *leg, point(0.0, time), point(sailed, end));
+        (time, left) = (end, left - sailed);
+        if left <= TOUCH_M {
+            break;
+        }
+    }
+    if profile.to_go(scene) > 0.0 {
+        profile.wait(scene.horizon);
+    }
+    profile
+}
