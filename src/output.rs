@@ -1,8 +1,12 @@
 //! Files that are whole or not there.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use tempfile::NamedTempFile;
 
 /// Writes `contents` under a temporary name beside `file` and renames it, so that a crash leaves the old file or the new one, never
 /// half of it. The folder must exist. A link stays one, and what it leads to is replaced; what is no regular file, a device
@@ -17,18 +21,59 @@ pub(crate) fn write_whole(file: &Path, contents: &[u8]) -> io::Result<()> {
         Ok(_) => fs::canonicalize(file)?,
         Err(_) => file.to_owned(),
     };
+    let folder = folder_of(&file);
+    remove_left_over(&folder);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".searoom-");
+    builder.prefix(PREFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         // a temporary file is private by default, a result is not; the umask still applies
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut temporary = builder.tempfile_in(folder_of(&file))?;
+    let mut temporary = locked(|| builder.tempfile_in(&folder))?;
     temporary.write_all(contents)?;
     temporary.persist(&file).map_err(|error| error.error)?;
     Ok(())
+}
+
+/// Begins the names of temporary files.
+const PREFIX: &str = ".searoom-";
+
+/// A temporary file with a lock that tells others that it is being written. One of them may have taken it for left over before it
+/// was locked, then it is gone.
+fn locked(make: impl Fn() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
+    loop {
+        let temporary = make()?;
+        // where nothing can be locked nothing is removed
+        if temporary.as_file().lock().is_err() || temporary.path().exists() {
+            return Ok(temporary);
+        }
+    }
+}
+
+/// Removes the temporary files of a folder that runs have left that were killed: nobody holds their lock. Each folder is
+/// looked through once; what cannot be removed stays.
+fn remove_left_over(folder: &Path) {
+    static LOOKED_THROUGH: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    let known = LOOKED_THROUGH
+        .lock()
+        .map(|mut known| !known.insert(folder.to_owned()));
+    if known.unwrap_or(true) {
+        return;
+    }
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && entry.file_name().to_string_lossy().starts_with(PREFIX) {
+            let left = fs::OpenOptions::new().write(true).open(entry.path());
+            if let Ok(left) = left
+                && left.try_lock().is_ok()
+            {
+                // when it cannot be removed it stays
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
 }
 
 /// The folder that a file is in.
@@ -60,6 +105,28 @@ mod tests {
         write_whole(&taken, b"three").expect_err("a folder is in the way");
         assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 2);
         assert!(write_whole(&folder.path().join("no/such"), b"").is_err());
+    }
+
+    /// A run that is killed while it writes leaves its temporary file; the next one that writes there removes it, but not that of a
+    /// run that still writes.
+    #[test]
+    fn what_killed_runs_have_left_is_removed_and_what_is_written_is_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let make = |name: &str| {
+            let made = tempfile::Builder::new()
+                .prefix(PREFIX)
+                .tempfile_in(folder.path());
+            let (open, path) = made.expect(name).keep().expect(name);
+            (open, path)
+        };
+        let (dead, left) = make("left over");
+        drop(dead);
+        let (alive, written) = make("being written");
+        alive.lock().expect("a lock");
+        let other = folder.path().join("searoom-notes");
+        fs::write(&other, b"mine").expect("written");
+        write_whole(&folder.path().join("plan.json"), b"one").expect("written");
+        assert!(!left.exists() && written.exists() && other.exists());
     }
 
     #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! What a name or a title may be.
+//! What a name or a title may be, and how a text of somebody else is shown.
 
 /// In words: what [`is_line`] takes.
 pub(crate) const LINE: &str = "a text of 1 to 200 characters on one line";
@@ -14,5 +14,36 @@ pub(crate) fn is_line(text: &str) -> bool {
 /// Control characters, and those that break a line or turn its direction.
 pub(crate) fn is_unprintable(c: char) -> bool {
     c.is_control()
-        || matches!(c, '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(c, '\u{061c}' | '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// A text of somebody else on one line: what a terminal would act on is shown as its code, `\u001b`, as JSON has it.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::report::printable;
+///
+/// assert_eq!(printable("ferry\n\u{1b}[8m\u{202e}"), r"ferry\u000a\u001b[8m\u202e");
+/// assert_eq!(printable("Trondheimsfjorden ø"), "Trondheimsfjorden ø");
+/// ```
+pub fn printable(text: &str) -> String {
+    shown(text, |_| false)
+}
+
+/// [`printable`] of a text of several lines, and columns.
+pub fn printable_lines(text: &str) -> String {
+    shown(text, |c| matches!(c, '\n' | '\t'))
+}
+
+fn shown(text: &str, keep: impl Fn(char) -> bool) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_unprintable(c) && !keep(c) {
+            out.push_str(&format!("\\u{:04x}", u32::from(c)));
+        } else {
+            out.push(c);
+        }
+    }
+    out
 }

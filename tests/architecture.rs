@@ -190,6 +190,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "lint",
             "simulation",
             "output",
+            "text",
         ],
     ),
     (

@@ -94,7 +94,7 @@ fn figure_9_is_solved_verified_and_written() {
     assert_eq!(nodes, report.intervals + 1);
     let table = plan_text(&run);
     for word in [
-        "solved, verified",
+        "solved (verified, safe)",
         "stage cost",
         "ways to pass",
         "no arrival is asked for",

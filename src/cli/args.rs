@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::{Args, Parser, Subcommand};
 use searoom::colregs::conduct::Thresholds;
 use searoom::planner::{PlannerKind, SearchKind};
+use searoom::report::printable_lines;
 use searoom::scenario::formats::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
 
@@ -408,7 +409,7 @@ fn thresholds(word: &str) -> Result<Arc<Thresholds>, String> {
     }
     Thresholds::read(file)
         .map(Arc::new)
-        .map_err(|error| error.to_string())
+        .map_err(|error| printable_lines(&error.to_string()))
 }
 
 fn max_risk(word: &str) -> Result<f64, String> {

@@ -1,5 +1,7 @@
 //! `searoom compare`: every planner that applies and two baselines, side by side.
 
+use std::path::Path;
+
 use anyhow::{Context, anyhow};
 use rayon::prelude::*;
 use searoom::comparison::{Contender, Entry, Inapplicable, Method, Sailed, contenders, methods};
@@ -279,16 +281,23 @@ fn write(args: &CompareArgs, compared: &[Compared]) -> anyhow::Result<Status> {
 fn report(compared: &[Compared], products: &Products) -> Result<(), (Status, String)> {
     let mut report = Report::new();
     for c in compared {
-        let file = c.asked.file.clone();
+        let file = files::shown(Path::new(&c.asked.file));
         match &c.asked.scenario {
             Ok(scenario) => {
                 let subject = products.subject(&c.asked.stem, file);
                 report.add_comparison(&subject, scenario, &c.entries, &c.asked.inapplicable);
             }
-            Err(error) => report.add_failure(&file, UNREADABLE, error),
+            Err(error) => {
+                let error = error.replace(&c.asked.file, &file);
+                report.add_failure(&file, UNREADABLE, &error);
+            }
         }
         for fault in &c.faults {
-            report.add_failure(&c.asked.file, INTERNAL_FAULT, fault);
+            report.add_failure(
+                &files::shown(Path::new(&c.asked.file)),
+                INTERNAL_FAULT,
+                fault,
+            );
         }
     }
     let lead = "Every planner that applies and two baselines on the same targets.";

@@ -112,6 +112,20 @@ fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow
     all
 }
 
+/// What a page that may be given to others calls a file: as it was asked for, but without the folders of this machine, from where
+/// the program was started or alone.
+pub fn shown(file: &Path) -> String {
+    if !file.is_absolute() {
+        return file.display().to_string();
+    }
+    let here = std::env::current_dir().ok();
+    let below = here
+        .as_deref()
+        .and_then(|here| file.strip_prefix(here).ok());
+    let name = below.or(file.file_name().map(Path::new));
+    name.unwrap_or(file).display().to_string()
+}
+
 fn stem(relative: &Path) -> String {
     let parts: Vec<_> = relative
         .with_extension("")

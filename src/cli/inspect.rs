@@ -4,12 +4,15 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use comfy_table::{ContentArrangement, Table, presets};
+use searoom::evaluation::facts;
 use searoom::recording::{EntityTable, Recorded, TimelineContents};
+use searoom::report::printable;
 use serde::Serialize;
 use serde_json::Value;
 
 use super::args::InspectArgs;
 use super::difference::two;
+use super::document_words::{conduct, costs, manoeuvre, tenths, verdict};
 use super::output::Output;
 use super::runner::guarded;
 use super::status::Status;
@@ -174,11 +177,15 @@ struct Contents {
     search: Value,
     outcome: Value,
     verified: Value,
+    safe: Value,
     cost: Value,
     search_stats: Value,
     /// Where own ship stands on; else null.
     escape: Value,
     targets: Vec<Value>,
+    /// The word that people see.
+    #[serde(skip)]
+    verdict: String,
     /// Of a comparison: its part of `compare --json`; else null.
     comparison: Value,
     timelines: Vec<TimelineDocument>,
@@ -260,10 +267,12 @@ impl Contents {
             search: field("search"),
             outcome: field("outcome"),
             verified: field("verified"),
+            safe: field("safe"),
             cost: field("cost"),
             search_stats: field("search_stats"),
             escape: field("escape"),
             targets: names.cloned().collect(),
+            verdict: verdict(&document),
             comparison,
             timelines: TimelineDocument::all(recorded.timelines()),
             entities: recorded
@@ -332,11 +341,12 @@ impl Contents {
         let entries = self.comparison["entries"].as_array();
         let entries = entries.map_or(&[][..], Vec::as_slice);
         let mut lines = vec![format!(
-            "{scenario}: a comparison of {} contenders",
+            "{}: a comparison of {} contenders",
+            printable(scenario),
             entries.len()
         )];
         for entry in entries {
-            let word = |key: &str| entry[key].as_str().unwrap_or("unknown");
+            let word = |key: &str| printable(entry[key].as_str().unwrap_or("unknown"));
             let risk = match entry["max_risk"].as_f64() {
                 Some(risk) if risk > 0.0 => format!(" at risk {risk}"),
                 _ => String::new(),
@@ -345,7 +355,7 @@ impl Contents {
             lines.push(format!(
                 "  {}{risk}: {}{}{costs}",
                 word("method"),
-                word("outcome"),
+                verdict(entry),
                 if costs.is_empty() { "" } else { ", " }
             ));
         }
@@ -353,14 +363,15 @@ impl Contents {
     }
 
     fn plan(&self, scenario: &str) -> Vec<String> {
-        let word = |value: &Value| value.as_str().unwrap_or("unknown").to_owned();
-        let verified = match self.verified.as_bool() {
-            Some(true) => ", verified",
-            Some(false) if !self.cost.is_null() => ", NOT VERIFIED",
-            _ => "",
+        let word = |value: &Value| printable(value.as_str().unwrap_or("unknown"));
+        let facts = match self.verified.as_bool() {
+            Some(verified) if !self.cost.is_null() => {
+                format!(" ({})", facts(verified, self.safe == true))
+            }
+            _ => String::new(),
         };
         let mut lines = vec![
-            format!("{scenario}: {}{verified}", word(&self.outcome)),
+            format!("{}: {}{facts}", printable(scenario), self.verdict),
             format!(
                 "  planner      {}, {}",
                 word(&self.planner),
@@ -397,81 +408,6 @@ impl Contents {
         }
         lines
     }
-}
-
-/// What follows a hold.
-fn manoeuvre(escape: &Value) -> String {
-    let number = |key: &str| escape[key].as_f64().unwrap_or(0.0);
-    let (turn, speed) = (number("turn_deg"), number("speed_mps"));
-    if turn == 0.0 {
-        return format!("{speed:.2} m/s");
-    }
-    let side = if turn > 0.0 { "starboard" } else { "port" };
-    format!("{:.0}° to {side} at {speed:.2} m/s", turn.abs())
-}
-
-/// Roles over time, scores and every broken rule with its moment, of one encounter; nothing where none is judged.
-fn conduct(encounter: &Value) -> Vec<String> {
-    let list = |key: &str| encounter[key].as_array().map_or(&[][..], Vec::as_slice);
-    let word = |value: &Value| value.as_str().unwrap_or("unknown").to_owned();
-    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-    let spell = |role: &Value| {
-        let (from, until) = (number(&role["from_s"]), number(&role["until_s"]));
-        format!("{} {from:.0} to {until:.0} s", word(&role["role"]))
-    };
-    let roles: Vec<String> = list("roles").iter().map(spell).collect();
-    let mut lines = Vec::new();
-    if roles.is_empty() {
-        return lines;
-    }
-    lines.push(format!("    roles      {}", roles.join(", ")));
-    let scores = encounter["scores"].as_object().into_iter().flatten();
-    let scores: Vec<String> = scores
-        .map(|(rule, score)| format!("{} {:.2}", rule.replace('_', " "), number(score)))
-        .collect();
-    lines.push(format!("    scores     {}", scores.join(", ")));
-    lines.extend(list("breaches").iter().map(|breach| {
-        let (rule, what) = (word(&breach["rule"]), word(&breach["what"]));
-        format!(
-            "    breaks     {rule} at {:.0} s: {what}",
-            number(&breach["t_s"])
-        )
-    }));
-    let broken = |finding: &&Value| finding["verdict"] == "violated";
-    lines.extend(list("monitors").iter().filter(broken).map(|finding| {
-        format!(
-            "    monitor    {} violated at {:.0} s, by {:.1} {}",
-            word(&finding["monitor"]),
-            number(&finding["t_s"]),
-            -number(&finding["robustness"]),
-            word(&finding["unit"])
-        )
-    }));
-    lines
-}
-
-/// The costs of a document in words; empty without any.
-fn costs(cost: &Value) -> String {
-    let mut costs = Vec::new();
-    for (key, name, unit) in [
-        ("space_time_error_m2", "J", "m²"),
-        ("duration_s", "duration", "s"),
-        ("delay_s", "delay", "s"),
-        ("length_m", "length", "m"),
-        ("min_clearance_m", "clearance", "m"),
-        ("max_risk", "largest risk", ""),
-    ] {
-        if let Some(value) = cost[key].as_f64() {
-            let value = format!("{name} {:.1} {unit}", tenths(value));
-            costs.push(value.trim_end().to_owned());
-        }
-    }
-    costs.join(", ")
-}
-
-/// Rounded to one decimal; what rounds to zero has no sign.
-fn tenths(value: f64) -> f64 {
-    (value * 10.0).round() / 10.0 + 0.0
 }
 
 fn list(texts: &[String]) -> String {

@@ -6,6 +6,8 @@ mod check;
 mod compare;
 #[cfg(feature = "recording")]
 mod difference;
+#[cfg(feature = "recording")]
+mod document_words;
 mod figure;
 mod files;
 mod import;

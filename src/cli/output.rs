@@ -6,9 +6,19 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use searoom::report::printable_lines;
 use serde::Serialize;
 
 use super::status::Status;
+
+/// Red, green, yellow, and the end of each, as tables have them.
+const COLOURS: [&str; 5] = [
+    "\u{1b}[38;5;9m",
+    "\u{1b}[38;5;10m",
+    "\u{1b}[38;5;11m",
+    "\u{1b}[39m",
+    "\u{1b}[0m",
+];
 
 /// Standard output and standard error.
 #[derive(Debug)]
@@ -30,6 +40,7 @@ impl Output {
     /// fault of ours.
     pub fn result(&self, text: &str) -> Status {
         let mut stdout = std::io::stdout().lock();
+        let text = self.shown(text);
         match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
             Ok(()) => Status::Good,
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Status::Good,
@@ -38,6 +49,28 @@ impl Output {
                 Status::BadInput
             }
         }
+    }
+
+    /// A text without what a terminal would act on, but for the colours of tables; whoever makes a coloured text has taken
+    /// those of others out of its parts. In a document the codes stand for the characters themselves.
+    fn shown(&self, text: &str) -> String {
+        if !self.colour {
+            return printable_lines(text);
+        }
+        let mut out = String::with_capacity(text.len());
+        let mut rest = text;
+        while let Some(at) = rest.find('\u{1b}') {
+            out.push_str(&printable_lines(&rest[..at]));
+            let mut colours = COLOURS.into_iter();
+            let known = colours.find(|colour| rest[at..].starts_with(colour));
+            let length = known.map_or(1, str::len);
+            match known {
+                Some(colour) => out.push_str(colour),
+                None => out.push_str(&printable_lines(&rest[at..=at])),
+            }
+            rest = &rest[at + length..];
+        }
+        out + &printable_lines(rest)
     }
 
     /// Prints a document.
@@ -54,11 +87,13 @@ impl Output {
     /// Says what went wrong.
     pub fn error(&self, error: &impl Display) {
         // when standard error is gone there is nobody left to tell
+        let error = printable_lines(&error.to_string());
         let _ = writeln!(std::io::stderr(), "error: {error}");
     }
 
     /// Says what may not have been expected.
     pub fn note(&self, note: &impl Display) {
+        let note = printable_lines(&note.to_string());
         let _ = writeln!(std::io::stderr(), "note: {note}");
     }
 

@@ -5,7 +5,7 @@ use searoom::report::page::Report;
 use searoom::report::{no_return_line, no_return_reason, plan_text};
 
 use super::args::PlanArgs;
-use super::files::Found;
+use super::files::{Found, shown};
 use super::output::Output;
 use super::products::{Products, document};
 use super::runner::{Attempt, attempt};
@@ -75,7 +75,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
                 };
                 shown.max(written).max(Status::of(&run))
             }
-            Attempt::Unreadable(error) => {
+            Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => {
                 output.error(&error);
                 Status::BadInput
             }
@@ -98,7 +98,7 @@ fn write(
     products.write(&found.stem, run, no_return)?;
     let mut report = Report::new();
     if products.wants_report() {
-        let subject = products.subject(&found.stem, found.file.display().to_string());
+        let subject = products.subject(&found.stem, shown(&found.file));
         report.add_run(&subject, run);
     }
     products.write_report(&report, &run.scenario.title, "Planned by Searoom.")

@@ -25,6 +25,8 @@ pub enum Attempt {
     Run(Run, Vec<String>),
     /// No scenario in it.
     Unreadable(ScenarioError),
+    /// A scenario, by its title, that is of no use to what the command line asks for, and why.
+    NotApplicable(String, ScenarioError),
     /// The program failed; says where.
     Fault(String),
 }
@@ -75,10 +77,10 @@ pub fn attempt(scene: &Scene, shared: &Shared, assumed: &Assumed) -> Attempt {
             notes,
         }) => match shared.apply(&mut scenario) {
             Ok(()) => Attempt::Run(pipeline::run(scenario), notes),
-            Err(faults) => Attempt::Unreadable(ScenarioError::Faults {
-                file: file.clone(),
-                faults,
-            }),
+            Err(faults) => {
+                let file = file.clone();
+                Attempt::NotApplicable(scenario.title, ScenarioError::Faults { file, faults })
+            }
         },
         Err(error) => Attempt::Unreadable(error),
     };

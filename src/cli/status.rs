@@ -23,13 +23,13 @@ impl Status {
         match (run.planned.outcome.plan(), &run.evaluation) {
             (None, _) => Self::NoPlan,
             (Some(_), Some(evaluation)) if evaluation.verified() => {
-                let no_way = |r: &Relaxation| {
+let no_way = |r: &Relaxation| {
                     matches!(r, Relaxation::Risk { .. } | Relaxation::Arrival { .. })
                 };
-                if run.relaxations.iter().any(no_way) {
-                    Self::NoPlan
-                } else {
+                if run.safe() && !run.relaxations.iter().any(no_way) {
                     Self::Good
+                } else {
+                    Self::NoPlan
                 }
             }
             (Some(_), _) => Self::InternalFault,

@@ -1,13 +1,17 @@
 //! `searoom suite`: many scenarios, one row each.
 
+use std::path::Path;
+
 use searoom::pipeline::Run;
-use searoom::report::document::{INTERNAL_FAULT, SuiteDocument, SuiteRunDocument, UNREADABLE};
+use searoom::report::document::{
+    INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, UNREADABLE,
+};
 use searoom::report::page::Report;
-use searoom::report::{Row, Summary, suite_table};
+use searoom::report::{Row, Summary, printable, suite_table};
 use searoom::scenario::formats::Assumed;
 
 use super::args::SuiteArgs;
-use super::files::{self, Found};
+use super::files::{self, Found, shown};
 use super::lint;
 use super::output::Output;
 use super::products::{Products, Wanted};
@@ -23,6 +27,8 @@ struct Tally {
     errors: Vec<String>,
     /// Runs of which something was assumed or not used.
     noted: usize,
+    /// Scenarios of no use to what was asked for.
+    skipped: usize,
     report: Report,
     status: Option<Status>,
 }
@@ -39,14 +45,30 @@ impl Tally {
         self.runs.push(SuiteRunDocument::of(file, run, notes));
     }
 
-    fn failed(&mut self, file: String, outcome: &'static str, error: String) {
+    /// A scenario that is no fault of anybody, but of no use to what was asked for.
+    fn not_applicable(&mut self, file: &Path, title: String, reason: String) {
+        self.skipped += 1;
+        self.report
+            .add_failure(&shown(file), NOT_APPLICABLE, &without_folder(file, &reason));
+        let file = file.display().to_string();
+        self.rows.push(Row::Failed {
+            file: file.clone(),
+            outcome: NOT_APPLICABLE,
+        });
+        self.runs
+            .push(SuiteRunDocument::not_applicable(file, title, reason));
+    }
+
+    fn failed(&mut self, file: &Path, outcome: &'static str, error: String) {
         self.reach(if outcome == INTERNAL_FAULT {
             Status::InternalFault
         } else {
             Status::BadInput
         });
         self.errors.push(error.clone());
-        self.report.add_failure(&file, outcome, &error);
+        self.report
+            .add_failure(&shown(file), outcome, &without_folder(file, &error));
+        let file = file.display().to_string();
         self.rows.push(Row::Failed {
             file: file.clone(),
             outcome,
@@ -81,11 +103,11 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     for entry in all {
         match entry {
             Ok(scene) => {
-                bar.set_message(scene.label());
+                bar.set_message(printable(&scene.label()));
                 one(&scene, args, &assumed, &products, &mut tally);
             }
             Err(unread) => {
-                tally.failed(unread.file.display().to_string(), UNREADABLE, unread.error);
+                tally.failed(&unread.file, UNREADABLE, unread.error);
             }
         }
         bar.inc(1);
@@ -98,6 +120,12 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
         let (noted, plural) = (tally.noted, if tally.noted == 1 { "" } else { "s" });
         output.note(&format_args!(
             "{noted} scenario{plural} with assumptions: `searoom check`, and \"notes\" with --json, say which"
+        ));
+    }
+    if tally.skipped > 0 {
+        let (skipped, plural) = (tally.skipped, if tally.skipped == 1 { "" } else { "s" });
+        output.note(&format_args!(
+            "{skipped} scenario{plural} not applicable, skipped: \"reason\" with --json, and `searoom plan`, say why"
         ));
     }
     let document = SuiteDocument::of(tally.runs);
@@ -116,20 +144,28 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
 }
 
 fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, tally: &mut Tally) {
-    let file = scene.found.file.display().to_string();
+    let file = scene.found.file.as_path();
     match attempt(scene, &args.shared, assumed) {
         Attempt::Run(run, notes) => {
-            tally.run(file.clone(), &run, notes);
+            tally.run(file.display().to_string(), &run, notes);
             if let Err((status, error)) = products.write(&scene.found.stem, &run, None) {
                 tally.reach(status);
                 tally.errors.push(error);
             }
             if products.wants_report() {
-                let subject = products.subject(&scene.found.stem, file);
+                let subject = products.subject(&scene.found.stem, shown(file));
                 tally.report.add_run(&subject, &run);
             }
         }
         Attempt::Unreadable(error) => tally.failed(file, UNREADABLE, error.to_string()),
+        Attempt::NotApplicable(title, reason) => {
+            tally.not_applicable(file, title, reason.to_string());
+        }
         Attempt::Fault(fault) => tally.failed(file, INTERNAL_FAULT, fault),
     }
+}
+
+/// A message about a file, which names it as a report does.
+fn without_folder(file: &Path, message: &str) -> String {
+    message.replace(&file.display().to_string(), &shown(file))
 }

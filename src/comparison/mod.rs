@@ -15,7 +15,7 @@ pub(crate) use look::Look;
 pub use method::Method;
 
 use crate::colregs::conduct::{Conduct, Meeting};
-use crate::evaluation::Evaluation;
+use crate::evaluation::{Evaluation, Safety};
 use crate::frame::Vector;
 use crate::obstacle::{Obstacle, PeakRisk};
 use crate::pipeline::{self, Run};
@@ -162,6 +162,15 @@ impl Entry {
         match &self.result {
             Sailed::Planned(run) => run.evaluation.as_ref(),
             Sailed::Baseline(baseline) => Some(&baseline.evaluation),
+            Sailed::Nothing(_) => None,
+        }
+    }
+
+    /// What the motion enters from start to arrival; `None` without one.
+    pub fn safety(&self) -> Option<Safety> {
+        match &self.result {
+            Sailed::Planned(run) => run.safety(),
+            Sailed::Baseline(baseline) => Some(baseline.evaluation.safety),
             Sailed::Nothing(_) => None,
         }
     }

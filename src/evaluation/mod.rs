@@ -10,24 +10,30 @@ mod moving_slabs;
 mod piece;
 mod quadrature;
 mod request;
+mod safety;
 mod shore;
 mod space_time_set;
 mod stage_cost;
 mod steered;
 mod turn;
 mod undisturbed;
+mod words;
 
 pub use request::{Freedom, Request};
+pub use safety::Safety;
 pub use space_time_set::{SetShape, SpaceTimeSet};
 pub(crate) use stage_cost::{StageWeights, stage_costs};
 pub use steered::{Steering, evaluate_steered};
 pub(crate) use undisturbed::{undisturbed_distance, undisturbed_legs};
+pub(crate) use words::{Tone, outcome, risk_figure};
+pub use words::{facts, outcome_word};
 
 use clearance::{Body, least_distance};
 use least::Least;
 use moving_ellipse::MovingEllipse;
 use moving_slabs::MovingSlabs;
 use piece::Piece;
+use safety::Claim;
 use shore::least_land_distance;
 use space_time_set::{MovingSet, since};
 use turn::{Turn, least_while_turning, turns};
@@ -160,7 +166,7 @@ pub struct Passage {
 /// };
 /// let found = evaluate(&request);
 /// let found: Evaluation = found;
-/// assert!(!found.verified() && found.min_clearance < 0.0);
+/// assert!(!found.verified() && !found.safe() && found.min_clearance < 0.0);
 /// assert_eq!((found.duration, found.length, found.delay), (300.0, 1500.0, 0.0));
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
@@ -168,6 +174,8 @@ pub struct Passage {
 pub struct Evaluation {
     /// Everything that is wrong; a plan is verified when this is empty.
     pub violations: Vec<Violation>,
+    /// What is entered from start to arrival.
+    pub safety: Safety,
     /// Formulas section 7, m².
     pub space_time_error: f64,
     /// Eq. (30) read literally, m².
@@ -193,6 +201,11 @@ impl Evaluation {
     pub fn verified(&self) -> bool {
         self.violations.is_empty()
     }
+
+    /// True when no hard set, hull or land is entered from start to arrival.
+    pub fn safe(&self) -> bool {
+        self.safety == Safety::Safe
+    }
 }
 
 /// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in continuous time,
@@ -205,14 +218,16 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let segments = request.segments;
     let mut violations = motion::check(request);
     let judged = !segments.is_empty() && segments.iter().all(Segment::is_valid);
+    let sound = Safety::of_motion(judged && violations.is_empty());
     let segments = if judged { segments } else { &[] };
     let turns = turns(segments);
-    let passages = meetings(request, segments, &turns, judged, &mut violations);
+    let (passages, met) = meetings(request, segments, &turns, judged, &mut violations);
     let shore = shore(request, segments, &turns, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
     Evaluation {
         violations,
+        safety: sound.max(met).max(Safety::of_land(&shore, request)),
         space_time_error: or_nan(cost::space_time_error(
             segments,
             request.desired,
@@ -256,37 +271,38 @@ pub fn least_margins(request: &Request) -> Vec<f64> {
         .collect()
 }
 
-/// Every set and every target along a chain of pieces; what is violated is noted where the pieces are `judged`.
+/// Every set and every target along a chain of pieces, and the worst of what is entered; what is violated is noted where the
+/// pieces are `judged`.
 fn meetings<P: Piece>(
     request: &Request,
     pieces: &[P],
     turns: &[Turn],
     judged: bool,
     violations: &mut Vec<Violation>,
-) -> Vec<Passage> {
-    let margins: Vec<Least> = request
+) -> (Vec<Passage>, Safety) {
+    let margins: Vec<(Least, bool)> = request
         .sets
         .iter()
         .map(|set| {
             let least = set.least_distance(pieces);
-            if judged {
-                let label = format!("set of '{}'", set.name);
-                violations.extend(collision(&label, &least, set.shape.has_interior()));
-            }
-            least
+            let label = format!("set of '{}'", set.name);
+            let entered = collision(&label, &least, set.shape.has_interior());
+            let kept = entered.is_none();
+            violations.extend(entered.filter(|_| judged));
+            (least, kept)
         })
         .collect();
+    let mut worst = Safety::Safe;
     let mut passages = Vec::with_capacity(request.targets.len());
     for target in request.targets {
-        let mut margin = Least::new();
-        let mut from: f64 = 0.0;
-        for (set, least) in request.sets.iter().zip(&margins) {
+        let mut claim = Claim::new();
+        for (set, (least, kept)) in request.sets.iter().zip(&margins) {
             if set.name == target.name {
-                margin.see(least.value, least.time);
-                from = from.max(set.from);
+                claim.see(least, *kept, set.from);
             }
         }
-        let (passage, clearance) = passage(request, pieces, turns, target, &margin, from);
+        let (passage, clearance, safety) = passage(request, pieces, turns, target, &claim);
+        worst = worst.max(safety);
         // explicit sets are judged above, as sets
         if judged && target.ship().is_some() {
             let label = format!("hull of '{}'", target.name);
@@ -294,7 +310,7 @@ fn meetings<P: Piece>(
         }
         passages.push(passage);
     }
-    passages
+    (passages, worst)
 }
 
 /// The land along a chain of pieces; what is violated is noted where they are `judged`.
@@ -384,17 +400,17 @@ fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<Velocity
     spells.iter().map(scaled).collect()
 }
 
-/// How a target is met, and the least clearance that has to be kept: to every hull she may have at the accepted
-/// risk, from the time on at which her set is in force.
+/// How a target is met; the least clearance that has to be kept: to every hull she may have at the accepted
+/// risk, from the time on at which her set is in force; and what is entered of her.
 fn passage<P: Piece>(
     request: &Request,
     pieces: &[P],
     turns: &[Turn],
     target: &Target,
-    margin: &Least,
-    from: f64,
-) -> (Passage, Least) {
-    let (closest, worst, kept) = match &target.motion {
+    claim: &Claim,
+) -> (Passage, Least, Safety) {
+    let (margin, from) = (&claim.margin, claim.from);
+    let (closest, worst, kept, safety) = match &target.motion {
         Motion::Ship(ship) => {
             let body = Body::hull(&request.own.hull);
             let hull = ship.hull.polygon(&ship.pose);
@@ -413,7 +429,8 @@ fn passage<P: Piece>(
             let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
             let initial = hull.minkowski_sum(&unknown);
             let spells = ship.outer_velocity_spells(ship.turn_rate, request.horizon);
-            let worst = along(&MovingSlabs::new(&initial, &spells), pieces, turns);
+            let whole = MovingSlabs::new(&initial, &spells);
+            let worst = along(&whole, pieces, turns);
             let kept = if from > 0.0 || request.max_risk > 0.0 {
                 let spells = at_risk(&spells, target, request.max_risk);
                 let later = turns.iter().filter(|turn| turn.time >= from).copied();
@@ -423,21 +440,29 @@ fn passage<P: Piece>(
             } else {
                 worst
             };
-            (along(&nominal, pieces, turns), worst, kept)
+            let closest = along(&nominal, pieces, turns);
+            let safety = claim.of_ship(request, [&closest, &worst], || {
+                whole.least_distance(pieces, Body::POINT)
+            });
+            (closest, worst, kept, safety)
         }
         Motion::Sets { initial, velocity } => {
             let set = MovingSet::new(initial, velocity);
             let least = least_distance(pieces, Body::POINT, &set);
-            (least, least, least)
+            let safety = claim.of_set(request, &least, set.has_interior());
+            (least, least, least, safety)
         }
         Motion::Ellipses { initial, velocity } => {
-            let least = MovingEllipse::new(initial, velocity).least_distance(pieces);
-            (least, least, least)
+            let set = MovingEllipse::new(initial, velocity);
+            let least = set.least_distance(pieces);
+            let safety = claim.of_set(request, &least, set.has_interior());
+            (least, least, least, safety)
         }
         Motion::Spells { initial, spells } => {
             let slabs = MovingSlabs::new(initial, spells);
             let least = slabs.least_distance(pieces, Body::POINT);
-            (least, least, least)
+            let safety = claim.of_set(request, &least, slabs.has_interior());
+            (least, least, least, safety)
         }
     };
     let passing_side =
@@ -462,7 +487,7 @@ fn passage<P: Piece>(
         min_margin: margin.value,
         min_margin_time: margin.time,
     };
-    (passage, kept)
+    (passage, kept, safety)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::piece::Piece;
 use super::quadrature::smooth;
-use super::{Evaluation, Request, Violation, meetings, shore};
+use super::{Evaluation, Request, Safety, Violation, meetings, shore};
 use crate::frame::{Vector, wrap};
 use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, Node, Steered};
@@ -60,12 +60,14 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     let mut violations = Vec::new();
     check(request, steering, &mut violations);
     let pieces: Vec<Cubic> = steering.motion.pieces().collect();
-    let passages = meetings(request, &pieces, &[], true, &mut violations);
+    let sound = Safety::of_motion(violations.is_empty());
+    let (passages, met) = meetings(request, &pieces, &[], true, &mut violations);
     let shore = shore(request, &pieces, &[], true, &mut violations);
     let length = steering.motion.length();
     let nodes = steering.motion.nodes();
     Evaluation {
         violations,
+        safety: sound.max(met).max(Safety::of_land(&shore, request)),
         space_time_error: space_time_error(&pieces, request.desired, request.time_weight),
         arc_length_error: arc_length_error(&pieces, request.desired, request.time_weight),
         duration: nodes[nodes.len() - 1].time - nodes[0].time,

@@ -12,6 +12,7 @@ mod rung;
 mod sets;
 mod shares;
 mod shore;
+mod verdict;
 
 pub use judge::{judge, judge_free};
 pub use ladder::RISK_STEP;
@@ -21,6 +22,7 @@ pub use risk::peak_risk;
 pub use rung::Rung;
 pub use sets::{TargetSets, sets};
 pub use shore::{coast, land_within_reach};
+pub use verdict::Verdict;
 
 use duty::rules_given_up;
 use judge::judge_kept;

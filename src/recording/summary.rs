@@ -28,7 +28,7 @@ pub fn log_summary(rec: &mut Recorder, scene: &Scene, drawn: Drawn) -> Recording
 
 fn text(scene: &Scene, drawn: Drawn) -> String {
     let run = scene.run;
-    let mut parts = vec![format!("# {}: {}", run.scenario.title, verdict(scene))];
+    let mut parts = vec![format!("# {}", run.headline())];
     match (run.planned.outcome.plan(), &run.evaluation) {
         (Some(plan), evaluation) => {
             parts.push(manoeuvre(scene, plan));
@@ -47,19 +47,6 @@ fn text(scene: &Scene, drawn: Drawn) -> String {
     parts.push(key(scene));
     parts.retain(|part| !part.is_empty());
     parts.join("\n\n")
-}
-
-fn verdict(scene: &Scene) -> &'static str {
-    let run = scene.run;
-    match (&run.planned.outcome, &run.evaluation) {
-        (Outcome::Infeasible(_), _) => "NO PLAN",
-        (Outcome::Deadline(None), _) => "NO PLAN before the deadline",
-        (_, None) => "planned, not judged",
-        (_, Some(e)) if !e.verified() => "planned, but REJECTED by the independent check",
-        (Outcome::Deadline(Some(_)), _) => "best plan at the deadline, verified",
-        _ if run.relaxations.is_empty() => "planned and verified",
-        _ => "planned with a relaxation, verified",
-    }
 }
 
 /// What a navigator would say of the plan.
@@ -181,26 +168,24 @@ fn violations(evaluation: &Evaluation) -> Vec<String> {
 fn relaxation(relaxation: &Relaxation) -> String {
     match relaxation {
         Relaxation::Domain { target, amount } => format!(
-            "- **Relaxed:** the shape around {target} was drawn back by {amount:.1} m: own ship starts \
+            "- **Given up:** the shape around {target} was drawn back by {amount:.1} m: own ship starts \
              inside it, or no plan is clear of it."
         ),
         Relaxation::Risk {
             target,
             amount,
             until: None,
-        } => format!(
-            "- **Relaxed:** the set of {target} is entered, at a risk of up to {amount:.3}."
-        ),
+        } => format!("- **Enters** the set of {target}, at a risk of up to {amount:.3}."),
         Relaxation::Risk {
             target,
             amount,
             until: Some(time),
         } => format!(
-            "- **Relaxed:** the set of {target} is entered, at a risk of up to {amount:.3}; the plan is clear of it \
+            "- **Enters** the set of {target}, at a risk of up to {amount:.3}; the plan is clear of it \
              only from {time:.1} s on."
         ),
         Relaxation::Compliance { target, role } => format!(
-            "- **Relaxed:** no plan complies with the rules as {} to {target}.",
+            "- **Given up:** no plan complies with the rules as {} to {target}.",
             role.name()
         ),
     }
@@ -304,6 +289,12 @@ fn claim(scene: &Scene) -> String {
     };
     if !judged {
         return "Nothing is claimed.".to_owned();
+    }
+    if run.greatest_risk() > 0.0 || !run.safe() {
+        let safe = if run.safe() { "safe" } else { "not safe" };
+        return format!(
+            "The plan is {safe}, and enters sets: of these nothing is claimed but what is said above."
+        );
     }
     let sets = match run.scenario.compliance {
         Compliance::Shape | Compliance::Rules => "shaped and hard sets",

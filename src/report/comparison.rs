@@ -3,14 +3,16 @@
 use comfy_table::Cell;
 
 use super::alteration::largest_alteration;
-use super::summary::{Turn, Verdict};
-use super::table::{Tone, cell, figures, metres, said, signed, square_metres};
+use super::summary::Turn;
+use super::table::{cell, figures, metres, said, signed, square_metres, verified};
 use crate::comparison::{Entry, Inapplicable, Method, Sailed};
+use crate::evaluation::{Safety, Tone, outcome, risk_figure};
 use crate::frame::Side;
+use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
 
 /// Units below the names, so that the table fits a terminal.
-pub(super) const HEADER: [&str; 14] = [
+pub(super) const HEADER: [&str; 15] = [
     "method",
     "outcome",
     "J\n[m²]",
@@ -24,6 +26,7 @@ pub(super) const HEADER: [&str; 14] = [
     "nodes\nexpanded",
     "time\n[ms]",
     "verified",
+    "safe",
     "breaks",
 ];
 
@@ -55,13 +58,15 @@ pub struct ComparisonRow {
     pub method: Method,
     /// The risk that was accepted.
     pub max_risk: f64,
-    /// How it ended, in the contract's word; of a baseline `"clear"`, `"collides"` or `"infeasible"`, and
+    /// How it ended, in the word of the documents; of a baseline `"clear"`, `"collides"` or `"infeasible"`, and
     /// `"relaxed"` where it enters a set within the accepted risk.
     pub outcome: &'static str,
     /// Why there is no motion.
     pub reason: Option<String>,
     /// True when it ends at the last waypoint.
     pub arrived: bool,
+    /// What the motion enters from start to arrival; `None` without one.
+    pub safety: Option<Safety>,
     /// What the independent check found: of a baseline sets, hulls and land alone. `None` without a motion.
     pub verified: Option<bool>,
     /// Space-time error, m².
@@ -127,6 +132,7 @@ impl ComparisonRow {
                 Sailed::Nothing(reason) => Some((*reason).to_owned()),
             },
             arrived: entry.arrived(),
+            safety: entry.safety(),
             verified,
             space_time_error: evaluation.and_then(|e| finite(e.space_time_error)),
             arc_length_error: evaluation.and_then(|e| finite(e.arc_length_error)),
@@ -142,6 +148,17 @@ impl ComparisonRow {
             expanded: run.map(|run| run.planned.stats.expanded),
             milliseconds: run.map(|run| run.plan_time.as_secs_f64() * 1e3),
         }
+    }
+
+    /// True of a motion that enters no hard set, hull or land from start to arrival; `None` without one.
+    pub fn safe(&self) -> Option<bool> {
+        self.safety.map(|safety| safety == Safety::Safe)
+    }
+
+    /// The word that people see for how it ended, and what it says.
+    pub(super) fn seen(&self) -> (String, Tone) {
+        let risk = self.largest_risk.unwrap_or(0.0);
+        outcome(self.outcome, self.safety, risk)
     }
 
     fn is_planned(&self) -> bool {
@@ -166,7 +183,7 @@ pub fn comparison_table(
     if sweep {
         header.insert(2, ACCEPTED);
     }
-    let words = header.len() - 2;
+    let words = header.len() - 3;
     let mut table = figures(&header, 2..words, colour);
     for row in rows {
         let mut cells = cells(row);
@@ -241,29 +258,25 @@ fn in_cell(text: &str) -> String {
 }
 
 /// A row as texts, in the order of [`HEADER`].
-pub(super) fn texts(row: &ComparisonRow) -> [(String, Tone); 14] {
+pub(super) fn texts(row: &ComparisonRow) -> [(String, Tone); 15] {
     let text = |value: Option<String>| (value.unwrap_or_else(|| "–".to_owned()), Tone::Plain);
     let tenths = |value: f64| format!("{value:.1}");
     let moved = row.verified.is_some();
-    let outcome = match row.outcome {
-        "solved" | "clear" => Tone::Good,
-        "relaxed" => Tone::Fair,
-        _ => Tone::Bad,
-    };
     [
         (row.method.to_string(), Tone::Plain),
-        (row.outcome.to_owned(), outcome),
+        row.seen(),
         text(row.space_time_error.map(square_metres)),
         text(row.arc_length_error.map(square_metres)),
         text(row.duration.map(tenths)),
         text(row.delay.map(signed)),
         text(row.length.map(|length| format!("{length:.0}"))),
         text(row.clearance.map(metres)),
-        text(row.largest_risk.map(|risk| format!("{risk:.2}"))),
+        text(row.largest_risk.map(risk_figure)),
         text(moved.then(|| row.largest_turn.map_or_else(|| "none".to_owned(), short))),
         text(row.expanded.map(|n| n.to_string())),
         text(row.milliseconds.map(|ms| format!("{ms:.2}"))),
-        said(row.verified.filter(|_| row.is_planned())),
+        verified(row.verified.filter(|_| row.is_planned()), row.safe()),
+        said(row.safe()),
         match &row.broken {
             None => text(None),
             Some(broken) if broken.is_empty() => ("nothing".to_owned(), Tone::Good),
@@ -286,13 +299,14 @@ fn short(turn: Turn) -> String {
 }
 
 /// The columns of [`comparison_csv`].
-pub const COMPARISON_COLUMNS: [&str; 20] = [
+pub const COMPARISON_COLUMNS: [&str; 21] = [
     "file",
     "scenario",
     "method",
     "max_risk",
     "outcome",
     "verified",
+    "safe",
     "arrived",
     "space_time_error_m2",
     "space_time_error_arc_length_m2",
@@ -310,7 +324,7 @@ pub const COMPARISON_COLUMNS: [&str; 20] = [
 ];
 
 /// A row of values in the order of [`COMPARISON_COLUMNS`]; empty where there is none.
-pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 20] {
+pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 21] {
     let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let word = |value: Option<bool>| value.map_or_else(String::new, |v| v.to_string());
     [
@@ -320,6 +334,7 @@ pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 
         row.max_risk.to_string(),
         row.outcome.to_owned(),
         word(row.verified),
+        word(row.safe()),
         row.arrived.to_string(),
         number(row.space_time_error),
         number(row.arc_length_error),

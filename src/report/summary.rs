@@ -2,62 +2,15 @@
 
 use super::alteration::first_alteration;
 use crate::colregs::Role;
+use crate::evaluation::{Safety, Tone, outcome};
 use crate::frame::Side;
-use crate::pipeline::Run;
-use crate::planner::Outcome;
+use crate::pipeline::{Run, Verdict};
 use crate::target::{ShipTrack, Target};
 use crate::trajectory::Trajectory;
 
 /// Seconds between the positions among which the crossing of a track is looked for.
 const CROSSING_STEP: f64 = 1.0;
 const MOST_CROSSINGS: u32 = 1_000_000;
-
-/// How a run ended.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::Verdict;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// assert_eq!((Verdict::of(&run), Verdict::of(&run).word()), (Verdict::Solved, "solved"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
-    /// A plan that gives up nothing.
-    Solved,
-    /// A plan that gives something up.
-    Relaxed,
-    /// No plan.
-    Infeasible,
-    /// The budget ran out, with a plan or without.
-    Deadline,
-}
-
-impl Verdict {
-    /// How this run ended.
-    pub fn of(run: &Run) -> Self {
-        match run.planned.outcome {
-            Outcome::Infeasible(_) => Self::Infeasible,
-            Outcome::Deadline(_) => Self::Deadline,
-            Outcome::Solved(_) if run.relaxations.is_empty() => Self::Solved,
-            Outcome::Solved(_) => Self::Relaxed,
-        }
-    }
-
-    /// The contract's word.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Solved => "solved",
-            Self::Relaxed => "relaxed",
-            Self::Infeasible => "infeasible",
-            Self::Deadline => "deadline",
-        }
-    }
-}
 
 /// An alteration of course.
 ///
@@ -141,6 +94,8 @@ pub struct Summary {
     pub verdict: Verdict,
     /// What the independent checker found; `None` without a plan.
     pub verified: Option<bool>,
+    /// What the plan enters from start to arrival; `None` without one.
+    pub safety: Option<Safety>,
     /// Targets with a role, in order of undisturbed closest approach.
     pub meetings: Vec<Meeting>,
     /// Targets in all.
@@ -197,6 +152,7 @@ impl Summary {
             title: run.scenario.title.clone(),
             verdict: Verdict::of(run),
             verified: evaluation.map(|e| e.verified()),
+            safety: run.safety(),
             meetings,
             targets: run.scenario.targets.len(),
             turn: trajectory.and_then(first_alteration),
@@ -213,6 +169,17 @@ impl Summary {
             expanded: run.planned.stats.expanded,
             milliseconds: run.plan_time.as_secs_f64() * 1e3,
         }
+    }
+
+    /// True of a plan that enters no hard set, hull or land from start to arrival; `None` without a plan.
+    pub fn safe(&self) -> Option<bool> {
+        self.safety.map(|safety| safety == Safety::Safe)
+    }
+
+    /// The word that people see for how it ended, and what it says.
+    pub(super) fn outcome(&self) -> (String, Tone) {
+        let risk = self.max_risk.unwrap_or(0.0);
+        outcome(self.verdict.word(), self.safety, risk)
     }
 }
 

@@ -3,18 +3,21 @@
 use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets};
 
 use super::conduct;
-use super::summary::{Meeting, Summary, Verdict};
+use super::summary::{Meeting, Summary};
 use super::words;
+pub(super) use crate::evaluation::Tone;
+use crate::evaluation::{outcome, risk_figure};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{Relaxation, Run, Rung};
 use crate::planner::optimal_control::ControlReport;
+use crate::text::printable_lines;
 
 /// Targets of one scenario that a row names; the rest is counted.
 const NAMED: usize = 3;
 
 /// Units below the names, so that the table fits a terminal.
-pub(super) const HEADER: [&str; 12] = [
+pub(super) const HEADER: [&str; 13] = [
     "scenario",
     "outcome",
     "encounter",
@@ -27,6 +30,7 @@ pub(super) const HEADER: [&str; 12] = [
     "nodes\nexpanded",
     "time\n[ms]",
     "verified",
+    "safe",
 ];
 
 /// Columns with numbers.
@@ -70,8 +74,12 @@ pub fn suite_table(rows: &[Row], colour: bool) -> String {
     for row in rows {
         table.add_row(match row {
             Row::Run(summary) => cells(summary),
-            Row::Failed { file, outcome } => {
-                let mut cells = vec![Cell::new(file), Cell::new(outcome).fg(Color::Red)];
+            Row::Failed {
+                file,
+                outcome: word,
+            } => {
+                let outcome = outcome(word, None, 0.0);
+                let mut cells = vec![cell((file.clone(), Tone::Plain)), cell(outcome)];
                 cells.resize_with(HEADER.len(), || Cell::new("–"));
                 cells
             }
@@ -101,17 +109,9 @@ pub(super) fn figures(header: &[&str], numbers: std::ops::Range<usize>, colour: 
     table
 }
 
-/// What a cell says: good, bad or neither.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Tone {
-    Plain,
-    Good,
-    Fair,
-    Bad,
-}
-
-/// A cell in its colour.
+/// A cell in its colour, without control characters.
 pub(super) fn cell((text, tone): (String, Tone)) -> Cell {
+    let text = printable_lines(&text);
     match tone {
         Tone::Plain => Cell::new(text),
         Tone::Good => Cell::new(text).fg(Color::Green),
@@ -125,34 +125,38 @@ fn cells(summary: &Summary) -> Vec<Cell> {
 }
 
 /// A row as texts, in the order of [`HEADER`].
-pub(super) fn texts(summary: &Summary) -> [(String, Tone); 12] {
+pub(super) fn texts(summary: &Summary) -> [(String, Tone); 13] {
     let planned = summary.verified.is_some();
     let plain = |text: String| (text, Tone::Plain);
     let text = |value: Option<String>| plain(value.unwrap_or_else(|| "–".to_owned()));
-    let verdict = match summary.verdict {
-        Verdict::Solved => Tone::Good,
-        Verdict::Relaxed => Tone::Fair,
-        Verdict::Infeasible | Verdict::Deadline => Tone::Bad,
-    };
     [
         plain(summary.title.clone()),
-        (summary.verdict.word().to_owned(), verdict),
+        summary.outcome(),
         plain(encounters(summary)),
         text(planned.then(|| turn(summary))),
         text(planned.then(|| passings(summary))),
         text(summary.space_time_error.map(square_metres)),
         text(summary.delay.map(signed)),
         text(summary.clearance.map(metres)),
-        text(summary.max_risk.map(|risk| format!("{risk:.2}"))),
+        text(summary.max_risk.map(risk_figure)),
         plain(summary.expanded.to_string()),
         plain(format!("{:.2}", summary.milliseconds)),
-        said(summary.verified),
+        verified(summary.verified, summary.safe()),
+        said(summary.safe()),
     ]
 }
 
-/// What the independent check said.
-pub(super) fn said(verified: Option<bool>) -> (String, Tone) {
-    match verified {
+/// What the independent check said. Nothing is good of a plan that is not safe.
+pub(super) fn verified(verified: Option<bool>, safe: Option<bool>) -> (String, Tone) {
+    match said(verified) {
+        (word, Tone::Good) if safe != Some(true) => (word, Tone::Plain),
+        other => other,
+    }
+}
+
+/// Yes or no.
+pub(super) fn said(fact: Option<bool>) -> (String, Tone) {
+    match fact {
         Some(true) => ("yes".to_owned(), Tone::Good),
         Some(false) => ("NO".to_owned(), Tone::Bad),
         None => ("–".to_owned(), Tone::Plain),
@@ -335,12 +339,7 @@ pub fn plan_text(run: &Run) -> String {
 /// The verdict of one run, and its costs with their names; a line without a name goes on with the one before.
 pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
     let summary = Summary::of(run);
-    let verified = match summary.verified {
-        Some(true) => ", verified",
-        Some(false) => ", FAILED ITS VERIFICATION",
-        None => "",
-    };
-    let head = format!("{}: {}{verified}", summary.title, summary.verdict.word());
+    let head = run.headline();
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     let mut say = |name: &'static str, value: String| lines.push((name, value));
     if let Some(reason) = run.reason() {
@@ -359,7 +358,7 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
                 let until = until.map_or(String::new(), |time| {
                     format!("; clear of it only from {time:.1} s on")
                 });
-                format!("the set of '{target}' is entered, at a risk of up to {amount:.3}{until}")
+                format!("the set of '{target}', at a risk of up to {amount:.3}{until}")
             }
             Relaxation::Arrival { target, amount } => {
                 format!(
@@ -373,7 +372,8 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
                 )
             }
         };
-        say("relaxed", what);
+        let entered = matches!(given_up, Relaxation::Risk { .. });
+        say(if entered { "enters" } else { "given up" }, what);
     }
     if let Some(escape) = &run.planned.escape {
         say("stands on", words::stand_on(escape));

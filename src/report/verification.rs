@@ -3,6 +3,8 @@
 use comfy_table::{Cell, Color};
 
 use super::table::{figures, metres};
+use crate::evaluation::{facts, outcome_word};
+use crate::text::printable;
 use crate::verification::Verification;
 
 /// Units below the names.
@@ -28,20 +30,25 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
             "no plan in it (outcome {}): nothing to verify",
             checked.outcome
         ),
-        (Some(_), 0) if checked.max_risk > 0.0 => {
-            format!("verified, at an accepted risk of {}", checked.max_risk)
+        (Some(evaluation), 0) => {
+            let facts = facts(true, checked.safe());
+            match outcome_word(
+                &checked.outcome,
+                Some(evaluation.safety),
+                checked.risk_taken,
+            ) {
+                word if word == checked.outcome => facts.to_owned(),
+                word => format!("{facts}: {word}"),
+            }
         }
-        (Some(_), 0) if checked.claimed_from.iter().any(|from| *from > 0.0) => {
-            "verified, but for what it enters".to_owned()
-        }
-        (Some(_), 0) => "verified".to_owned(),
         (Some(_), 1) => "REJECTED, 1 fault".to_owned(),
         (Some(_), n) => format!("REJECTED, {n} faults"),
     };
-    let mut lines = vec![format!("{}: {verdict}", checked.scenario)];
+    let mut lines = vec![format!("{}: {verdict}", printable(&checked.scenario))];
     let mut faults = checked.violations.iter();
     for fault in faults.by_ref().take(LISTED) {
-        lines.push(format!("  at {:.3} s: {}", fault.time, fault.what));
+        let what = printable(&fault.what);
+        lines.push(format!("  at {:.3} s: {what}", fault.time));
     }
     let more = faults.count();
     if more > 0 {
@@ -72,6 +79,7 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
         } else {
             "at all".to_owned()
         };
+        let target = printable(target);
         format!("The set of '{target}' is entered: nothing is claimed of it {until}")
     }));
     if evaluation.min_land_distance.is_finite() {
@@ -101,7 +109,7 @@ fn margins(checked: &Verification, colour: bool) -> String {
         let or_nothing = |text: String| if claimed { text } else { NOTHING.to_owned() };
         let margin = Cell::new(or_nothing(millimetres(passage.min_margin)));
         table.add_row(vec![
-            Cell::new(target),
+            Cell::new(printable(target)),
             if passage.min_margin >= -crate::tolerance::DEPTH_M {
                 margin
             } else {

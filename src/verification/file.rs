@@ -11,6 +11,9 @@ pub(super) struct PlanFile {
     pub planner: String,
     pub compliance: String,
     pub outcome: String,
+    /// A document without these two is rejected.
+    pub verdict: Option<String>,
+    pub safe: Option<bool>,
     pub time_weight_m2_per_s2: f64,
     pub max_risk: f64,
     pub objective: String,

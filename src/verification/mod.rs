@@ -9,7 +9,7 @@
 //!   certified distances ([`crate::evaluation`]);
 //! - that the sets are not too small: each contains the target's hull, the margin and the uncertainty, and every velocity
 //!   that she may take;
-//! - that what the document says of the motion is true of it: costs, risks, samples, encounters, path-time profile, the hold and the
+//! - that it says of the motion what is true of it: whether it is safe, costs, risks, samples, encounters, path-time profile, the hold and the
 //!   escape of a ship that stands on.
 //!
 //! Nothing here is shared with the planners, their sets or their contact tests; the document is read by a mirror of its own.
@@ -53,7 +53,7 @@ pub const FORMAT: &str = "searoom-plan/1";
 /// let document = PlanDocument::of(&pipeline::run(scenario));
 /// let document = serde_json::to_string_pretty(&document).expect("JSON");
 /// let found: Verification = verify(&document)?;
-/// assert!(found.verified());
+/// assert!(found.verified() && found.safe());
 /// // a figure that the motion does not bear out
 /// let mut altered: serde_json::Value = serde_json::from_str(&document).expect("JSON");
 /// altered["cost"]["length_m"] = 1600.0.into();
@@ -71,6 +71,8 @@ pub struct Verification {
     pub outcome: String,
     /// The risk that the plan was allowed, in `[0, 1)`.
     pub max_risk: f64,
+    /// The largest risk that the document says is taken; 0 without a plan.
+    pub risk_taken: f64,
     /// Names of the targets, in the document's order: that of the passages.
     pub targets: Vec<String>,
     /// Seconds, per target in the same order: of her set nothing is claimed before; 0 where all is.
@@ -91,6 +93,11 @@ impl Verification {
     /// True for a plan in which nothing was found wrong; false without a plan.
     pub fn verified(&self) -> bool {
         self.evaluation.is_some() && self.violations.is_empty()
+    }
+
+    /// True for a verified plan that enters no hard set, hull or land from start to arrival.
+    pub fn safe(&self) -> bool {
+        self.verified() && self.evaluation.as_ref().is_some_and(Evaluation::safe)
     }
 }
 
@@ -126,6 +133,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
     violations.extend(coverage::check(&claim));
     violations.extend(entered::check(&claim));
     violations.extend(outcome::check(&claim));
+    violations.extend(outcome::safety(&claim, evaluation.as_ref()));
     if let (Some(evaluation), Some(motion)) = (&evaluation, &claim.motion) {
         violations.extend(evaluation.violations.iter().cloned());
         if motion.is_sound() {
@@ -148,6 +156,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         planner: claim.file.planner.clone(),
         outcome: claim.file.outcome.clone(),
         max_risk: claim.file.max_risk,
+        risk_taken: claim.file.cost.as_ref().map_or(0.0, |cost| cost.max_risk),
         targets: claim.targets.iter().map(|t| t.name.clone()).collect(),
         claimed_from: claim
             .targets

@@ -2,7 +2,26 @@
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
 use super::untrue;
-use crate::evaluation::Violation;
+use crate::evaluation::{Evaluation, Violation, outcome_word};
+
+/// Whether something is entered, and the word for that.
+pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Violation> {
+    let file = &claim.file;
+    let mut found = Vec::new();
+    let safe = evaluation.is_some_and(Evaluation::safe);
+    let nothing = || "nothing".to_owned();
+    if file.safe != Some(safe) {
+        let said = file.safe.map_or_else(nothing, |said| said.to_string());
+        found.push(untrue("safe", said, safe));
+    }
+    let risk = file.cost.as_ref().map_or(0.0, |cost| cost.max_risk);
+    let word = outcome_word(&file.outcome, evaluation.map(|e| e.safety), risk);
+    if file.verdict.as_ref() != Some(&word) {
+        let said = file.verdict.clone().unwrap_or_else(nothing);
+        found.push(untrue("verdict", said, word));
+    }
+    found
+}
 
 /// The outcome with and without a motion and something given up, the planner with the parts that only its plans have, and
 /// each thing given up once, where it was asked for.

@@ -5,3 +5,4 @@ mod foreign;
 mod planning;
 mod program;
 mod results;
+mod verdict;

@@ -374,7 +374,7 @@ fn the_four_scenarios_are_planned_and_verified() {
     let table = searoom(&["suite", "scenarios/colregs"])
         .success()
         .stderr(is_empty())
-        .stdout(contains("4 scenarios: 4 solved; 4 verified"))
+        .stdout(contains("4 scenarios: 4 solved; 4 verified, 4 safe"))
         .stdout(contains("\u{1b}").not());
     let table = stdout(&table);
     let row = |title: &str| {
@@ -421,7 +421,9 @@ fn no_plan_is_an_answer() {
         .stdout(contains("infeasible"));
     searoom(&["suite", &late, "scenarios/colregs/head-on.toml"])
         .code(1)
-        .stdout(contains("2 scenarios: 1 solved, 1 infeasible; 1 verified"));
+        .stdout(contains(
+            "2 scenarios: 1 solved, 1 infeasible; 1 verified, 1 safe",
+        ));
     // from within a set there is a way out, and it is not said to be more
     let plan = searoom(&["plan", &inside, "--json"]).code(1);
     let text = stdout(&plan);
@@ -446,7 +448,7 @@ fn no_plan_is_an_answer() {
     };
     check(&text)
         .success()
-        .stdout(contains("verified, but for what it enters"))
+        .stdout(contains("verified, not safe: COLLIDES"))
         .stdout(contains("nothing is claimed of it before"));
     // claimed from too early, not claimed at all, owned up to nowhere, or of a set that has shrunk meanwhile
     let earlier = text.replace(&until.to_string(), &(until - 1.0).to_string());
@@ -607,7 +609,7 @@ fn a_plan_at_an_accepted_risk_is_relaxed_and_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = write(folder.path(), "risk.toml", HEAD_ON);
     let said = searoom(&["plan", &file, "--max-risk", "0.3"]).code(1);
-    said.stdout(contains("relaxed").and(contains("(0.3 accepted)")));
+    said.stdout(contains("at risk 0.30 (verified, safe)").and(contains("(0.3 accepted)")));
     let said = searoom(&["plan", &file, "--max-risk", "0.3", "--json"]).code(1);
     let plan: Value = serde_json::from_slice(&said.get_output().stdout).expect("JSON");
     let risk = plan["cost"]["max_risk"].as_f64().expect("a number");

@@ -22,7 +22,7 @@ fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
     searoom(&args)
         .success()
         .stderr(is_empty())
-        .stdout(contains("Head-on: verified").and(contains("margin")));
+        .stdout(contains("Head-on: verified, safe").and(contains("margin")));
     let altered = file("altered");
     let good = fs::read_to_string(&four[1]).expect("a plan");
     let from = "\"turning_radius_m\": 100.0";
@@ -149,7 +149,7 @@ fn a_comparison_answers_every_file_and_says_what_is_wrong() {
     // on the path alone nothing is clear
     searoom(&["compare", head_on, "--planner", "path-time"])
         .code(1)
-        .stdout(contains("relaxed"));
+        .stdout(contains("COLLIDES").and(contains("relaxed").not()));
     for (args, expected) in [
         (
             ["--max-risk", "0,1"],
@@ -379,7 +379,7 @@ mod recordings {
         let (file, plan) = recorded(folder.path(), "head-on.rrd", HEAD_ON);
         let said = stdout(&searoom(&["inspect", &file]).success());
         for expected in [
-            "Head-on: solved, verified",
+            "Head-on: solved (verified, safe)",
             "space-time, a-star",
             "nodes expanded",
             "target (head-on)",
@@ -544,7 +544,14 @@ mod recordings {
         let entries = |c: &Value| c["entries"].as_array().expect("a list").clone();
         assert_eq!(entries(read).len(), entries(written).len());
         for (read, written) in entries(read).iter().zip(entries(written)) {
-            for key in ["method", "outcome", "search_stats", "verified"] {
+            for key in [
+                "method",
+                "outcome",
+                "verdict",
+                "search_stats",
+                "verified",
+                "safe",
+            ] {
                 assert_eq!(read[key], written[key], "{key}");
             }
             assert_eq!(read["timing"].is_null(), written["timing"].is_null());
@@ -553,7 +560,7 @@ mod recordings {
         searoom(&["inspect", text(&file)])
             .success()
             .stdout(contains("Head-on: a comparison of"))
-            .stdout(contains("hold course: collides, J "));
+            .stdout(contains("hold course: COLLIDES, J "));
         searoom(&["inspect", "--plan", text(&file)])
             .code(2)
             .stderr(contains("the recording of a comparison"));

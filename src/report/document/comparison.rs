@@ -85,7 +85,7 @@ pub struct ScenarioComparisonDocument {
 /// let rows = [ComparisonRow::of(&scenario, &entries[0])];
 /// let compared = ScenarioComparisonDocument::of(file.to_owned(), &scenario.title, &entries, &rows, &[]);
 /// let held: &EntryDocument = &compared.entries[0];
-/// assert!(!held.verified && held.search_stats.is_none());
+/// assert!(!held.verified && !held.safe && held.search_stats.is_none());
 /// assert_eq!(held.cost.as_ref().map(|cost| cost.duration_s), Some(300.0));
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
@@ -97,9 +97,13 @@ pub struct EntryDocument {
     /// Of a planner; null for a baseline.
     pub objective: Option<String>,
     pub outcome: String,
+    /// The word that people see for it.
+    pub verdict: String,
     pub reason: Option<String>,
     /// Of a baseline: clear of sets, hulls and land.
     pub verified: bool,
+    /// No hard set, hull or land is entered.
+    pub safe: bool,
     pub cost: Option<CostDocument>,
     /// Positive.
     pub largest_turn_deg: Option<f64>,
@@ -209,8 +213,10 @@ impl EntryDocument {
             max_risk: row.max_risk,
             objective: run.map(|run| words::objective(&run.scenario).to_owned()),
             outcome: row.outcome.to_owned(),
+            verdict: row.seen().0,
             reason: row.reason.clone(),
             verified: row.verified == Some(true),
+            safe: row.safe() == Some(true),
             cost: entry.evaluation().map(|evaluation| {
                 // a baseline minimises nothing else
                 let objective = objective.unwrap_or(evaluation.space_time_error);

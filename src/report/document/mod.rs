@@ -28,7 +28,8 @@ pub use parts::*;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
 pub use plan::{PLAN_FORMAT, PlanDocument};
 pub use suite::{
-    INTERNAL_FAULT, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument, UNREADABLE,
+    INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
+    UNREADABLE,
 };
 pub use targets::{ShipDocument, SpellDocument, TargetDocument};
 pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};

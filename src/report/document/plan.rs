@@ -18,9 +18,9 @@ use crate::frame::{
 };
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
+use crate::pipeline::Verdict;
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::{Objective, Plan};
-use crate::report::summary::Verdict;
 use crate::report::words;
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
@@ -44,7 +44,8 @@ const MOST_SAMPLES: u32 = 20_000;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
 /// let plan = PlanDocument::of(&pipeline::run(scenario));
-/// assert_eq!((plan.format.as_str(), plan.outcome.as_str(), plan.verified), (PLAN_FORMAT, "solved", true));
+/// assert_eq!((plan.format.as_str(), plan.outcome.as_str()), (PLAN_FORMAT, "solved"));
+/// assert!(plan.verified && plan.safe);
 /// // what is written can be read
 /// let text = serde_json::to_string(&plan).expect("JSON");
 /// let read: PlanDocument = serde_json::from_str(&text).expect("a plan");
@@ -77,12 +78,16 @@ pub struct PlanDocument {
     pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
     pub outcome: String,
+    /// The word that people see for it, by what happens to hulls.
+    pub verdict: String,
     /// Why there is no plan, or none that was finished or keeps all that was asked.
     pub reason: Option<String>,
     pub relaxation: Option<RelaxationDocument>,
     /// All of what was given up, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
+    /// No hard set, hull or land is entered from start to arrival.
+    pub safe: bool,
     /// Where it was asked for: null where nothing is met, or nothing was found even from the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_of_no_return_s: Option<Option<f64>>,
@@ -134,6 +139,7 @@ impl PlanDocument {
             mission: mission(run),
             land: run.land.iter().map(vertices).collect(),
             outcome: verdict.word().to_owned(),
+            verdict: run.word(),
             reason: run.reason(),
             relaxation: match verdict {
                 Verdict::Relaxed => relaxations.first().cloned(),
@@ -141,6 +147,7 @@ impl PlanDocument {
             },
             relaxations,
             verified: verified(run),
+            safe: run.safe(),
             time_of_no_return_s: None,
             violations: run
                 .evaluation
@@ -201,7 +208,7 @@ pub(super) fn timing(run: &Run) -> TimingDocument {
     }
 }
 
-fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
+pub(super) fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
     match given_up {
         Relaxation::Domain { target, amount } => RelaxationDocument {
             kind: "domain".to_owned(),

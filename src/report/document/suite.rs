@@ -2,16 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{CostDocument, EncounterDocument, TimingDocument};
-use super::plan::{cost, encounters, timing, verified};
+use super::parts::{CostDocument, EncounterDocument, RelaxationDocument, TimingDocument};
+use super::plan::{cost, encounters, relaxation, timing, verified};
+use crate::evaluation::outcome_word;
 use crate::pipeline::Run;
-use crate::report::summary::Verdict;
+use crate::pipeline::Verdict;
 
 /// The outcome of a file that is no scenario.
 pub const UNREADABLE: &str = "unreadable";
 
 /// The outcome of a run that ended in a fault of the program.
 pub const INTERNAL_FAULT: &str = "internal-fault";
+
+/// The outcome of a scenario that is sound, but of no use to the planner or the rules that the command line asks for.
+pub const NOT_APPLICABLE: &str = "not-applicable";
 
 /// Many runs in one document.
 ///
@@ -26,7 +30,7 @@ pub const INTERNAL_FAULT: &str = "internal-fault";
 /// let entry = SuiteRunDocument::of("give-way.toml".to_owned(), &run, Vec::new());
 /// let broken = SuiteRunDocument::failed("a.toml".to_owned(), UNREADABLE, "title: missing".to_owned());
 /// let suite = SuiteDocument::of(vec![entry, broken]);
-/// assert_eq!(suite.summary.to_string(), "2 scenarios: 1 solved, 1 unreadable; 1 verified");
+/// assert_eq!(suite.summary.to_string(), "2 scenarios: 1 solved, 1 unreadable; 1 verified, 1 safe");
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,8 +43,8 @@ pub struct SuiteDocument {
     pub summary: SuiteSummaryDocument,
 }
 
-/// One run of a suite. Where there was none, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`], `error`
-/// says why, and the keys that have no meaning are null.
+/// One run of a suite. Where there was none, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`], and `error` says why, or
+/// [`NOT_APPLICABLE`], and `reason` does; the keys that have no meaning are null.
 ///
 /// # Examples
 ///
@@ -66,10 +70,15 @@ pub struct SuiteRunDocument {
     pub scenario: Option<String>,
     pub planner: Option<String>,
     pub outcome: String,
+    /// The word that people see for it.
+    pub verdict: String,
     pub error: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// All of what was given up, the most important first.
+    pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
+    pub safe: bool,
     pub cost: Option<CostDocument>,
     pub encounters: Vec<EncounterDocument>,
     pub targets: Option<usize>,
@@ -87,15 +96,15 @@ pub struct SuiteRunDocument {
 ///
 /// let text = r#"{
 ///     "scenarios": 4, "solved": 4, "relaxed": 0, "infeasible": 0, "deadline": 0,
-///     "unreadable": 0, "internal_faults": 0, "verified": 4
+///     "not_applicable": 0, "unreadable": 0, "internal_faults": 0, "verified": 4, "safe": 4, "not_safe": 0
 /// }"#;
 /// let read: SuiteSummaryDocument = serde_json::from_str(text)?;
-/// assert_eq!(read.to_string(), "4 scenarios: 4 solved; 4 verified");
+/// assert_eq!(read.to_string(), "4 scenarios: 4 solved; 4 verified, 4 safe");
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SuiteSummaryDocument {
-    /// All of them: the sum of the six outcomes below.
+    /// All of them: the sum of the seven outcomes below.
     pub scenarios: usize,
     /// Plans that give up nothing.
     pub solved: usize,
@@ -105,27 +114,40 @@ pub struct SuiteSummaryDocument {
     pub infeasible: usize,
     /// Budget ran out.
     pub deadline: usize,
+    /// Scenarios of no use to the planner or the rules that were asked for.
+    pub not_applicable: usize,
     /// Files that are no scenario.
     pub unreadable: usize,
     /// Runs that ended in a fault of the program.
     pub internal_faults: usize,
     /// Plans in which the independent checker found nothing wrong.
     pub verified: usize,
+    /// Plans that enter no hard set, hull or land.
+    pub safe: usize,
+    /// Of the relaxed plans, those that are not safe.
+    pub not_safe: usize,
 }
 
 impl SuiteDocument {
     /// The document of these runs, with their summary.
     pub fn of(runs: Vec<SuiteRunDocument>) -> Self {
         let ended = |word: &str| runs.iter().filter(|run| run.outcome == word).count();
+        let is_relaxed = |run: &SuiteRunDocument| run.outcome == Verdict::Relaxed.word();
         let summary = SuiteSummaryDocument {
             scenarios: runs.len(),
             solved: ended(Verdict::Solved.word()),
             relaxed: ended(Verdict::Relaxed.word()),
             infeasible: ended(Verdict::Infeasible.word()),
             deadline: ended(Verdict::Deadline.word()),
+            not_applicable: ended(NOT_APPLICABLE),
             unreadable: ended(UNREADABLE),
             internal_faults: ended(INTERNAL_FAULT),
             verified: runs.iter().filter(|run| run.verified).count(),
+            safe: runs.iter().filter(|run| run.safe).count(),
+            not_safe: runs
+                .iter()
+                .filter(|run| is_relaxed(run) && !run.safe)
+                .count(),
         };
         Self { runs, summary }
     }
@@ -140,9 +162,11 @@ impl std::fmt::Display for SuiteSummaryDocument {
             self.scenarios, self.solved
         )?;
         for (count, name) in [
-            (self.relaxed, "relaxed"),
+            (self.relaxed.saturating_sub(self.not_safe), "relaxed"),
+            (self.not_safe, "not safe"),
             (self.infeasible, "infeasible"),
             (self.deadline, "out of time"),
+            (self.not_applicable, "not applicable"),
             (self.unreadable, UNREADABLE),
             (self.internal_faults, "failed inside"),
         ] {
@@ -150,7 +174,7 @@ impl std::fmt::Display for SuiteSummaryDocument {
                 write!(f, ", {count} {name}")?;
             }
         }
-        write!(f, "; {} verified", self.verified)
+        write!(f, "; {} verified, {} safe", self.verified, self.safe)
     }
 }
 
@@ -162,14 +186,27 @@ impl SuiteRunDocument {
             scenario: Some(run.scenario.title.clone()),
             planner: Some(run.scenario.planner.word().to_owned()),
             outcome: Verdict::of(run).word().to_owned(),
+            verdict: run.word(),
             error: None,
             reason: run.reason(),
+            relaxations: run.relaxations.iter().map(relaxation).collect(),
             verified: verified(run),
+            safe: run.safe(),
             cost: cost(run),
             encounters: encounters(run),
             targets: Some(run.scenario.targets.len()),
             timing: Some(timing(run)),
             notes,
+        }
+    }
+
+    /// The entry of a scenario that is of no use to what was asked for.
+    pub fn not_applicable(file: String, title: String, reason: String) -> Self {
+        Self {
+            scenario: Some(title),
+            error: None,
+            reason: Some(reason),
+            ..Self::failed(file, NOT_APPLICABLE, String::new())
         }
     }
 
@@ -180,9 +217,12 @@ impl SuiteRunDocument {
             scenario: None,
             planner: None,
             outcome: outcome.to_owned(),
+            verdict: outcome_word(outcome, None, 0.0),
             error: Some(error),
             reason: None,
+            relaxations: Vec::new(),
             verified: false,
+            safe: false,
             cost: None,
             encounters: Vec::new(),
             targets: None,

@@ -33,6 +33,7 @@ const UNREADABLE: &str = "unreadable";
 pub struct VerificationDocument {
     pub plans: Vec<VerifiedPlanDocument>,
     pub verified: usize,
+    pub safe: usize,
 }
 
 /// One document. What is unknown of an unreadable one is null.
@@ -49,7 +50,7 @@ pub struct VerificationDocument {
 /// let text = serde_json::to_string(&PlanDocument::of(&run)).expect("JSON");
 /// let checked = verify(&text).expect("a plan document");
 /// let entry = VerifiedPlanDocument::of("plan.json".to_owned(), &checked);
-/// assert!(entry.verified && entry.violations.is_empty());
+/// assert!(entry.verified && entry.safe && entry.violations.is_empty());
 /// assert_eq!(entry.planner.as_deref(), Some("space-time"));
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
@@ -62,6 +63,8 @@ pub struct VerifiedPlanDocument {
     pub outcome: String,
     pub error: Option<String>,
     pub verified: bool,
+    /// No hard set, hull or land is entered from start to arrival.
+    pub safe: bool,
     pub violations: Vec<ViolationDocument>,
     pub targets: Vec<MarginDocument>,
     /// Least distance between own hull and land; null without land.
@@ -109,7 +112,12 @@ impl VerificationDocument {
     /// The document of these.
     pub fn of(plans: Vec<VerifiedPlanDocument>) -> Self {
         let verified = plans.iter().filter(|plan| plan.verified).count();
-        Self { plans, verified }
+        let safe = plans.iter().filter(|plan| plan.safe).count();
+        Self {
+            plans,
+            verified,
+            safe,
+        }
     }
 }
 
@@ -126,6 +134,7 @@ impl VerifiedPlanDocument {
             outcome: checked.outcome.clone(),
             error: None,
             verified: checked.verified(),
+            safe: checked.safe(),
             violations: (checked.violations.iter())
                 .map(|violation| ViolationDocument {
                     what: violation.what.clone(),
@@ -158,6 +167,7 @@ impl VerifiedPlanDocument {
             outcome: UNREADABLE.to_owned(),
             error: Some(error),
             verified: false,
+            safe: false,
             violations: Vec::new(),
             targets: Vec::new(),
             min_land_distance_m: None,

@@ -6,6 +6,7 @@ use super::plan::{DESIRED, LAND, land_areas};
 use super::sections::PLAN;
 use super::{Figure, Panel, Window};
 use crate::comparison::{Entry, Look, Method, Sailed};
+use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::SpaceTimeObstacle;
@@ -58,7 +59,7 @@ pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
             let method = entry.contender.method;
             let line = ProfileLine {
                 label: match run.planned.outcome.plan() {
-                    Some(_) => method.to_string(),
+                    Some(_) => named(method, std::slice::from_ref(entry)),
                     None => "no plan".to_owned(),
                 },
                 diagram,
@@ -102,9 +103,23 @@ fn keys(panel: &mut Panel, entries: &[Entry]) {
     for entry in entries.iter().filter(|e| e.trajectory().is_some()) {
         let method = entry.contender.method;
         if last != Some(method) {
-            panel.line_key(&method.to_string(), stroke(method));
+            panel.line_key(&named(method, entries), stroke(method));
             last = Some(method);
         }
+    }
+}
+
+/// A method, and the worst that its motions come to where one of them is not safe.
+fn named(method: Method, entries: &[Entry]) -> String {
+    let own = entries.iter().filter(|e| e.contender.method == method);
+    let risk = |e: &Entry| e.risks().iter().map(|peak| peak.risk).fold(0.0, f64::max);
+    let unsafe_ones = own.filter(|e| e.safety() > Some(Safety::Safe));
+    match unsafe_ones.max_by_key(|e| e.safety()) {
+        Some(entry) => format!(
+            "{method}: {}",
+            outcome_word("relaxed", entry.safety(), risk(entry))
+        ),
+        None => method.to_string(),
     }
 }
 

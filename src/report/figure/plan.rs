@@ -7,6 +7,7 @@ use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
 use super::{Figure, Panel, Window};
+use crate::evaluation::Safety;
 use crate::frame::Vector;
 use crate::geometry::{self, ConvexPolygon};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -53,9 +54,13 @@ const STEP: f64 = 1.0;
 const MOST_POINTS: u32 = 5_000;
 
 /// The chart of a run, and its path-time diagram where it has one; of a plan of forces, its moments. Under the
-/// scenario's title.
+/// scenario's title, and of a plan that is not safe that it is not.
 pub fn plan_figure(run: &Run) -> Figure {
-    Figure::new(2, plan_panels(run)).titled(&run.scenario.title)
+    let title = match run.safety() {
+        None | Some(Safety::Safe) => run.scenario.title.clone(),
+        Some(_) => run.headline(),
+    };
+    Figure::new(2, plan_panels(run)).titled(&title)
 }
 
 /// The panels of [`plan_figure`].

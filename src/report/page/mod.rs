@@ -15,6 +15,7 @@ use super::summary::Summary;
 use super::table::{self, Tone, plan_lines};
 use super::write::{WriteError, write_atomically};
 use crate::comparison::{Entry, Inapplicable};
+use crate::evaluation::outcome;
 use crate::pipeline::Run;
 use crate::scenario::Scenario;
 use parts::{Link, address, list, table_of};
@@ -111,12 +112,10 @@ impl Report {
     }
 
     /// Adds a file that gave no plan: a row, and why.
-    pub fn add_failure(&mut self, file: &str, outcome: &str, error: &str) {
+    pub fn add_failure(&mut self, file: &str, ended: &str, error: &str) {
         self.head();
-        let mut texts = vec![
-            (file.to_owned(), Tone::Plain),
-            (outcome.to_owned(), Tone::Bad),
-        ];
+        let (word, tone) = outcome(ended, None, 0.0);
+        let mut texts = vec![(file.to_owned(), Tone::Plain), (word.clone(), tone)];
         let names = without(table::TIME, table::HEADER);
         texts.resize(names.len(), ("–".to_owned(), Tone::Plain));
         let id = self.sections.len() + 1;
@@ -124,8 +123,8 @@ impl Report {
             .push(parts::row(&names, &texts, Some(id), parts::plan_number));
         self.sections.push(html! {
             section id=(format!("s{id}")) {
-                h2 { (file) ": " (outcome) }
-                p.bad { (error) }
+                h2 { (file) ": " (word) }
+                p class=(if tone == Tone::Bad { "bad" } else { "quiet" }) { (error) }
             }
         });
     }

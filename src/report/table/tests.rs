@@ -1,4 +1,6 @@
 use super::*;
+use crate::evaluation::Safety;
+use crate::report::Verdict;
 
 fn summary(meetings: usize) -> Summary {
     let meeting = Meeting {
@@ -15,6 +17,7 @@ fn summary(meetings: usize) -> Summary {
         title: "Busy".to_owned(),
         verdict: Verdict::Relaxed,
         verified: Some(true),
+        safety: Some(Safety::AtRisk),
         meetings: vec![meeting; meetings],
         targets: 9,
         turn: None,

@@ -1,0 +1,475 @@
+//! What is said of a plan: verified, safe, and in which word, the same in every view.
+
+use std::fs;
+
+use super::program::{HEAD_ON, document, searoom, stderr, stdout, text, write};
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use serde_json::Value;
+
+/// Own ship and a target whose hulls overlap at the start.
+fn overlapping() -> String {
+    HEAD_ON.replace("position = { east_m = 1500.0", "position = { east_m = 30.0")
+}
+
+/// A target abeam on the same course at the same speed, nearer than the margin, and nothing unknown of her.
+fn abeam() -> String {
+    let text = HEAD_ON
+        .replace(
+            "position = { east_m = 1500.0, north_m = 0.0 }\n",
+            "position = { east_m = 0.0, north_m = 25.0 }\n",
+        )
+        .replace("course_deg = 270.0", "course_deg = 90.0");
+    let known = ["speed_spread_mps", "course_spread_deg"];
+    let lines = text
+        .lines()
+        .filter(|l| !known.iter().any(|k| l.starts_with(k)));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// One word for one plan in every view, and never "verified" without what else is so.
+#[test]
+fn a_plan_that_is_not_safe_says_so_in_every_view() {
+    for (name, scene, word) in [
+        ("overlapping", overlapping(), "COLLIDES"),
+        ("abeam", abeam(), "NOT SAFE"),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| text(&folder.path().join(name)).to_owned();
+        let file = write(folder.path(), &format!("{name}.toml"), scene);
+        let both = format!("{word} (verified, not safe)");
+
+        let (page, figure) = (at("page"), at("figure.svg"));
+        let said = searoom(&["plan", &file, "--report", &page, "--figure", &figure]).code(1);
+        let said = stdout(&said);
+        assert!(said.starts_with(&format!("Head-on: {both}\n")), "{said}");
+        assert!(!said.contains("relaxed"), "{said}");
+        let page = fs::read_to_string(format!("{page}/index.html")).expect("a page");
+        assert!(
+            page.contains(&format!("<h2>Head-on: {both}</h2>")),
+            "{page}"
+        );
+        assert!(page.contains(&format!("<span>{word}</span>")), "{page}");
+        assert!(
+            fs::read_to_string(&figure)
+                .expect("a figure")
+                .contains(&both)
+        );
+
+        let plan = searoom(&["plan", &file, "--json"]).code(1);
+        let plan_file = write(folder.path(), "plan.json", stdout(&plan));
+        let plan = document(&plan);
+        let facts = |d: &Value| ["outcome", "verdict", "verified", "safe"].map(|k| d[k].clone());
+        let expected = [
+            Value::from("relaxed"),
+            Value::from(word),
+            Value::from(true),
+            Value::from(false),
+        ];
+        assert_eq!(facts(&plan), expected);
+        let checked = searoom(&["verify", &plan_file]).success();
+        let first = format!("Head-on: verified, not safe: {word}\n");
+        assert!(stdout(&checked).starts_with(&first), "{}", stdout(&checked));
+        let checked = document(&searoom(&["verify", "--json", &plan_file]).success());
+        assert_eq!(
+            (&checked["verified"], &checked["safe"]),
+            (&Value::from(1), &Value::from(0))
+        );
+        let checked = &checked["plans"][0];
+        assert_eq!(
+            (&checked["verified"], &checked["safe"]),
+            (&expected[2], &expected[3])
+        );
+
+        let suite = stdout(&searoom(&["suite", &file]).code(1));
+        let row = suite
+            .lines()
+            .find(|line| line.contains(" Head-on "))
+            .expect("a row");
+        assert!(
+            row.contains(word) && row.trim_end().ends_with("NO"),
+            "{suite}"
+        );
+        assert!(
+            suite.contains("0 solved, 1 not safe; 1 verified, 0 safe"),
+            "{suite}"
+        );
+        let suite = document(&searoom(&["suite", &file, "--json"]).code(1));
+        assert_eq!(facts(&suite["runs"][0]), expected);
+        assert_eq!(suite["summary"]["safe"], 0);
+        assert_eq!(suite["summary"]["not_safe"], 1);
+
+        let asked = ["--planner", "space-time", "--search", "a-star"];
+        let args = [&["compare", file.as_str()], asked.as_slice()].concat();
+        let table = stdout(&searoom(&args).code(1));
+        let row = table
+            .lines()
+            .find(|line| line.contains("space-time, A* "))
+            .expect("a row");
+        assert!(row.contains(word) && row.contains(" NO "), "{table}");
+        let compared = document(&searoom(&[args.as_slice(), &["--json"]].concat()).code(1));
+        assert_eq!(facts(&compared["comparisons"][0]["entries"][0]), expected);
+    }
+}
+
+/// A baseline is called what a plan is called that does the same.
+#[test]
+fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "a.toml", overlapping());
+    let table = stdout(&searoom(&["compare", &file]).code(1));
+    for method in ["space-time, A* ", "path-time ", "hold course "] {
+        let row = table
+            .lines()
+            .find(|line| line.contains(method))
+            .expect("a row");
+        assert!(row.contains("COLLIDES"), "{table}");
+    }
+    // the shape about a target that lies still is entered, nothing else
+    let wide = HEAD_ON
+        .replace(
+            "position = { east_m = 1500.0, north_m = 0.0 }\n",
+            "position = { east_m = 700.0, north_m = 100.0 }\n",
+        )
+        .replace(
+            "speed_mps = 5.0\nlength_m = 60.0",
+            "speed_mps = 0.0\nlength_m = 60.0",
+        )
+        + "domain = { fore_m = 200.0, aft_m = 200.0, port_m = 200.0, starboard_m = 200.0 }\n";
+    let file = write(folder.path(), "wide.toml", wide);
+    let compared = document(&searoom(&["compare", &file, "--json"]).success());
+    let entries = compared["comparisons"][0]["entries"]
+        .as_array()
+        .expect("a list");
+    let held = entries
+        .iter()
+        .find(|e| e["method"] == "hold course")
+        .expect("it is there");
+    assert_eq!(
+        (&held["verdict"], &held["safe"]),
+        (&Value::from("relaxed"), &Value::from(true))
+    );
+    assert_eq!(held["outcome"], "collides", "the key keeps its values");
+}
+
+/// A risk that is taken of the shape alone is safe, one of the hard set is not; both are told with their figure.
+#[test]
+fn a_risk_that_is_taken_is_told_with_its_figure() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "a.toml", HEAD_ON);
+    for (compliance, safe, facts) in [("shape", true, "safe"), ("none", false, "not safe")] {
+        let asked = [
+            "plan",
+            &file,
+            "--max-risk",
+            "0.2",
+            "--compliance",
+            compliance,
+        ];
+        let said = stdout(&searoom(&asked).code(1));
+        let head = format!("Head-on: at risk 0.20 (verified, {facts})\n");
+        assert!(said.starts_with(&head), "{said}");
+        let plan = searoom(&[asked.as_slice(), &["--json"]].concat()).code(1);
+        let plan_file = write(folder.path(), "plan.json", stdout(&plan));
+        let plan = document(&plan);
+        assert_eq!(plan["safe"], safe);
+        searoom(&["verify", &plan_file])
+            .success()
+            .stdout(contains(format!(
+                "Head-on: verified, {facts}: at risk 0.20"
+            )));
+    }
+}
+
+/// Every document says whether it is safe, and says what is so.
+#[test]
+fn a_document_that_is_wrong_about_its_safety_is_rejected() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, scene, safe) in [("a", HEAD_ON.to_owned(), true), ("b", overlapping(), false)] {
+        let file = write(folder.path(), &format!("{name}.toml"), scene);
+        let output = searoom(&["plan", &file, "--json"]).code(i32::from(!safe));
+        let plan = document(&output);
+        let check = |altered: &Value| {
+            let file = write(folder.path(), "plan.json", altered.to_string());
+            searoom(&["verify", &file])
+        };
+        check(&plan).success();
+        let mut altered = plan.clone();
+        altered["safe"] = Value::from(!safe);
+        let what = format!("safe: the document says {}, it is {safe}", !safe);
+        check(&altered).code(1).stdout(contains(what));
+        altered.as_object_mut().expect("an object").remove("safe");
+        let what = format!("safe: the document says nothing, it is {safe}");
+        check(&altered).code(1).stdout(contains(what));
+        let mut altered = plan.clone();
+        altered["verdict"] = Value::from("solved, and clear of all");
+        check(&altered)
+            .code(1)
+            .stdout(contains("verdict: the document says solved, and"));
+    }
+}
+
+/// What a document says in its texts is shown, not done: a terminal sees no control character and no line that is not ours.
+#[test]
+fn control_characters_of_others_are_shown_as_codes() {
+    let said = stdout(&searoom(&["verify", "tests/faults/verify-spoof.json"]).code(1));
+    assert!(!said.contains('\u{1b}'), "{said:?}");
+    let first = said.lines().next().expect("a line");
+    assert!(
+        first.contains(r"verified\u000aspace-time") && first.contains(r"\u001b[8m"),
+        "{first}"
+    );
+    assert!(first.contains("REJECTED"), "{first}");
+    // as JSON the text is what it was
+    let checked =
+        document(&searoom(&["verify", "--json", "tests/faults/verify-spoof.json"]).code(1));
+    let title = checked["plans"][0]["scenario"].as_str().expect("a text");
+    assert!(title.contains("\u{1b}[8m"));
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let bad = "\u{1b}[8m\u{9b}2J\u{202e}\u{7f}";
+    let key = format!(
+        "\"{}\" = 1\n{HEAD_ON}",
+        bad.replace('\u{1b}', "\\u001b")
+            .replace('\u{7f}', "\\u007f")
+    );
+    let file = write(folder.path(), &format!("a{bad}.toml"), key);
+    let plan = write(
+        folder.path(),
+        &format!("b{bad}.json"),
+        format!("{{\"{bad}\": 1}}"),
+    );
+    let profile = write(folder.path(), "c.toml", format!("x = \"{bad}\"\n"));
+    let scenario = "scenarios/colregs/head-on.toml";
+    for args in [
+        &["check", &file][..],
+        &["plan", &file],
+        &["suite", &file],
+        &["compare", &file],
+        &["assess", &file],
+        &["inspect", &plan],
+        &["verify", &plan],
+        &["import", &plan, "--out", text(folder.path())],
+        &["plan", scenario, "--thresholds", &profile],
+    ] {
+        let output = searoom(args).code(2);
+        for said in [stdout(&output), stderr(&output)] {
+            let acts = |c: char| c.is_control() && !"\n\t".contains(c) || c == '\u{202e}';
+            assert!(!said.contains(acts), "{args:?}: {said:?}");
+        }
+    }
+}
+
+/// Scenarios that the rules or a planner of the command line do not fit are no fault of theirs.
+#[test]
+fn a_suite_skips_what_does_not_apply() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let ferry = "scenarios/harbour/ferry-crossing.toml";
+    let head_on = "scenarios/colregs/head-on.toml";
+    let page = text(&folder.path().join("page")).to_owned();
+    let asked = ["suite", ferry, head_on, "--compliance", "rules"];
+    let said = searoom(&[asked.as_slice(), &["--report", &page]].concat()).success();
+    let expected = "2 scenarios: 1 solved, 1 not applicable; 1 verified, 1 safe";
+    assert!(stdout(&said).contains(expected), "{}", stdout(&said));
+    assert!(!stdout(&said).contains("unreadable") && !stderr(&said).contains("error"));
+    let page = fs::read_to_string(format!("{page}/index.html")).expect("a page");
+    assert!(page.contains("not applicable") && page.contains("planner.compliance"));
+    let suite = document(&searoom(&[asked.as_slice(), &["--json"]].concat()).success());
+    let run = &suite["runs"][0];
+    assert_eq!(
+        (&run["outcome"], &run["error"]),
+        (&Value::from("not-applicable"), &Value::Null)
+    );
+    assert!(
+        run["reason"]
+            .as_str()
+            .is_some_and(|r| r.contains("planner.compliance"))
+    );
+    assert_eq!(suite["summary"]["not_applicable"], 1);
+    assert_eq!(suite["summary"]["unreadable"], 0);
+    // a single plan that was asked for is refused
+    searoom(&["plan", ferry, "--compliance", "rules"])
+        .code(2)
+        .stderr(contains("planner.compliance"));
+}
+
+/// What was given up stands in a suite's document as in that of the plan.
+#[test]
+fn a_suite_says_what_was_given_up() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "a.toml", overlapping());
+    let suite = document(&searoom(&["suite", &file, "--json"]).code(1));
+    let plan = document(&searoom(&["plan", &file, "--json"]).code(1));
+    let given_up = &suite["runs"][0]["relaxations"];
+    assert_eq!(given_up, &plan["relaxations"]);
+    assert_eq!(given_up[0]["kind"], "risk");
+}
+
+/// A page that is given to others does not tell where its files were on this machine.
+#[test]
+fn a_report_has_no_folder_of_this_machine() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let good = write(folder.path(), "secret/good.toml", HEAD_ON);
+    let bad = write(folder.path(), "secret/bad.toml", "title = 3");
+    let here = format!(
+        "{}/scenarios/colregs/head-on.toml",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let page = text(&folder.path().join("page")).to_owned();
+    let read = || fs::read_to_string(format!("{page}/index.html")).expect("a page");
+    searoom(&["suite", &good, &bad, "--report", &page]).code(2);
+    assert!(read().contains("good.toml") && read().contains("bad.toml"));
+    assert!(!read().contains("secret"), "{}", read());
+    searoom(&["compare", &good, &bad, "--report", &page]).code(2);
+    assert!(read().contains("good.toml") && !read().contains("secret"));
+    searoom(&["plan", &here, "--report", &page]).success();
+    assert!(
+        read().contains("<p class=\"quiet\">scenarios/colregs/head-on.toml</p>"),
+        "{}",
+        read()
+    );
+}
+
+/// Three targets at rest beside a straight path, the nearest in the middle of the list; hulls of own ship and of each are 4 and 6 m
+/// to a side.
+const ABEAM_M: [f64; 3] = [500.0, -300.0, 400.0];
+
+/// Every view tells each target's own clearance, and the least of all, to the decimals that it has.
+#[test]
+fn every_view_tells_the_clearance_of_the_right_target() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| text(&folder.path().join(name)).to_owned();
+    let (own, _) = HEAD_ON.split_once("[[targets]]").expect("a target");
+    let mut scene = own.to_owned();
+    for (index, north) in ABEAM_M.iter().enumerate() {
+        scene += &format!(
+            "[[targets]]\nname = \"t{index}\"\nposition = {{ east_m = {}, north_m = {north} }}\ncourse_deg = 90.0\n\
+             speed_mps = 0.0\nlength_m = 60.0\nbeam_m = 12.0\n",
+            400 + 300 * index
+        );
+    }
+    let clearances = ABEAM_M.map(|north| north.abs() - 10.0);
+    let least = 290.0;
+    let file = write(folder.path(), "three.toml", scene);
+    let near = |value: &Value, so: f64| {
+        let value = value.as_f64().expect("a number");
+        assert!((value - so).abs() < 1e-6, "{value} for {so}");
+    };
+
+    let (page, csv, compared_page) = (at("page"), at("rows.csv"), at("compared"));
+    let said = stdout(&searoom(&["plan", &file, "--report", &page]).success());
+    assert!(said.contains("clearance    290.0 m\n"), "{said}");
+    let page = fs::read_to_string(format!("{page}/index.html")).expect("a page");
+    assert!(
+        page.contains("<dd>290.0 m</dd>") && page.contains("<span>290.0</span>"),
+        "{page}"
+    );
+
+    let plan = searoom(&["plan", &file, "--json"]).success();
+    let plan_file = write(folder.path(), "plan.json", stdout(&plan));
+    let plan = document(&plan);
+    near(&plan["cost"]["min_clearance_m"], least);
+    let met = plan["encounters"].as_array().expect("a list");
+    assert_eq!(met.len(), clearances.len());
+    for (index, (met, so)) in met.iter().zip(clearances).enumerate() {
+        assert_eq!(met["target"], format!("t{index}"));
+        near(&met["dcpa_m"], so);
+        near(&met["undisturbed_dcpa_m"], so);
+    }
+
+    let table = stdout(&searoom(&["verify", &plan_file]).success());
+    let checked = document(&searoom(&["verify", "--json", &plan_file]).success());
+    let checked = checked["plans"][0]["targets"].as_array().expect("a list");
+    assert_eq!(checked.len(), clearances.len());
+    for (index, (target, so)) in checked.iter().zip(clearances).enumerate() {
+        assert_eq!(target["target"], format!("t{index}"));
+        near(&target["min_clearance_m"], so);
+        near(&target["dcpa_m"], so);
+        let row = table
+            .lines()
+            .find(|line| line.contains(&format!(" t{index} ")));
+        let words: Vec<&str> = row.expect("a row").split_whitespace().collect();
+        let so = format!("{so:.1}");
+        assert_eq!(words[3..5], [so.as_str(), so.as_str()], "{table}");
+    }
+
+    let suite = stdout(&searoom(&["suite", &file]).success());
+    assert!(
+        suite.contains(" 290.0 ") && !suite.contains(" 390.0 "),
+        "{suite}"
+    );
+    let suite = document(&searoom(&["suite", &file, "--json"]).success());
+    near(&suite["runs"][0]["cost"]["min_clearance_m"], least);
+    for (met, so) in suite["runs"][0]["encounters"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .zip(clearances)
+    {
+        near(&met["dcpa_m"], so);
+    }
+
+    let args = ["compare", &file, "--csv", &csv, "--report", &compared_page];
+    let table = stdout(&searoom(&args).success());
+    let rows: Vec<&str> = table
+        .lines()
+        .filter(|l| l.contains("A*") || l.contains("hold"))
+        .collect();
+    assert!(
+        rows.len() >= 2 && rows.iter().all(|row| row.contains(" 290.0 ")),
+        "{table}"
+    );
+    let page = fs::read_to_string(format!("{compared_page}/index.html")).expect("a page");
+    assert!(page.contains("<span>290.0</span>"), "{page}");
+    let rows = fs::read_to_string(&csv).expect("rows");
+    let mut rows = rows.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    let names = rows.next().expect("names");
+    let column = names
+        .iter()
+        .position(|n| *n == "min_clearance_m")
+        .expect("a column");
+    let held = rows
+        .find(|row| row.contains(&"hold course"))
+        .expect("a row");
+    // the method of planners has a comma in it, the column counts from the end
+    let value = held[held.len() - (names.len() - column)];
+    near(&value.parse::<f64>().expect("a number").into(), least);
+    let compared = document(&searoom(&["compare", &file, "--json"]).success());
+    for entry in compared["comparisons"][0]["entries"]
+        .as_array()
+        .expect("a list")
+    {
+        if entry["method"] != "constant velocity" {
+            near(&entry["cost"]["min_clearance_m"], least);
+        }
+    }
+}
+
+/// Figures of a comparison say of a method that it rams.
+#[test]
+fn a_figure_of_a_comparison_says_who_rams() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let figure = text(&folder.path().join("a.svg")).to_owned();
+    searoom(&[
+        "compare",
+        "scenarios/colregs/head-on.toml",
+        "--figure",
+        &figure,
+    ])
+    .success();
+    let svg = fs::read_to_string(&figure).expect("a figure");
+    assert!(
+        svg.contains("hold course: COLLIDES") && !svg.contains("A*: "),
+        "{}",
+        svg.len()
+    );
+    let plan = text(&folder.path().join("b.svg")).to_owned();
+    searoom(&["plan", "scenarios/colregs/head-on.toml", "--figure", &plan])
+        .success()
+        .stdout(contains("(verified, safe)").and(contains("not safe").not()));
+    assert!(
+        !fs::read_to_string(&plan)
+            .expect("a figure")
+            .contains("verified")
+    );
+}
