@@ -5,6 +5,7 @@ use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets
 use super::conduct;
 use super::summary::{Meeting, Summary, Verdict};
 use super::words;
+use crate::evaluation::Counted;
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{Relaxation, Run, Rung};
@@ -310,6 +311,18 @@ fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
     said
 }
 
+/// Until when the errors of a motion are counted that ends at the horizon.
+fn counted(counted: &Counted) -> String {
+    let (until, within) = (counted.until, counted.within);
+    if counted.arrived {
+        format!("J is counted until {until:.1} s, {within} m from the last waypoint")
+    } else {
+        format!(
+            "J is counted until {until:.1} s: afterwards it does not come within {within} m of the last waypoint"
+        )
+    }
+}
+
 /// With four decimals, where these say something and are not all noise.
 fn stage_cost(value: f64) -> String {
     if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
@@ -421,7 +434,10 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
                 "delay",
                 format!("{} s (arrives after {way})", signed(delay)),
             ),
-            None => say("horizon", format!("{way}; no arrival is asked for")),
+            None => {
+                say("horizon", format!("{way}; no arrival is asked for"));
+                say("", counted(&evaluation.counted));
+            }
         }
         if let Some(clearance) = summary.clearance {
             say("clearance", format!("{} m", metres(clearance)));
