@@ -27,9 +27,7 @@ use searoom::report::figure::plan_figure;
 use searoom::report::plan_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::{Node, Steered, Trajectory};
-use searoom::vessel::{
-    CyberShip2, FULL_SCALE, ForceVector, FroudeScaled, Manoeuvring, StateVector, VesselKind,
-};
+use searoom::vessel::{CyberShip2, ForceVector, Manoeuvring, StateVector, VesselKind};
 
 const FIGURE_9: &str = include_str!("../scenarios/paper/figure_9.toml");
 
@@ -344,15 +342,8 @@ fn no_random_start_finds_a_cheaper_plan_of_any_shipped_scenario() {
         let patient = text.replace("[planner]", "[planner]\ndeadline_s = 300.0");
         let run = run(&patient);
         let plan = run.planned.outcome.plan().expect("a plan").cost;
-        let found = match run.scenario.control.vessel {
-            VesselKind::CyberShip2 => {
-                objectives_of_wandering_starts(&run, &CyberShip2::SMOOTH, starts)
-            }
-            VesselKind::CyberShip2Full => {
-                let full = FroudeScaled::new(CyberShip2::SMOOTH, FULL_SCALE);
-                objectives_of_wandering_starts(&run, &full, starts)
-            }
-        };
+        let vessel = CyberShip2::SMOOTH.at_length(run.scenario.own_ship.hull.length);
+        let found = objectives_of_wandering_starts(&run, &vessel, starts);
         let best = found.iter().copied().fold(f64::INFINITY, f64::min);
         println!(
             "{file}: stage cost {plan:.6}; {} of {starts} wandering starts lead to a plan, the best of them to {best:.6}",
@@ -759,6 +750,81 @@ velocity_set = { center_mps = [0.25, 0.17], shape_m2_per_s2 = [[0.016, 0.0], [0.
     }
 }
 
+/// By Froude's law a scene at another size is the same problem: lengths grow with the scale, times and speeds with its root, forces
+/// with its cube and moments with its fourth power, and the stage cost with the time.
+#[test]
+fn a_scaled_scene_has_the_scaled_plan() {
+    let scale = 30.0 / 1.255;
+    let (time, speed) = (f64::sqrt(scale), f64::sqrt(scale));
+    let target = |center: [f64; 2], axes: [f64; 2], velocity: [f64; 2], spread: f64, s: f64| {
+        let v = s.sqrt();
+        format!(
+            "[[targets]]\nname = \"at {}\"\n\
+             initial_set = {{ center_m = [{}, {}], shape_m2 = [[{}, 0.0], [0.0, {}]] }}\n\
+             velocity_set = {{ center_mps = [{}, {}], shape_m2_per_s2 = [[{}, 0.0], [0.0, {}]] }}\n",
+            center[0],
+            s * center[0],
+            s * center[1],
+            (s * axes[0]).powi(2),
+            (s * axes[1]).powi(2),
+            v * velocity[0],
+            v * velocity[1],
+            (v * spread).powi(2),
+            (v * spread).powi(2),
+        )
+    };
+    let scene = |s: f64| {
+        let v = s.sqrt();
+        let text = format!(
+            "title = \"scaled\"\nhorizon_s = {}\n\
+             own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = {}, length_m = {}, \
+             beam_m = {}, turning_radius_m = {}, safety_margin_m = 0 }}\n\
+             mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {}, north_m = {} }}], speed_mps = {} }}\n\
+             [planner]\nkind = \"optimal-control\"\ndeadline_s = 300\n",
+            100.0 * v,
+            0.2 * v,
+            1.255 * s,
+            0.29 * s,
+            2.0 * s,
+            20.0 * s,
+            10.0 * s,
+            0.223606797749979 * v,
+        );
+        run(&(text
+            + &target([9.0, -3.0], [1.0, 0.6], [-0.1, 0.2], 0.02, s)
+            + &target([20.0, 8.0], [1.0, 0.6], [-0.15, -0.04], 0.02, s)))
+    };
+    let (model, ship) = (scene(1.0), scene(scale));
+    let cost = |run: &Run| run.planned.outcome.plan().expect("a plan").cost;
+    let off = cost(&ship) / (cost(&model) * time) - 1.0;
+    assert!(off.abs() < 1e-6, "{off:e}");
+    let error = |run: &Run| run.evaluation.as_ref().expect("judged").space_time_error;
+    assert!((error(&ship) / (error(&model) * scale * scale) - 1.0).abs() < 1e-4);
+    let nodes = |run: &Run| -> Vec<Node> {
+        let plan = run.planned.outcome.plan().expect("a plan");
+        plan.trajectory.steered().expect("forces").nodes().to_vec()
+    };
+    let (small, large) = (nodes(&model), nodes(&ship));
+    assert_eq!(small.len(), large.len());
+    for (small, large) in small.iter().zip(&large) {
+        let near = |value: f64, expected: f64, unit: f64| {
+            assert!(
+                (value - expected).abs() < 1e-3 * unit,
+                "{small:?} {large:?}"
+            );
+        };
+        near(large.time, small.time * time, time);
+        near(large.pose.position.x, small.pose.position.x * scale, scale);
+        near(large.pose.position.y, small.pose.position.y * scale, scale);
+        near(large.velocity.x, small.velocity.x * speed, speed);
+        near(large.force.x, small.force.x * scale.powi(3), scale.powi(3));
+        near(large.moment, small.moment * scale.powi(4), scale.powi(4));
+    }
+    for run in [&model, &ship] {
+        assert!(run.evaluation.as_ref().is_some_and(Evaluation::verified));
+    }
+}
+
 #[test]
 fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
     let text = with_targets(
@@ -787,7 +853,7 @@ fn a_judge_without_its_ship_knows_no_plan() {
     // what the judge is given is what it uses: a ship of another size does not make this way
     let run = run(FIGURE_9);
     let plan = run.planned.outcome.plan().expect("a plan");
-    let full = searoom::vessel::VesselKind::CyberShip2Full.exact();
+    let full = VesselKind::CyberShip2.exact(88.0);
     let steering = Steering {
         motion: plan.trajectory.steered().expect("forces"),
         vessel: full.as_ref(),

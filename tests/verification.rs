@@ -973,14 +973,14 @@ fn what_only_some_plans_have_is_held_too() {
                     "cost.objective",
                 ),
                 (
-                    "another ship",
-                    |d| *at(d, "/optimal_control/vessel") = json!("cybership2-full"),
+                    "a ship of another size",
+                    |d| scale(at(d, "/own_ship/length_m"), 1.01),
                     "off the plan",
                 ),
                 (
-                    "a ship of another size",
-                    |d| scale(at(d, "/own_ship/length_m"), 1.6),
-                    "own_ship.length_m",
+                    "an error that is counted for longer",
+                    |d| scale(at(d, "/cost/space_time_error_until_s"), 1.01),
+                    "cost.space_time_error_until_s",
                 ),
                 (
                     "other forces",

@@ -129,7 +129,8 @@ pub(super) fn baseline(scenario: &Scenario, sets: &Sets, heading: f64, speed: f6
         turn_rate: 0.0,
     };
     let trajectory = Trajectory::from(segment);
-    let evaluation = pipeline::judge_free(scenario, &sets.level, &trajectory);
+    let mut evaluation = pipeline::judge_free(scenario, &sets.level, &trajectory);
+    super::count_alike(&mut evaluation, scenario, &trajectory);
     let risk = |set| pipeline::peak_risk(set, &trajectory, scenario.max_risk);
     let risks = sets.whole.iter().map(risk).collect();
     Baseline {

@@ -15,7 +15,7 @@ pub(crate) use look::Look;
 pub use method::Method;
 
 use crate::colregs::conduct::{Conduct, Meeting};
-use crate::evaluation::{Evaluation, Safety};
+use crate::evaluation::{Evaluation, Safety, counted_error};
 use crate::frame::Vector;
 use crate::obstacle::{Obstacle, PeakRisk};
 use crate::pipeline::{self, Run};
@@ -117,13 +117,27 @@ pub fn contenders(methods: &[Method], risks: &[f64]) -> Vec<Contender> {
         .collect()
 }
 
+/// Counts the space-time error as that of all methods: until own ship's length from the last waypoint, or where the motion does not
+/// come so near, as [`Counted`](crate::evaluation::Counted) says.
+fn count_alike(evaluation: &mut Evaluation, scenario: &Scenario, trajectory: &Trajectory) {
+    let (desired, q) = (&scenario.desired, scenario.time_weight);
+    let within = scenario.own_ship.hull.length;
+    (evaluation.space_time_error, evaluation.counted) =
+        counted_error(trajectory, desired, q, within);
+}
+
 impl Contender {
-    /// Plans and judges. The same scenario gives the same entry, but for the time that planning took; contenders may run at
+    /// Plans and judges. The space-time error is counted alike for all methods, not to the end of each motion. The same scenario gives the same entry, but for the time that planning took; contenders may run at
     /// the same time.
     pub fn run(self, scenario: &Scenario) -> Entry {
         let result = match self.method {
             Method::Planner { .. } => {
-                Sailed::Planned(Box::new(pipeline::run(self.scenario(scenario))))
+                let mut run = pipeline::run(self.scenario(scenario));
+                if let (Some(plan), Some(found)) = (run.planned.outcome.plan(), &mut run.evaluation)
+                {
+                    count_alike(found, scenario, &plan.trajectory);
+                }
+                Sailed::Planned(Box::new(run))
             }
             Method::HoldCourse => Sailed::Baseline(Box::new(hold_course(&self.scenario(scenario)))),
             Method::ConstantVelocity => match constant_velocity(&self.scenario(scenario)) {

@@ -3,6 +3,7 @@
 mod along;
 mod clearance;
 mod cost;
+mod counted;
 mod least;
 mod motion;
 mod moving_ellipse;
@@ -19,6 +20,7 @@ mod turn;
 mod undisturbed;
 mod words;
 
+pub use counted::{Counted, counted_error};
 pub use request::{Freedom, Request};
 pub use safety::Safety;
 pub use space_time_set::{SetShape, SpaceTimeSet};
@@ -178,7 +180,9 @@ pub struct Evaluation {
     pub safety: Safety,
     /// Formulas section 7, m².
     pub space_time_error: f64,
-    /// Eq. (30) read literally, m².
+    /// Until when that is counted: of segments to their end.
+    pub counted: Counted,
+    /// Eq. (30) read literally over the whole motion, m².
     pub arc_length_error: f64,
     /// Seconds.
     pub duration: f64,
@@ -225,9 +229,17 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let shore = shore(request, segments, &turns, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
+    let off = segments.last().map_or(f64::NAN, |s| {
+        (s.end().position - request.desired.end()).norm()
+    });
     Evaluation {
         violations,
         safety: sound.max(met).max(Safety::of_land(&shore, request)),
+        counted: Counted {
+            within: tolerance::ARRIVAL_M,
+            until: end,
+            arrived: off <= tolerance::ARRIVAL_M,
+        },
         space_time_error: or_nan(cost::space_time_error(
             segments,
             request.desired,

@@ -1,5 +1,6 @@
 //! Judges a motion under forces: does the ship do what the plan says, and is that clear of everything?
 
+use super::counted::counted_error_of_cubics;
 use super::piece::Piece;
 use super::quadrature::smooth;
 use super::{Evaluation, Request, Safety, Violation, meetings, shore};
@@ -32,11 +33,11 @@ const PARTS: usize = 4;
 /// let planned = pipeline::run(scenario).planned;
 /// let trajectory = &planned.outcome.plan().expect("a way").trajectory;
 /// let vessel = VesselKind::CyberShip2;
-/// let exact = vessel.exact();
+/// let exact = vessel.exact(1.255);
 /// let steering = Steering {
 ///     motion: trajectory.steered().expect("a plan of forces"),
 ///     vessel: exact.as_ref(),
-///     force_limits: vessel.force_limits(),
+///     force_limits: vessel.force_limits(1.255),
 /// };
 /// let within = |force: f64, limit: f64| force.abs() <= limit + 1e-9;
 /// assert!(steering.motion.nodes().iter().all(|node| within(node.force.x, steering.force_limits.x)));
@@ -55,7 +56,8 @@ pub struct Steering<'a> {
 /// Judges a motion under forces over the whole horizon. It has to start where own ship is and end at the horizon; forces
 /// are within their limits; the ship, integrated anew from every node, is at the next one to [`tolerance::DEFECT`] of her
 /// units; and the cubics between the nodes keep out of every set to [`tolerance::DEPTH_M`], and of every hull, with
-/// certified distances. Arrival is not asked for: the delay is NaN. `request.segments` is not looked at.
+/// certified distances. Arrival is not asked for: the delay is NaN, and the space-time error is
+/// counted until it is within own ship's length of the last waypoint ([`Counted`](super::Counted)). `request.segments` is not looked at.
 pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     let mut violations = Vec::new();
     check(request, steering, &mut violations);
@@ -65,11 +67,15 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     let shore = shore(request, &pieces, &[], true, &mut violations);
     let length = steering.motion.length();
     let nodes = steering.motion.nodes();
+    let within = request.own.hull.length;
+    let (space_time_error, counted) =
+        counted_error_of_cubics(&pieces, request.desired, request.time_weight, within);
     Evaluation {
         violations,
         safety: sound.max(met).max(Safety::of_land(&shore, request)),
-        space_time_error: space_time_error(&pieces, request.desired, request.time_weight),
+        space_time_error,
         arc_length_error: arc_length_error(&pieces, request.desired, request.time_weight),
+        counted,
         duration: nodes[nodes.len() - 1].time - nodes[0].time,
         length,
         delay: f64::NAN,
@@ -225,8 +231,8 @@ fn modified_midpoint(
     0.5 * (here + before + h * vessel.rates(&here, force))
 }
 
-/// Formulas section 7 over the whole motion, m².
-fn space_time_error(pieces: &[Cubic], desired: &DesiredTrajectory, q: f64) -> f64 {
+/// Formulas section 7 over all pieces, m².
+pub(super) fn space_time_error(pieces: &[Cubic], desired: &DesiredTrajectory, q: f64) -> f64 {
     let integral: f64 = pieces
         .iter()
         .map(|piece| {

@@ -129,11 +129,12 @@ fn judged(
     };
     match trajectory.steered() {
         Some(motion) => {
-            let vessel = scenario.control.vessel.exact();
+            let control = &scenario.control;
+            let vessel = control.vessel.exact(control.length);
             let steering = Steering {
                 motion,
                 vessel: vessel.as_ref(),
-                force_limits: scenario.control.force_limits,
+                force_limits: control.force_limits,
             };
             evaluate_steered(&request, &steering)
         }

@@ -13,12 +13,18 @@ use crate::vessel::{ForceVector, StateVector, VesselKind};
 /// let usual = ControlSettings::of(VesselKind::CyberShip2);
 /// let finer = ControlSettings { intervals: 100, ..usual.clone() };
 /// assert_eq!(usual.intervals, 50);
-/// assert_eq!(finer.force_limits, VesselKind::CyberShip2.force_limits());
+/// assert_eq!((usual.length, usual.force_limits.x), (1.255, 2.0));
+/// // 24 times as long: 24³ times the force
+/// let ship = ControlSettings::at_length(VesselKind::CyberShip2, 24.0 * 1.255);
+/// assert!((ship.force_limits.x / (2.0 * 24.0_f64.powi(3)) - 1.0).abs() < 1e-12);
+/// assert_eq!(finer.force_limits, usual.force_limits);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlSettings {
     /// Whose forces.
     pub vessel: VesselKind,
+    /// Of the ship, metres: the vessel is scaled to it by Froude's law.
+    pub length: f64,
     /// To either side of zero, positive: newtons, newtons, newton metres.
     pub force_limits: ForceVector,
     /// Of the horizon, at least one; more are taken where these are too coarse.
@@ -30,14 +36,20 @@ pub struct ControlSettings {
 }
 
 impl ControlSettings {
-    /// Of a ship, with what the contract gives where a file says nothing.
+    /// Of a vessel at the size of its model, with what the contract gives where a file says nothing.
     pub fn of(vessel: VesselKind) -> Self {
+        Self::at_length(vessel, vessel.length())
+    }
+
+    /// The same of a ship of this length, metres. Plans of the same scene at another size are the same by Froude's law.
+    pub fn at_length(vessel: VesselKind, length: f64) -> Self {
         Self {
             vessel,
-            force_limits: vessel.force_limits(),
+            length,
+            force_limits: vessel.force_limits(length),
             intervals: 50,
-            state_weights: vessel.state_weights(),
-            force_weights: vessel.force_weights(),
+            state_weights: vessel.state_weights(length),
+            force_weights: vessel.force_weights(length),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::alteration::largest_alteration;
 use super::summary::Turn;
 use super::table::{cell, figures, metres, said, signed, square_metres, verified};
 use crate::comparison::{Entry, Inapplicable, Method, Sailed};
-use crate::evaluation::{Safety, Tone, outcome, risk_figure};
+use crate::evaluation::{Counted, Safety, Tone, outcome, risk_figure};
 use crate::frame::Side;
 use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
@@ -71,6 +71,8 @@ pub struct ComparisonRow {
     pub verified: Option<bool>,
     /// Space-time error, m².
     pub space_time_error: Option<f64>,
+    /// Until when that is counted.
+    pub counted: Option<Counted>,
     /// Eq. (30) read literally, m².
     pub arc_length_error: Option<f64>,
     /// Seconds.
@@ -136,6 +138,7 @@ impl ComparisonRow {
             verified,
             space_time_error: evaluation.and_then(|e| finite(e.space_time_error)),
             arc_length_error: evaluation.and_then(|e| finite(e.arc_length_error)),
+            counted: evaluation.map(|e| e.counted),
             duration: evaluation.and_then(|e| finite(e.duration)),
             delay: (evaluation.filter(|_| entry.arrived())).and_then(|e| finite(e.delay)),
             length: evaluation.and_then(|e| finite(e.length)),
@@ -197,9 +200,9 @@ pub fn comparison_table(
     lines.join("\n")
 }
 
-/// Why there is no motion, and what does not apply: a sentence each.
+/// Until when J is counted, why there is no motion, and what does not apply: a sentence each.
 pub(super) fn remarks(rows: &[ComparisonRow], inapplicable: &[Inapplicable]) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut lines: Vec<String> = counting(rows).into_iter().collect();
     let mut told: Vec<Method> = Vec::new();
     for row in rows {
         let Some(reason) = row.reason.as_ref().filter(|_| !told.contains(&row.method)) else {
@@ -217,6 +220,32 @@ pub(super) fn remarks(rows: &[ComparisonRow], inapplicable: &[Inapplicable]) -> 
         lines.push(format!("{} does not apply: {}", other.method, other.reason));
     }
     lines
+}
+
+/// Until when J is counted.
+fn counting(rows: &[ComparisonRow]) -> Option<String> {
+    let counted = |row: &ComparisonRow| row.counted;
+    let within = rows.iter().find_map(counted)?.within;
+    let mut passing: Vec<String> = Vec::new();
+    for row in rows {
+        let Some(counted) = row.counted.filter(|counted| !counted.arrived) else {
+            continue;
+        };
+        let line = format!("{} to {:.0} s", row.method, counted.until);
+        if !passing.contains(&line) {
+            passing.push(line);
+        }
+    }
+    let rest = match passing.as_slice() {
+        [] => String::new(),
+        passing => format!(
+            "; of motions that do not come so near, to the end of the desired time: {}",
+            passing.join(", ")
+        ),
+    };
+    Some(format!(
+        "J is counted until {within} m, own ship's length, from the last waypoint{rest}"
+    ))
 }
 
 /// The table as markdown, without the time that planning took: the same comparison, the same text.
@@ -299,7 +328,7 @@ fn short(turn: Turn) -> String {
 }
 
 /// The columns of [`comparison_csv`].
-pub const COMPARISON_COLUMNS: [&str; 21] = [
+pub const COMPARISON_COLUMNS: [&str; 22] = [
     "file",
     "scenario",
     "method",
@@ -309,6 +338,7 @@ pub const COMPARISON_COLUMNS: [&str; 21] = [
     "safe",
     "arrived",
     "space_time_error_m2",
+    "space_time_error_until_s",
     "space_time_error_arc_length_m2",
     "duration_s",
     "delay_s",
@@ -324,7 +354,7 @@ pub const COMPARISON_COLUMNS: [&str; 21] = [
 ];
 
 /// A row of values in the order of [`COMPARISON_COLUMNS`]; empty where there is none.
-pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 21] {
+pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 22] {
     let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let word = |value: Option<bool>| value.map_or_else(String::new, |v| v.to_string());
     [
@@ -337,6 +367,7 @@ pub fn comparison_csv(file: &str, title: &str, row: &ComparisonRow) -> [String; 
         word(row.safe()),
         row.arrived.to_string(),
         number(row.space_time_error),
+        number(row.counted.map(|c| c.until)),
         number(row.arc_length_error),
         number(row.duration),
         number(row.delay),

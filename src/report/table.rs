@@ -6,7 +6,7 @@ use super::conduct;
 use super::summary::{Meeting, Summary};
 use super::words;
 pub(super) use crate::evaluation::Tone;
-use crate::evaluation::{outcome, risk_figure};
+use crate::evaluation::{Counted, outcome, risk_figure};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{Relaxation, Run, Rung};
@@ -314,6 +314,18 @@ fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
     said
 }
 
+/// Until when the errors of a motion are counted that ends at the horizon.
+fn counted(counted: &Counted) -> String {
+    let (until, within) = (counted.until, counted.within);
+    if counted.arrived {
+        format!("J is counted until {until:.1} s, {within} m from the last waypoint")
+    } else {
+        format!(
+            "J is counted until {until:.1} s: afterwards it does not come within {within} m of the last waypoint"
+        )
+    }
+}
+
 /// With four decimals, where these say something and are not all noise.
 fn stage_cost(value: f64) -> String {
     if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
@@ -428,6 +440,7 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
             ),
             None if run.control.is_some() => {
                 say("horizon", format!("{way}; no arrival is asked for"));
+                say("", counted(&evaluation.counted));
             }
             None => say("delay", format!("does not arrive ({way} at the horizon)")),
         }

@@ -45,10 +45,15 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
         .require("mission", "a table")
         .and_then(|entry| entry.section("a table"))
         .and_then(|section| mission(section, speed, &plane));
+    let model = VesselKind::CyberShip2;
+    // without a length the file is at fault: then any will do
+    let length = own_ship
+        .as_ref()
+        .map_or(model.length(), |own| own.hull.length);
     let planner = root
         .take("planner")
         .and_then(|entry| entry.section("a table"))
-        .map(planner)
+        .map(|section| planner(section, length))
         .unwrap_or_default();
     let targets = targets(&mut root, &plane);
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
@@ -80,7 +85,7 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
         objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
         control: planner
             .control
-            .unwrap_or(ControlSettings::of(VesselKind::CyberShip2)),
+            .unwrap_or(ControlSettings::at_length(model, length)),
         search: planner.search.unwrap_or(SearchKind::AStar),
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
         max_risk: planner.max_risk.unwrap_or(0.0),
@@ -306,9 +311,10 @@ struct PlannerFields {
     deadline: Option<f64>,
 }
 
-fn planner(mut section: Section) -> PlannerFields {
+/// `length` is that of own ship, metres.
+fn planner(mut section: Section, length: f64) -> PlannerFields {
     let fields = PlannerFields {
-        control: control_settings(&mut section),
+        control: control_settings(&mut section, length),
         kind: section.choice(
             "kind",
             &[

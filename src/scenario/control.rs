@@ -6,15 +6,14 @@ use super::section::Section;
 use crate::planner::ControlSettings;
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
-/// The settings of a planner's table; the defaults where there is none.
-pub(super) fn control_settings(planner: &mut Section) -> Option<ControlSettings> {
+/// The settings of a planner's table for a ship of this length, metres; the defaults where there is none.
+pub(super) fn control_settings(planner: &mut Section, length: f64) -> Option<ControlSettings> {
     let Some(entry) = planner.take("optimal_control") else {
-        return Some(ControlSettings::of(VesselKind::CyberShip2));
+        return Some(ControlSettings::at_length(VesselKind::CyberShip2, length));
     };
     let mut section = entry.section("a table")?;
-    let words = VesselKind::ALL.map(|kind| (kind.word(), kind));
     let vessel = if section.has("vessel") {
-        section.choice("vessel", &words)
+        section.choice("vessel", &VesselKind::WORDS)
     } else {
         Some(VesselKind::CyberShip2)
     };
@@ -37,14 +36,14 @@ pub(super) fn control_settings(planner: &mut Section) -> Option<ControlSettings>
         None => Some(None),
     };
     section.finish();
-    let default = ControlSettings::of(vessel?);
+    let default = ControlSettings::at_length(vessel?, length);
     Some(ControlSettings {
-        vessel: default.vessel,
         force_limits: limits?.unwrap_or(default.force_limits),
         intervals: intervals?.unwrap_or(default.intervals),
         state_weights: state?.map_or(default.state_weights, StateVector::from),
         // sway and yaw have the sign of starboard in files, which a square does not see
         force_weights: force?.map_or(default.force_weights, ForceVector::from),
+        ..default
     })
 }
 
@@ -113,46 +112,14 @@ kind = "optimal-control"
         Scenario::parse(&text).map(|s| s.control).map_err(faults)
     }
 
-    fn settings_of_full(table: &str) -> Result<ControlSettings, Vec<String>> {
-        let text = format!(
-            "{}[planner.optimal_control]\nvessel = \"cybership2-full\"\n{table}",
-            LEAST.replace("1.255", "88")
-        );
-        let faults = |faults: Vec<Fault>| faults.into_iter().map(|f| f.path).collect();
-        Scenario::parse(&text).map(|s| s.control).map_err(faults)
-    }
-
-    /// The forces of one ship move no other: 1.5 times is the most.
     #[test]
-    fn a_ship_is_as_long_as_the_vessel_whose_forces_are_planned() {
-        let faults = |length: &str| {
-            let text = LEAST.replace("1.255", length);
-            Scenario::parse(&text).err().unwrap_or_default()
-        };
-        for length in ["1.255", "0.84", "1.88"] {
-            assert_eq!(faults(length), [], "{length}");
+    fn the_vessel_is_as_long_as_own_ship() {
+        for length in [0.5, 1.255, 30.0, 300.0] {
+            let text = LEAST.replace("1.255", &length.to_string());
+            let found = Scenario::parse(&text).expect("valid").control;
+            let vessel = VesselKind::CyberShip2;
+            assert_eq!(found, ControlSettings::at_length(vessel, length));
         }
-        for length in ["30", "0.83", "1.89"] {
-            let found = faults(length);
-            assert_eq!(found.len(), 1, "{length}");
-            assert_eq!(found[0].path, "own_ship.length_m");
-            assert!(found[0].line.is_some());
-            assert!(
-                found[0].found.contains(&format!("{length} m")),
-                "{}",
-                found[0].found
-            );
-            assert!(
-                found[0].allowed.contains("0.84 to 1.88 m"),
-                "{}",
-                found[0].allowed
-            );
-        }
-        // other planners know no forces
-        let other = LEAST
-            .replace("1.255", "30")
-            .replace("optimal-control", "space-time");
-        assert!(Scenario::parse(&other).is_ok());
     }
 
     #[test]
@@ -160,12 +127,9 @@ kind = "optimal-control"
         let default = ControlSettings::of(VesselKind::CyberShip2);
         assert_eq!(settings(""), Ok(default));
         assert_eq!(default.force_limits, ForceVector::new(2.0, 1.5, 1.5));
-        let full = settings_of_full("").expect("valid");
-        assert_eq!(full, ControlSettings::of(VesselKind::CyberShip2Full));
-        assert!((full.force_limits[0] - 2.0 * 343e3).abs() < 1e-6);
-        assert!((full.force_limits[2] - 1.5 * 343e3 * 70.0).abs() < 1e-3);
-        assert!((full.state_weights[0] * 4900.0 - 0.05).abs() < 1e-12);
-        assert!((full.force_weights[0] * 343e3 * 343e3 - 0.1).abs() < 1e-12);
+        // the same by another word
+        let full = "vessel = \"cybership2-full\"";
+        assert_eq!(settings(full), Ok(default));
         let given = "intervals = 80\nforce_limits = { surge_n = 1, sway_n = 0.5, yaw_nm = 0.25 }\n\
                      state_weights = [1, 2, 3, 4, 5, 6]\ncontrol_weights = [7, 8, 9]";
         let given = settings(given).expect("valid");

@@ -5,7 +5,6 @@ use crate::frame::{Vector, heading_of, wrap};
 use crate::planner::{Objective, PlannerKind};
 use crate::tolerance;
 use crate::trajectory::{NetworkError, PathNetwork};
-use crate::vessel::ALIKE;
 
 /// Every fault, by the paths of the fields.
 pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
@@ -79,21 +78,6 @@ fn for_optimal_control(scenario: &Scenario) -> Vec<Fault> {
             "map",
             "land for the optimal-control planner".to_owned(),
             "nothing: it keeps off no land, this is not built yet",
-        ));
-    }
-    let (length, vessel) = (scenario.own_ship.hull.length, scenario.control.vessel);
-    if !vessel.is_alike(length) {
-        let [low, high] = vessel.lengths_alike();
-        faults.push(fault(
-            "own_ship.length_m",
-            format!(
-                "{length} m, with the forces of \"{}\", {:.3} m long",
-                vessel.word(),
-                vessel.length()
-            ),
-            &format!(
-                "{low:.2} to {high:.2} m, within a factor of {ALIKE} of that ship, or another planner.optimal_control.vessel"
-            ),
         ));
     }
     faults

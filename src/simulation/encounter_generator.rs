@@ -299,7 +299,7 @@ fn scene(
             targets: targets.collect(),
             planner: PlannerKind::SpaceTime,
             objective: Objective::SpaceTimeError,
-            control: ControlSettings::of(VesselKind::CyberShip2),
+            control: ControlSettings::at_length(VesselKind::CyberShip2, OWN_HULL.length),
             search: SearchKind::AStar,
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,

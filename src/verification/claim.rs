@@ -197,7 +197,6 @@ impl Claim {
             })
             .collect::<Result<Vec<_>, _>>()?;
         let motion = motion::read(&file, &mut faults)?;
-        faults.extend(motion.as_ref().and_then(|m| m.another_ship(&own)));
         Ok(Self {
             own,
             desired,

@@ -46,6 +46,10 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         cost.space_time_error_arc_length_m2,
         evaluation.arc_length_error,
     );
+    if let Some(said) = cost.space_time_error_until_s {
+        let so = evaluation.counted.until;
+        same("cost.space_time_error_until_s", Some(said), so);
+    }
     same(
         "cost.duration_s",
         Some(cost.duration_s),
@@ -167,7 +171,7 @@ fn driven(claim: &Claim, said: f64) -> Option<f64> {
     else {
         return None;
     };
-    let vessel = vessel.exact();
+    let vessel = vessel.exact(claim.own.hull.length);
     let steering = Steering {
         motion,
         vessel: vessel.as_ref(),

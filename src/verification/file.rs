@@ -128,6 +128,7 @@ pub(super) struct CostFile {
     pub objective: f64,
     pub space_time_error_m2: f64,
     pub space_time_error_arc_length_m2: Option<f64>,
+    pub space_time_error_until_s: Option<f64>,
     pub arrived: bool,
     pub duration_s: f64,
     pub length_m: f64,

@@ -125,7 +125,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
             &request,
             &Steering {
                 motion,
-                vessel: vessel.exact().as_ref(),
+                vessel: vessel.exact(claim.own.hull.length).as_ref(),
                 force_limits: *force_limits,
             },
         ),

@@ -5,7 +5,7 @@ use super::file::{ControlFile, PlanFile, SampleFile, SegmentFile, StartFile};
 use crate::evaluation::{StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg, wrap};
 use crate::trajectory::{Node, Segment, Steered};
-use crate::vessel::{ForceVector, OwnShip, StateVector, VesselKind};
+use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 impl ClaimedMotion {
     /// Segments, or intervals between nodes.
@@ -32,22 +32,6 @@ impl ClaimedMotion {
             Self::Segments(segments) => segments.last().map_or(f64::NAN, Segment::end_time),
             Self::Steered { motion, .. } => motion.nodes()[motion.nodes().len() - 1].time,
         }
-    }
-
-    /// What is wrong where own ship is of another size than the ship whose forces move her.
-    pub fn another_ship(&self, own: &OwnShip) -> Option<Violation> {
-        let Self::Steered { vessel, .. } = self else {
-            return None;
-        };
-        let length = own.hull.length;
-        let [low, high] = vessel.lengths_alike();
-        (!vessel.is_alike(length)).then(|| Violation {
-            what: format!(
-                "own_ship.length_m: {length} m, under the forces of '{}', which are those of ships of {low:.2} to {high:.2} m",
-                vessel.word()
-            ),
-            time: 0.0,
-        })
     }
 
     /// The poses that it has at a time: two where one piece ends and the next begins.
@@ -81,11 +65,11 @@ pub(super) fn read(
             segments.iter().map(segment).collect(),
         ))),
         (None, Some(control)) => {
-            let known = VesselKind::ALL
+            let known = VesselKind::WORDS
                 .into_iter()
-                .find(|v| v.word() == control.vessel);
-            let Some(vessel) = known else {
-                let words = VesselKind::ALL.map(VesselKind::word).join(", ");
+                .find(|(word, _)| *word == control.vessel);
+            let Some((_, vessel)) = known else {
+                let words = VesselKind::WORDS.map(|(word, _)| word).join(", ");
                 let found = format!("'{}'", control.vessel);
                 return Err(fault("optimal_control.vessel", found, &words));
             };

@@ -8,7 +8,7 @@ mod manoeuvring;
 
 pub use cybership2::CyberShip2;
 pub use froude::FroudeScaled;
-pub use kind::{ALIKE, FULL_SCALE, VesselKind};
+pub use kind::VesselKind;
 pub use manoeuvring::{ForceVector, Manoeuvring, Scales, StateVector};
 
 use crate::frame::{Pose, Vector};

@@ -19,7 +19,7 @@ use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::{ControlSettings, NoPlan, Outcome, Plan, Planned, Problem, space_time};
 use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
-use crate::vessel::{CyberShip2, FULL_SCALE, FroudeScaled, Manoeuvring, StateVector, VesselKind};
+use crate::vessel::{CyberShip2, Manoeuvring, StateVector, VesselKind};
 
 /// Of the time budget: the starts end by then, so that the best of them is brought to a grid that is fine enough. As long as
 /// none has led to a plan they go on: the first one's own grid may be fine enough.
@@ -50,17 +50,9 @@ pub fn outer_sets(obstacles: &[Obstacle]) -> Vec<Obstacle> {
 pub fn plan(problem: &Problem, settings: &ControlSettings) -> Controlled {
     match settings.vessel {
         VesselKind::CyberShip2 => {
-            Planner::new(problem, settings, CyberShip2::SMOOTH, CyberShip2::EXACT).plan()
-        }
-        VesselKind::CyberShip2Full => {
-            let full = |model| FroudeScaled::new(model, FULL_SCALE);
-            Planner::new(
-                problem,
-                settings,
-                full(CyberShip2::SMOOTH),
-                full(CyberShip2::EXACT),
-            )
-            .plan()
+            let [smooth, exact] = [CyberShip2::SMOOTH, CyberShip2::EXACT]
+                .map(|model| model.at_length(settings.length));
+            Planner::new(problem, settings, smooth, exact).plan()
         }
     }
 }

@@ -157,13 +157,14 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
         stages
     }
 
-    /// The largest weight in the ship's own units: costs are of order one in it.
+    /// The largest weight in the ship's own units, those of time included: ships of every size are one problem to the solver.
     fn cost_unit(&self) -> f64 {
         let (scales, weights) = (self.vessel.scales(), self.controls.weights);
+        let time = scales.state[0] / scales.state[3];
         let state = weights.state.component_mul(&scales.state.map(|s| s * s));
         let force = weights.force.component_mul(&scales.force.map(|s| s * s));
         let most = state.amax().max(force.amax());
-        if most > 0.0 { most } else { 1.0 }
+        if most > 0.0 { most * time } else { 1.0 }
     }
 
     /// The rows that an interval has from the start.

@@ -178,6 +178,8 @@ pub struct ViolationDocument {
 pub struct CostDocument {
     pub objective: f64,
     pub space_time_error_m2: f64,
+    /// Until when that is counted.
+    pub space_time_error_until_s: f64,
     pub space_time_error_arc_length_m2: f64,
     pub arrived: bool,
     pub duration_s: f64,

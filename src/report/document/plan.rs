@@ -306,6 +306,7 @@ pub(super) fn cost_of(
         objective,
         space_time_error_m2: evaluation.space_time_error,
         space_time_error_arc_length_m2: evaluation.arc_length_error,
+        space_time_error_until_s: evaluation.counted.until,
         arrived,
         duration_s: evaluation.duration,
         length_m: evaluation.length,

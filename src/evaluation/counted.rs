@@ -1,0 +1,292 @@
+//! Until when the space-time error of a motion is counted, so that any two motions compare: one that ends at the last waypoint,
+//! one that stays there, one that passes by.
+
+use super::piece::Piece;
+use super::{cost, steered};
+use crate::frame::Vector;
+use crate::trajectory::{Cubic, DesiredTrajectory, Trajectory};
+
+/// Of the duration: the motion is looked at at least this often near the edge of the disc of arrival. What is within it for less
+/// time may be missed.
+const FINEST_LOOK: f64 = 1e-6;
+
+/// Halvings of the time between two looks.
+const HALVINGS: usize = 60;
+
+/// Until when the space-time error of a motion is counted: until it comes within a distance of the last waypoint for the last time, or
+/// where it never does, or starts there and stays, to the end of the desired trajectory, or its own if that is earlier.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::evaluation::{Counted, counted_error};
+/// use searoom::frame::{Pose, Vector};
+/// use searoom::trajectory::{DesiredTrajectory, Segment, Trajectory};
+///
+/// let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(1000.0, 0.0)], &[5.0])?;
+/// // on the path at 4 m/s, and on beyond its end
+/// let line = Segment { start: Pose::new(Vector::zeros(), 0.0), start_time: 0.0, duration: 400.0, speed: 4.0, turn_rate: 0.0 };
+/// let (_, counted) = counted_error(&Trajectory::new(vec![line])?, &desired, 25.0, 40.0);
+/// let Counted { within, until, arrived } = counted;
+/// assert!(arrived && within == 40.0 && (until - 240.0).abs() < 1e-6);
+/// // past it at a distance: to the end of the desired time
+/// let aside = Segment { start: Pose::new(Vector::new(0.0, 50.0), 0.0), ..line };
+/// let (error, counted) = counted_error(&Trajectory::new(vec![aside])?, &desired, 25.0, 40.0);
+/// assert!(!counted.arrived && counted.until == 200.0 && error > 2500.0);
+/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Counted {
+    /// Metres from the last waypoint.
+    pub within: f64,
+    /// Seconds.
+    pub until: f64,
+    /// True where the motion comes so near.
+    pub arrived: bool,
+}
+
+/// The space-time error of a motion, m², and until when it is counted: the same for the same motion, however it is given. `q` in
+/// m²/s², `within` in metres.
+pub fn counted_error(
+    trajectory: &Trajectory,
+    desired: &DesiredTrajectory,
+    q: f64,
+    within: f64,
+) -> (f64, Counted) {
+    match trajectory.steered() {
+        Some(motion) => {
+            let pieces: Vec<Cubic> = motion.pieces().collect();
+            counted_error_of_cubics(&pieces, desired, q, within)
+        }
+        None => {
+            let counted = counted(trajectory.segments(), desired, within);
+            let kept = until(trajectory.segments(), counted.until);
+            (cost::space_time_error(&kept, desired, q), counted)
+        }
+    }
+}
+
+/// [`counted_error`] of a motion under forces.
+pub(super) fn counted_error_of_cubics(
+    pieces: &[Cubic],
+    desired: &DesiredTrajectory,
+    q: f64,
+    within: f64,
+) -> (f64, Counted) {
+    let counted = counted(pieces, desired, within);
+    let kept = until(pieces, counted.until);
+    (steered::space_time_error(&kept, desired, q), counted)
+}
+
+/// The pieces up to a time.
+fn until<P: Piece>(pieces: &[P], time: f64) -> Vec<P> {
+    pieces
+        .iter()
+        .filter(|piece| piece.start_time() < time)
+        .map(|piece| piece.part(piece.start_time(), time, 0.0))
+        .collect()
+}
+
+fn counted<P: Piece>(pieces: &[P], desired: &DesiredTrajectory, within: f64) -> Counted {
+    let end = pieces.last().map_or(f64::NAN, Piece::end_time);
+    match last_entrance(pieces, desired.end(), within) {
+        Some(until) => Counted {
+            within,
+            until,
+            arrived: true,
+        },
+        None => Counted {
+            within,
+            until: desired.duration().min(end),
+            arrived: false,
+        },
+    }
+}
+
+/// When a motion comes `within` metres of a place for the last time, seconds. Backwards in time: a step is the time in which the
+/// edge cannot be reached.
+fn last_entrance<P: Piece>(pieces: &[P], place: Vector, within: f64) -> Option<f64> {
+    let beyond = |piece: &P, time: f64| (piece.pose_at(time).position - place).norm() - within;
+    let (first, last) = (pieces.first()?, pieces.last()?);
+    let least = FINEST_LOOK * (last.end_time() - first.start_time());
+    // the last time at which it was looked at and was inside
+    let mut inside = None;
+    for piece in pieces.iter().rev() {
+        let fastest = piece.bounds().speed;
+        let mut time = piece.end_time();
+        loop {
+            let off = beyond(piece, time);
+            if off <= 0.0 {
+                inside = Some(time);
+            } else if let Some(later) = inside {
+                return Some(entrance(piece, time, later, &beyond));
+            }
+            // negated on purpose: a NaN is the end of looking
+            if !(time > piece.start_time()) {
+                break;
+            }
+            // within this time the edge is not reached
+            let step = (off.abs() / fastest).max(least);
+            time = (time - step).max(piece.start_time());
+        }
+    }
+    None
+}
+
+/// The instant between a time outside and a later one inside.
+fn entrance<P: Piece>(
+    piece: &P,
+    mut outside: f64,
+    mut inside: f64,
+    beyond: &impl Fn(&P, f64) -> f64,
+) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (outside + inside);
+        if beyond(piece, middle) <= 0.0 {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Pose;
+    use crate::trajectory::{Node, Segment, Steered};
+
+    fn desired(points: &[(f64, f64)]) -> DesiredTrajectory {
+        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+        DesiredTrajectory::new(&points, &vec![5.0; points.len() - 1]).expect("valid")
+    }
+
+    /// Legs of `(duration, speed, turn rate)`, as segments and as nodes every second.
+    fn both(start: Pose, legs: &[(f64, f64, f64)]) -> [Trajectory; 2] {
+        let mut segments: Vec<Segment> = Vec::new();
+        for &(duration, speed, turn_rate) in legs {
+            let before = segments.last();
+            segments.push(Segment {
+                start: before.map_or(start, Segment::end),
+                start_time: before.map_or(0.0, Segment::end_time),
+                duration,
+                speed,
+                turn_rate,
+            });
+        }
+        let mut nodes = Vec::new();
+        for s in &segments {
+            let many = s.duration.ceil() as usize;
+            // the velocity changes at once: two nodes a nanosecond apart
+            nodes.extend((0..=many).map(|k| {
+                let first = if k == 0 && s.start_time > 0.0 {
+                    1e-9
+                } else {
+                    0.0
+                };
+                let time = s.start_time + first + (s.duration - first) * k as f64 / many as f64;
+                Node {
+                    time,
+                    pose: s.pose_at(time),
+                    velocity: Vector::new(s.speed, 0.0),
+                    yaw_rate: s.turn_rate,
+                    force: Vector::zeros(),
+                    moment: 0.0,
+                }
+            }));
+        }
+        [
+            Trajectory::new(segments).expect("a chain"),
+            Trajectory::from(Steered::new(nodes).expect("in order")),
+        ]
+    }
+
+    /// A planner of segments and one of forces have the same error for the same motion.
+    #[test]
+    fn the_same_motion_has_the_same_error_however_it_is_given() {
+        let east = Pose::new(Vector::zeros(), 0.0);
+        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)]);
+        let wide = Pose::new(Vector::new(0.0, 200.0), 0.0);
+        for (name, start, legs, arrived) in [
+            ("ends there", east, &[(250.0, 4.0, 0.0)][..], true),
+            ("goes on", east, &[(400.0, 4.0, 0.0)], true),
+            (
+                "lies there",
+                east,
+                &[(250.0, 4.0, 0.0), (150.0, 0.0, 0.0)],
+                true,
+            ),
+            ("passes by", wide, &[(400.0, 4.0, 0.0)], false),
+            (
+                "turns",
+                east,
+                &[(100.0, 5.0, 0.002), (120.0, 5.0, -0.004)],
+                false,
+            ),
+        ] {
+            let [segments, nodes] =
+                both(start, legs).map(|trajectory| counted_error(&trajectory, &wish, 25.0, 30.0));
+            assert_eq!(
+                (segments.1.arrived, nodes.1.arrived),
+                (arrived, arrived),
+                "{name}"
+            );
+            assert!((segments.1.until - nodes.1.until).abs() < 1e-6, "{name}");
+            let off = (segments.0 - nodes.0).abs();
+            assert!(
+                off < 1e-6 * segments.0.max(1.0),
+                "{name}: {segments:?} {nodes:?}"
+            );
+        }
+    }
+
+    /// What is done after arrival costs nothing, and neither does what is done after the desired time by one that passes by.
+    #[test]
+    fn nothing_grows_after_the_end() {
+        let east = Pose::new(Vector::zeros(), 0.0);
+        let wish = desired(&[(0.0, 0.0), (1000.0, 0.0)]);
+        let error = |start: Pose, legs: &[(f64, f64, f64)]| {
+            let [segments, _] = both(start, legs);
+            counted_error(&segments, &wish, 25.0, 30.0)
+        };
+        let (ends, counted) = error(east, &[(250.0, 4.0, 0.0)]);
+        assert!((counted.until - 242.5).abs() < 1e-9, "{counted:?}");
+        let steps = 100_000;
+        let at = |k: i32| counted.until * (f64::from(k) + 0.5) / f64::from(steps);
+        let place = |time: f64| Vector::new(4.0 * time, 0.0);
+        let sum: f64 = (0..steps)
+            .map(|k| wish.nearest(place(at(k)), at(k), 25.0).error)
+            .sum();
+        let dense = sum * counted.until / f64::from(steps) / 200.0;
+        assert!((ends - dense).abs() < 1e-6 * dense, "{ends} {dense}");
+        for wait in [1.0, 1000.0] {
+            let (waits, _) = error(east, &[(250.0, 4.0, 0.0), (wait, 0.0, 0.0)]);
+            assert!((waits - ends).abs() < 1e-6 * ends, "{waits} {ends}");
+        }
+        let wide = Pose::new(Vector::new(0.0, 200.0), 0.0);
+        let [short, long] = [300.0, 3000.0].map(|time| error(wide, &[(time, 5.0, 0.0)]));
+        assert!((short.0 - 40_000.0).abs() < 1e-6 && (long.0 - short.0).abs() < 1e-6);
+        assert!(!long.1.arrived && long.1.until == 200.0);
+    }
+
+    /// A round trip starts at its end: arrival is to come back.
+    #[test]
+    fn a_round_trip_arrives_when_it_comes_back() {
+        let wish = desired(&[(0.0, 0.0), (500.0, 0.0), (0.0, 0.0)]);
+        let east = Pose::new(Vector::zeros(), 0.0);
+        let half = std::f64::consts::PI / 10.0;
+        let [there, nodes] = both(
+            east,
+            &[(90.0, 5.0, 0.0), (10.0, 5.0, half), (90.0, 5.0, 0.0)],
+        );
+        for trajectory in [there, nodes] {
+            let (_, counted) = counted_error(&trajectory, &wish, 25.0, 40.0);
+            // the way back lies 31.8 m to the side
+            assert!(counted.arrived && counted.until > 180.0, "{counted:?}");
+        }
+        let [stays, _] = both(east, &[(300.0, 0.0, 0.0)]);
+        let (error, counted) = counted_error(&stays, &wish, 25.0, 40.0);
+        assert!(!counted.arrived && counted.until == 200.0 && error > 1e3);
+    }
+}
