@@ -4,7 +4,8 @@
 //! cargo run --release --no-default-features --example leaderboard > docs/benchmarks.md
 //! ```
 //!
-//! Everything but the milliseconds is the same wherever it runs.
+//! Everything but the milliseconds is the same wherever it runs. With `--quick` there are few random encounters, each planned once:
+//! for a look whether it works.
 
 #[path = "shared/new_york.rs"]
 mod new_york;
@@ -28,11 +29,19 @@ const RUNS: usize = 5;
 /// Metres between the hulls in Imazu's cases, which name none.
 const IMAZU_MARGIN: f64 = 500.0;
 
+/// The same of a quick look.
+const QUICK: (u64, usize) = (4, 1);
+
 /// Seconds. Outcomes must not depend on the clock.
 const DEADLINE: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let thresholds = Thresholds::standard().ok_or("no thresholds")?;
+    let (random, runs) = match std::env::args().nth(1).as_deref() {
+        None => (RANDOM, RUNS),
+        Some("--quick") => QUICK,
+        Some(other) => return Err(format!("{other}: nothing, or --quick").into()),
+    };
     let assumed = Assumed::default();
     let wide = assumed.clone().with(Assumption::SafetyMargin, IMAZU_MARGIN);
     let mut suites = vec![
@@ -45,11 +54,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     suites.push(("New York, 195 targets".to_owned(), new_york::scenes()?));
     for kind in EncounterKind::ALL {
-        let drawn = (0..RANDOM).map(|seed| random_encounter(kind, seed, Placement::Origin));
+        let drawn = (0..random).map(|seed| random_encounter(kind, seed, Placement::Origin));
         let scenes: Result<Vec<_>, _> = drawn.collect();
         let scenes = scenes?.into_iter().map(|d| d.scenario).collect();
         suites.push((
-            format!("random, {}, seeds 0 to {}", kind.name(), RANDOM - 1),
+            format!("random, {}, seeds 0 to {}", kind.name(), random - 1),
             scenes,
         ));
     }
@@ -65,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "*Clear*: a plan that enters no set that is declared, verified. *Relaxed*: of those, with shapes drawn back or not by the rules. *Judged*: of those, in \
          which own ship, as planned, is ever at risk and so has a role toward a target. *Complies*: neither judge of [rules.md](rules.md) finds a rule broken, thresholds of the profile \
          `searoom`; who is never at risk breaks none. *Score*: the mean over targets of the least of the scores. Milliseconds of planning on one core: a scene's is the \
-         median of {RUNS} plans; the columns are over scenes. All else is the same everywhere. A ship that stands on by the rules holds on until the latest moment of a certain escape, and the plan has that escape: the judges count it \
+         median of {runs} plans; the columns are over scenes. All else is the same everywhere. A ship that stands on by the rules holds on until the latest moment of a certain escape, and the plan has that escape: the judges count it \
          as an alteration, so that none complies ([rules.md](rules.md)).\n"
     );
     println!(
@@ -77,7 +86,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!(
                 "| {name} | `{}` | {} |",
                 compliance.word(),
-                row(&scenes, compliance, thresholds)
+                row(&scenes, compliance, thresholds, runs)
             );
         }
     }
@@ -113,7 +122,12 @@ fn foreign(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Err
 }
 
 /// The cells of one row after the first.
-fn row(scenes: &[Scenario], compliance: Compliance, thresholds: &Thresholds) -> String {
+fn row(
+    scenes: &[Scenario],
+    compliance: Compliance,
+    thresholds: &Thresholds,
+    runs: usize,
+) -> String {
     let (mut clear, mut relaxed, mut judged, mut complies) = (0, 0, 0, 0);
     let (mut scores, mut costs, mut times) = (Vec::new(), Vec::new(), Vec::new());
     for scene in scenes {
@@ -123,7 +137,7 @@ fn row(scenes: &[Scenario], compliance: Compliance, thresholds: &Thresholds) -> 
             ..scene.clone()
         };
         let run = pipeline::run(scene.clone());
-        let others = (1..RUNS).map(|_| pipeline::run(scene.clone()).plan_time);
+        let others = (1..runs).map(|_| pipeline::run(scene.clone()).plan_time);
         let mut of_this: Vec<f64> = (others.chain([run.plan_time]))
             .map(|time| time.as_secs_f64() * 1e3)
             .collect();

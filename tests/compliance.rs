@@ -37,6 +37,15 @@ const NEARLY_ALL: f64 = 0.99;
 /// overtaking 99 % of 750.
 const RARELY_GIVEN_UP: f64 = 0.94;
 
+/// Share of encounters in which the first judge finds no rule broken at least. Measured: 98.3 to 99.1 % of 3,000 of each kind.
+const NONE_BROKEN: f64 = 0.96;
+
+/// m², of the median cost of each kind, half as much again as measured.
+const MEDIAN_COST: [f64; 4] = [7_000.0, 11_000.0, 80_000.0, 14_000.0];
+
+/// Seconds from the end of the hold to the closest approach, at least in all but a twentieth, and at most.
+const TO_SPARE: [f64; 2] = [15.0, 90.0];
+
 /// The same for a stand-on ship that turns nowhere to port, whether there is another escape or not.
 const STANDS_ON: f64 = 0.99;
 
@@ -237,10 +246,20 @@ fn plans_keep_to_the_rules() {
                 asked("what complies: nothing to port", 1.0, &|s| {
                     !s.complies || s.no_port
                 });
+                assert!(
+                    2 * spare.len() > all.len(),
+                    "{} with an escape",
+                    spare.len()
+                );
+                let [low, high] = [of(0.05), of(0.95)];
+                assert!(
+                    low >= TO_SPARE[0] && high <= TO_SPARE[1],
+                    "{low} s, {high} s"
+                );
             }
             EncounterKind::Overtaking => {}
         }
-        print("no rule broken, by the judge", &all, |s| {
+        asked("no rule broken, by the judge", NONE_BROKEN, &|s| {
             s.breaches.is_empty()
         });
         let mut rules = std::collections::BTreeMap::new();
@@ -250,9 +269,10 @@ fn plans_keep_to_the_rules() {
         println!("  rules broken                     {rules:?}");
         let costs: Vec<f64> = all.iter().map(|s| s.cost).collect();
         let times: Vec<f64> = all.iter().map(|s| s.milliseconds).collect();
+        let median = quantile(&costs, 0.5);
+        assert!(median <= MEDIAN_COST[kind as usize], "{median} m²");
         println!(
-            "  J median {:.0}, 95 % {:.0} m²; planning median {:.2}, worst {:.2} ms",
-            quantile(&costs, 0.5),
+            "  J median {median:.0}, 95 % {:.0} m²; planning median {:.2}, worst {:.2} ms",
             quantile(&costs, 0.95),
             quantile(&times, 0.5),
             quantile(&times, 1.0),

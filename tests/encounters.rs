@@ -53,8 +53,23 @@ const RARELY: f64 = 0.03;
 /// the beam or abaft it; every one passes astern.
 const RARELY_GIVE_WAY: f64 = 0.15;
 
+/// The same where the rules ask for no side: neither is taken much more often. Measured: to port 37 and 41 of 75.
+const EITHER_SIDE: f64 = 0.7;
+
 /// Share of encounters that may be without a plan. Measured: 0 of 1200.
 const UNSOLVED: f64 = 0.01;
+
+/// The same of scenes with several targets. Measured: 0 of 999.
+const UNSOLVED_AMONG: f64 = 0.1;
+
+/// Share of plans for which a shape may be drawn back. Measured: 235 of 10,000.
+const REDUCED: f64 = 0.06;
+
+/// Share of encounters that may be of another kind than was meant. Measured: none of 300.
+const ANOTHER_ROLE: f64 = 0.02;
+
+/// m², of the median cost of each kind, half as much again as measured.
+const MEDIAN_COST: [f64; 4] = [6_000.0, 11_000.0, 10_000.0, 13_000.0];
 
 /// J over the dense search at most.
 const WORST_RATIO: f64 = 1.10;
@@ -335,20 +350,38 @@ fn every_plan_is_clear_of_whatever_the_target_may_do() {
         }
         let name = kind.name();
         let more = |count: usize, share: f64, all: usize| count as f64 > share * all as f64;
-        let (rarely, unsolved) = match kind {
-            EncounterKind::HeadOn => (RARELY, UNSOLVED),
-            EncounterKind::GiveWay => (RARELY_GIVE_WAY, UNSOLVED),
-            EncounterKind::StandOn => (1.0, UNSOLVED),
-            EncounterKind::Overtaking => (1.0, UNSOLVED),
+        let [to_port_at_most, to_starboard_at_most] = match kind {
+            EncounterKind::HeadOn => [RARELY, 1.0],
+            EncounterKind::GiveWay => [RARELY_GIVE_WAY, 1.0],
+            EncounterKind::StandOn | EncounterKind::Overtaking => [EITHER_SIDE; 2],
         };
-        if more(port.len(), rarely, plans.len()) {
+        if more(port.len(), to_port_at_most, plans.len()) {
             broken.push(format!("{name}: turns to port, seeds {port:?}"));
+        }
+        if more(starboard.len(), to_starboard_at_most, plans.len()) {
+            broken.push(format!("{name}: turns to starboard, seeds {starboard:?}"));
+        }
+        let otherwise = plans.len() - to_port;
+        if kind == EncounterKind::HeadOn && more(otherwise, RARELY, plans.len()) {
+            broken.push(format!("{name}: {otherwise} do not pass port to port"));
         }
         if kind == EncounterKind::GiveWay && more(ahead.len(), RARELY, plans.len()) {
             broken.push(format!("{name}: crosses ahead, seeds {ahead:?}"));
         }
-        if more(records.len() - solved.len(), unsolved, records.len()) {
+        if more(records.len() - solved.len(), UNSOLVED, records.len()) {
             broken.push(format!("{name}: {} of {each} solved", solved.len()));
+        }
+        let reduced = records.iter().filter(|r| r.shape_reduced).count();
+        if more(reduced, REDUCED, records.len()) {
+            broken.push(format!("{name}: {reduced} with a reduced shape"));
+        }
+        if more(records.len() - agreed, ANOTHER_ROLE, records.len()) {
+            broken.push(format!("{name}: {agreed} of the class intended"));
+        }
+        let median = quantile(&costs, 0.5);
+        // negated on purpose: without a plan there is no median
+        if !(median <= MEDIAN_COST[kind as usize]) {
+            broken.push(format!("{name}: median cost {median:.0} m²"));
         }
     }
     assert!(broken.is_empty(), "{broken:#?}");
@@ -389,6 +422,9 @@ fn every_plan_among_many_is_clear_of_all() {
             quantile(&times, 0.5),
             quantile(&times, 1.0),
         );
+        if (each as usize - solved) as f64 > UNSOLVED_AMONG * each as f64 {
+            broken.push(format!("{targets} targets: {solved} of {each} solved"));
+        }
     }
     assert!(broken.is_empty(), "{broken:#?}");
 }
@@ -448,6 +484,9 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
             println!(
                 "{name} {seed}: no plan; dense search below {WORTH_FINDING:.0} m²: {found}{short}"
             );
+            if answer.cheaper.is_some() {
+                beaten.push(format!("{name} {seed}: no plan, {found} found"));
+            }
             continue;
         }
         cut_short += usize::from(!answer.complete);
@@ -478,6 +517,14 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
         ratios.iter().filter(|r| **r > 1.05).count(),
     );
     assert!(beaten.is_empty(), "{beaten:#?}");
+    let all = compared.len();
+    assert!(
+        20 * ratios.len() >= 19 * all,
+        "{} of {all} compared",
+        ratios.len()
+    );
+    assert!(quantile(&ratios, 0.95) <= 1.05, "{ratios:?}");
+    assert!(2 * cut_short <= all, "{cut_short} of {all} cut short");
 }
 
 /// The bound is admissible on real graphs: with it and without it the cheapest plan on the graph costs the
@@ -554,9 +601,11 @@ fn plans_of_another_size_are_the_same_plans() {
     }
 }
 
-/// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste.
-const HASTE: f64 = 4.0;
+/// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste: in the median, in
+/// nine of ten scenes, and ever, where weights allow 4. Measured: 1.00, 1.00 and 1.00 of 25.
+const HASTE: [f64; 3] = [1.01, 1.2, 2.0];
 
+/// The same cost with one target; among several, where the search is in haste, hardly ever more.
 #[test]
 fn a_star_finds_what_dijkstra_finds() {
     let alone = EncounterKind::ALL.into_iter().flat_map(|kind| {
@@ -572,7 +621,8 @@ fn a_star_finds_what_dijkstra_finds() {
         let drawn = random_traffic(2 + seed as usize % 2, seed, Placement::Random);
         ("traffic", seed, drawn)
     });
-    let (mut expanded, mut blind) = (0, 0);
+    let (mut expanded, mut blind, mut equal) = (0, 0, 0);
+    let mut hasty = Vec::new();
     for (name, seed, drawn) in alone.chain(among) {
         let drawn = drawn.expect("drawn");
         let planned = [SearchKind::AStar, SearchKind::Dijkstra].map(|search| {
@@ -585,9 +635,13 @@ fn a_star_finds_what_dijkstra_finds() {
             .map(|p| p.outcome.plan().and_then(|p| p.graph_cost));
         match cost {
             [Some(a), Some(b)] => {
-                let most = if name == "traffic" { HASTE } else { 1.0 };
                 assert!(a >= (1.0 - 1e-9) * b, "{name} {seed}: {a} {b}");
-                assert!(a <= (most + 1e-9) * b, "{name} {seed}: {a} {b}");
+                if name == "traffic" {
+                    hasty.push(a / b);
+                } else {
+                    assert!(a <= (1.0 + 1e-9) * b, "{name} {seed}: {a} {b}");
+                    equal += 1;
+                }
             }
             // haste may find what the reference has no budget for
             [Some(_), None] => assert_eq!(name, "traffic"),
@@ -598,8 +652,12 @@ fn a_star_finds_what_dijkstra_finds() {
         expanded += a;
         blind += b;
     }
-    println!("expanded {expanded}, without the bound {blind}");
+    println!("expanded {expanded}, without the bound {blind}; {equal} equal; in haste {hasty:?}");
     assert!(2 * expanded < blind, "{expanded} {blind}");
+    assert!(equal >= 90 && hasty.len() >= 15, "{equal} {}", hasty.len());
+    let found = [0.5, 0.9, 1.0].map(|share| quantile(&hasty, share));
+    let within = found.iter().zip(HASTE).all(|(found, most)| *found <= most);
+    assert!(within, "{found:?}, at most {HASTE:?}");
 }
 
 /// On the four scenarios A* expands at most half as many nodes as Dijkstra, and finds the same cost.

@@ -242,12 +242,12 @@ fn an_island_in_the_way_is_sailed_round() {
 }
 
 /// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste.
-const HASTE: f64 = 4.0;
+const HASTE: f64 = 1.5;
 
 /// The same graph without the bound.
 #[test]
 fn a_star_costs_what_dijkstra_costs_among_land() {
-    let mut compared = 0;
+    let (mut compared, mut worst) = (0, 0.0_f64);
     let map = harbour();
     let island = (0..12).filter_map(|seed| across_the_island(&map, seed));
     for scenario in scenes(&QUAYS).into_iter().take(8).chain(island) {
@@ -283,7 +283,9 @@ fn a_star_costs_what_dijkstra_costs_among_land() {
                 "{title}: {a} {d}"
             );
             compared += 1;
+            worst = worst.max(a / d.max(1e-9));
         }
     }
+    println!("{compared} compared, worst {worst}");
     assert!(compared > 12, "{compared}");
 }

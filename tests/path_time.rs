@@ -318,6 +318,11 @@ fn the_least_space_time_error_is_about_that_of_a_fine_grid() {
         expanded[0], expanded[1]
     );
     assert!(expanded[0] < expanded[1], "{expanded:?}");
+    assert!(
+        ratios.len() * 2 > count as usize,
+        "{} of {count} compared",
+        ratios.len()
+    );
     // on one leg the graph has the best profile; over corners of the path the nearest leg changes and it may not
     assert!(
         at(0.5) < 1.0 && at(0.95) < 1.001 && at(1.0) < 1.1,
@@ -363,7 +368,7 @@ fn plans_keep_clear_of_ellipsoids() {
         "{solved} scenes with a plan: later than the grid among the ellipsoids themselves in {later} of {compared}"
     );
     assert!(
-        solved > 50 && later * 50 <= compared,
+        solved > 50 && compared * 10 > solved * 9 && later * 50 <= compared,
         "{solved} {later} {compared}"
     );
 }

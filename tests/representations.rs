@@ -128,7 +128,7 @@ fn every_plan_is_clear_of_its_sets_and_takes_no_more_risk_than_it_may() {
 }
 
 /// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste.
-const HASTE: f64 = 4.0;
+const HASTE: f64 = 1.5;
 
 /// The bound asks no more than the sets do, whatever they are made of.
 #[test]
@@ -177,12 +177,13 @@ fn a_star_finds_the_cost_of_dijkstra() {
     }
 }
 
-/// A slab obstacle whose velocities never change, cut in two, is the polytope.
+/// A slab obstacle whose velocities never change, cut in two, is the polytope: the way around it costs the same in nearly all scenes.
+/// In a few the refinement begins from other manoeuvres and ends in another basin.
 #[test]
-fn cutting_time_changes_nothing_but_digits() {
+fn cutting_time_hardly_changes_what_a_plan_costs() {
     use searoom::obstacle::SlabObstacle;
     use searoom::target::VelocitySpell;
-    let mut compared = 0;
+    let mut changes = Vec::new();
     for scenario in scenarios(2) {
         let whole: Vec<Obstacle> = pipeline::sets(&scenario)
             .into_iter()
@@ -207,12 +208,14 @@ fn cutting_time_changes_nothing_but_digits() {
             planned.outcome.plan().map(|p| p.cost)
         };
         if let (Some(a), Some(b)) = (cost(&whole), cost(&cut)) {
-            compared += 1;
-            // other seeds, another basin now and then
-            assert!((a / b).ln().abs() < 0.3, "{}: {a} {b}", scenario.title);
+            changes.push((a / b).ln().abs());
         }
     }
-    assert!(compared > 5);
+    changes.sort_by(f64::total_cmp);
+    assert!(changes.len() > 5, "{changes:?}");
+    // measured: 0.2 % in the middle, 10 % at most
+    let (middle, most) = (changes[changes.len() / 2], changes[changes.len() - 1]);
+    assert!(middle < 0.01 && most < 0.15, "{changes:?}");
 }
 
 /// Each larger than the other on the way to certain safety: the whole set, and the level sets by risk.

@@ -551,6 +551,7 @@ const SEGMENTS: &[Alteration] = &[
 
 #[test]
 fn every_altered_motion_is_caught() {
+    let mut altered = 0;
     for (name, document) in documents() {
         if !document["trajectory"]["segments"].is_array() {
             continue;
@@ -568,8 +569,10 @@ fn every_altered_motion_is_caught() {
                 "{name}, {what}: {:#?}",
                 found.violations
             );
+            altered += 1;
         }
     }
+    assert!(altered >= 11 * SEGMENTS.len(), "{altered}");
 }
 
 /// A motion that runs through the target, told without a contradiction: the sets alone catch it.
@@ -1200,6 +1203,7 @@ fn an_escape_is_what_it_is_said_to_be() {
 #[test]
 fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
     let risky = documents().swap_remove(1).1;
+    let mut told = 0;
     for (name, original, index) in [
         ("at a risk", risky, 0),
         ("inside", inside(), 0),
@@ -1231,9 +1235,11 @@ fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
             *at(&mut document, "/cost/max_risk") = json!(most);
             document
         };
+        // of no risk there is no other to be told
         if said == 0.0 {
             continue;
         }
+        told += 1;
         assert!(!is_caught(&tell(said)), "{name}");
         for wrong in [said * 0.999, said * 0.5, (said * 1.001).min(1.0)] {
             if wrong != said {
@@ -1255,6 +1261,7 @@ fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
         *at(&mut clear, &format!("{encounter}/max_risk")) = Value::Null;
         assert!(is_caught(&clear), "{name}: no risk");
     }
+    assert!(told >= 3, "{told}");
 }
 
 /// What is said of a risk, told without a contradiction: that it was accepted, and that it has a time, is held by itself.
@@ -1830,5 +1837,8 @@ fn plans_of_wild_scenes_are_verified_by_their_documents() {
     println!(
         "{count} wild scenes: {plans} plans, {relaxed} of them relaxed; all verified by their documents"
     );
-    assert!(plans > relaxed && relaxed > 0);
+    assert!(
+        10 * plans >= 8 * count as usize && plans > relaxed && 20 * relaxed >= plans,
+        "{plans} plans, {relaxed} of them relaxed"
+    );
 }

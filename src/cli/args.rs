@@ -41,7 +41,7 @@ pub enum Command {
     Compare(CompareArgs),
     /// What a recording holds, read offline, or what two differ in
     Inspect(InspectArgs),
-    /// Checks plan documents again from themselves alone, with code that shares nothing with the planners
+    /// Checks plan documents again from themselves alone, without the planners, their sets and their contact tests
     Verify(VerifyArgs),
     /// Prints the completions of a shell, to be read by it
     Completions(CompletionsArgs),

@@ -1,4 +1,5 @@
-//! Judges any trajectory, sharing no collision code with the planners.
+//! Judges any trajectory without the sets, contact tests and searches of the planners. Shared are geometry, segments, and the hull
+//! and the velocity sets of a tracked ship (`target`).
 
 mod along;
 mod clearance;

@@ -12,7 +12,8 @@
 //! - that it says of the motion what is true of it: whether it is safe, costs, risks, samples, encounters, path-time profile, the hold and the
 //!   escape of a ship that stands on.
 //!
-//! Nothing here is shared with the planners, their sets or their contact tests; the document is read by a mirror of its own.
+//! No planner, obstacle or contact test is used here; the document is read by a mirror of its own. Shared with them are geometry,
+//! segments, and the hull and the velocity sets of a tracked ship (`target`).
 
 mod claim;
 mod coverage;

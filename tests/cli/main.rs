@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod foreign;
+mod golden;
 mod planning;
 mod program;
 mod results;

@@ -470,6 +470,51 @@ fn no_plan_is_an_answer() {
         .stdout(contains("where she may be"));
 }
 
+/// Targets that hold course and speed, on lines parallel to that of own ship: what is left between the hulls is the distance of the
+/// lines without half of both beams, 4 m and 6 m.
+#[test]
+fn the_clearance_of_a_plan_is_that_of_the_nearest_target_in_every_view() {
+    let (alone, target) = HEAD_ON.split_once("[[targets]]").expect("a target");
+    let exact = target
+        .replace("speed_spread_mps = 0.5", "")
+        .replace("course_spread_deg = 5.0", "");
+    let beside = |name: &str, north: f64| {
+        let place = format!("north_m = {north:.1}");
+        let target = exact.replacen("\"target\"", &format!("\"{name}\""), 1);
+        format!("[[targets]]{}", target.replacen("north_m = 0.0", &place, 1))
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    for (title, lines) in [
+        ("near first", [300.0, -500.0]),
+        ("near last", [-710.0, 620.0]),
+    ] {
+        let scene = alone.replacen("\"Head-on\"", &format!("\"{title}\""), 1);
+        let scene = format!("{scene}{}{}", beside("a", lines[0]), beside("b", lines[1]));
+        write(folder.path(), &format!("{title}.toml"), scene);
+    }
+    let args = ["suite", text(folder.path())];
+    let suite = document(&searoom(&[args[0], args[1], "--json"]).success());
+    let table = stdout(&searoom(&args).success());
+    for (run, (title, clearance)) in [("near first", 290.0), ("near last", 610.0)]
+        .into_iter()
+        .enumerate()
+    {
+        let found = &suite["runs"][run];
+        assert_eq!(found["scenario"], title);
+        let is_near = |value: &Value| value.as_f64().is_some_and(|v| (v - clearance).abs() < 1e-6);
+        assert!(is_near(&found["cost"]["min_clearance_m"]), "{found}");
+        let cell = format!("{clearance:.1}");
+        let row = table.lines().find(|line| line.contains(title));
+        let row = row.unwrap_or_else(|| panic!("{title}: {table}"));
+        assert!(row.split_whitespace().any(|c| c == cell), "{row}");
+        let file = folder.path().join(format!("{title}.toml"));
+        let plan = document(&searoom(&["plan", text(&file), "--json"]).success());
+        assert!(is_near(&plan["cost"]["min_clearance_m"]), "{plan}");
+        let shown = stdout(&searoom(&["plan", text(&file)]).success());
+        assert!(shown.contains(&format!("{cell} m")), "{shown}");
+    }
+}
+
 #[test]
 fn without_targets_there_is_no_clearance() {
     let folder = tempfile::tempdir().expect("a folder");

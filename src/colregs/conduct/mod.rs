@@ -113,4 +113,6 @@ impl Conduct {
 }
 
 #[cfg(test)]
+mod by_hand;
+#[cfg(test)]
 mod tests;
