@@ -89,6 +89,7 @@ impl PlannerKind {
 /// // a metre longer, or one per cent more risk: the same
 /// let careful = Objective::LengthRisk { weight: 100.0 };
 /// assert_eq!((Objective::Time.word(), careful.word()), ("time", "length-risk"));
+/// assert_eq!((Objective::Time.unit(), careful.unit()), ("s", "m"));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
@@ -113,6 +114,15 @@ impl Objective {
             Self::Time => "time",
             Self::Length => "length",
             Self::LengthRisk { .. } => "length-risk",
+        }
+    }
+
+    /// The unit of what is minimised.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::SpaceTimeError => "m²",
+            Self::Time => "s",
+            Self::Length | Self::LengthRisk { .. } => "m",
         }
     }
 }
@@ -225,7 +235,7 @@ pub struct Plan {
     pub trajectory: Trajectory,
     /// What was minimised, in the objective's unit.
     pub cost: f64,
-    /// The first plan on the graph, before refinement, m²: for one target its cheapest, among several at most four times that;
+    /// The first plan on the graph, before refinement, in the same unit: for one target its cheapest, among several at most four times that;
     /// `None` where the graph had none.
     pub graph_cost: Option<f64>,
     /// Metres of the shortest way to the last waypoint that are left at the end: 0 for a plan that arrives. One that does not

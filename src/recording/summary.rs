@@ -13,7 +13,7 @@ use crate::evaluation::Evaluation;
 use crate::frame::{Side, deg_from_radians, knots_from_mps};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Relaxation;
-use crate::planner::{Outcome, Plan};
+use crate::planner::{Objective, Outcome, Plan};
 use crate::scenario::Compliance;
 use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
@@ -40,7 +40,7 @@ fn text(scene: &Scene, drawn: Drawn) -> String {
     parts.push(targets_table(scene));
     parts.push(rules::text(scene));
     if let (Some(plan), Some(evaluation)) = (run.planned.outcome.plan(), &run.evaluation) {
-        parts.push(cost_table(plan, evaluation));
+        parts.push(cost_table(plan, run.scenario.objective, evaluation));
     }
     parts.push(search(scene, drawn));
     parts.push(claim(scene));
@@ -81,7 +81,12 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
         return format!("**Own ship {}.**", said.join(", "));
     }
     let delay = arrival - scene.scenario.desired.duration();
-    said.push(if delay.abs() < 0.05 {
+    said.push(if plan.to_go > 0.0 {
+        format!(
+            "does not arrive: {:.0} m are left at {arrival:.0} s",
+            plan.to_go
+        )
+    } else if delay.abs() < 0.05 {
         format!("arrives on time at {arrival:.0} s")
     } else {
         let word = if delay > 0.0 { "late" } else { "early" };
@@ -184,6 +189,9 @@ fn relaxation(relaxation: &Relaxation) -> String {
             "- **Enters** the set of {target}, at a risk of up to {amount:.3}; the plan is clear of it \
              only from {time:.1} s on."
         ),
+        Relaxation::Arrival { target, amount } => format!(
+            "- **Relaxed:** it does not arrive: {amount:.0} m are left at the horizon, {target} is in the way."
+        ),
         Relaxation::Compliance { target, role } => format!(
             "- **Given up:** no plan complies with the rules as {} to {target}.",
             role.name()
@@ -246,10 +254,10 @@ fn tenths(value: f64) -> f64 {
     (value * 10.0).round() / 10.0 + 0.0
 }
 
-fn cost_table(plan: &Plan, evaluation: &Evaluation) -> String {
-    let graph = plan
-        .graph_cost
-        .map_or("–".to_owned(), |cost| format!("{cost:.1} m²"));
+fn cost_table(plan: &Plan, objective: Objective, evaluation: &Evaluation) -> String {
+    let graph = plan.graph_cost.map_or("–".to_owned(), |cost| {
+        format!("{cost:.1} {}", objective.unit())
+    });
     let delay = if evaluation.delay.is_finite() {
         format!("{:+.1} s", tenths(evaluation.delay))
     } else {
