@@ -23,7 +23,7 @@ impl Status {
         match (run.planned.outcome.plan(), &run.evaluation) {
             (None, _) => Self::NoPlan,
             (Some(_), Some(evaluation)) if evaluation.verified() => {
-let no_way = |r: &Relaxation| {
+                let no_way = |r: &Relaxation| {
                     matches!(r, Relaxation::Risk { .. } | Relaxation::Arrival { .. })
                 };
                 if run.safe() && !run.relaxations.iter().any(no_way) {

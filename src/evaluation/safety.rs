@@ -123,3 +123,156 @@ impl Claim {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Safety;
+    use crate::evaluation::{Evaluation, Freedom, Request, SpaceTimeSet, evaluate};
+    use crate::frame::Vector;
+    use crate::geometry::{ConvexPolygon, Polygon};
+    use crate::scenario::Scenario;
+    use crate::target::Motion;
+    use crate::trajectory::Segment;
+
+    /// Own ship sails 1500 m along the path, its centre nothing but `north` metres beside a target at rest half-way; hulls reach 4
+    /// and 6 m to that side, half of own diagonal is 15.524 m, the margin 20 m.
+    struct Scene {
+        scenario: Scenario,
+        held: Segment,
+    }
+
+    fn scene(north: f64, spread_m: f64) -> Scene {
+        let text = format!(
+            r#"title = "abeam"
+            horizon_s = 400.0
+            own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8,
+                turning_radius_m = 100, safety_margin_m = 20 }}
+            mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 1500, north_m = 0 }}] }}
+            targets = [{{ name = "t", position = {{ east_m = 750, north_m = {north} }}, course_deg = 90, speed_mps = 0,
+                length_m = 60, beam_m = 12, position_std_m = {spread_m} }}]"#
+        );
+        let scenario = Scenario::parse(&text).expect("valid");
+        let held = Segment {
+            start: scenario.own_ship.pose,
+            start_time: 0.0,
+            duration: 300.0,
+            speed: 5.0,
+            turn_rate: 0.0,
+        };
+        Scene { scenario, held }
+    }
+
+    fn box_around(half: f64) -> ConvexPolygon {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| Vector::new(750.0 + half * x, 60.0 + half * y));
+        ConvexPolygon::hull(&corners).expect("finite")
+    }
+
+    /// What is found of the motion among these sets at this risk, and off this land by this margin.
+    fn judged(
+        scene: &Scene,
+        sets: &[SpaceTimeSet],
+        max_risk: f64,
+        land: &[Polygon],
+        land_margin: f64,
+    ) -> Evaluation {
+        let Scene { scenario, held } = scene;
+        evaluate(&Request {
+            segments: std::slice::from_ref(held),
+            own: &scenario.own_ship,
+            freedom: Freedom::Any,
+            desired: &scenario.desired,
+            targets: &scenario.targets,
+            sets,
+            land,
+            land_margin,
+            horizon: scenario.horizon,
+            time_weight: 25.0,
+            max_risk,
+        })
+    }
+
+    /// What is entered is told whatever the sets are: a hull at 10 m, any that she may have at 10 m and three standard deviations,
+    /// the hard set at 41.524 m.
+    #[test]
+    fn what_is_entered_is_told_to_the_millimetre() {
+        for (north, spread_m, expected) in [
+            (9.999, 0.0, Safety::Collides),
+            (10.001, 0.0, Safety::Unsafe),
+            (10.001, 5.0, Safety::Unsafe),
+            (41.523, 0.0, Safety::Unsafe),
+            (41.525, 0.0, Safety::Safe),
+            (41.525, 0.1, Safety::Unsafe),
+            (41.850, 0.1, Safety::Safe),
+        ] {
+            let found = judged(&scene(north, spread_m), &[], 0.0, &[], 0.0);
+            assert_eq!(found.safety, expected, "{north} m, {spread_m} m");
+            assert_eq!(found.safe(), expected == Safety::Safe);
+        }
+    }
+
+    /// At an accepted risk the hard set may be entered where its level set is kept; a set that is left is never kept.
+    #[test]
+    fn an_accepted_risk_is_told_from_a_set_of_which_nothing_is_kept() {
+        let scene = scene(30.0, 0.0);
+        let far = box_around(10.0);
+        let near = box_around(70.0);
+        let still = ConvexPolygon::point(Vector::zeros());
+        for (set, max_risk, from, expected) in [
+            (&far, 0.3, 0.0, Safety::AtRisk),
+            (&near, 0.3, 0.0, Safety::Unsafe),
+            (&far, 0.3, 10.0, Safety::Unsafe),
+        ] {
+            let sets = [SpaceTimeSet {
+                from,
+                ..SpaceTimeSet::polytope("t", set.clone(), still.clone())
+            }];
+            let found = judged(&scene, &sets, max_risk, &[], 0.0);
+            assert_eq!(found.safety, expected, "{max_risk}, {from}");
+        }
+    }
+
+    /// A set that is given is the hard one.
+    #[test]
+    fn a_set_that_is_given_is_entered_or_not() {
+        for (half, expected) in [(59.0, Safety::Safe), (61.0, Safety::Unsafe)] {
+            let mut scene = scene(60.0, 0.0);
+            scene.scenario.targets[0].motion = Motion::Sets {
+                initial: box_around(half),
+                velocity: ConvexPolygon::point(Vector::zeros()),
+            };
+            assert_eq!(
+                judged(&scene, &[], 0.0, &[], 0.0).safety,
+                expected,
+                "{half} m"
+            );
+        }
+    }
+
+    /// Land is hit, or its margin is not kept; what cannot be sailed, or is no number, is never safe.
+    #[test]
+    fn land_and_motions_that_are_none_are_told() {
+        let mut scene = scene(500.0, 0.0);
+        let shore = [(700.0, 14.0), (800.0, 14.0), (750.0, 90.0)];
+        let shore: Vec<Vector> = shore.map(|(x, y)| Vector::new(x, y)).to_vec();
+        let land = [Polygon::new(&[shore]).expect("a polygon")];
+        for (margin, expected) in [(9.9, Safety::Safe), (10.1, Safety::Unsafe)] {
+            let found = judged(&scene, &[], 0.0, &land, margin);
+            assert_eq!(found.safety, expected, "{margin} m");
+        }
+        scene.scenario.own_ship.pose.position.y = 12.0;
+        scene.held.start.position.y = 12.0;
+        assert_eq!(
+            judged(&scene, &[], 0.0, &land, 0.0).safety,
+            Safety::Collides
+        );
+        scene.held.start.position.x += 1.0;
+        assert_eq!(
+            judged(&scene, &[], 0.0, &[], 0.0).safety,
+            Safety::Unsafe,
+            "another start"
+        );
+        scene.held.duration = f64::NAN;
+        assert!(!judged(&scene, &[], 0.0, &[], 0.0).safe());
+    }
+}

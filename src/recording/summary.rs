@@ -190,7 +190,7 @@ fn relaxation(relaxation: &Relaxation) -> String {
              only from {time:.1} s on."
         ),
         Relaxation::Arrival { target, amount } => format!(
-            "- **Relaxed:** it does not arrive: {amount:.0} m are left at the horizon, {target} is in the way."
+            "- **Given up:** it does not arrive: {amount:.0} m are left at the horizon, {target} is in the way."
         ),
         Relaxation::Compliance { target, role } => format!(
             "- **Given up:** no plan complies with the rules as {} to {target}.",
