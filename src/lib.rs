@@ -63,7 +63,7 @@
 //! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
 //! | [`assessment`] | risk, closest approach and the least alteration of own ship among the obstacles, without a plan |
 //! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
-//! | [`evaluation`] | judges any trajectory, sharing no collision code with the planner |
+//! | [`evaluation`] | judges any trajectory, sharing no contact test with the planner |
 //! | [`verification`] | checks a plan document alone, without scenario and planner |
 //! | [`scenario`] | scenario files: every fault of a file at once; [`scenario::formats`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |

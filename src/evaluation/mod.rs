@@ -1,4 +1,5 @@
-//! Judges any trajectory, sharing no collision code with the planners.
+//! Judges any trajectory, sharing no contact test with the planners. The sets that a plan was made against are given to it; the hulls that
+//! a tracked ship may have are those of the outer velocities that the planners' sets are made of too.
 
 mod along;
 mod clearance;

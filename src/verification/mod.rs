@@ -12,7 +12,8 @@
 //! - that what the document says of the motion is true of it: costs, risks, samples, encounters, path-time profile, the hold and the
 //!   escape of a ship that stands on.
 //!
-//! Nothing here is shared with the planners, their sets or their contact tests; the document is read by a mirror of its own.
+//! No code of the planners, their sets or their contact tests is used; the document is read by a mirror of its own. Geometry, motions
+//! in time and the outer velocities of a tracked ship ([`crate::target`]) are what the planners use too.
 
 mod claim;
 mod coverage;

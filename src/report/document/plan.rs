@@ -135,10 +135,7 @@ impl PlanDocument {
             land: run.land.iter().map(vertices).collect(),
             outcome: verdict.word().to_owned(),
             reason: run.reason(),
-            relaxation: match verdict {
-                Verdict::Relaxed => relaxations.first().cloned(),
-                _ => None,
-            },
+            relaxation: relaxations.first().cloned(),
             relaxations,
             verified: verified(run),
             time_of_no_return_s: None,
