@@ -59,8 +59,8 @@ pub const START_M: f64 = 1e-3;
 /// it decides on the depth and not on its own error.
 pub const MARGIN_M: f64 = 1e-7;
 
-/// Seconds. The checker does not look between two instants this close: two ships that close at 50 m/s
-/// move by half of [`DEPTH_M`] meanwhile.
+/// Seconds. Between two instants this close the checker leaves half of [`DEPTH_M`] open, which two ships that close at 50 m/s
+/// move meanwhile; of faster ones it looks at shorter times.
 pub const INSTANT_S: f64 = 1e-8;
 
 /// Relative. Accuracy of integrals along a trajectory.

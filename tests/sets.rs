@@ -5,7 +5,8 @@ mod set_generators;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Vector, heading_of};
-use searoom::obstacle::SpaceTimeObstacle;
+use searoom::obstacle::contact::{Interval, arc_contacts, line_contact};
+use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
 use searoom::trajectory::Segment;
 use set_generators::{directions, ellipsoid, polytope, seeded, segment, slabs, vector};
 
@@ -352,3 +353,91 @@ macro_rules! suite {
 suite!(of_polytopes, polytope);
 suite!(of_ellipsoids, ellipsoid);
 suite!(of_slabs, slabs);
+
+/// Lines and arcs: within a contact the position is in the set, and just before and just after it is not; what lies between two
+/// contacts is outside too.
+#[test]
+fn a_contact_begins_and_ends_where_the_set_does() {
+    let mut rng = seeded(505);
+    let (mut begun, mut ended, mut twice) = (0, 0, 0);
+    for case in 0..3000 {
+        let o = polytope(&mut rng);
+        let s = segment(&mut rng, case % 2 == 0);
+        let contacts: Vec<Interval> = if s.is_arc() {
+            arc_contacts(&o, &s, 0.0)
+        } else {
+            line_contact(&o, &s, 0.0).into_iter().collect()
+        };
+        let slack = |t: f64| o.slack(s.pose_at(t).position, t).value;
+        for contact in &contacts {
+            let middle = 0.5 * (contact.start + contact.end);
+            assert!(slack(middle) < 1e-6, "{o:?} {s:?} {contact:?}");
+            for (edge, inward, limit) in [
+                (contact.start, 1.0, s.start_time),
+                (contact.end, -1.0, s.end_time()),
+            ] {
+                assert!(slack(edge) < 1e-6, "{o:?} {s:?} {contact:?}");
+                if (edge - limit).abs() < 1e-3 {
+                    continue;
+                }
+                assert!(
+                    slack(edge - 1e-4 * inward) > -1e-9,
+                    "{o:?} {s:?} {contact:?}"
+                );
+                assert!(slack(edge).abs() < 1e-6, "{o:?} {s:?} {contact:?}");
+                *(if inward > 0.0 { &mut begun } else { &mut ended }) += 1;
+            }
+        }
+        for pair in contacts.windows(2) {
+            twice += 1;
+            assert!(
+                slack(0.5 * (pair[0].end + pair[1].start)) > -1e-9,
+                "{o:?} {s:?}"
+            );
+        }
+        for k in 0..=200 {
+            let t = s.start_time + s.duration * f64::from(k) / 200.0;
+            let within = contacts
+                .iter()
+                .any(|c| c.start - 1e-6 <= t && t <= c.end + 1e-6);
+            assert!(within || slack(t) > -1e-6, "{o:?} {s:?} {t}");
+        }
+    }
+    assert!(
+        begun > 300 && ended > 300 && twice > 5,
+        "{begun} {ended} {twice}"
+    );
+}
+
+/// From a time on a set is what it was by a clock that starts then: a polygon exactly, an ellipse at first exactly and never
+/// less.
+#[test]
+fn what_remains_of_a_set_goes_on_from_its_section() {
+    let mut rng = seeded(506);
+    for case in 0..600 {
+        let o: Obstacle = match case % 3 {
+            0 => polytope(&mut rng).into(),
+            1 => ellipsoid(&mut rng).into(),
+            _ => slabs(&mut rng).into(),
+        };
+        let time = rng.random_range(0.5..100.0);
+        let rest = o.remainder(time);
+        for later in [
+            0.0,
+            rng.random_range(0.0..20.0),
+            rng.random_range(20.0..90.0),
+        ] {
+            for n in directions(24) {
+                let (was, is) = (
+                    o.support(n, time + later).value,
+                    rest.support(n, later).value,
+                );
+                let equal = later == 0.0 || !matches!(o, Obstacle::Ellipsoid(_));
+                assert!(
+                    is > was - 1e-6 && (!equal || is < was + 1e-6),
+                    "{o:?} {time} {later} {was} {is}"
+                );
+            }
+        }
+    }
+}

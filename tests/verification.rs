@@ -6,6 +6,7 @@
 //! SEAROOM_WILD=2000 cargo test --release --no-default-features --test verification wild -- --nocapture
 //! ```
 
+mod unsound;
 mod wild;
 
 use std::path::{Path, PathBuf};

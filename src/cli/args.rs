@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use searoom::colregs::conduct::Thresholds;
@@ -41,7 +42,7 @@ pub enum Command {
     Compare(CompareArgs),
     /// What a recording holds, read offline, or what two differ in
     Inspect(InspectArgs),
-    /// Checks plan documents again from themselves alone, without the planners, their sets and their contact tests
+    /// Checks plan documents again from themselves alone, without the planners and their contact tests
     Verify(VerifyArgs),
     /// Prints the completions of a shell, to be read by it
     Completions(CompletionsArgs),
@@ -181,6 +182,9 @@ pub struct VerifyArgs {
     /// Plan documents, as `plan --json` and `suite --plans` write them, or recordings (.rrd)
     #[arg(required = true, value_name = "PLAN.json")]
     pub plans: Vec<PathBuf>,
+    /// Seconds for each document: what is not proven by then is not verified
+    #[arg(long, value_name = "S", default_value = "10", value_parser = budget)]
+    pub budget_s: Duration,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
@@ -410,6 +414,12 @@ fn thresholds(word: &str) -> Result<Arc<Thresholds>, String> {
     Thresholds::read(file)
         .map(Arc::new)
         .map_err(|error| printable_lines(&error.to_string()))
+}
+
+fn budget(word: &str) -> Result<Duration, String> {
+    let seconds = word.parse().ok().filter(|s| *s > 0.0);
+    let budget = seconds.and_then(|s| Duration::try_from_secs_f64(s).ok());
+    budget.ok_or_else(|| "allowed: a positive number of seconds".to_owned())
 }
 
 fn max_risk(word: &str) -> Result<f64, String> {

@@ -3,6 +3,8 @@
 use std::any::Any;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, Location, catch_unwind};
+use std::sync::mpsc;
+use std::time::Duration;
 
 use searoom::pipeline::{self, Run};
 use searoom::scenario::ScenarioError;
@@ -47,6 +49,18 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
             .unwrap_or_else(|| "an unknown place".to_owned());
         format!("internal fault at {place}: {}", message(payload.as_ref()))
     })
+}
+
+/// The same on a thread of its own, and `None` where it is not done by the end of a time: it then goes on unheeded until the program
+/// ends.
+pub fn guarded_within<T: Send + 'static>(
+    time: Duration,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Option<Result<T, String>> {
+    let (done, result) = mpsc::channel();
+    // nobody listens any more where the time is over
+    std::thread::spawn(move || drop(done.send(guarded(work))));
+    result.recv_timeout(time).ok()
 }
 
 /// A source file without the folders of the machine that it was built on.

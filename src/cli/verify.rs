@@ -11,7 +11,7 @@ use searoom::verification::{Verification, verify as check};
 
 use super::args::VerifyArgs;
 use super::output::Output;
-use super::runner::guarded;
+use super::runner::guarded_within;
 use super::status::Status;
 
 /// Bytes, 64 MiB: a plan among a hundred targets has less than one.
@@ -23,8 +23,16 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
     let mut documents = Vec::new();
     for file in &args.plans {
         let name = file.display().to_string();
-        let reached = match guarded(|| one(file)) {
-            Ok(Ok(verification)) => {
+        let path = file.clone();
+        let reached = match guarded_within(args.budget_s, move || one(&path)) {
+            None => {
+                let budget = args.budget_s.as_secs_f64();
+                let error = format!("{name}: not proven within the budget of {budget} s");
+                documents.push(VerifiedPlanDocument::unproven(name, error.clone()));
+                output.error(&error);
+                Status::NoPlan
+            }
+            Some(Ok(Ok(verification))) => {
                 let shown = if args.json {
                     documents.push(VerifiedPlanDocument::of(name, &verification));
                     Status::Good
@@ -37,7 +45,7 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
                     Status::NoPlan
                 })
             }
-            Ok(Err(error)) => {
+            Some(Ok(Err(error))) => {
                 let error = format!("{error:#}");
                 // a recording's reader names the file already
                 let error = match error.strip_prefix(&format!("{name}: ")) {
@@ -48,7 +56,7 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
                 output.error(&error);
                 Status::BadInput
             }
-            Err(fault) => {
+            Some(Err(fault)) => {
                 output.error(&format_args!("{name}: {fault}"));
                 Status::InternalFault
             }

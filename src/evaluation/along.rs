@@ -15,9 +15,14 @@ struct Whereabouts {
 
 /// Every segment is a wait, or straight along a leg in the path's direction; none is faster than own ship can; she begins at the start of
 /// the first path, goes on where she was, and changes to another path only where the two share a place; she turns only where
-/// she then moves off along a leg. Found without the planner's network: all places on the paths that fit what was sailed so far are
+/// she then moves off along a leg. Where she `arrives`, it is at the end of a path. Found without the planner's network: all places on the paths that fit what was sailed so far are
 /// followed at once.
-pub(super) fn check(segments: &[Segment], own: &OwnShip, paths: &[Vec<Vector>]) -> Vec<Violation> {
+pub(super) fn check(
+    segments: &[Segment],
+    own: &OwnShip,
+    paths: &[Vec<Vector>],
+    arrives: bool,
+) -> Vec<Violation> {
     let mut found = Vec::new();
     let mut add = |time: f64, what: String| found.push(Violation { what, time });
     let start = Whereabouts {
@@ -67,6 +72,20 @@ pub(super) fn check(segments: &[Segment], own: &OwnShip, paths: &[Vec<Vector>]) 
             return found;
         }
         here = next;
+    }
+    if let (Some(last), true) = (segments.last(), arrives) {
+        let end = last.end().position;
+        let arrived = everywhere(&here, end, paths).iter().any(|at| {
+            let legs = paths[at.path].windows(2);
+            let length: f64 = legs.map(|leg| (leg[1] - leg[0]).norm()).sum();
+            at.distance >= length - tolerance::ARRIVAL_M
+        });
+        if !arrived {
+            add(
+                last.end_time(),
+                "arrival: short of the end of the path".to_owned(),
+            );
+        }
     }
     found
 }
@@ -171,8 +190,9 @@ mod tests {
         let main = points(&[(0.0, 0.0), (100.0, 0.0), (100.0, 80.0), (0.0, 0.0)]);
         let other = points(&[(40.0, 0.0), (60.0, -20.0), (80.0, 0.0)]);
         let paths = [main, other];
-        let found =
-            |places: &[(f64, f64)], speed: f64| check(&chain(places, speed), &own(), &paths).len();
+        let found = |places: &[(f64, f64)], speed: f64| {
+            check(&chain(places, speed), &own(), &paths, false).len()
+        };
         let round = [
             (0.0, 0.0),
             (70.0, 0.0),
@@ -206,8 +226,8 @@ mod tests {
         let mut turned = chain(&round, 3.0);
         turned[1].start.heading = 0.3;
         turned[3].turn_rate = 1e-3;
-        assert_eq!(check(&turned, &own(), &paths).len(), 2);
+        assert_eq!(check(&turned, &own(), &paths, false).len(), 2);
         turned[0].speed = f64::NAN;
-        assert!(!check(&turned, &own(), &paths).is_empty());
+        assert!(!check(&turned, &own(), &paths, false).is_empty());
     }
 }

@@ -48,8 +48,8 @@ impl Least {
     }
 
     /// Searches an interval: halves it until every part is bounded by the best value less
-    /// [`tolerance::MARGIN_M`], or shorter than [`tolerance::INSTANT_S`]. `probe(time, half)` gives the
-    /// value at `time` and a lower bound on `[time - half, time + half]`.
+    /// [`tolerance::MARGIN_M`], or, where it is shorter than [`tolerance::INSTANT_S`], half of [`tolerance::DEPTH_M`].
+    /// `probe(time, half)` gives the value at `time` and a lower bound on `[time - half, time + half]`.
     pub fn search(&mut self, from: f64, until: f64, probe: impl Fn(f64, f64) -> Probe) {
         let mut open = vec![(from, until)];
         while let Some((from, until)) = open.pop() {
@@ -64,10 +64,19 @@ impl Least {
             if self.value.is_nan() {
                 return;
             }
+            // what is left open between two instants counts as none, of slow and of fast ships
+            let close = 2.0 * half <= tolerance::INSTANT_S;
+            let open_m = if close {
+                0.5 * tolerance::DEPTH_M
+            } else {
+                tolerance::MARGIN_M
+            };
             // negated on purpose: a NaN bound certifies nothing
-            if !(found.lower >= self.value - tolerance::MARGIN_M)
-                && 2.0 * half > tolerance::INSTANT_S
-            {
+            if !(found.lower >= self.value - open_m) {
+                if !(from < middle && middle < until) {
+                    self.certified = false;
+                    return;
+                }
                 open.push((middle, until));
                 open.push((from, middle));
             }

@@ -1,17 +1,12 @@
 //! Does a chain of segments start, move and arrive as own ship can and must?
 
-use super::quadrature::smooth;
 use super::{Freedom, Request, Violation, along};
-use crate::frame::{Vector, direction, wrap};
+use crate::frame::wrap;
 use crate::tolerance;
 use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
 
-/// Radians. Arcs are integrated in pieces of this turn.
-const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
-
-/// The requirements on motion alone. The ends of the segments are integrated anew from their speed and
-/// turn rate, not taken from the trajectory's own closed form.
+/// The requirements on motion alone.
 pub(super) fn check(request: &Request) -> Vec<Violation> {
     let Request {
         segments,
@@ -73,9 +68,8 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         let (before, after) = (&pair[0], &pair[1]);
         let place =
             |what: &str| format!("{what} at the joint of segments {index} and {}", index + 1);
-        let end = end_position(before);
-        let heading = before.start.heading + before.turn_rate * before.duration;
-        let step = (end - after.start.position).norm();
+        let end = before.end();
+        let step = (end.position - after.start.position).norm();
         found.limit(
             &place("position"),
             "m",
@@ -85,7 +79,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         );
         // along paths she turns where the path does
         if let Freedom::Limits = request.freedom {
-            let turn = wrap(heading - after.start.heading).abs();
+            let turn = wrap(end.heading - after.start.heading).abs();
             found.limit(
                 &place("heading"),
                 "rad",
@@ -94,7 +88,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
                 tolerance::JOINT_RAD,
             );
         }
-        let pause = (before.start_time + before.duration - after.start_time).abs();
+        let pause = (before.end_time() - after.start_time).abs();
         found.limit(
             &place("time"),
             "s",
@@ -105,19 +99,20 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
     }
     match request.freedom {
         Freedom::Limits => limits(segments, own, &mut found),
-        Freedom::Paths(paths) | Freedom::PathsToHorizon(paths) => {
-            found.0.extend(along::check(segments, own, paths))
+        Freedom::Paths(paths) => found.0.extend(along::check(segments, own, paths, true)),
+        Freedom::PathsToHorizon(paths) => {
+            found.0.extend(along::check(segments, own, paths, false));
         }
         Freedom::Any => return found.0,
     }
-    let end_time = last.start_time + last.duration;
+    let end_time = last.end_time();
     if let Freedom::PathsToHorizon(_) = request.freedom {
         let off = (end_time - horizon).abs();
         let allowed = tolerance::TIME_S * (1.0 + horizon);
         found.limit("end", "s from the horizon", end_time, off, allowed);
         return found.0;
     }
-    let short = (end_position(last) - desired.end()).norm();
+    let short = (last.end().position - desired.end()).norm();
     found.limit(
         "arrival",
         "m from the last waypoint",
@@ -125,6 +120,12 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         short,
         tolerance::ARRIVAL_M,
     );
+    let sailed: f64 = segments.iter().map(Segment::length).sum();
+    // negated on purpose: a NaN is nothing
+    if !(sailed > tolerance::ARRIVAL_M) && desired.comes_by(own.pose.position) {
+        let what = format!("arrival: {sailed} m sailed, with the path still ahead");
+        found.add(end_time, what);
+    }
     found.limit(
         "arrival time",
         "s",
@@ -179,20 +180,4 @@ impl Report {
             );
         }
     }
-}
-
-/// Where a segment ends, by quadrature of its velocity.
-fn end_position(s: &Segment) -> Vector {
-    let pieces = ((s.turn_rate * s.duration).abs() / ARC_PIECE)
-        .ceil()
-        .clamp(1.0, 1e4);
-    let mut end = s.start.position;
-    for k in 0..pieces as usize {
-        let from = s.duration * k as f64 / pieces;
-        let until = s.duration * (k + 1) as f64 / pieces;
-        let ahead = |t: f64| direction(s.start.heading + s.turn_rate * t) * s.speed;
-        end.x += smooth(from, until, &|t| ahead(t).x);
-        end.y += smooth(from, until, &|t| ahead(t).y);
-    }
-    end
 }

@@ -217,17 +217,17 @@ impl MovingSet {
         let gaps: Vec<Vector> = (normals.iter().zip(next))
             .map(|(a, b)| between(*a, *b))
             .collect();
-        let supports = |set| extremes(set, &normals).zip(&normals);
-        let faces: Vec<Face> = supports(initial)
-            .zip(supports(velocity))
-            .map(|((initial, normal), (velocity, _))| Face {
+        let faces: Vec<Face> = (initial.extremes(&normals))
+            .zip(velocity.extremes(&normals))
+            .zip(&normals)
+            .map(|((initial, velocity), normal)| Face {
                 normal: *normal,
                 initial: normal.dot(&initial),
                 rate: normal.dot(&velocity),
             })
             .collect();
-        let mut vertices: Vec<MovingVertex> = extremes(initial, &gaps)
-            .zip(extremes(velocity, &gaps))
+        let mut vertices: Vec<MovingVertex> = (initial.extremes(&gaps))
+            .zip(velocity.extremes(&gaps))
             .map(|(initial, velocity)| MovingVertex { initial, velocity })
             .collect();
         vertices.dedup();
@@ -278,36 +278,6 @@ impl MovingSet {
 /// first part vanishes for opposite vectors, the second for equal ones.
 fn between(a: Vector, b: Vector) -> Vector {
     (a + b) + to_starboard(b - a)
-}
-
-/// The vertices farthest in directions that go around counter-clockwise, as those vertices do: each search goes on from the last
-/// one.
-fn extremes<'a>(
-    set: &'a ConvexPolygon,
-    directions: &'a [Vector],
-) -> impl Iterator<Item = Vector> + 'a {
-    let vertices = set.vertices();
-    let count = vertices.len();
-    let first = directions.first().map_or(0, |along| {
-        let mut best = 0;
-        for (index, p) in vertices.iter().enumerate() {
-            if along.dot(p) > along.dot(&vertices[best]) {
-                best = index;
-            }
-        }
-        best
-    });
-    let mut at = first;
-    directions.iter().map(move |along| {
-        for _ in 0..count {
-            let next = (at + 1) % count;
-            if !(along.dot(&vertices[next]) > along.dot(&vertices[at])) {
-                break;
-            }
-            at = next;
-        }
-        vertices[at]
-    })
 }
 
 /// The point of a segment nearest to `p`.

@@ -113,7 +113,14 @@ impl ConvexPolygon {
     pub fn from_vertices(points: &[Vector]) -> Result<Self, GeometryError> {
         let hull = Self::hull(points)?;
         let limit = 1e-9 * extent(points);
-        for (index, p) in points.iter().enumerate() {
+        let by_place = |a: &Vector, b: &Vector| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+        let mut corners = hull.vertices.clone();
+        corners.sort_by(by_place);
+        for (index, p) in unsigned_zeros(points).iter().enumerate() {
+            // most of what is written by hand is a corner
+            if corners.binary_search_by(|c| by_place(c, p)).is_ok() {
+                continue;
+            }
             let depth = -hull.signed_distance(*p);
             if depth > limit {
                 return Err(GeometryError::NotConvex { index, depth });
@@ -188,6 +195,45 @@ impl ConvexPolygon {
             .iter()
             .map(|p| n.dot(p))
             .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The vertices farthest in directions that go around counter-clockwise with gaps of at most half a turn, as those vertices do: each
+    /// search goes on from the last one. O(vertices + directions).
+    pub(crate) fn extremes<'a>(
+        &'a self,
+        directions: &'a [Vector],
+    ) -> impl Iterator<Item = Vector> + 'a {
+        let vertices = &self.vertices;
+        let count = vertices.len();
+        let mut at = 0;
+        if let Some(along) = directions.first() {
+            for (index, p) in vertices.iter().enumerate() {
+                if along.dot(p) > along.dot(&vertices[at]) {
+                    at = index;
+                }
+            }
+        }
+        directions.iter().map(move |along| {
+            for _ in 0..count {
+                let next = (at + 1) % count;
+                if !(along.dot(&vertices[next]) > along.dot(&vertices[at])) {
+                    break;
+                }
+                at = next;
+            }
+            vertices[at]
+        })
+    }
+
+    /// `h` in the directions of [`Self::extremes`].
+    pub(crate) fn supports(&self, directions: &[Vector]) -> Vec<f64> {
+        let farthest = self.extremes(directions).zip(directions);
+        farthest.map(|(p, along)| along.dot(&p)).collect()
+    }
+
+    /// At least the largest distance between two points of it, and at most twice that.
+    pub(crate) fn across(&self) -> f64 {
+        2.0 * self.translated(-self.vertices[0]).reach()
     }
 
     /// Outward unit normals whose half-spaces are the set: one per edge; for a segment both

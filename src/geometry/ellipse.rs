@@ -130,7 +130,7 @@ impl Ellipse {
         if scale == 0.0 {
             return Ok(Self::point(center));
         }
-        let eigen = SymmetricEigen::new((shape + shape.transpose()) * (0.5 / scale));
+        let eigen = SymmetricEigen::new((shape / scale + shape.transpose() / scale) * 0.5);
         let eigenvalue = eigen.eigenvalues.min() * scale;
         if !(eigenvalue >= -allowed) {
             return Err(ShapeError::NotPositiveSemidefinite { eigenvalue });

@@ -183,6 +183,20 @@ impl DesiredTrajectory {
         self.legs[self.legs.len() - 1].end()
     }
 
+    /// True where the path comes by a place before its end, to [`tolerance::ARRIVAL_M`]: a round trip comes by its end when it
+    /// begins.
+    pub fn comes_by(&self, place: Vector) -> bool {
+        self.legs.iter().any(|leg| {
+            let along = leg
+                .direction
+                .dot(&(place - leg.start))
+                .clamp(0.0, leg.length);
+            let off = (leg.start + leg.direction * along - place).norm();
+            let left = self.length() - leg.start_distance - along;
+            off <= tolerance::ARRIVAL_M && left > 2.0 * tolerance::ARRIVAL_M
+        })
+    }
+
     /// Desired position at `time`, standing at the ends before and after.
     pub fn position_at(&self, time: f64) -> Vector {
         let index = self

@@ -230,16 +230,21 @@ impl Trajectory {
     }
 
     /// Every multiple of `step` seconds from the start, or of a longer step that makes `most` of them; each segment's
-    /// start or node and the end; increasing, without repetition.
+    /// start or node and the end; increasing, without repetition: a start or a node stands for what is next to it.
     pub fn sample_times(&self, step: f64, most: u32) -> Vec<f64> {
         let (start, end) = (self.start_time(), self.end_time());
         let step = step.max((end - start) / f64::from(most.max(1)));
         let count = ((end - start) / step).floor().max(0.0) as usize;
-        let mut times: Vec<f64> = (0..=count).map(|i| start + step * i as f64).collect();
-        times.extend(self.joints());
+        let mut times = self.joints();
         times.push(end);
-        times.sort_by(f64::total_cmp);
         times.dedup_by(|a, b| *a - *b < tolerance::TIME_S);
+        let between = (0..=count).map(|i| start + step * i as f64).filter(|time| {
+            let next = times.partition_point(|t| t < time);
+            let near = &times[next.saturating_sub(1)..times.len().min(next + 1)];
+            near.iter().all(|t| (t - time).abs() >= tolerance::TIME_S)
+        });
+        times.extend(between.collect::<Vec<_>>());
+        times.sort_by(f64::total_cmp);
         times
     }
 }

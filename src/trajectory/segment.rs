@@ -109,14 +109,21 @@ impl Segment {
         self.speed / self.turn_rate
     }
 
-    /// The part of the segment between two absolute times, clamped to the segment.
+    /// The part of the segment between two absolute times, clamped to the segment; to the end it lasts as long as the segment does,
+    /// whatever the digits of its end time.
     pub fn between(&self, from: f64, to: f64) -> Self {
-        let from = from.clamp(self.start_time, self.end_time());
-        let to = to.clamp(from, self.end_time());
+        let elapsed = |time: f64| {
+            if time >= self.end_time() {
+                self.duration
+            } else {
+                (time - self.start_time).clamp(0.0, self.duration)
+            }
+        };
+        let begun = elapsed(from);
         Self {
-            start: self.pose_at(from),
-            start_time: from,
-            duration: to - from,
+            start: self.pose_after(begun),
+            start_time: from.clamp(self.start_time, self.end_time()),
+            duration: elapsed(to).max(begun) - begun,
             ..*self
         }
     }

@@ -423,10 +423,8 @@ fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion
             PlaneSet::Ellipse(velocity) => ellipse = Some(velocity),
         }
     }
-    if spells
-        .windows(2)
-        .any(|pair| !(pair[0].until < pair[1].until))
-    {
+    let ends = std::iter::once(0.0).chain(spells.iter().map(|spell| spell.until));
+    if !ends.is_sorted_by(|before, after| before < after) {
         return Err(fault(
             &format!("{path}.velocity_sets"),
             "ends that do not increase",

@@ -1,29 +1,32 @@
 //! Are the sets large enough for what is known of the targets?
 //!
-//! A tracked ship's initial set has to contain her hull ⊕ a disc of own half-diagonal, safety margin and three
-//! standard deviations of her position; her velocity set every velocity with a speed and a course within the spreads, turned
-//! as far as she may have turned. Explicit sets have to be contained as they are. Where risk was accepted, the velocity
-//! sets are first scaled back about their centres.
+//! A tracked ship's set has to contain her hull ⊕ a disc of own half-diagonal, safety margin and three standard deviations
+//! of her position, and every place that she may come to at a speed and a course within the spreads, turned as far as she may have
+//! turned. Explicit sets have to be contained as they are. Where risk was accepted, the set of the level has to hold what
+//! is known of her scaled to that level, and the set scaled back all of it.
+//!
+//! Polygons are compared by their sections. How far a section reaches in a direction is linear in time between two changes of
+//! its velocities, and how far a target may have come in it linear too, or convex where she turns: what is contained at the changes, at
+//! the start and at the horizon is contained always, however short or fast a slab is.
 
 use super::claim::Claim;
-use super::reached;
+use super::reached::{Known, at_level, in_order, outer_velocities, reach};
 use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
 use crate::frame::{Vector, direction, to_port};
-use crate::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
-use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::target::{Motion, Target, VelocitySpell};
 use crate::tolerance;
 
 /// What a set may be too small for.
-const INITIAL: &str = "the initial set, m";
-const VELOCITY: &str = "the velocity set, m/s";
-const LEVEL: &str = "the velocities at the accepted risk, m/s";
+const HULL: &str = "the hull, the margin and the uncertainty";
+const VELOCITIES: &str = "her velocities";
+const INITIAL: &str = "the initial set";
+const VELOCITY: &str = "the velocity set";
+const LEVEL: &str = "the velocities at the accepted risk";
+const LEFT: &str = "where she may be when it has been left";
 
 /// Standard deviations of the position that a set covers.
 pub(super) const POSITION_SIGMAS: f64 = 3.0;
-
-/// Radians, a quarter of a degree: half the angle between tangents of the faster arc. What they cut off beyond the arc is a
-/// hundred-thousandth of the speed.
-const TANGENT_SPACING: f64 = std::f64::consts::PI / 720.0;
 
 /// Places around an ellipse at which it is compared with an ellipse.
 pub(super) const SAMPLED_DIRECTIONS: usize = 720;
@@ -60,112 +63,166 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
 /// What a set lacks of a target, and from when.
 fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64)> {
     let level = 1.0 - claim.file.max_risk;
-    let enclosed = claim.file.optimal_control.is_some();
-    // the ellipse around a polygon that was scaled has a centre of its own: it cannot be scaled back
-    let velocities_known = level == 1.0 || !enclosed;
-    let whole = Whole::of(&set.shape, level, set.from);
+    match &set.shape {
+        SetShape::Polygons { initial, spells } => {
+            let mut scales = vec![level];
+            // the set around a polygon that was scaled has a centre of its own: it cannot be scaled back
+            if level < 1.0 && claim.file.optimal_control.is_none() {
+                scales.push(1.0);
+            }
+            let short = |scale| in_sections(claim, target, set.from, (initial, spells), scale);
+            scales.into_iter().filter_map(short).collect()
+        }
+        SetShape::Ellipses { initial, velocity } => {
+            of_ellipses(claim, target, set.from, (initial, velocity))
+        }
+    }
+}
+
+/// By how much a set is too small, and when first: nothing where it is not. `scale` is that of the velocities about their centre.
+fn in_sections(
+    claim: &Claim,
+    target: &Target,
+    from: f64,
+    (initial, spells): (&ConvexPolygon, &[VelocitySpell]),
+    scale: f64,
+) -> Option<(String, f64)> {
+    let (horizon, level) = (claim.file.horizon_s, 1.0 - claim.file.max_risk);
+    let velocities = spells.iter().map(|spell| &spell.velocities);
+    let normals = in_order(
+        std::iter::once(initial)
+            .chain(velocities)
+            .flat_map(ConvexPolygon::normals),
+    );
+    let known = Known::of(claim, target, scale, &normals);
+    let factor = scale / level;
+    let ends: Vec<f64> = spells.iter().map(|spell| from + spell.until).collect();
+    let mut times: Vec<f64> = (ends.iter().copied().chain(known.changes()))
+        .chain([from, horizon])
+        .filter(|time| (from..=horizon).contains(time))
+        .collect();
+    times.sort_by(f64::total_cmp);
+    let rates: Vec<Vec<f64>> = (spells.iter())
+        .map(|spell| about_centroid(&spell.velocities, factor).supports(&normals))
+        .collect();
+    let mut section = initial.supports(&normals);
+    let mut wanted = known.at(from);
+    let (mut here, mut slab) = (from, 0);
+    for time in times {
+        let before = std::mem::replace(&mut wanted, known.at(time));
+        let short = largest((0..normals.len()).flat_map(|k| {
+            let step = (time - here) * rates[slab][k];
+            section[k] += step;
+            // no slab lives on what the initial set is larger than it has to be
+            [wanted[k] - section[k], wanted[k] - before[k] - step]
+        }));
+        here = time;
+        while slab + 1 < ends.len() && ends[slab] <= time {
+            slab += 1;
+        }
+        // negated on purpose: a NaN is too small
+        if !(short <= known.rounding(&wanted, time, factor)) {
+            let ship = matches!(target.motion, Motion::Ship(_));
+            let part = match (time > from, ship) {
+                (false, _) if from > 0.0 => LEFT,
+                (false, true) => HULL,
+                (false, false) => INITIAL,
+                (true, _) if scale < 1.0 => LEVEL,
+                (true, true) => VELOCITIES,
+                (true, false) => VELOCITY,
+            };
+            let what = format!("too small for {part}: by {short:.3e} m");
+            return Some((what, time));
+        }
+    }
+    None
+}
+
+/// The same for ellipses, by their two parts: the sum that is kept out of contains the sum of what these contain.
+fn of_ellipses(
+    claim: &Claim,
+    target: &Target,
+    from: f64,
+    (initial, velocity): (&Ellipse, &Ellipse),
+) -> Vec<(String, f64)> {
+    let level = 1.0 - claim.file.max_risk;
+    let whole = velocity.scaled_about_center(level.recip());
+    let ship = matches!(target.motion, Motion::Ship(_));
     let mut lacks = Vec::new();
-    let mut need = |what: &str, short: f64, time: f64| {
+    let mut need = |what: &str, short: f64| {
         // negated on purpose: a NaN is too small
         if !(short <= tolerance::DEPTH_M) {
-            lacks.push((format!("too small for {what}: by {short:.3e}"), time));
+            lacks.push((format!("too small for {what}: by {short:.3e}"), from));
         }
     };
-    if set.from > 0.0 {
-        need(
-            "where she may be when it has been left, m",
-            reached::short(claim, target, &whole.initial, set.from),
-            set.from,
-        );
+    if from > 0.0 {
+        let normals = in_order(sampled_directions(initial));
+        let known = Known::of(claim, target, 1.0, &normals).at(from);
+        let short = normals
+            .iter()
+            .zip(known)
+            .map(|(n, want)| want - initial.support(*n));
+        need(LEFT, largest(short));
+    } else {
+        let short = match &target.motion {
+            Motion::Ship(ship) => {
+                let hull = ship.hull.polygon(&ship.pose);
+                beyond_polygon(initial, &hull) + reach(claim, ship)
+            }
+            Motion::Sets { initial: known, .. } | Motion::Spells { initial: known, .. } => {
+                beyond_polygon(initial, known)
+            }
+            Motion::Ellipses { initial: known, .. } => beyond_ellipse(initial, known),
+        };
+        need(if ship { HULL } else { INITIAL }, short);
     }
-    let at_start = set.from == 0.0;
-    match &target.motion {
-        Motion::Ship(ship) => {
-            let reach = claim.own.hull.half_diagonal()
-                + claim.own.safety_margin
-                + POSITION_SIGMAS * ship.position_std;
-            let hull = ship.hull.polygon(&ship.pose);
-            let outside = hull
-                .vertices()
-                .iter()
-                .map(|p| whole.initial.distance(*p) + reach);
-            if at_start {
-                need(
-                    "the hull, the margin and the uncertainty, m",
-                    largest(outside),
-                    0.0,
-                );
+    // the ellipse around a polygon that was scaled has a centre of its own: it cannot be scaled back
+    if level == 1.0 || claim.file.optimal_control.is_none() {
+        let short = match &target.motion {
+            Motion::Ship(ship) => {
+                let points = outer_velocities(ship, claim.file.horizon_s).into_iter();
+                largest(points.map(|p| whole.signed_distance(p).distance))
             }
-            if velocities_known {
-                for spell in &whole.spells {
-                    let short = spell
-                        .set
-                        .beyond(&Sector::of(ship, spell.until.min(claim.file.horizon_s)));
-                    need("her velocities, m/s", short, spell.start);
-                }
+            Motion::Sets { velocity, .. } => beyond_polygon(&whole, velocity),
+            Motion::Spells { spells, .. } => {
+                largest(spells.iter().map(|s| beyond_polygon(&whole, &s.velocities)))
             }
-            if let ([only], true) = (&whole.spells[..], level < 1.0 && ship.turn_rate == 0.0) {
-                let known = at_level(target, &ship.outer_velocity_set(), level);
-                need(LEVEL, only.level.beyond_polygon(&known), 0.0);
+            Motion::Ellipses { velocity, .. } => beyond_ellipse(&whole, velocity),
+        };
+        need(if ship { VELOCITIES } else { VELOCITY }, short);
+    }
+    if level < 1.0 {
+        let short = match &target.motion {
+            Motion::Ellipses {
+                velocity: known, ..
+            } => beyond_ellipse(velocity, &known.scaled_about_center(level)),
+            _ => {
+                let known = at_level(target, level, claim.file.horizon_s);
+                largest(
+                    known
+                        .iter()
+                        .map(|s| beyond_polygon(velocity, &s.velocities)),
+                )
             }
-        }
-        Motion::Sets { initial, velocity } => {
-            if at_start {
-                need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
-            }
-            for spell in &whole.spells {
-                if velocities_known {
-                    need(VELOCITY, spell.set.beyond_polygon(velocity), spell.start);
-                }
-                if level < 1.0 {
-                    let known = at_level(target, velocity, level);
-                    need(LEVEL, spell.level.beyond_polygon(&known), spell.start);
-                }
-            }
-        }
-        Motion::Ellipses { initial, velocity } => {
-            if at_start {
-                need(INITIAL, whole.initial.beyond_ellipse(initial), 0.0);
-            }
-            for spell in &whole.spells {
-                if velocities_known {
-                    need(VELOCITY, spell.set.beyond_ellipse(velocity), spell.start);
-                }
-                if level < 1.0 {
-                    let known = velocity.scaled_about_center(level);
-                    need(LEVEL, spell.level.beyond_ellipse(&known), spell.start);
-                }
-            }
-        }
-        Motion::Spells { initial, spells } => {
-            if at_start {
-                need(INITIAL, whole.initial.beyond_polygon(initial), 0.0);
-            }
-            if velocities_known {
-                for spell in &whole.spells {
-                    for known in
-                        overlapping(spells, spell.start, spell.until.min(claim.file.horizon_s))
-                    {
-                        need(
-                            VELOCITY,
-                            spell.set.beyond_polygon(&known.velocities),
-                            spell.start,
-                        );
-                    }
-                }
-            }
-            if level < 1.0 {
-                for spell in &whole.spells {
-                    let until = spell.until.min(claim.file.horizon_s);
-                    for known in overlapping(spells, spell.start, until) {
-                        let known = at_level(target, &known.velocities, level);
-                        need(LEVEL, spell.level.beyond_polygon(&known), spell.start);
-                    }
-                }
-            }
-        }
+        };
+        need(LEVEL, short);
     }
     lacks
+}
+
+/// How far the farthest point of a polygon is outside an ellipse.
+fn beyond_polygon(set: &Ellipse, known: &ConvexPolygon) -> f64 {
+    largest(
+        known
+            .vertices()
+            .iter()
+            .map(|p| set.signed_distance(*p).distance),
+    )
+}
+
+/// How far an ellipse reaches outside another, in the directions of [`sampled_directions`].
+fn beyond_ellipse(set: &Ellipse, known: &Ellipse) -> f64 {
+    largest(sampled_directions(set).map(|n| known.support(n) - set.support(n)))
 }
 
 /// The largest, NaN if any is.
@@ -175,126 +232,10 @@ pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
-/// Those that hold for a while between two times.
-fn overlapping(
-    spells: &[VelocitySpell],
-    from: f64,
-    until: f64,
-) -> impl Iterator<Item = &VelocitySpell> {
-    let starts = std::iter::once(0.0).chain(spells.iter().map(|s| s.until));
-    starts
-        .zip(spells)
-        .filter(move |(start, s)| start.max(from) + tolerance::TIME_S < s.until.min(until))
-        .map(|(_, s)| s)
-}
-
-/// A set before risk was accepted.
-struct Whole {
-    initial: Bounded,
-    spells: Vec<Spell>,
-}
-
-struct Spell {
-    start: f64,
-    until: f64,
-    set: Bounded,
-    /// As the document has it.
-    level: Bounded,
-}
-
-impl Whole {
-    /// Times are those of the document: the clock of the set starts at `from`.
-    fn of(shape: &SetShape, level: f64, from: f64) -> Self {
-        match shape {
-            SetShape::Polygons { initial, spells } => {
-                let starts = std::iter::once(0.0).chain(spells.iter().map(|s| s.until));
-                Self {
-                    initial: Bounded::Polygon(initial.clone()),
-                    spells: starts
-                        .zip(spells)
-                        .map(|(start, spell)| Spell {
-                            start: from + start,
-                            until: from + spell.until,
-                            set: Bounded::Polygon(about_centroid(&spell.velocities, level.recip())),
-                            level: Bounded::Polygon(spell.velocities.clone()),
-                        })
-                        .collect(),
-                }
-            }
-            SetShape::Ellipses { initial, velocity } => Self {
-                initial: Bounded::Ellipse(*initial),
-                spells: vec![Spell {
-                    start: from,
-                    until: f64::INFINITY,
-                    set: Bounded::Ellipse(velocity.scaled_about_center(level.recip())),
-                    level: Bounded::Ellipse(*velocity),
-                }],
-            },
-        }
-    }
-}
-
 /// A polygon scaled about its centroid: what a level of risk does to a velocity set.
 pub(super) fn about_centroid(set: &ConvexPolygon, factor: f64) -> ConvexPolygon {
     let center = set.centroid();
     set.translated(-center).scaled(factor).translated(center)
-}
-
-/// What is known of a target's velocities at a level: scaled about the centre that her representation has.
-fn at_level(target: &Target, velocities: &ConvexPolygon, level: f64) -> ConvexPolygon {
-    match target.representation {
-        Representation::Polytope => about_centroid(velocities, level),
-        Representation::Ellipsoid => {
-            let center = outer_enclosing_ellipse(velocities).center();
-            let about = velocities.translated(-center);
-            about.scaled(level).translated(center)
-        }
-    }
-}
-
-pub(super) enum Bounded {
-    Polygon(ConvexPolygon),
-    Ellipse(Ellipse),
-}
-
-impl Bounded {
-    /// Signed, negative inside: a disc is contained when its centre is as deep as its radius.
-    fn distance(&self, p: Vector) -> f64 {
-        match self {
-            Self::Polygon(set) => set.signed_distance(p),
-            Self::Ellipse(set) => set.signed_distance(p).distance,
-        }
-    }
-
-    /// How far the farthest point of a polygon is outside.
-    fn beyond_polygon(&self, set: &ConvexPolygon) -> f64 {
-        largest(set.vertices().iter().map(|p| self.distance(*p)))
-    }
-
-    /// How far an ellipse reaches outside: exactly for a polygon, in the directions of [`sampled_directions`] for an ellipse.
-    fn beyond_ellipse(&self, set: &Ellipse) -> f64 {
-        match self {
-            Self::Polygon(own) => {
-                let normals = own.normals().into_iter();
-                largest(normals.map(|n| set.support(n) - own.support(n)))
-            }
-            Self::Ellipse(own) => {
-                largest(sampled_directions(own).map(|n| set.support(n) - own.support(n)))
-            }
-        }
-    }
-
-    /// How far a sector of velocities reaches outside: exactly for a polygon, by tangents that contain the sector for an ellipse.
-    fn beyond(&self, sector: &Sector) -> f64 {
-        match self {
-            Self::Polygon(set) if set.vertices().len() > 2 => largest(
-                set.normals()
-                    .into_iter()
-                    .map(|n| sector.support(n) - set.support(n)),
-            ),
-            _ => largest(sector.outer_points().into_iter().map(|p| self.distance(p))),
-        }
-    }
 }
 
 /// Unit vectors all around, evenly, and the normals of an ellipse at places all around it: where it is a needle, nearly all are across.
@@ -307,49 +248,4 @@ pub(super) fn sampled_directions(ellipse: &Ellipse) -> impl Iterator<Item = Vect
         let normal = tangent.try_normalize(0.0).map(to_port);
         [Some(z), normal].into_iter().flatten()
     })
-}
-
-/// Every velocity with a speed and a course within bounds.
-pub(super) struct Sector {
-    slow: f64,
-    fast: f64,
-    heading: f64,
-    /// To either side, radians.
-    spread: f64,
-}
-
-impl Sector {
-    pub fn of(ship: &ShipTrack, until: f64) -> Self {
-        Self {
-            slow: (ship.speed - ship.speed_spread).max(0.0),
-            fast: ship.speed + ship.speed_spread,
-            heading: ship.pose.heading,
-            spread: (ship.course_spread + ship.turn_rate * until).min(std::f64::consts::PI),
-        }
-    }
-
-    /// In closed form: the course within the spread that is nearest to the direction.
-    pub fn support(&self, n: Vector) -> f64 {
-        let off = crate::frame::wrap(crate::frame::heading_of(n) - self.heading).abs();
-        let along = (off - self.spread).max(0.0).cos();
-        (self.fast * along).max(self.slow * along)
-    }
-
-    /// Points whose hull contains the sector, on it but for the tangents' corners.
-    fn outer_points(&self) -> Vec<Vector> {
-        let edges = [-self.spread, self.spread].map(|edge| direction(self.heading + edge));
-        let mut points: Vec<Vector> = edges
-            .into_iter()
-            .flat_map(|ahead| [ahead * self.slow, ahead * self.fast])
-            .collect();
-        if self.spread > 0.0 {
-            let pieces = (self.spread / TANGENT_SPACING).ceil().max(1.0);
-            let half = self.spread / pieces;
-            points.extend((0..pieces as usize).map(|piece| {
-                let middle = self.heading - self.spread + half * (2 * piece + 1) as f64;
-                direction(middle) * (self.fast / half.cos())
-            }));
-        }
-        points
-    }
 }

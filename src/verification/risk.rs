@@ -178,23 +178,16 @@ fn before_release(set: &SpaceTimeSet) -> Option<SpaceTimeSet> {
         return None;
     };
     let normals = initial.normals();
-    let extreme = |along: crate::frame::Vector, of: &ConvexPolygon| {
-        let mut best = of.vertices()[0];
-        for p in of.vertices() {
-            if along.dot(p) > along.dot(&best) {
-                best = *p;
-            }
-        }
-        best
-    };
     let headings: Vec<f64> = normals.iter().map(|n| n.y.atan2(n.x)).collect();
-    let begun: Vec<_> = (0..headings.len())
+    let between: Vec<_> = (0..headings.len())
         .map(|k| {
             let (here, next) = (headings[k], headings[(k + 1) % headings.len()]);
-            let turn = (next - here).rem_euclid(std::f64::consts::TAU);
-            let along = direction(here + 0.5 * turn);
-            extreme(along, initial) - extreme(along, &only.velocities) * set.from
+            direction(here + 0.5 * (next - here).rem_euclid(std::f64::consts::TAU))
         })
+        .collect();
+    let begun: Vec<_> = (initial.extremes(&between))
+        .zip(only.velocities.extremes(&between))
+        .map(|(place, velocity)| place - velocity * set.from)
         .collect();
     Some(SpaceTimeSet::polytope(
         set.name.clone(),

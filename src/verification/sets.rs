@@ -1,7 +1,9 @@
 //! The sets of a document, put together again where velocity sets follow one another.
 
 use super::claim::{ClaimError, PlaneSet, fault, plane_set};
+use super::coverage::largest;
 use super::file::{ObstacleFile, RelaxationFile};
+use super::reached::in_order;
 use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
 use crate::geometry::ConvexPolygon;
 use crate::target::VelocitySpell;
@@ -42,7 +44,7 @@ pub(super) fn read(
         } else {
             released.unwrap_or(0.0).min(horizon)
         };
-        if !((from - starts).abs() <= tolerance::TIME_S * (1.0 + horizon)) {
+        if from != starts {
             note(
                 format!("valid from {from} s, expected {starts} s"),
                 from.min(starts),
@@ -124,11 +126,10 @@ pub(super) fn released(relaxations: &[RelaxationFile], name: &str) -> Option<f64
     own.find_map(|r| r.until_s)
 }
 
-/// Each contains the other, to [`tolerance::DEPTH_M`].
+/// Each contains the other, as nearly as two sets that are the same.
 fn same(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
-    let within = |inner: &ConvexPolygon, outer: &ConvexPolygon| {
-        let mut vertices = inner.vertices().iter();
-        vertices.all(|p| outer.signed_distance(*p) <= tolerance::DEPTH_M)
-    };
-    within(a, b) && within(b, a)
+    let normals = in_order([a, b].into_iter().flat_map(ConvexPolygon::normals));
+    let apart = a.supports(&normals).into_iter().zip(b.supports(&normals));
+    let apart = largest(apart.map(|(a, b)| (a - b).abs()));
+    apart <= tolerance::DEPTH_M.max(tolerance::COLLINEAR_RAD * a.across())
 }

@@ -56,6 +56,19 @@ fn plans_that_a_suite_wrote_are_verified_and_altered_ones_rejected() {
     assert_eq!(found["verified"], 1);
     assert_eq!(found["plans"][2]["targets"][0]["target"], "target");
     searoom(&["verify"]).code(2).stderr(contains("PLAN.json"));
+    // what is not proven in time is not verified, and says so
+    let budget = ["verify", "--budget-s", "1e-9", &four[0]];
+    let late = "give-way.json: not proven within the budget of 0.000000001 s";
+    searoom(&budget).code(1).stderr(contains(late));
+    let all = searoom(&[&budget[..], &["--json"]].concat()).code(1);
+    let found = document(&all);
+    assert_eq!(found["plans"][0]["outcome"], "unproven");
+    assert_eq!(found["plans"][0]["verified"], false);
+    for wrong in ["0", "-1", "soon", "1e300"] {
+        searoom(&["verify", "--budget-s", wrong, &four[0]])
+            .code(2)
+            .stderr(contains("a positive number of seconds"));
+    }
 }
 
 #[test]

@@ -55,7 +55,6 @@ pub use escape::{after_holding, escape, undisturbed};
 
 use super::clock::Clock;
 use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
-use crate::frame::Vector;
 use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
 use crate::tolerance;
@@ -153,9 +152,9 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     {
         return refuse(NoPlan::StartAshore { depth });
     }
-    // a round trip ends where it begins, and is to be sailed
-    let at = |place: Vector| (place - own.pose.position).norm() <= tolerance::LENGTH_M;
-    if at(problem.desired.end()) && !at(problem.desired.legs()[0].start) {
+    let at_end = (problem.desired.end() - own.pose.position).norm() <= tolerance::LENGTH_M;
+    // a path that comes by there before, as a round trip does, is to be sailed
+    if at_end && !problem.desired.comes_by(own.pose.position) {
         return already_there(problem);
     }
     let Some(route) = Route::new(problem) else {

@@ -49,6 +49,11 @@ impl Piece {
         self.pose_after(self.length)
     }
 
+    /// Metres that are left of it at a distance along the route; of the whole its own length, to the last digit.
+    fn left(&self, at: f64) -> f64 {
+        self.length - (at - self.distance)
+    }
+
     fn pose_after(&self, distance: f64) -> Pose {
         segment(self.start, 0.0, distance, 1.0, self.curvature).end()
     }
@@ -301,7 +306,7 @@ impl Route {
         let end = (from + length).min(self.length());
         while end - at > tolerance::LENGTH_M {
             let piece = &self.pieces[self.piece_at(at)];
-            let step = (piece.distance + piece.length).min(end) - at;
+            let step = piece.left(at).min(end - at);
             if step < tolerance::LENGTH_M {
                 at = past(at, step);
                 continue;
@@ -334,7 +339,7 @@ impl Route {
         while end - at > tolerance::LENGTH_M {
             let index = self.piece_at(at);
             let piece = &self.pieces[index];
-            let left = piece.distance + piece.length - at;
+            let left = piece.left(at);
             if left < tolerance::LENGTH_M {
                 at = past(at, left);
                 continue;

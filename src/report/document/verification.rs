@@ -8,6 +8,8 @@ use crate::verification::Verification;
 
 /// The verdict on a document that is none.
 const UNREADABLE: &str = "unreadable";
+/// And on one that was not checked in time.
+const UNPROVEN: &str = "unproven";
 
 /// Every document that was asked for, in order.
 ///
@@ -36,7 +38,7 @@ pub struct VerificationDocument {
     pub safe: usize,
 }
 
-/// One document. What is unknown of an unreadable one is null.
+/// One document. What is unknown of one that is unreadable or unproven is null.
 ///
 /// # Examples
 ///
@@ -155,6 +157,14 @@ impl VerifiedPlanDocument {
                 .collect(),
             min_land_distance_m: land.map(|e| e.min_land_distance),
             min_land_distance_t_s: land.map(|e| e.min_land_distance_time),
+        }
+    }
+
+    /// The entry of a file whose check was not done within its time.
+    pub fn unproven(file: String, error: String) -> Self {
+        Self {
+            outcome: UNPROVEN.to_owned(),
+            ..Self::unreadable(file, error)
         }
     }
 
