@@ -1,13 +1,13 @@
 //! Are the sets large enough for what is known of the targets?
 //!
-//! A tracked ship's initial set has to contain her hull ⊕ a disc of own half-diagonal, safety margin and three
-//! standard deviations of her position; her velocity set every velocity with a speed and a course within the spreads, turned
+//! A tracked ship's initial set has to contain her hull, on every heading that she may have until the horizon, ⊕ a disc of own
+//! half-diagonal, safety margin and three standard deviations of her position; her velocity set every velocity with a speed and a course within the spreads, turned
 //! as far as she may have turned. Explicit sets have to be contained as they are. Where risk was accepted, the velocity
 //! sets are first scaled back about their centres.
 
 use super::claim::Claim;
 use super::reached;
-use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
+use crate::evaluation::{SetShape, SpaceTimeSet, TurnedHull, Violation};
 use crate::frame::{Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
@@ -84,15 +84,11 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
             let reach = claim.own.hull.half_diagonal()
                 + claim.own.safety_margin
                 + POSITION_SIGMAS * ship.position_std;
-            let hull = ship.hull.polygon(&ship.pose);
-            let outside = hull
-                .vertices()
-                .iter()
-                .map(|p| whole.initial.distance(*p) + reach);
             if at_start {
+                let hull = TurnedHull::of(ship, claim.file.horizon_s);
                 need(
                     "the hull, the margin and the uncertainty, m",
-                    largest(outside),
+                    whole.initial.beyond_hull(&hull) + reach,
                     0.0,
                 );
             }
@@ -281,6 +277,18 @@ impl Bounded {
             Self::Ellipse(own) => {
                 largest(sampled_directions(own).map(|n| set.support(n) - own.support(n)))
             }
+        }
+    }
+
+    /// How far a turned hull reaches outside, negative where it is inside: exactly for a polygon, by tangents of the arcs that its
+    /// corners make for an ellipse.
+    fn beyond_hull(&self, hull: &TurnedHull) -> f64 {
+        match self {
+            Self::Polygon(set) if set.vertices().len() > 2 => {
+                let normals = set.normals().into_iter();
+                largest(normals.map(|n| hull.support(n) - set.support(n)))
+            }
+            _ => largest(hull.outer_points(TANGENT_SPACING).map(|p| self.distance(p))),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::claim::Claim;
 use super::coverage::{Bounded, POSITION_SIGMAS, Sector, largest, sampled_directions};
+use crate::evaluation::TurnedHull;
 use crate::frame::Vector;
 use crate::target::{Motion, Target, VelocitySpell};
 
@@ -38,7 +39,7 @@ fn support(claim: &Claim, target: &Target, n: Vector, time: f64) -> f64 {
             } else {
                 Sector::of(ship, 0.0).support(n) * time
             };
-            ship.hull.polygon(&ship.pose).support(n) + reach + way
+            TurnedHull::of(ship, claim.file.horizon_s).support(n) + reach + way
         }
         Motion::Sets { initial, velocity } => initial.support(n) + velocity.support(n) * time,
         Motion::Ellipses { initial, velocity } => initial.support(n) + velocity.support(n) * time,
