@@ -1,7 +1,7 @@
 //! A target: a tracked ship as two sets, where she may be now and every velocity she may take.
 
-use crate::frame::{Pose, Vector, direction};
-use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::frame::{Pose, Vector, direction, to_port};
+use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse};
 use crate::vessel::Hull;
 
 /// Half the angle between two tangents of the faster arc: 5°, radians.
@@ -9,6 +9,9 @@ const TANGENT_SPACING: f64 = std::f64::consts::PI / 36.0;
 
 /// The turn that one spell of a turning target stands for: 5°, radians.
 const TURN_OF_A_SPELL: f64 = std::f64::consts::PI / 36.0;
+
+/// Of a hull's half-diagonal. A side of the outer polygon of a turned hull that is shorter is left out.
+const SHORT_SIDE: f64 = 1e-3;
 
 /// Sides of the polygon that stands for an ellipse in figures: 0.12 % beyond it at most.
 const SET_SIDES: usize = 64;
@@ -123,6 +126,60 @@ impl ShipTrack {
             self.pose.position + self.velocity() * time,
             self.pose.heading,
         )
+    }
+
+    /// Half-width of her heading at `time`, which is her course, radians: at most half a turn.
+    pub fn heading_spread(&self, time: f64) -> f64 {
+        let turned = if self.turn_rate == 0.0 {
+            0.0
+        } else {
+            self.turn_rate.abs() * time
+        };
+        // of a NaN and a number the least is the number: every heading
+        (self.course_spread + turned).min(std::f64::consts::PI)
+    }
+
+    /// An outer polygon of her hull at t = 0 on every heading that she may have until `time`: on the nominal one
+    /// the hull itself, otherwise at most 2 % of its half-diagonal larger. Its sides are among those of
+    /// [`crate::geometry::outer_disc`] about her heading, so that the sum with such a disc has no more vertices than the disc.
+    pub fn outer_hull(&self, time: f64) -> ConvexPolygon {
+        let spread = self.heading_spread(time);
+        if spread == 0.0 {
+            return self.hull.polygon(&self.pose);
+        }
+        let (reach, corner) = (
+            self.hull.half_diagonal(),
+            self.hull.beam.atan2(self.hull.length),
+        );
+        // a quarter of the sides, from ahead to abeam; the others are its mirror images
+        let quarter = DISC_SIDES / 4;
+        let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
+        let support = |side: f64| {
+            let off = (side * step - corner).abs() - spread;
+            reach * off.max(0.0).cos()
+        };
+        let is_long = |side: f64| {
+            let beside = support(side - 1.0) + support(side + 1.0);
+            beside - 2.0 * support(side) * step.cos() > SHORT_SIDE * reach * step.sin()
+        };
+        let mut sides = vec![0.0];
+        sides.extend((1..quarter).map(|k| k as f64).filter(|side| is_long(*side)));
+        sides.push(quarter as f64);
+        let meet = |pair: &[f64]| {
+            let (ahead, gap) = (direction(pair[0] * step), (pair[1] - pair[0]) * step);
+            let [here, next] = [support(pair[0]), support(pair[1])];
+            ahead * here + to_port(ahead) * ((next - here * gap.cos()) / gap.sin())
+        };
+        let bow: Vec<Vector> = sides.windows(2).map(meet).collect();
+        let mirrored = |x: f64, y: f64| {
+            let there = bow.iter().map(move |p| Vector::new(p.x * x, p.y * y));
+            there.map(|p| self.pose.world_coordinates(p))
+        };
+        let mut points: Vec<Vector> = mirrored(1.0, 1.0).collect();
+        points.extend(mirrored(-1.0, 1.0).rev());
+        points.extend(mirrored(-1.0, -1.0));
+        points.extend(mirrored(1.0, -1.0).rev());
+        ConvexPolygon::from_ccw(points)
     }
 
     /// An outer polygon of every velocity with a speed in `[speed - spread, speed + spread]`,
@@ -363,103 +420,4 @@ fn stretches(spells: &[VelocitySpell], time: f64) -> impl Iterator<Item = (f64, 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use rand::{Rng, SeedableRng};
-
-    #[test]
-    fn the_velocity_set_contains_every_velocity_within_the_spreads() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(3);
-        for _ in 0..500 {
-            let ship = ShipTrack {
-                pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
-                speed: rng.random_range(0.0..10.0),
-                hull: Hull {
-                    length: 50.0,
-                    beam: 10.0,
-                },
-                position_std: 0.0,
-                speed_spread: rng.random_range(0.0..3.0),
-                course_spread: rng.random_range(0.0..3.5),
-                turn_rate: 0.0,
-                domain: DomainKind::Hull,
-            };
-            let set = ship.outer_velocity_set();
-            for _ in 0..50 {
-                let speed =
-                    (ship.speed + rng.random_range(-1.0..=1.0) * ship.speed_spread).max(0.0);
-                let course = ship.pose.heading + rng.random_range(-1.0..=1.0) * ship.course_spread;
-                assert!(set.signed_distance(direction(course) * speed) <= 1e-9);
-            }
-        }
-    }
-
-    fn turning_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
-        ShipTrack {
-            pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
-            speed: rng.random_range(0.0..10.0),
-            hull: Hull {
-                length: 50.0,
-                beam: 10.0,
-            },
-            position_std: 0.0,
-            speed_spread: rng.random_range(0.0..3.0),
-            course_spread: rng.random_range(0.0..1.0),
-            turn_rate: 0.0,
-            domain: DomainKind::Hull,
-        }
-    }
-
-    #[test]
-    fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
-        for _ in 0..200 {
-            let ship = turning_ship(&mut rng);
-            let rate = rng.random_range(0.0_f64..0.05);
-            let horizon = rng.random_range(1.0..400.0);
-            let spells = ship.outer_velocity_spells(rate, horizon);
-            assert!(spells.windows(2).all(|w| w[0].until < w[1].until));
-            for _ in 0..100 {
-                let t = rng.random_range(0.0..500.0);
-                let turned = ship.course_spread + rate * t;
-                let course = ship.pose.heading + rng.random_range(-1.0..=1.0) * turned;
-                let speed =
-                    (ship.speed + rng.random_range(-1.0..=1.0) * ship.speed_spread).max(0.0);
-                let now = spells.iter().find(|s| t <= s.until).expect("a last one");
-                let v = direction(course) * speed;
-                assert!(now.velocities.signed_distance(v) <= 1e-9, "{ship:?} {t}");
-                if t < horizon {
-                    let widest = ship.outer_velocities_within(turned + TURN_OF_A_SPELL + 1e-9);
-                    for v in now.velocities.vertices() {
-                        assert!(widest.signed_distance(*v) <= 0.005 * v.norm() + 1e-9);
-                    }
-                }
-            }
-        }
-        let ship = turning_ship(&mut rng);
-        assert_eq!(ship.outer_velocity_spells(0.0, 100.0).len(), 1);
-        for rate in [f64::NAN, f64::INFINITY] {
-            let all = ship.outer_velocity_spells(rate, 100.0);
-            assert_eq!(all.len(), 1);
-            assert!(all[0].velocities.contains(-ship.velocity()));
-        }
-    }
-
-    #[test]
-    fn no_spread_is_a_point() {
-        let ship = ShipTrack {
-            pose: Pose::new(Vector::zeros(), 0.3),
-            speed: 5.0,
-            hull: Hull {
-                length: 50.0,
-                beam: 10.0,
-            },
-            position_std: 0.0,
-            speed_spread: 0.0,
-            course_spread: 0.0,
-            turn_rate: 0.0,
-            domain: DomainKind::Hull,
-        };
-        assert_eq!(ship.outer_velocity_set().vertices().len(), 1);
-    }
-}
+mod tests;

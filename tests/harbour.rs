@@ -144,6 +144,7 @@ fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
     Scenario {
         title: format!("{} {seed}", waters.name),
         horizon: 2.0 * duration,
+        arrival_hold: 60.0,
         own_ship: OwnShip {
             pose: Pose::new(first.start, searoom::frame::heading_of(first.direction)),
             speed,

@@ -869,6 +869,7 @@ fn a_judge_without_its_ship_knows_no_plan() {
         land: &[],
         land_margin: 0.0,
         horizon: 100.0,
+        arrival_hold: 60.0,
         time_weight: 0.05,
         max_risk: 0.0,
     };

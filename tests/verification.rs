@@ -12,11 +12,13 @@ mod wild;
 use std::path::{Path, PathBuf};
 
 use searoom::frame::Vector;
+use searoom::geometry::{ConvexPolygon, outer_disc};
+use searoom::obstacle::SlabObstacle;
 use searoom::pipeline;
 use searoom::planner::Objective;
 use searoom::report::document::PlanDocument;
 use searoom::scenario::{Compliance, Scenario};
-use searoom::target::{Motion, Representation};
+use searoom::target::{Motion, Representation, ShipTrack};
 use searoom::verification::{Verification, verify};
 use serde_json::{Value, json};
 
@@ -245,6 +247,8 @@ fn is_said_only(pointer: &str) -> bool {
         "/horizon_s",
         "/max_risk",
         "/risk_weight_m",
+        // what the ship lies clear of for longer it lies clear of for less
+        "/cost/arrival_hold_s",
     ]
     .iter()
     .any(|part| pointer.starts_with(part))
@@ -1782,6 +1786,57 @@ fn sets_that_only_seem_large_enough_are_too_small() {
 }
 
 /// Words beside the motion: what was minimised, and what was given up first.
+/// Sets around the hull on the heading that is expected, and for a ship that turns on those of her course spread at the
+/// start: as she takes another course, her bow is beyond them.
+#[test]
+fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
+    let around = |ship: &ShipTrack, hull: ConvexPolygon| {
+        let own = scenario("colregs/head-on.toml").own_ship;
+        let reach = own.hull.half_diagonal() + own.safety_margin + 3.0 * ship.position_std;
+        hull.minkowski_sum(&outer_disc(reach, ship.pose.heading))
+    };
+    let plain = |set: &ConvexPolygon| {
+        json!(
+            set.vertices()
+                .iter()
+                .map(|p| [p.x, p.y])
+                .collect::<Vec<_>>()
+        )
+    };
+    let rejected = |document: &Value| {
+        let found = checked(document).violations;
+        assert!(!found.is_empty());
+        for violation in found {
+            assert!(
+                violation.what.contains("too small for the hull"),
+                "{violation:?}"
+            );
+        }
+    };
+    let mut straight = scenario("colregs/head-on.toml");
+    straight.compliance = Compliance::None;
+    let ship = straight.targets[0].ship().expect("a ship").clone();
+    let mut altered = document(straight);
+    let vertices = at(&mut altered, "/obstacles/0/initial_set/vertices_m");
+    *vertices = plain(&around(&ship, ship.hull.polygon(&ship.pose)));
+    rejected(&altered);
+
+    let mut turning = scenario("uncertainty/turning.toml");
+    turning.compliance = Compliance::None;
+    let ship = turning.targets[0].ship().expect("a ship").clone();
+    let spells = ship.outer_velocity_spells(ship.turn_rate, turning.horizon);
+    let initial = around(&ship, ship.outer_hull(0.0));
+    let slabs = SlabObstacle::new("x", initial, spells).expect("in order");
+    let mut altered = document(turning);
+    for (entry, slab) in list(&mut altered, "/obstacles")
+        .iter_mut()
+        .zip(slabs.slabs())
+    {
+        entry["initial_set"]["vertices_m"] = plain(slab.obstacle().initial());
+    }
+    rejected(&altered);
+}
+
 #[test]
 fn an_objective_that_is_not_the_planners_and_another_relaxation_are_rejected() {
     let clear = document(scenario("colregs/head-on.toml"));

@@ -18,6 +18,7 @@ mod space_time_set;
 mod stage_cost;
 mod steered;
 mod turn;
+mod turned_hull;
 mod undisturbed;
 mod words;
 
@@ -27,6 +28,7 @@ pub use safety::Safety;
 pub use space_time_set::{SetShape, SpaceTimeSet};
 pub(crate) use stage_cost::{StageWeights, stage_costs};
 pub use steered::{Steering, evaluate_steered};
+pub(crate) use turned_hull::TurnedHull;
 pub(crate) use undisturbed::{undisturbed_distance, undisturbed_legs};
 pub(crate) use words::{Tone, outcome, risk_figure};
 pub use words::{facts, outcome_word};
@@ -35,7 +37,7 @@ use clearance::{Body, least_distance};
 use least::Least;
 use moving_ellipse::MovingEllipse;
 use moving_slabs::MovingSlabs;
-use piece::Piece;
+use piece::{Piece, at_rest};
 use safety::Claim;
 use shore::least_land_distance;
 use space_time_set::{MovingSet, since};
@@ -73,6 +75,7 @@ const POSITION_SIGMAS: f64 = 3.0;
 ///     land: &[],
 ///     land_margin: 0.0,
 ///     horizon: scenario.horizon,
+///     arrival_hold: scenario.arrival_hold,
 ///     time_weight: scenario.time_weight,
 ///     max_risk: 0.0,
 /// };
@@ -112,6 +115,7 @@ pub struct Violation {
 ///     land: &[],
 ///     land_margin: 0.0,
 ///     horizon: scenario.horizon,
+///     arrival_hold: scenario.arrival_hold,
 ///     time_weight: scenario.time_weight,
 ///     max_risk: 0.0,
 /// };
@@ -134,6 +138,8 @@ pub struct Passage {
     /// Least distance between own hull and any hull the target may have, metres; negative in overlap.
     /// For explicit sets: from own position to the set.
     pub min_clearance: f64,
+    /// The same after the end of the motion, own ship lying where it ends.
+    pub hold_clearance: f64,
     /// Least signed distance to the set the plan was made against, metres, and when, seconds.
     /// Infinite for a target without a set.
     pub min_margin: f64,
@@ -164,6 +170,7 @@ pub struct Passage {
 ///     land: &[],
 ///     land_margin: 0.0,
 ///     horizon: scenario.horizon,
+///     arrival_hold: scenario.arrival_hold,
 ///     time_weight: scenario.time_weight,
 ///     max_risk: 0.0,
 /// };
@@ -193,6 +200,10 @@ pub struct Evaluation {
     pub delay: f64,
     /// Least of the targets' clearances, metres; infinite without targets.
     pub min_clearance: f64,
+    /// The same over `arrival_hold` after the end of the motion, own ship lying where it ends: told, not judged.
+    pub hold_clearance: f64,
+    /// Seconds.
+    pub arrival_hold: f64,
     /// Least distance between own hull and land, metres; infinite without land, negative on it.
     pub min_land_distance: f64,
     /// And when, seconds.
@@ -257,16 +268,18 @@ pub fn evaluate(request: &Request) -> Evaluation {
             Freedom::PathsToHorizon(_) => f64::NAN,
             Freedom::Limits | Freedom::Paths(_) | Freedom::Any => end - request.desired.duration(),
         },
-        min_clearance: or_nan(
-            passages
-                .iter()
-                .map(|p| p.min_clearance)
-                .fold(f64::INFINITY, f64::min),
-        ),
+        min_clearance: or_nan(least_of(&passages, |p| p.min_clearance)),
+        hold_clearance: or_nan(least_of(&passages, |p| p.hold_clearance)),
+        arrival_hold: request.arrival_hold,
         min_land_distance: or_nan(shore.value),
         min_land_distance_time: shore.time,
         passages,
     }
+}
+
+/// The least of the passages; infinite without any.
+fn least_of(passages: &[Passage], figure: impl Fn(&Passage) -> f64) -> f64 {
+    passages.iter().map(figure).fold(f64::INFINITY, f64::min)
 }
 
 /// The least signed distance to each set of a request along its segments, metres, certified; minus infinity where that was
@@ -423,7 +436,8 @@ fn passage<P: Piece>(
     claim: &Claim,
 ) -> (Passage, Least, Safety) {
     let (margin, from) = (&claim.margin, claim.from);
-    let (closest, worst, kept, safety) = match &target.motion {
+    let lying = at_rest(pieces, request.arrival_hold);
+    let (closest, worst, kept, hold, safety) = match &target.motion {
         Motion::Ship(ship) => {
             let body = Body::hull(&request.own.hull);
             let hull = ship.hull.polygon(&ship.pose);
@@ -440,15 +454,19 @@ fn passage<P: Piece>(
             };
             let nominal = MovingSlabs::new(&hull, &[held]);
             let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
-            let initial = hull.minkowski_sum(&unknown);
+            let turned = |until: f64| {
+                let hull = TurnedHull::of(ship, until).outer_polygon();
+                hull.minkowski_sum(&unknown)
+            };
             let spells = ship.outer_velocity_spells(ship.turn_rate, request.horizon);
-            let whole = MovingSlabs::new(&initial, &spells);
+            let whole = MovingSlabs::growing(turned, &spells);
             let worst = along(&whole, pieces, turns);
+            let hold = whole.least_distance(&lying, body);
             let kept = if from > 0.0 || request.max_risk > 0.0 {
                 let spells = at_risk(&spells, target, request.max_risk);
                 let later = turns.iter().filter(|turn| turn.time >= from).copied();
                 let later: Vec<Turn> = later.collect();
-                let slabs = MovingSlabs::new(&initial, &spells);
+                let slabs = MovingSlabs::growing(turned, &spells);
                 along(&slabs, &since(pieces, from, 0.0), &later)
             } else {
                 worst
@@ -457,25 +475,28 @@ fn passage<P: Piece>(
             let safety = claim.of_ship(request, [&closest, &worst], || {
                 whole.least_distance(pieces, Body::POINT)
             });
-            (closest, worst, kept, safety)
+            (closest, worst, kept, hold, safety)
         }
         Motion::Sets { initial, velocity } => {
             let set = MovingSet::new(initial, velocity);
             let least = least_distance(pieces, Body::POINT, &set);
+            let hold = least_distance(&lying, Body::POINT, &set);
             let safety = claim.of_set(request, &least, set.has_interior());
-            (least, least, least, safety)
+            (least, least, least, hold, safety)
         }
         Motion::Ellipses { initial, velocity } => {
             let set = MovingEllipse::new(initial, velocity);
             let least = set.least_distance(pieces);
+            let hold = set.least_distance(&lying);
             let safety = claim.of_set(request, &least, set.has_interior());
-            (least, least, least, safety)
+            (least, least, least, hold, safety)
         }
         Motion::Spells { initial, spells } => {
             let slabs = MovingSlabs::new(initial, spells);
             let least = slabs.least_distance(pieces, Body::POINT);
+            let hold = slabs.least_distance(&lying, Body::POINT);
             let safety = claim.of_set(request, &least, slabs.has_interior());
-            (least, least, least, safety)
+            (least, least, least, hold, safety)
         }
     };
     let passing_side =
@@ -497,6 +518,7 @@ fn passage<P: Piece>(
         tcpa: closest.time,
         passing_side,
         min_clearance: worst.value,
+        hold_clearance: hold.value,
         min_margin: margin.value,
         min_margin_time: margin.time,
     };

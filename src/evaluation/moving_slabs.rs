@@ -15,7 +15,7 @@ struct Slab {
     set: MovingSet,
 }
 
-/// The slabs of a set, in order of time; each begins with the section that the one before ends with.
+/// The slabs of a set, in order of time; each begins with the section that the one before ends with, or a larger one.
 #[derive(Debug, Clone)]
 pub(super) struct MovingSlabs {
     slabs: Vec<Slab>,
@@ -24,15 +24,29 @@ pub(super) struct MovingSlabs {
 impl MovingSlabs {
     /// From the set at t = 0 and the velocity sets in order; the last one holds for ever. O(slabs (n + m)²).
     pub fn new(initial: &ConvexPolygon, spells: &[VelocitySpell]) -> Self {
+        Self::growing(|_| initial.clone(), spells)
+    }
+
+    /// The same where the set at t = 0 is another one for each slab, known by its end: that of the last is infinite.
+    pub fn growing(initial: impl Fn(f64) -> ConvexPolygon, spells: &[VelocitySpell]) -> Self {
         let mut slabs = Vec::with_capacity(spells.len());
-        let (mut start, mut section) = (0.0, initial.clone());
+        let (mut start, mut way) = (0.0, None::<ConvexPolygon>);
         for (index, spell) in spells.iter().enumerate() {
             let last = index + 1 == spells.len();
             let end = if last { f64::INFINITY } else { spell.until };
+            let initial = initial(end);
+            let section = match &way {
+                Some(way) => initial.minkowski_sum(way),
+                None => initial,
+            };
             let set = MovingSet::new(&section, &spell.velocities);
             slabs.push(Slab { start, end, set });
             if !last {
-                section = section.minkowski_sum(&spell.velocities.scaled(end - start));
+                let here = spell.velocities.scaled(end - start);
+                way = Some(match way {
+                    Some(way) => way.minkowski_sum(&here),
+                    None => here,
+                });
                 start = end;
             }
         }

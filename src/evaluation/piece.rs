@@ -21,6 +21,18 @@ pub(super) trait Piece: Copy {
     fn part(&self, from: f64, to: f64, zero: f64) -> Self;
 }
 
+/// Where a chain of pieces ends, lain at for `duration` seconds; nothing where there is none.
+pub(super) fn at_rest<P: Piece>(pieces: &[P], duration: f64) -> Vec<Segment> {
+    let lying = |last: &P| Segment {
+        start: last.pose_at(last.end_time()),
+        start_time: last.end_time(),
+        duration,
+        speed: 0.0,
+        turn_rate: 0.0,
+    };
+    pieces.last().map(lying).into_iter().collect()
+}
+
 impl Piece for Segment {
     fn start_time(&self) -> f64 {
         self.start_time

@@ -30,6 +30,7 @@ use crate::vessel::OwnShip;
 ///     land: &[],
 ///     land_margin: 0.0,
 ///     horizon: scenario.horizon,
+///     arrival_hold: scenario.arrival_hold,
 ///     time_weight: scenario.time_weight,
 ///     max_risk: 0.0,
 /// };
@@ -78,6 +79,7 @@ pub enum Freedom<'a> {
 ///     land: &[],
 ///     land_margin: 0.0,
 ///     horizon: scenario.horizon,
+///     arrival_hold: scenario.arrival_hold,
 ///     time_weight: scenario.time_weight,
 ///     max_risk: 0.0,
 /// };
@@ -107,6 +109,8 @@ pub struct Request<'a> {
     pub land_margin: f64,
     /// Seconds: arrival must not be later.
     pub horizon: f64,
+    /// For how long after the end of the motion own ship is looked at where it lies, seconds: nothing is claimed of it then.
+    pub arrival_hold: f64,
     /// `q` of eq. (30), m²/s².
     pub time_weight: f64,
     /// The risk of eq. (25) that was accepted, in `[0, 1)`: the sets are those of it already, the hulls are judged

@@ -34,6 +34,7 @@ use crate::target::VelocitySpell;
 ///     land: &[],
 ///     land_margin: 0.0,
 ///     horizon: scenario.horizon,
+///     arrival_hold: scenario.arrival_hold,
 ///     time_weight: scenario.time_weight,
 ///     max_risk: 0.0,
 /// };

@@ -3,7 +3,7 @@
 use super::counted::counted_error_of_cubics;
 use super::piece::Piece;
 use super::quadrature::smooth;
-use super::{Evaluation, Request, Safety, Violation, meetings, shore};
+use super::{Evaluation, Request, Safety, Violation, least_of, meetings, shore};
 use crate::frame::{Vector, wrap};
 use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, Node, Steered};
@@ -79,10 +79,9 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
         duration: nodes[nodes.len() - 1].time - nodes[0].time,
         length,
         delay: f64::NAN,
-        min_clearance: passages
-            .iter()
-            .map(|p| p.min_clearance)
-            .fold(f64::INFINITY, f64::min),
+        min_clearance: least_of(&passages, |p| p.min_clearance),
+        hold_clearance: least_of(&passages, |p| p.hold_clearance),
+        arrival_hold: request.arrival_hold,
         min_land_distance: shore.value,
         min_land_distance_time: shore.time,
         passages,

@@ -10,6 +10,9 @@ use crate::vessel::OwnShip;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+mod judged;
+mod turned;
+
 const RADIUS: f64 = 100.0;
 
 fn own() -> OwnShip {
@@ -115,7 +118,7 @@ fn a_hull_is_met_in_a_turn_on_the_spot() {
             segments[0].end().position + crate::frame::direction(0.75) * 14.0,
             2.3,
         );
-        (track.position_std, track.speed_spread) = (0.0, 0.0);
+        (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
         track.hull = Hull {
             length: 6.0,
             beam: 1.0,
@@ -151,6 +154,7 @@ fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Eva
         land: &[],
         land_margin: 0.0,
         horizon: 400.0,
+        arrival_hold: 60.0,
         time_weight: 25.0,
         max_risk: 0.0,
     })
@@ -353,6 +357,7 @@ fn what_is_not_a_number_is_never_verified() {
         land: &[],
         land_margin: 0.0,
         horizon: f64::NAN,
+        arrival_hold: f64::NAN,
         time_weight: 25.0,
         max_risk: 0.0,
     });

@@ -124,6 +124,7 @@ fn judged(
         land: scenario.land.as_ref().map_or(&[], |l| l.map.polygons()),
         land_margin: scenario.land.as_ref().map_or(0.0, |l| l.margin),
         horizon: scenario.horizon,
+        arrival_hold: scenario.arrival_hold,
         time_weight: scenario.time_weight,
         max_risk: claims.risk,
     };

@@ -117,7 +117,7 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
     match &target.motion {
         Motion::Ship(ship) => {
             let risk = colregs::first_risk(own, desired, ship, horizon);
-            let shapes = colregs::shapes(own, ship, risk.as_ref());
+            let shapes = colregs::shapes(own, ship, risk.as_ref(), horizon);
             let hard = ship_obstacle(target, ship, shapes.hard.clone(), horizon);
             let shaped = ship_obstacle(target, ship, shapes.shaped.clone(), horizon);
             // the ellipse around a shape that was drawn back may contain own ship again

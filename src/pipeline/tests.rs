@@ -10,7 +10,12 @@ use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{Hull, OwnShip, VesselKind};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
+
+mod last_moments;
+mod shore;
 
 fn polytope(o: &Obstacle) -> &PolytopeObstacle {
     o.as_polytope().expect("a polytope")
@@ -21,6 +26,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
     Scenario {
         title: "one target".to_owned(),
         horizon: 400.0,
+        arrival_hold: 60.0,
         own_ship: OwnShip {
             pose: Pose::new(Vector::zeros(), 0.0),
             speed: 5.0,
@@ -356,4 +362,42 @@ fn the_time_of_no_return_is_between_the_start_and_the_first_contact() {
     assert!(time > 60.0 && time < 145.0, "{time}");
     assert_eq!(at(1500.0, 5000.0), Some(NoReturn::Never));
     assert_eq!(at(60.0, 0.0), Some(NoReturn::Past));
+}
+
+/// Whatever course she takes, her hull turned with it, and own ship on any heading a margin away from it, are in the hard set.
+#[test]
+fn the_hard_set_holds_the_hull_as_it_turns_with_the_course() {
+    let mut rng = ChaCha8Rng::seed_from_u64(41);
+    for case in 0..200 {
+        let mut within = |a: f64, b: f64| rng.random_range(a..b);
+        let mut ship = track(900.0, 0.0, within(-PI, PI), within(0.0, 9.0));
+        ship.hull.length = within(5.0, 200.0);
+        ship.hull.beam = within(0.1, 0.5) * ship.hull.length;
+        ship.course_spread = within(0.0, 0.2);
+        ship.turn_rate = [0.0, 1e-3, 0.02][case % 3];
+        let mut asked = scenario(ship.clone(), Compliance::Shape);
+        if ship.turn_rate == 0.0 && case % 2 == 0 {
+            asked.targets[0].representation = Representation::Ellipsoid;
+        }
+        let sets = sets(&asked);
+        let reach = asked.own_ship.hull.half_diagonal() + asked.own_ship.safety_margin;
+        for _ in 0..5 {
+            let (turns, speed) = (within(-1.0, 1.0), ship.speed + within(-0.5, 0.5));
+            let (mut pose, mut time, step) = (ship.pose, 0.0, 0.5);
+            while time < asked.horizon {
+                let course = turns * (ship.course_spread + ship.turn_rate * time);
+                pose.heading = ship.pose.heading + course;
+                let hull = ship.hull.polygon(&pose);
+                for corner in hull.vertices() {
+                    let depth = -sets[0].hard.signed_distance(*corner, time).distance;
+                    assert!(
+                        depth > reach - 1e-6,
+                        "{depth} of {reach}, {time} s, {ship:?}"
+                    );
+                }
+                pose.position += pose.ahead() * (speed.max(0.0) * step);
+                time += step;
+            }
+        }
+    }
 }

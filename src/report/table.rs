@@ -445,7 +445,20 @@ pub(super) fn plan_lines(run: &Run) -> (String, Vec<(&'static str, String)>) {
             None => say("delay", format!("does not arrive ({way} at the horizon)")),
         }
         if let Some(clearance) = summary.clearance {
-            say("clearance", format!("{} m", metres(clearance)));
+            let then = if summary.delay.is_some() {
+                "arrival"
+            } else {
+                "the end"
+            };
+            let lying = metres(evaluation.hold_clearance);
+            let hold = evaluation.arrival_hold;
+            say(
+                "clearance",
+                format!(
+                    "{} m; after {then} {lying} m within {hold} s",
+                    metres(clearance)
+                ),
+            );
         }
         if evaluation.min_land_distance.is_finite() {
             let (distance, time) = (

@@ -24,6 +24,9 @@ const UNCLOSED: &str = "unclosed";
 /// Own ship's speeds where the file names none, as fractions of her own speed.
 const DEFAULT_SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
 
+/// Seconds after arrival that are looked at where the file does not say.
+const DEFAULT_ARRIVAL_HOLD: f64 = 60.0;
+
 /// Seconds of wall clock for one plan where the file names none.
 const DEFAULT_DEADLINE: f64 = 5.0;
 
@@ -32,6 +35,7 @@ const DEFAULT_DEADLINE: f64 = 5.0;
 pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
     let title = root.require("title", LINE).and_then(|entry| entry.text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
+    let arrival_hold = root.number("arrival_hold_s", limits::HOLD);
     let plane = Plane::new(&mut root);
     let map = land::map(&mut root, &plane, folder);
     let own_ship = root
@@ -76,6 +80,7 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
     Some(Scenario {
         title: title?,
         horizon: horizon?,
+        arrival_hold: arrival_hold.unwrap_or(DEFAULT_ARRIVAL_HOLD),
         time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
         own_ship,
         desired,

@@ -43,6 +43,8 @@ pub(super) const SHIP_SPEED: Range = Range::between(0.0, 50.0);
 pub(super) const SHIP_WAY: Range = Range::between(1e-3, 50.0);
 /// Seconds: horizon, deadline.
 pub(super) const DURATION: Range = Range::between(1e-3, 1e6);
+/// Seconds that are looked at after arrival.
+pub(super) const HOLD: Range = Range::between(0.0, 1e6);
 /// m/s at which a leg is run.
 pub(super) const WAY: Range = Range::between(1e-3, 100.0);
 /// m/s, or standing still.

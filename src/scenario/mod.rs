@@ -66,6 +66,8 @@ pub struct Scenario {
     pub title: String,
     /// Seconds.
     pub horizon: f64,
+    /// For how long after its arrival own ship is looked at where it lies, seconds, of no effect on plans.
+    pub arrival_hold: f64,
     /// Own ship.
     pub own_ship: OwnShip,
     /// Where she is meant to be, and when.

@@ -303,6 +303,7 @@ fn scene(
             search: SearchKind::AStar,
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,
+            arrival_hold: 60.0,
             max_risk: 0.0,
             deadline: DEADLINE,
             thresholds: None,
@@ -361,7 +362,7 @@ fn draw(kind: EncounterKind, rng: &mut ChaCha8Rng) -> Option<ShipTrack> {
         .all(|&t| kind.describes(&own(t), &ship.pose_at(t)));
     let reach = OWN_HULL.half_diagonal() + SAFETY_MARGIN + 3.0 * position_std;
     let clear =
-        hull.polygon(&ship.pose).signed_distance(Vector::zeros()) > outer_disc(reach, 0.0).reach();
+        ship.outer_hull(0.0).signed_distance(Vector::zeros()) > outer_disc(reach, 0.0).reach();
     (intended && clear).then_some(ship)
 }
 

@@ -151,6 +151,13 @@ impl Claim {
             f64::MIN_POSITIVE,
             f64::INFINITY,
         )?;
+        let hold = file.cost.as_ref().and_then(|cost| cost.arrival_hold_s);
+        within(
+            "cost.arrival_hold_s",
+            hold.unwrap_or(0.0),
+            0.0,
+            LONGEST_HOLD_S,
+        )?;
         within("max_risk", file.max_risk, 0.0, 1.0 - f64::EPSILON)?;
         within(
             "time_weight_m2_per_s2",
@@ -208,6 +215,17 @@ impl Claim {
             faults,
             file,
         })
+    }
+}
+
+/// Seconds, as in scenarios.
+const LONGEST_HOLD_S: f64 = 1e6;
+
+impl Claim {
+    /// Seconds after the motion of which a clearance is told.
+    pub fn arrival_hold(&self) -> f64 {
+        let cost = self.file.cost.as_ref();
+        cost.and_then(|cost| cost.arrival_hold_s).unwrap_or(0.0)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Are the sets large enough for what is known of the targets?
 //!
-//! A tracked ship's set has to contain her hull ⊕ a disc of own half-diagonal, safety margin and three standard deviations
-//! of her position, and every place that she may come to at a speed and a course within the spreads, turned as far as she may have
+//! A tracked ship's set has to contain its hull, on every heading that it may have until the horizon, ⊕ a disc of own half-diagonal, safety
+//! margin and three standard deviations of its position, and every place that it may come to at a speed and a course within the spreads, turned as far as it may have
 //! turned. Explicit sets have to be contained as they are. Where risk was accepted, the set of the level has to hold what
 //! is known of her scaled to that level, and the set scaled back all of it.
 //!
@@ -10,8 +10,8 @@
 //! the start and at the horizon is contained always, however short or fast a slab is.
 
 use super::claim::Claim;
-use super::reached::{Known, at_level, in_order, outer_velocities, reach};
-use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
+use super::reached::{Known, TANGENT_SPACING, at_level, in_order, outer_velocities, reach};
+use crate::evaluation::{SetShape, SpaceTimeSet, TurnedHull, Violation};
 use crate::frame::{Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{Motion, Target, VelocitySpell};
@@ -166,8 +166,9 @@ fn of_ellipses(
     } else {
         let short = match &target.motion {
             Motion::Ship(ship) => {
-                let hull = ship.hull.polygon(&ship.pose);
-                beyond_polygon(initial, &hull) + reach(claim, ship)
+                let hull = TurnedHull::of(ship, claim.file.horizon_s);
+                let corners = hull.outer_points(TANGENT_SPACING);
+                largest(corners.map(|p| initial.signed_distance(p).distance)) + reach(claim, ship)
             }
             Motion::Sets { initial: known, .. } | Motion::Spells { initial: known, .. } => {
                 beyond_polygon(initial, known)

@@ -62,6 +62,14 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         cost.min_clearance_m,
         evaluation.min_clearance,
     );
+    // what is not told of is not held against anything
+    if cost.arrival_hold_s.is_some() || cost.hold_clearance_m.is_some() {
+        same(
+            "cost.hold_clearance_m",
+            cost.hold_clearance_m,
+            evaluation.hold_clearance,
+        );
+    }
     let minimised = match file.objective.as_str() {
         _ if forces => driven(claim, cost.objective),
         "space-time-error" => Some(evaluation.space_time_error),

@@ -135,6 +135,8 @@ pub(super) struct CostFile {
     pub delay_s: Option<f64>,
     pub max_risk: f64,
     pub min_clearance_m: Option<f64>,
+    pub hold_clearance_m: Option<f64>,
+    pub arrival_hold_s: Option<f64>,
     pub min_land_distance_m: Option<f64>,
 }
 

@@ -191,6 +191,7 @@ fn request(claim: &Claim) -> Request<'_> {
         land: &claim.land,
         land_margin: claim.file.own_ship.land_margin_m,
         horizon: claim.file.horizon_s,
+        arrival_hold: claim.arrival_hold(),
         time_weight: claim.file.time_weight_m2_per_s2,
         max_risk: claim.file.max_risk,
     }

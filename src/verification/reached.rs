@@ -2,6 +2,7 @@
 
 use super::claim::Claim;
 use super::coverage::{POSITION_SIGMAS, about_centroid, largest};
+use crate::evaluation::TurnedHull;
 use crate::frame::{Vector, direction, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
@@ -10,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Radians, a quarter of a degree: half the angle between tangents of the faster arc. What they cut off beyond the arc is a
 /// hundred-thousandth of the speed.
-const TANGENT_SPACING: f64 = PI / 720.0;
+pub(super) const TANGENT_SPACING: f64 = PI / 720.0;
 
 /// Directions counter-clockwise, each once.
 pub(super) fn in_order(directions: impl Iterator<Item = Vector>) -> Vec<Vector> {
@@ -80,9 +81,11 @@ impl<'a> Known<'a> {
         let of_ellipse = |e: &Ellipse| normals.iter().map(|n| e.support(*n)).collect();
         let (initial, across) = match &target.motion {
             Motion::Ship(ship) => {
-                let (hull, reach) = (ship.hull.polygon(&ship.pose), reach(claim, ship));
-                let supports = hull.supports(normals).into_iter().map(|h| h + reach);
-                (supports.collect(), hull.across() + 2.0 * reach)
+                let hull = TurnedHull::of(ship, claim.file.horizon_s);
+                let reach = reach(claim, ship);
+                let supports = normals.iter().map(|n| hull.support(*n) + reach);
+                let across = 2.0 * (ship.hull.half_diagonal() + reach);
+                (supports.collect(), across)
             }
             Motion::Sets { initial, .. } | Motion::Spells { initial, .. } => {
                 (initial.supports(normals), initial.across())

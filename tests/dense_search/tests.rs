@@ -22,7 +22,7 @@ fn hard_sets(scenario: &Scenario) -> Vec<Obstacle> {
     ships
         .map(|ship| {
             let reach = own.hull.half_diagonal() + own.safety_margin + 3.0 * ship.position_std;
-            let hull = ship.hull.polygon(&ship.pose);
+            let hull = ship.outer_hull(scenario.horizon);
             let initial = hull.minkowski_sum(&outer_disc(reach, ship.pose.heading));
             PolytopeObstacle::new("hard", initial, ship.outer_velocity_set()).into()
         })

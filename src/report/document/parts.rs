@@ -190,6 +190,11 @@ pub struct CostDocument {
     pub max_risk: f64,
     /// Null without targets.
     pub min_clearance_m: Option<f64>,
+    /// The same over `arrival_hold_s` after the end of the motion, own ship lying where it ends.
+    #[serde(default)]
+    pub hold_clearance_m: Option<f64>,
+    #[serde(default)]
+    pub arrival_hold_s: f64,
     /// Least distance between own hull and land; null without land.
     pub min_land_distance_m: Option<f64>,
 }

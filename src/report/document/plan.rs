@@ -310,6 +310,8 @@ pub(super) fn cost_of(
         delay_s: finite(evaluation.delay),
         max_risk: risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
+        hold_clearance_m: finite(evaluation.hold_clearance),
+        arrival_hold_s: evaluation.arrival_hold,
         min_land_distance_m: finite(evaluation.min_land_distance),
     }
 }

@@ -1,0 +1,152 @@
+//! What is judged after a release and off the land, from both sides of each bound; what is told of the time after arrival.
+
+use super::*;
+use crate::geometry::Polygon;
+
+fn straight() -> Vec<Segment> {
+    let mut segments = Vec::new();
+    follow(&mut segments, 1500.0, 5.0, 0.0);
+    segments
+}
+
+fn rectangle([x, y]: [f64; 2], [right, upper]: [f64; 2]) -> Vec<Vector> {
+    let corners = [(x, y), (right, y), (right, upper), (x, upper)];
+    corners.map(|(x, y)| Vector::new(x, y)).to_vec()
+}
+
+/// A set at rest that is entered, and left at `from` seconds.
+fn left(at: &[Vector], from: f64) -> SpaceTimeSet {
+    let initial = ConvexPolygon::hull(at).expect("finite");
+    let still = ConvexPolygon::point(Vector::zeros());
+    SpaceTimeSet {
+        from,
+        ..SpaceTimeSet::polytope("other", initial, still)
+    }
+}
+
+/// Own ship is within it from 53 s to 60 s: to leave it before is not to have left it.
+#[test]
+fn a_set_is_judged_from_its_release_on() {
+    let wall = rectangle([265.0, -10.0], [300.0, 10.0]);
+    for from in [0.0, 30.0, 45.0, 52.9, 53.1, 59.9] {
+        let found = judge(&straight(), &[left(&wall, from)], &[]);
+        assert_eq!(words(&found), ["set"], "{from}");
+        assert!(found.violations[0].time >= from);
+    }
+    let found = judge(&straight(), &[left(&wall, 60.1)], &[]);
+    assert!(found.verified(), "{:?}", found.violations);
+}
+
+/// The hulls overlap from 52.4 s to 59.6 s, far from the set of the name.
+#[test]
+fn a_hull_is_judged_from_the_release_of_its_set_on() {
+    let mut other = ship(0.0, 0.0);
+    if let Motion::Ship(track) = &mut other.motion {
+        track.pose = Pose::new(Vector::new(280.0, 0.0), 0.0);
+        track.hull = Hull {
+            length: 6.0,
+            beam: 1.0,
+        };
+        (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
+    }
+    let far = rectangle([200.0, 500.0], [300.0, 510.0]);
+    let judged = |segments: &[Segment], from| {
+        judge(segments, &[left(&far, from)], std::slice::from_ref(&other))
+    };
+    for from in [0.0, 35.0, 45.0, 52.3, 53.0, 59.5] {
+        let found = judged(&straight(), from);
+        assert_eq!(words(&found), ["hull"], "{from}");
+        assert!(found.violations[0].time >= from && found.min_clearance < -4.0);
+    }
+    assert!(judged(&straight(), 59.7).verified());
+    // a turn on the spot at 53 s, beside her on either course
+    let mut turning = straight();
+    turning[0].duration = 53.0;
+    turning[0].start.position = Vector::new(280.0 - 265.0, -12.0);
+    let mut onward = turning[0];
+    onward.start = Pose::new(turning[0].end().position, 3.0);
+    (onward.start_time, onward.duration) = (53.0, 100.0);
+    turning.push(onward);
+    let hit = |from| words(&judged(&turning, from)).contains(&"hull".to_owned());
+    assert!(hit(0.0) && hit(40.0) && hit(52.9) && !hit(53.1));
+}
+
+/// The land margin is 20 m, own side 4 m off her way.
+#[test]
+fn land_nearer_than_the_margin_is_a_violation() {
+    for (share, is_near) in [
+        (0.4, true),
+        (0.6, true),
+        (0.9, true),
+        (0.999, true),
+        (1.001, false),
+    ] {
+        let upper = -4.0 - 20.0 * share;
+        let coast = rectangle([600.0, upper - 100.0], [700.0, upper]);
+        let found = evaluate(&Request {
+            freedom: Freedom::Limits,
+            segments: &straight(),
+            own: &own(),
+            desired: &desired(),
+            targets: &[],
+            sets: &[],
+            land: &[Polygon::new(&[coast]).expect("a rectangle")],
+            land_margin: 20.0,
+            horizon: 400.0,
+            arrival_hold: 60.0,
+            time_weight: 25.0,
+            max_risk: 0.0,
+        });
+        assert_eq!(words(&found) == ["land:"], is_near, "{share}");
+        assert_eq!(found.verified(), !is_near);
+        assert!((found.min_land_distance - 20.0 * share).abs() < 1e-6);
+    }
+}
+
+/// Own ship arrives after 300 s and lies across the way of a ship that comes by later, from the side or nearly.
+#[test]
+fn the_time_after_arrival_is_told_and_not_judged() {
+    let coming = |after: f64, north: f64| {
+        let mut coming = ship(0.0, 5.0);
+        if let Motion::Ship(track) = &mut coming.motion {
+            (track.position_std, track.speed_spread, track.course_spread) = (0.0, 0.0, 0.0);
+            let from = Vector::new(1500.0 + 5.0 * (300.0 + after), north);
+            track.pose.position = from;
+        }
+        coming
+    };
+    let hold = |targets: &[Target], arrival_hold| {
+        let found = evaluate(&Request {
+            freedom: Freedom::Limits,
+            segments: &straight(),
+            own: &own(),
+            desired: &desired(),
+            targets,
+            sets: &[],
+            land: &[],
+            land_margin: 0.0,
+            horizon: 400.0,
+            arrival_hold,
+            time_weight: 25.0,
+            max_risk: 0.0,
+        });
+        assert!(found.verified(), "{:?}", found.violations);
+        assert_eq!(found.arrival_hold, arrival_hold);
+        found
+    };
+    // bow to bow, 15 m and 30 m from the middles: she is at 5 m/s and abeam after 29 s
+    let near = |left: f64, found: f64| (found - left).abs() < 1e-6;
+    let found = hold(&[coming(29.0, 14.5)], 60.0);
+    assert!(near(14.5 - 4.0 - 6.0, found.hold_clearance), "{found:?}");
+    assert!(found.min_clearance > 90.0);
+    let found = hold(&[coming(29.0, 14.5), coming(200.0, 0.0)], 10.0);
+    let ahead = (5.0_f64 * 19.0 - 45.0).hypot(4.5);
+    assert!(near(ahead, found.hold_clearance), "{found:?}");
+    assert_eq!(found.passages[0].hold_clearance, found.hold_clearance);
+    assert!(found.passages[1].hold_clearance > 800.0);
+    let found = hold(&[coming(29.0, 0.0)], 60.0);
+    assert!(found.hold_clearance < -9.0);
+    let found = hold(&[coming(29.0, 0.0)], 0.0);
+    assert!(near(found.min_clearance, found.hold_clearance));
+    assert_eq!(hold(&[], 60.0).hold_clearance, f64::INFINITY);
+}
