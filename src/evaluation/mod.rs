@@ -32,6 +32,8 @@ use shore::least_land_distance;
 use space_time_set::{MovingSet, since};
 use turn::{Turn, least_while_turning, turns};
 
+use std::collections::HashMap;
+
 use crate::frame::{Side, cross, direction};
 use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
@@ -273,16 +275,18 @@ fn meetings<P: Piece>(
             least
         })
         .collect();
+    let mut by_name: HashMap<&str, (Least, f64)> = HashMap::new();
+    for (set, least) in request.sets.iter().zip(&margins) {
+        let (margin, from) = by_name
+            .entry(&set.name)
+            .or_insert_with(|| (Least::new(), 0.0));
+        margin.see(least.value, least.time);
+        *from = from.max(set.from);
+    }
     let mut passages = Vec::with_capacity(request.targets.len());
     for target in request.targets {
-        let mut margin = Least::new();
-        let mut from: f64 = 0.0;
-        for (set, least) in request.sets.iter().zip(&margins) {
-            if set.name == target.name {
-                margin.see(least.value, least.time);
-                from = from.max(set.from);
-            }
-        }
+        let met = by_name.get(target.name.as_str()).copied();
+        let (margin, from) = met.unwrap_or_else(|| (Least::new(), 0.0));
         let (passage, clearance) = passage(request, pieces, turns, target, &margin, from);
         // explicit sets are judged above, as sets
         if judged && target.ship().is_some() {

@@ -113,7 +113,13 @@ impl ConvexPolygon {
     pub fn from_vertices(points: &[Vector]) -> Result<Self, GeometryError> {
         let hull = Self::hull(points)?;
         let limit = 1e-9 * extent(points);
+        let mut corners = hull.vertices.clone();
+        let order = |a: &Vector, b: &Vector| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+        corners.sort_by(order);
         for (index, p) in points.iter().enumerate() {
+            if corners.binary_search_by(|corner| order(corner, p)).is_ok() {
+                continue;
+            }
             let depth = -hull.signed_distance(*p);
             if depth > limit {
                 return Err(GeometryError::NotConvex { index, depth });
