@@ -43,6 +43,8 @@ use shore::least_land_distance;
 use space_time_set::{MovingSet, since};
 use turn::{Turn, least_while_turning, turns};
 
+use std::collections::HashMap;
+
 use crate::frame::{Side, cross, direction};
 use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
@@ -318,16 +320,17 @@ fn meetings<P: Piece>(
             (least, kept)
         })
         .collect();
+    let mut by_name: HashMap<&str, Claim> = HashMap::new();
+    for (set, (least, kept)) in request.sets.iter().zip(&margins) {
+        let claim = by_name.entry(&set.name).or_insert_with(Claim::new);
+        claim.see(least, *kept, set.from);
+    }
     let mut worst = Safety::Safe;
     let mut passages = Vec::with_capacity(request.targets.len());
+    let unclaimed = Claim::new();
     for target in request.targets {
-        let mut claim = Claim::new();
-        for (set, (least, kept)) in request.sets.iter().zip(&margins) {
-            if set.name == target.name {
-                claim.see(least, *kept, set.from);
-            }
-        }
-        let (passage, clearance, safety) = passage(request, pieces, turns, target, &claim);
+        let claim = by_name.get(target.name.as_str()).unwrap_or(&unclaimed);
+        let (passage, clearance, safety) = passage(request, pieces, turns, target, claim);
         worst = worst.max(safety);
         // explicit sets are judged above, as sets
         if judged && target.ship().is_some() {

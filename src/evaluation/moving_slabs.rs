@@ -1,6 +1,6 @@
 //! Velocity sets one after another as the checker sees them: a moving set per slab of time.
 
-use super::clearance::{Body, least_distance};
+use super::clearance::{Body, least_distance_below};
 use super::least::Least;
 use super::piece::Piece;
 use super::space_time_set::MovingSet;
@@ -65,7 +65,7 @@ impl MovingSlabs {
         slab.set.still_at(time - slab.start)
     }
 
-    /// [`least_distance`] over the slabs, each within its time.
+    /// The least distance over the slabs, each within its time.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
         let mut least = Least::new();
         for slab in &self.slabs {
@@ -75,7 +75,12 @@ impl MovingSlabs {
                 .filter(|s| !(s.end_time() < slab.start || s.start_time() > slab.end))
                 .map(|s| s.part(slab.start, slab.end, slab.start))
                 .collect();
-            let here = least_distance(&parts, own, &slab.set);
+            // what is not nearer than in the slabs before is not looked at closely
+            let known = Least {
+                value: least.value,
+                ..Least::new()
+            };
+            let here = least_distance_below(known, &parts, own, &slab.set);
             least.see(here.value, here.time + slab.start);
             least.certified &= here.certified;
             least.probes += here.probes;

@@ -1,13 +1,21 @@
 //! Fewer vertices, never less of the set.
 
 use super::ConvexPolygon;
-use crate::frame::{Vector, cross};
+use crate::frame::{Vector, cross, direction};
+
+/// Vertices from which on a set is first cut to so many tangents.
+const MANY: usize = 256;
+const TANGENTS: usize = 64;
 
 /// An outer approximation with at most `max_vertices` (at least 3): edges are removed one at a time,
 /// always the one whose removal, by extending its neighbours until they meet, adds the least area.
-/// Sets with few enough vertices, points and segments come back unchanged. O(n²).
+/// Sets with few enough vertices, points and segments come back unchanged. O(n²), of a set with more than [`MANY`] vertices O(n): it
+/// is first cut to [`TANGENTS`].
 pub fn outer_simplified(set: &ConvexPolygon, max_vertices: usize) -> ConvexPolygon {
     let mut vertices = set.vertices().to_vec();
+    if vertices.len() > MANY.max(max_vertices) {
+        vertices = between_tangents(set);
+    }
     while vertices.len() > max_vertices.max(3) {
         let n = vertices.len();
         let best = (0..n)
@@ -20,6 +28,20 @@ pub fn outer_simplified(set: &ConvexPolygon, max_vertices: usize) -> ConvexPolyg
         vertices.remove((i + 1) % n);
     }
     ConvexPolygon::from_ccw(vertices)
+}
+
+/// The corners between tangents in directions that are evenly spaced.
+fn between_tangents(set: &ConvexPolygon) -> Vec<Vector> {
+    let step = std::f64::consts::TAU / TANGENTS as f64;
+    let tangent = |k: usize| {
+        let normal = direction(step * k as f64);
+        (normal, set.support(normal))
+    };
+    let tangents: Vec<(Vector, f64)> = (0..TANGENTS).map(tangent).collect();
+    let next = tangents.iter().cycle().skip(1);
+    (tangents.iter().zip(next))
+        .map(|((n, a), (m, b))| Vector::new(a * m.y - b * n.y, b * n.x - a * m.x) / cross(*n, *m))
+        .collect()
 }
 
 /// Where the neighbours of the edge from vertex `i` meet, and the area that this adds; `None` when they
@@ -41,8 +63,25 @@ fn corner_without_edge(v: &[Vector], i: usize) -> Option<(Vector, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::direction;
     use crate::geometry::outer_disc;
+
+    #[test]
+    fn nothing_of_a_set_of_many_vertices_is_lost() {
+        let round: Vec<Vector> = (0..10_000)
+            .map(|k| direction(f64::from(k) * 6.283e-4))
+            .map(|d| Vector::new(700.0 + 90.0 * d.x, 40.0 * d.y))
+            .collect();
+        let set = ConvexPolygon::hull(&round).expect("finite");
+        for most in [3, 8, 30] {
+            let few = outer_simplified(&set, most);
+            assert!(few.vertices().len() <= most);
+            for i in 0..200 {
+                let d = direction(f64::from(i) * 0.0315);
+                assert!(few.support(d) >= set.support(d) - 1e-9);
+            }
+        }
+        assert!(outer_simplified(&set, 30).area() < 1.02 * set.area());
+    }
 
     #[test]
     fn nothing_of_the_set_is_lost() {

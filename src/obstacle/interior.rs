@@ -49,6 +49,11 @@ impl Obstacle {
 
 /// `None` where it is wide enough.
 fn outer_grown(initial: &ConvexPolygon) -> Option<ConvexPolygon> {
+    // the area is at most the width times the extent
+    let reach = initial.translated(-initial.centroid()).reach();
+    if initial.area() > 2.0 * reach * 4.0 * HALF_WIDTH_M {
+        return None;
+    }
     let narrow = initial
         .normals()
         .iter()

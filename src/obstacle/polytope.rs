@@ -1,6 +1,6 @@
 //! The polytope obstacle `O = {(x, t) : t >= 0, x in O_0 + t V}`, paper eqs. (2)-(9), in support form.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::cpa::{ClosestApproach, from_edge, polytope_approach};
 use super::risk::{
@@ -11,6 +11,9 @@ use super::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, SignedDistance};
 use crate::trajectory::Segment;
+
+/// Vertices from which on they are not all looked at.
+const MANY: usize = 64;
 
 /// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a unit
 /// normal in the plane. Formulas section 1; the corrected eq. (9) is a positive multiple of it.
@@ -133,6 +136,12 @@ pub struct MovingVertex {
 /// ```
 #[derive(Debug, Clone)]
 pub struct PolytopeObstacle {
+    shared: Arc<Shared>,
+}
+
+/// One for all clones.
+#[derive(Debug, Clone)]
+struct Shared {
     name: String,
     initial: ConvexPolygon,
     velocity: ConvexPolygon,
@@ -145,12 +154,14 @@ pub struct PolytopeObstacle {
 impl PartialEq for PolytopeObstacle {
     fn eq(&self, other: &Self) -> bool {
         // all else follows
-        self.name == other.name && self.initial == other.initial && self.velocity == other.velocity
+        self.shared.name == other.shared.name
+            && self.shared.initial == other.shared.initial
+            && self.shared.velocity == other.shared.velocity
     }
 }
 
 impl PolytopeObstacle {
-    /// From the two sets, in O((n + m)²): faces are found once, moving vertices when they are first asked for. Points and segments
+    /// From the two sets, in O((n + m) log (n + m)): faces are found once, moving vertices when they are first asked for. Points and segments
     /// are exact.
     pub fn new(name: impl Into<String>, initial: ConvexPolygon, velocity: ConvexPolygon) -> Self {
         let with_angle = |n: Vector| (n.y.atan2(n.x), n);
@@ -167,43 +178,46 @@ impl PolytopeObstacle {
         {
             normals.pop();
         }
-        let faces: Vec<HalfSpace> = normals
-            .into_iter()
-            .map(|(_, normal)| HalfSpace {
-                normal,
-                velocity_support: velocity.support(normal),
-                initial_support: initial.support(normal),
+        let normals: Vec<Vector> = normals.into_iter().map(|(_, normal)| normal).collect();
+        let supports = supports(&initial, &normals).zip(supports(&velocity, &normals));
+        let faces: Vec<HalfSpace> = (normals.iter().zip(supports))
+            .map(|(normal, (initial_support, velocity_support))| HalfSpace {
+                normal: *normal,
+                velocity_support,
+                initial_support,
             })
             .collect();
         let centroid = velocity.centroid();
         Self {
-            name: name.into(),
-            spreads: faces.iter().map(|f| FaceSpread::of(f, centroid)).collect(),
-            moving: OnceLock::new(),
-            initial,
-            velocity,
-            faces,
+            shared: Arc::new(Shared {
+                name: name.into(),
+                spreads: faces.iter().map(|f| FaceSpread::of(f, centroid)).collect(),
+                moving: OnceLock::new(),
+                initial,
+                velocity,
+                faces,
+            }),
         }
     }
 
     /// The target's name.
     pub fn name(&self) -> &str {
-        &self.name
+        &self.shared.name
     }
 
     /// `O_0`, metres.
     pub fn initial(&self) -> &ConvexPolygon {
-        &self.initial
+        &self.shared.initial
     }
 
     /// `V`, m/s.
     pub fn velocity(&self) -> &ConvexPolygon {
-        &self.velocity
+        &self.shared.velocity
     }
 
     /// The faces, by the angle of their normals.
     pub fn faces(&self) -> &[HalfSpace] {
-        &self.faces
+        &self.shared.faces
     }
 
     /// The vertices of the sections for t > 0, counter-clockwise: at most n + m.
@@ -212,8 +226,13 @@ impl PolytopeObstacle {
     }
 
     pub(super) fn moving(&self) -> &[MovingVertex] {
-        self.moving
-            .get_or_init(|| moving_vertices(&self.initial, &self.velocity, &self.faces))
+        self.shared.moving.get_or_init(|| {
+            moving_vertices(
+                &self.shared.initial,
+                &self.shared.velocity,
+                &self.shared.faces,
+            )
+        })
     }
 
     /// The velocity obstacle as a region of half-planes, for own ship at `position` at t = 0.
@@ -224,9 +243,11 @@ impl PolytopeObstacle {
     /// The section `O_t` for `t >= 0`, paper eq. (6). O(n + m).
     pub fn section(&self, time: f64) -> ConvexPolygon {
         if time > 0.0 {
-            self.initial.minkowski_sum(&self.velocity.scaled(time))
+            self.shared
+                .initial
+                .minkowski_sum(&self.shared.velocity.scaled(time))
         } else {
-            self.initial.clone()
+            self.shared.initial.clone()
         }
     }
 
@@ -236,7 +257,7 @@ impl PolytopeObstacle {
             value: f64::NEG_INFINITY,
             face: 0,
         };
-        for (face, h) in self.faces.iter().enumerate() {
+        for (face, h) in self.shared.faces.iter().enumerate() {
             let value = h.slack(position, time);
             // negated on purpose: a NaN is taken over and stays
             if !(value <= best.value) {
@@ -253,7 +274,7 @@ impl PolytopeObstacle {
     /// in turn about it, rises to one maximum and falls: what is `min over q in O_t of n . (x - q)` is so in `n` where it is
     /// positive, and the faces are some of all `n`. Where it is not positive all faces are asked. O(1) as a rule.
     pub(crate) fn slack_near(&self, position: Vector, time: f64, face: usize) -> Slack {
-        let (faces, count) = (&self.faces, self.faces.len());
+        let (faces, count) = (&self.shared.faces, self.shared.faces.len());
         if !(time >= 0.0) || face >= count {
             return self.slack(position, time);
         }
@@ -293,9 +314,9 @@ impl SpaceTimeObstacle for PolytopeObstacle {
     }
 
     fn support(&self, normal: Vector, time: f64) -> Support {
-        let rate = self.velocity.support(normal);
+        let rate = self.shared.velocity.support(normal);
         Support {
-            value: self.initial.support(normal) + rate * time,
+            value: self.shared.initial.support(normal) + rate * time,
             rate,
         }
     }
@@ -305,7 +326,7 @@ impl SpaceTimeObstacle for PolytopeObstacle {
         let slack = self.slack(position, time);
         let inside = SignedDistance {
             distance: slack.value,
-            normal: self.faces[slack.face].normal,
+            normal: self.shared.faces[slack.face].normal,
         };
         // negated on purpose: a NaN is handed on
         if !(slack.value > 0.0) {
@@ -344,22 +365,23 @@ impl SpaceTimeObstacle for PolytopeObstacle {
 
     /// O(n + m).
     fn alpha(&self, position: Vector, time: f64) -> f64 {
-        polytope_alpha(&self.faces, &self.spreads, position, time)
+        polytope_alpha(&self.shared.faces, &self.shared.spreads, position, time)
     }
 
     /// In closed form on a line, O((n + m)²) at worst; on an arc by bisection over exact contacts, to
     /// [`crate::tolerance::RISK`].
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
         if segment.is_valid() && !segment.is_arc() {
-            polytope_peak(&self.faces, &self.spreads, &Line::of(segment))
+            polytope_peak(&self.shared.faces, &self.shared.spreads, &Line::of(segment))
         } else {
             // contact asks the faces alone
             let mut level = self.clone();
             peak_by_bisection(segment.start_time, |risk| {
                 let alpha = level_of(risk);
-                for (i, face) in level.faces.iter_mut().enumerate() {
-                    let nominal = self.spreads[i].nominal_rate;
-                    let rate = self.faces[i].velocity_support - nominal;
+                let faces = &mut Arc::make_mut(&mut level.shared).faces;
+                for (i, face) in faces.iter_mut().enumerate() {
+                    let nominal = self.shared.spreads[i].nominal_rate;
+                    let rate = self.shared.faces[i].velocity_support - nominal;
                     face.velocity_support = nominal + alpha * rate;
                 }
                 contact::first_contact(&level, segment, 0.0)
@@ -368,8 +390,12 @@ impl SpaceTimeObstacle for PolytopeObstacle {
     }
 
     fn at_risk(&self, risk: f64) -> Self {
-        let velocity = scaled_velocities(&self.velocity, level_of(risk));
-        Self::new(self.name.clone(), self.initial.clone(), velocity)
+        let velocity = scaled_velocities(&self.shared.velocity, level_of(risk));
+        Self::new(
+            self.shared.name.clone(),
+            self.shared.initial.clone(),
+            velocity,
+        )
     }
 
     /// In closed form, O(n + m).
@@ -396,17 +422,16 @@ fn moving_vertices(
     velocity: &ConvexPolygon,
     faces: &[HalfSpace],
 ) -> Vec<MovingVertex> {
-    let n = faces.len();
-    let mut vertices: Vec<MovingVertex> = (0..n)
-        .map(|i| {
-            let between = faces[i].normal + faces[(i + 1) % n].normal;
-            let (j, origin) = farthest(initial.vertices(), between);
-            let (k, velocity) = farthest(velocity.vertices(), between);
-            MovingVertex {
-                indices: (j, k),
-                origin,
-                velocity,
-            }
+    let next = faces.iter().cycle().skip(1);
+    let between: Vec<Vector> = (faces.iter().zip(next))
+        .map(|(a, b)| a.normal + b.normal)
+        .collect();
+    let both = farthest(initial, &between).zip(farthest(velocity, &between));
+    let mut vertices: Vec<MovingVertex> = both
+        .map(|(j, k)| MovingVertex {
+            indices: (j, k),
+            origin: initial.vertices()[j],
+            velocity: velocity.vertices()[k],
         })
         .collect();
     vertices.dedup_by_key(|v| v.indices);
@@ -416,14 +441,40 @@ fn moving_vertices(
     vertices
 }
 
-fn farthest(points: &[Vector], n: Vector) -> (usize, Vector) {
-    let mut best = (0, points[0]);
-    for (i, p) in points.iter().enumerate() {
-        if n.dot(p) > n.dot(&best.1) {
-            best = (i, *p);
+/// The support of a set in directions that go around counter-clockwise.
+fn supports<'a>(
+    set: &'a ConvexPolygon,
+    directions: &'a [Vector],
+) -> impl Iterator<Item = f64> + 'a {
+    let both = farthest(set, directions).zip(directions);
+    both.map(|(vertex, along)| along.dot(&set.vertices()[vertex]))
+}
+
+/// The vertices farthest in directions that go around counter-clockwise. Of a set with many vertices each search goes on from the last
+/// one, as the vertices go around, too.
+fn farthest<'a>(
+    set: &'a ConvexPolygon,
+    directions: &'a [Vector],
+) -> impl Iterator<Item = usize> + 'a {
+    let points = set.vertices();
+    let mut at = None;
+    directions.iter().map(move |along| {
+        let further = |from: usize, to: usize| along.dot(&points[to]) > along.dot(&points[from]);
+        let mut best = match at {
+            Some(last) if points.len() > MANY => last,
+            _ => (1..points.len()).fold(0, |best, k| if further(best, k) { k } else { best }),
+        };
+        for _ in 0..points.len() {
+            // a step ahead may be a tie by rounding
+            let ahead = [1, 2].map(|step| (best + step) % points.len());
+            match ahead.into_iter().find(|next| further(best, *next)) {
+                Some(next) => best = next,
+                None => break,
+            }
         }
-    }
-    best
+        at = Some(best);
+        best
+    })
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! Velocity sets that change with time: one polytope after another, formulas section 10 (ii).
 
+use std::sync::{Arc, OnceLock};
+
 use super::cpa::{ClosestApproach, usable_horizon};
 use super::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
 use super::space_time_obstacle::largest_risk_of_parts;
-use super::{PolytopeObstacle, SpaceTimeObstacle, Support};
+use super::{HalfSpace, PolytopeObstacle, SpaceTimeObstacle, Support};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, SignedDistance};
 use crate::target::VelocitySpell;
@@ -73,12 +75,13 @@ pub enum SlabError {
 /// assert!(second.obstacle().initial().contains(Vector::new(0.0, 300.0)));
 /// # Ok::<(), searoom::geometry::GeometryError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Slab {
     start: f64,
     end: f64,
     obstacle: PolytopeObstacle,
-    faces: Vec<SlabFace>,
+    /// Found when alpha is first asked for.
+    faces: OnceLock<Vec<SlabFace>>,
     /// Where the target that keeps the centroids is at the start, from where it was, metres.
     nominal: Vector,
 }
@@ -138,12 +141,32 @@ struct SlabFace {
 /// assert!((beside(90.0) - 66.0).abs() < 1e-6);
 /// # Ok::<(), searoom::geometry::GeometryError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct SlabObstacle {
+    shared: Arc<Shared>,
+}
+
+/// One for all clones.
+#[derive(Debug)]
+struct Shared {
     name: String,
     initial: ConvexPolygon,
     spells: Vec<VelocitySpell>,
     slabs: Vec<Slab>,
+}
+
+impl PartialEq for SlabObstacle {
+    fn eq(&self, other: &Self) -> bool {
+        // all else follows
+        let key = |o: &Self| {
+            (
+                o.name().to_owned(),
+                o.initial().clone(),
+                o.spells().to_vec(),
+            )
+        };
+        key(self) == key(other)
+    }
 }
 
 impl SlabObstacle {
@@ -175,8 +198,6 @@ impl SlabObstacle {
     fn from_spells(name: String, initial: ConvexPolygon, spells: Vec<VelocitySpell>) -> Self {
         let mut slabs: Vec<Slab> = Vec::with_capacity(spells.len());
         let (mut start, mut section, mut nominal) = (0.0, initial.clone(), Vector::zeros());
-        // what the slabs so far have added, as its support function
-        let mut past: Vec<(f64, &ConvexPolygon, Vector)> = Vec::new();
         for (index, spell) in spells.iter().enumerate() {
             let end = if index + 1 == spells.len() {
                 f64::INFINITY
@@ -185,19 +206,6 @@ impl SlabObstacle {
             };
             let obstacle = PolytopeObstacle::new(name.clone(), section, spell.velocities.clone());
             let centroid = spell.velocities.centroid();
-            let faces = obstacle
-                .faces()
-                .iter()
-                .map(|face| SlabFace {
-                    normal: face.normal,
-                    initial_support: initial.support(face.normal),
-                    spread_before: past
-                        .iter()
-                        .map(|(d, set, c)| d * (set.support(face.normal) - face.normal.dot(c)))
-                        .sum(),
-                    spread_rate: face.velocity_support - face.normal.dot(&centroid),
-                })
-                .collect();
             section = if end.is_finite() {
                 obstacle.section(end - start)
             } else {
@@ -207,21 +215,42 @@ impl SlabObstacle {
                 start,
                 end,
                 obstacle,
-                faces,
+                faces: OnceLock::new(),
                 nominal,
             });
             if end.is_finite() {
                 nominal += centroid * (end - start);
-                past.push((end - start, &spell.velocities, centroid));
                 start = end;
             }
         }
         Self {
-            name,
-            initial,
-            slabs,
-            spells,
+            shared: Arc::new(Shared {
+                name,
+                initial,
+                spells,
+                slabs,
+            }),
         }
+    }
+
+    /// What alpha moves of each face of a slab. O(faces of the slab x slabs before).
+    fn faces_of(&self, index: usize) -> Vec<SlabFace> {
+        let past: Vec<(f64, &ConvexPolygon, Vector)> = (self.slabs()[..index].iter())
+            .map(|slab| (slab.end - slab.start, slab.obstacle.velocity()))
+            .map(|(duration, set)| (duration, set, set.centroid()))
+            .collect();
+        let obstacle = &self.slabs()[index].obstacle;
+        let centroid = obstacle.velocity().centroid();
+        let of = |face: &HalfSpace| SlabFace {
+            normal: face.normal,
+            initial_support: self.initial().support(face.normal),
+            spread_before: past
+                .iter()
+                .map(|(d, set, c)| d * (set.support(face.normal) - face.normal.dot(c)))
+                .sum(),
+            spread_rate: face.velocity_support - face.normal.dot(&centroid),
+        };
+        obstacle.faces().iter().map(of).collect()
     }
 
     /// The same set as a polytope whose velocities never change: one slab.
@@ -236,22 +265,26 @@ impl SlabObstacle {
 
     /// The same velocity sets with another set at t = 0, metres.
     pub fn with_initial(&self, initial: ConvexPolygon) -> Self {
-        Self::from_spells(self.name.clone(), initial, self.spells.clone())
+        Self::from_spells(
+            self.shared.name.clone(),
+            initial,
+            self.shared.spells.clone(),
+        )
     }
 
     /// `O_0`, metres.
     pub fn initial(&self) -> &ConvexPolygon {
-        &self.initial
+        &self.shared.initial
     }
 
     /// The velocity sets in order of time, m/s.
     pub fn spells(&self) -> &[VelocitySpell] {
-        &self.spells
+        &self.shared.spells
     }
 
     /// The slabs in order of time; the first starts at 0, the last has no end.
     pub fn slabs(&self) -> &[Slab] {
-        &self.slabs
+        &self.shared.slabs
     }
 
     /// The section `O_t` for `t >= 0`. O(faces).
@@ -262,13 +295,18 @@ impl SlabObstacle {
 
     /// The slab in force at `time`; before 0, and for a NaN, the first.
     fn slab_at(&self, time: f64) -> &Slab {
-        let after = self.slabs.partition_point(|s| s.end <= time);
-        &self.slabs[after.min(self.slabs.len() - 1)]
+        &self.slabs()[self.index_at(time)]
+    }
+
+    fn index_at(&self, time: f64) -> usize {
+        let after = self.slabs().partition_point(|s| s.end <= time);
+        after.min(self.slabs().len() - 1)
     }
 
     /// The slabs that a time span meets, each with the part of the span.
     fn slabs_within(&self, from: f64, to: f64) -> impl Iterator<Item = (&Slab, f64, f64)> {
-        self.slabs
+        self.shared
+            .slabs
             .iter()
             .map(move |s| (s, s.start.max(from), s.end.min(to)))
             .filter(|(_, start, end)| start <= end)
@@ -277,7 +315,7 @@ impl SlabObstacle {
 
 impl SpaceTimeObstacle for SlabObstacle {
     fn name(&self) -> &str {
-        &self.name
+        &self.shared.name
     }
 
     fn support(&self, normal: Vector, time: f64) -> Support {
@@ -318,12 +356,13 @@ impl SpaceTimeObstacle for SlabObstacle {
         if time < 0.0 {
             return f64::INFINITY;
         }
-        let slab = self.slab_at(time);
+        let index = self.index_at(time);
+        let slab = &self.slabs()[index];
         let elapsed = time - slab.start;
         let centroid = slab.obstacle.velocity().centroid();
         let q = position - slab.nominal - centroid * elapsed;
         let mut most = 0.0_f64;
-        for face in &slab.faces {
+        for face in slab.faces.get_or_init(|| self.faces_of(index)) {
             let beyond = face.normal.dot(&q) - face.initial_support;
             if beyond.is_nan() {
                 return 0.0;
@@ -362,15 +401,22 @@ impl SpaceTimeObstacle for SlabObstacle {
 
     fn at_risk(&self, risk: f64) -> Self {
         let alpha = level_of(risk);
+        if alpha == 1.0 {
+            return self.clone();
+        }
         let spells = self
-            .spells
+            .spells()
             .iter()
             .map(|spell| VelocitySpell {
                 until: spell.until,
                 velocities: scaled_velocities(&spell.velocities, alpha),
             })
             .collect();
-        Self::from_spells(self.name.clone(), self.initial.clone(), spells)
+        Self::from_spells(
+            self.shared.name.clone(),
+            self.shared.initial.clone(),
+            spells,
+        )
     }
 
     /// The least over the slabs, each in closed form; the earliest of those that tie.

@@ -1,17 +1,18 @@
 //! How own ship behaves along the plan of a run.
 
 use super::Run;
-use crate::colregs::conduct::{Conduct, Meeting, Thresholds};
+use crate::colregs::conduct::{Conduct, OwnTrack, Thresholds};
 
 impl Run {
     /// What two judges say of own ship toward each target, in the order of the scenario's; `None` without a plan, and of a target
-    /// that is no ship on a nominal track. They see the planned trajectory and that track alone. O(targets x seconds).
+    /// that is no ship on a nominal track. They see the planned trajectory and that track alone. O(targets x seconds), of targets that stay far away
+    /// less.
     pub fn conduct(&self, thresholds: &Thresholds) -> Vec<Option<Conduct>> {
         let plan = self.planned.outcome.plan();
         let own = self.scenario.own_ship.hull;
+        let track = plan.map(|plan| OwnTrack::along(&plan.trajectory, own));
         let judge = |target: &crate::target::Target| {
-            let meeting = Meeting::along(&plan?.trajectory, own, target.ship()?);
-            Some(Conduct::judge(&meeting, thresholds))
+            Some(Conduct::along(track.as_ref()?, target.ship()?, thresholds))
         };
         self.scenario.targets.iter().map(judge).collect()
     }

@@ -1,20 +1,29 @@
 //! Sets that a motion enters: until when.
 
 use super::ladder::TOUCH_M;
-use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::planner::{Outcome, Planned, PlannerKind, Problem, path_time, space_time};
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::planner::space_time::{self, NominalTarget};
+use crate::planner::{Outcome, Planned, PlannerKind, Problem, path_time};
+use crate::scenario::Scenario;
+use crate::target::Motion;
 use crate::trajectory::{Segment, Trajectory};
+use crate::vessel::Hull;
 
-/// Seconds between two looks at whether a set has been left, and halvings of that within which the instant is found.
+/// Seconds between two looks at whether a set has been left, at least, and halvings of that within which the instant is found.
 const LOOK_S: f64 = 1.0;
 const HALVINGS: usize = 30;
 
-/// A motion that need not be clear of anything: off the path to its end, clear from as early on as was found; along paths the
-/// one that does least harm. `None` where there is none within the horizon.
-pub(super) fn motion(kind: PlannerKind, problem: &Problem) -> Option<Planned> {
-    match kind {
+/// The clock is read after so many looks.
+const MANY_LOOKS: u32 = 1000;
+
+/// A motion that need not be clear of anything: off the path to its end, with the least harm; along paths the one that does least
+/// harm. `None` where there is none within the horizon.
+pub(super) fn motion(scenario: &Scenario, problem: &Problem) -> Option<Planned> {
+    match scenario.planner {
         PlannerKind::SpaceTime => {
-            let plan = space_time::escape(problem)?;
+            let nominal = |index| nominal(scenario, problem, index);
+            let plan = space_time::escape(problem, nominal)?;
             Some(Planned::of(Outcome::Solved(plan)))
         }
         PlannerKind::PathTime => path_time::least_harm(problem),
@@ -22,9 +31,43 @@ pub(super) fn motion(kind: PlannerKind, problem: &Problem) -> Option<Planned> {
     }
 }
 
-/// Seconds from which on a motion is clear of a set; `None` where it is so all along, its end where it never is. Errs to
-/// the late side, by some nanoseconds.
-pub(super) fn left_for_good(set: &Obstacle, trajectory: &Trajectory) -> Option<f64> {
+/// A target as if nothing of its motion were unknown.
+fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> NominalTarget {
+    let (target, hard) = (&scenario.targets[index], &problem.obstacles[index]);
+    let Motion::Ship(ship) = &target.motion else {
+        let set = hard.at_risk(1.0);
+        let own = Hull {
+            length: 0.0,
+            beam: 0.0,
+        };
+        return NominalTarget {
+            hull: set.clone(),
+            set,
+            own,
+        };
+    };
+    let moving = |initial: ConvexPolygon| {
+        let velocity = ConvexPolygon::point(ship.velocity());
+        Obstacle::from(PolytopeObstacle::new(
+            target.name.clone(),
+            initial,
+            velocity,
+        ))
+    };
+    NominalTarget {
+        hull: moving(ship.hull.polygon(&ship.pose)),
+        set: moving(hard.outer_section(0.0)),
+        own: scenario.own_ship.hull,
+    }
+}
+
+/// Seconds from which on a motion is clear of a set; `None` where it is so all along, its end where it never is, or where the
+/// time is up before that is known. Errs to the late side, by some nanoseconds.
+pub(super) fn left_for_good(
+    set: &Obstacle,
+    trajectory: &Trajectory,
+    is_up: impl Fn() -> bool,
+) -> Option<f64> {
     let end = trajectory.end_time();
     // what has no interior is not to be touched, not even crossed
     let set = set.outer_where_flat();
@@ -33,18 +76,32 @@ pub(super) fn left_for_good(set: &Obstacle, trajectory: &Trajectory) -> Option<f
         let mut later = later.map(|s: &Segment| s.between(from, s.end_time()));
         later.find_map(|s| set.first_contact(&s, TOUCH_M))
     };
-    let inside = |time: f64| {
+    let depth = |time: f64| {
         let at = trajectory.pose_at(time).position;
-        // negated on purpose: a NaN is inside
-        !(set.signed_distance(at, time).distance >= 0.0)
+        -set.signed_distance(at, time).distance
     };
-    let mut from = trajectory.start_time();
-    let mut met = contact(from)?;
+    // negated on purpose: a NaN is inside
+    let inside = |time: f64| !(depth(time) <= 0.0);
+    let own = trajectory.segments().iter().map(|s| s.speed);
+    let closing = own.fold(0.0, f64::max) + greatest_speed(&set);
+    let (mut from, mut looks) = (trajectory.start_time(), 0_u32);
+    // a ship that has arrived has no way to look along
+    let mut met = if end > from {
+        contact(from)?
+    } else {
+        inside(from).then_some(from)?
+    };
     loop {
         let mut last = met.max(from);
-        let mut next = last + LOOK_S;
+        // so deep inside, it is not left before
+        let after = |time: f64| time + (depth(time) / closing).max(LOOK_S);
+        let mut next = after(last);
         while next < end && inside(next) {
-            (last, next) = (next, next + LOOK_S);
+            (last, next) = (next, after(next));
+            looks += 1;
+            if looks.is_multiple_of(MANY_LOOKS) && is_up() {
+                return Some(end);
+            }
         }
         if next >= end {
             return Some(end);
@@ -62,5 +119,17 @@ pub(super) fn left_for_good(set: &Obstacle, trajectory: &Trajectory) -> Option<f
             Some(again) => met = again,
             None => return Some(from),
         }
+    }
+}
+
+/// No point of a set moves faster, m/s; infinite where that is not known.
+fn greatest_speed(set: &Obstacle) -> f64 {
+    match set {
+        Obstacle::Polytope(o) => o.velocity().reach(),
+        Obstacle::Slabs(o) => {
+            let reaches = o.spells().iter().map(|spell| spell.velocities.reach());
+            reaches.fold(0.0, f64::max)
+        }
+        Obstacle::Ellipsoid(_) => f64::INFINITY,
     }
 }

@@ -350,13 +350,18 @@ impl Ladder<'_> {
     fn at_worst(&self, attempt: Attempt) -> Attempt {
         let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let problem = self.problem(&hard);
-        let Some(planned) = inside::motion(self.scenario.planner, &problem) else {
+        let Some(planned) = inside::motion(self.scenario, &problem) else {
             return attempt;
         };
         let Some(plan) = planned.outcome.plan() else {
             return attempt;
         };
-        let left = |set| inside::left_for_good(set, &plan.trajectory);
+        let is_up = || self.left().is_zero();
+        let left = |set| {
+            let left = inside::left_for_good(set, &plan.trajectory, is_up)?;
+            // of a ship that has arrived nothing is claimed at all
+            Some(if left > 0.0 { left } else { problem.horizon })
+        };
         let released = hard.iter().map(left).collect();
         let timed_out =
             matches!(attempt.planned.outcome, Outcome::Deadline(_)) || self.left().is_zero();

@@ -80,7 +80,7 @@ impl TargetSets {
                 let initial = shapes.drawn_back(share);
                 Kept {
                     cut: shapes.cut(&initial),
-                    obstacle: ship_obstacle(target, ship, initial, scenario.horizon),
+                    obstacle: with_initial(target, ship, &self.hard, initial, scenario.horizon),
                 }
             }
             (Some(_), _) if share < 1.0 => Kept {
@@ -119,7 +119,11 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
             let risk = colregs::first_risk(own, desired, ship, horizon);
             let shapes = colregs::shapes(own, ship, risk.as_ref(), horizon);
             let hard = ship_obstacle(target, ship, shapes.hard.clone(), horizon);
-            let shaped = ship_obstacle(target, ship, shapes.shaped.clone(), horizon);
+            let shaped = if shapes.shaped == shapes.hard {
+                hard.clone()
+            } else {
+                with_initial(target, ship, &hard, shapes.shaped.clone(), horizon)
+            };
             // the ellipse around a shape that was drawn back may contain own ship again
             let start = own.pose.position;
             if shaped.contains(start, 0.0) && !hard.contains(start, 0.0) {
@@ -170,6 +174,23 @@ fn ship_obstacle(
     }
     let polytope = PolytopeObstacle::new(target.name.clone(), initial, ship.outer_velocity_set());
     represented(target.representation, polytope)
+}
+
+/// [`ship_obstacle`] where that for another initial set is known.
+fn with_initial(
+    target: &Target,
+    ship: &ShipTrack,
+    known: &Obstacle,
+    initial: ConvexPolygon,
+    horizon: f64,
+) -> Obstacle {
+    match known {
+        Obstacle::Slabs(o) => o.with_initial(initial).into(),
+        Obstacle::Polytope(o) => {
+            PolytopeObstacle::new(target.name.clone(), initial, o.velocity().clone()).into()
+        }
+        Obstacle::Ellipsoid(_) => ship_obstacle(target, ship, initial, horizon),
+    }
 }
 
 fn one_after_another(

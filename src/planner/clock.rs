@@ -17,6 +17,11 @@ impl Clock {
         }
     }
 
+    /// What is left of the budget.
+    pub(crate) fn left(&self) -> Duration {
+        self.budget.saturating_sub(self.begun.elapsed())
+    }
+
     /// True once the time is up, and ever after.
     pub(crate) fn is_up(&self) -> bool {
         self.begun.elapsed() >= self.budget

@@ -37,6 +37,9 @@ struct Cut {
 /// rounding makes them, each piece costs this often two.
 const MAX_HALVINGS: u32 = 10;
 
+/// Of a path of more legs those that cannot be nearest are left out first.
+const MANY_LEGS: usize = 6;
+
 /// While plans are looked for.
 const SEARCHED: Cut = Cut {
     arc: PI / 4.0,
@@ -84,15 +87,24 @@ fn integral(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64, cu
         .ceil()
         .max(cut.pieces);
     let duration = segment.duration / pieces;
-    let stretch = Stretch {
+    let mut stretch = Stretch {
         desired,
+        near: None,
         mover: Mover::new(segment),
         time_weight,
         bent: segment.is_arc(),
     };
+    let legs = desired.legs().len();
+    let near = (legs > MANY_LEGS).then(|| {
+        let all: Vec<usize> = (0..legs).collect();
+        stretch.near(&all, segment.start_time, segment.duration)
+    });
     (0..pieces as usize)
         .map(|k| {
             let from = segment.start_time + duration * k as f64;
+            if let Some(near) = &near {
+                stretch.near = Some(stretch.near(near, from, duration));
+            }
             stretch.integral(from, duration, MAX_HALVINGS)
         })
         .sum()
@@ -232,6 +244,8 @@ impl<'a> Alone<'a> {
 
 struct Stretch<'a> {
     desired: &'a DesiredTrajectory,
+    /// The legs that may be nearest, where there are many.
+    near: Option<Vec<usize>>,
     mover: Mover,
     time_weight: f64,
     bent: bool,
@@ -239,8 +253,29 @@ struct Stretch<'a> {
 
 impl Stretch<'_> {
     fn at(&self, time: f64) -> Nearest {
-        self.desired
-            .nearest(self.mover.position_at(time), time, self.time_weight)
+        let (position, q) = (self.mover.position_at(time), self.time_weight);
+        match &self.near {
+            Some(near) => self.desired.nearest_of(near, position, time, q),
+            None => self.desired.nearest(position, time, q),
+        }
+    }
+
+    /// Those of some legs that may be nearest for a while: in space-time no place of own ship is farther from that halfway than
+    /// half of its way.
+    fn near(&self, legs: &[usize], from: f64, duration: f64) -> Vec<usize> {
+        let (middle, q) = (from + 0.5 * duration, self.time_weight);
+        let at = self.mover.position_at(middle);
+        let away: Vec<f64> = legs
+            .iter()
+            .map(|leg| self.desired.nearest_of(&[*leg], at, middle, q).error.sqrt())
+            .collect();
+        let speed = self.mover.velocity_at(middle).norm();
+        let least = away.iter().copied().fold(f64::INFINITY, f64::min);
+        // far more than roundings
+        let most = (least + duration * speed.hypot(q.sqrt())) * (1.0 + 1e-6) + 1e-6;
+        // negated on purpose: a NaN may be
+        let near = legs.iter().zip(away).filter(|(_, away)| !(*away > most));
+        near.map(|(leg, _)| *leg).collect()
     }
 
     /// Which leg is nearest, and whether one of its ends is.
@@ -385,6 +420,7 @@ mod tests {
             };
             let q = [0.5, 25.0, 400.0][i as usize % 3];
             let stretch = Stretch {
+                near: None,
                 desired: &desired,
                 mover: Mover::new(&segment),
                 time_weight: q,

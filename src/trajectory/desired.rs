@@ -252,6 +252,26 @@ impl DesiredTrajectory {
         })
     }
 
+    /// [`DesiredTrajectory::nearest`] of some legs alone.
+    pub(crate) fn nearest_of(
+        &self,
+        legs: &[usize],
+        position: Vector,
+        time: f64,
+        q: f64,
+    ) -> Nearest {
+        let mut best = Nearest {
+            error: f64::INFINITY,
+            distance: 0.0,
+            leg: 0,
+        };
+        for index in legs {
+            let leg = &self.legs[*index];
+            best.offer(*index, leg, leg.nearest(position, time, q));
+        }
+        best
+    }
+
     /// The nearest point in space-time: `min over sigma of |x - x_d(sigma)|² + q (t - t_d(sigma))²`,
     /// formulas section 7, in closed form per leg. `q` in m²/s². Of equal legs the earlier. Looks from the leg of that
     /// time on at later and earlier ones, until they are too far off in time alone: O(legs) at worst, and for `q = 0`.

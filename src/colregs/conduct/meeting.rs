@@ -1,8 +1,7 @@
 //! Two ships that meet, sight after sight: all that the judges see.
 
 use super::super::role::SteadyShip;
-use crate::frame::{Vector, relative_bearing};
-use crate::geometry::ConvexPolygon;
+use crate::frame::{Vector, relative_bearing, to_port};
 use crate::target::ShipTrack;
 use crate::trajectory::Trajectory;
 use crate::vessel::Hull;
@@ -116,43 +115,7 @@ impl Meeting {
     /// From the start of a trajectory to its end, the target on her nominal track. O(duration). Own ship's heading is
     /// taken for her course: a drift is not seen.
     pub fn along(trajectory: &Trajectory, own: Hull, target: &ShipTrack) -> Self {
-        let sights = trajectory
-            .sample_times(STEP_S, MOST_SIGHTS)
-            .into_iter()
-            .map(|time| {
-                let ships = [
-                    SteadyShip {
-                        pose: trajectory.pose_at(time),
-                        speed: trajectory.speed_at(time),
-                    },
-                    SteadyShip {
-                        pose: target.pose_at(time),
-                        speed: target.speed,
-                    },
-                ];
-                let between = between(&own, &ships[0], &target.hull, &ships[1]);
-                let apart = between.signed_distance(Vector::zeros());
-                let closing = ships[0].velocity() - ships[1].velocity();
-                // negated on purpose: a NaN is a meeting
-                let meets_in = if !(apart > 0.0) {
-                    0.0
-                } else {
-                    seconds_to(&between, closing)
-                };
-                Sight {
-                    time,
-                    own: ships[0],
-                    target: ships[1],
-                    apart,
-                    meets_in,
-                }
-            })
-            .collect();
-        Self {
-            sights,
-            own,
-            target: target.hull,
-        }
+        OwnTrack::along(trajectory, own).meeting(target, f64::INFINITY)
     }
 
     /// In order of time, at least one.
@@ -171,25 +134,195 @@ impl Meeting {
     }
 }
 
-/// Where own ship's centre meets the target's hull, about the target's centre less own ship's.
-fn between(own: &Hull, a: &SteadyShip, target: &Hull, b: &SteadyShip) -> ConvexPolygon {
-    target
-        .polygon(&b.pose)
-        .minkowski_sum(&own.polygon(&a.pose).negated())
+/// Own ship at the instants of its sights: one for all targets.
+#[derive(Debug, Clone)]
+pub(crate) struct OwnTrack {
+    ships: Vec<(f64, SteadyShip)>,
+    hull: Hull,
+    /// m/s; infinite where it is not known.
+    greatest_speed: f64,
 }
 
-/// Seconds until a point that leaves the origin at a velocity is in a set; infinite where it never is.
-fn seconds_to(set: &ConvexPolygon, velocity: Vector) -> f64 {
-    let (mut from, mut until) = (0.0_f64, f64::INFINITY);
-    for normal in set.normals() {
-        let (rate, room) = (normal.dot(&velocity), set.support(normal));
-        if rate > 0.0 {
-            until = until.min(room / rate);
-        } else if rate < 0.0 {
-            from = from.max(room / rate);
-        } else if room < 0.0 {
-            return f64::INFINITY;
+impl OwnTrack {
+    pub(crate) fn along(trajectory: &Trajectory, hull: Hull) -> Self {
+        let at = |time: f64| SteadyShip {
+            pose: trajectory.pose_at(time),
+            speed: trajectory.speed_at(time),
+        };
+        let times = trajectory.sample_times(STEP_S, MOST_SIGHTS).into_iter();
+        let ships: Vec<_> = times.map(|time| (time, at(time))).collect();
+        let speeds = ships.iter().map(|(_, ship)| ship.speed);
+        // between two sights one under forces may be faster
+        let greatest_speed = match trajectory.steered() {
+            Some(_) => f64::INFINITY,
+            None => speeds.fold(0.0, f64::max),
+        };
+        Self {
+            greatest_speed,
+            ships,
+            hull,
         }
     }
-    if from > until { f64::INFINITY } else { from }
+
+    pub(crate) fn hull(&self) -> Hull {
+        self.hull
+    }
+
+    /// The greatest speed of own ship and a target toward each other, m/s.
+    pub(crate) fn closing(&self, target: &ShipTrack) -> f64 {
+        self.greatest_speed + target.speed
+    }
+
+    /// All sights of a target; of one whose hull never comes within `far` metres the nearest sight alone.
+    pub(crate) fn meeting(&self, target: &ShipTrack, far: f64) -> Meeting {
+        let nearest = far.is_finite().then(|| self.nearest(target)).flatten();
+        let sights = match nearest {
+            Some(sight) if sight.apart > far => vec![sight],
+            _ => (0..self.ships.len())
+                .map(|index| self.sight(index, target))
+                .collect(),
+        };
+        Meeting {
+            sights,
+            own: self.hull,
+            target: target.hull,
+        }
+    }
+
+    fn sight(&self, index: usize, track: &ShipTrack) -> Sight {
+        let (time, own) = self.ships[index];
+        let target = SteadyShip {
+            pose: track.pose_at(time),
+            speed: track.speed,
+        };
+        let between = Between::of(&self.hull, &own, &track.hull, &target);
+        let apart = between.distance();
+        let closing = own.velocity() - target.velocity();
+        // negated on purpose: a NaN is a meeting
+        let meets_in = if !(apart > 0.0) {
+            0.0
+        } else {
+            between.seconds_to(closing)
+        };
+        Sight {
+            time,
+            own,
+            target,
+            apart,
+            meets_in,
+        }
+    }
+
+    /// The first sight of the least distance between the hulls, by branch and bound: between two sights, ships come no closer than
+    /// their speeds let them. `None` of what is no number.
+    fn nearest(&self, target: &ShipTrack) -> Option<Sight> {
+        // turning hulls come closer than their centres
+        let swing = self.hull.half_diagonal() + target.hull.half_diagonal();
+        let closing = self.closing(target);
+        let range = |index: usize| {
+            let (time, own) = &self.ships[index];
+            (target.pose_at(*time).position - own.pose.position).norm()
+        };
+        let mut best = self.sight(0, target);
+        let mut open = vec![(0, self.ships.len() - 1)];
+        while let Some((from, until)) = open.pop() {
+            let last = self.sight(until, target);
+            if last.apart < best.apart || last.apart == best.apart && last.time < best.time {
+                best = last;
+            }
+            let lasts = self.ships[until].0 - self.ships[from].0;
+            let least = 0.5 * (range(from) + range(until) - closing * lasts) - swing;
+            // negated on purpose: a NaN is looked at
+            if until > from + 1 && !(least > best.apart) {
+                let middle = from + (until - from) / 2;
+                open.push((middle, until));
+                open.push((from, middle));
+            }
+        }
+        best.apart.is_finite().then_some(best)
+    }
+}
+
+/// Two hulls: where own ship's centre meets the target's hull, about the target's centre less own ship's. A sum of two rectangles, and
+/// so the points between four pairs of lines.
+struct Between {
+    offset: Vector,
+    /// Half of own length and beam, and of the target's, each along its axis.
+    halves: [(Vector, f64); 4],
+}
+
+impl Between {
+    fn of(own: &Hull, a: &SteadyShip, target: &Hull, b: &SteadyShip) -> Self {
+        let axes = |hull: &Hull, ship: &SteadyShip| {
+            let ahead = ship.pose.ahead();
+            [
+                (ahead, 0.5 * hull.length),
+                (to_port(ahead), 0.5 * hull.beam),
+            ]
+        };
+        let ([a1, a2], [b1, b2]) = (axes(own, a), axes(target, b));
+        Self {
+            offset: b.pose.position - a.pose.position,
+            halves: [a1, a2, b1, b2],
+        }
+    }
+
+    /// The half-width of the sum along a normal.
+    fn half(&self, normal: &Vector) -> f64 {
+        self.halves
+            .iter()
+            .map(|(axis, half)| half * normal.dot(axis).abs())
+            .sum()
+    }
+
+    /// Metres between the hulls, negative in overlap.
+    fn distance(&self) -> f64 {
+        let beyond = self
+            .halves
+            .iter()
+            .map(|(n, _)| n.dot(&self.offset).abs() - self.half(n));
+        let most = beyond.fold(f64::NEG_INFINITY, |most, next| {
+            // negated on purpose: a NaN is taken over and stays
+            if next <= most || most.is_nan() {
+                most
+            } else {
+                next
+            }
+        });
+        if !(most > 0.0) {
+            return most;
+        }
+        // the nearest points are a corner of one and a point of the other
+        let [a, b] = [&self.halves[..2], &self.halves[2..]];
+        let corners = |of: &[(Vector, f64)]| {
+            let (ahead, aside) = (of[0].0 * of[0].1, of[1].0 * of[1].1);
+            [ahead + aside, ahead - aside, aside - ahead, -ahead - aside]
+        };
+        let away = |of: &[(Vector, f64)], point: Vector| {
+            let beyond = |(axis, half): &(Vector, f64)| (axis.dot(&point).abs() - half).max(0.0);
+            beyond(&of[0]).hypot(beyond(&of[1]))
+        };
+        let theirs = corners(b).map(|corner| away(a, self.offset + corner));
+        let ours = corners(a).map(|corner| away(b, corner - self.offset));
+        theirs.into_iter().chain(ours).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite where it never is.
+    fn seconds_to(&self, velocity: Vector) -> f64 {
+        let (mut from, mut until) = (0.0_f64, f64::INFINITY);
+        for (axis, _) in &self.halves {
+            for normal in [*axis, -axis] {
+                let rate = normal.dot(&velocity);
+                let room = normal.dot(&self.offset) + self.half(axis);
+                if rate > 0.0 {
+                    until = until.min(room / rate);
+                } else if rate < 0.0 {
+                    from = from.max(room / rate);
+                } else if room < 0.0 {
+                    return f64::INFINITY;
+                }
+            }
+        }
+        if from > until { f64::INFINITY } else { from }
+    }
 }

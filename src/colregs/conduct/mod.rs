@@ -14,10 +14,13 @@ mod thresholds_file;
 
 pub use latch::{RoleSpell, roles};
 pub use meeting::Meeting;
+pub(crate) use meeting::OwnTrack;
 pub use monitor::{Finding, Measure, Verdict, monitors};
 pub use score::{Scores, scores};
 pub use thresholds::{MonitorLimits, RiskLimits, ScoreLimits, Thresholds};
 pub use thresholds_file::{ThresholdsError, ThresholdsFault};
+
+use crate::target::ShipTrack;
 
 /// A rule that own ship breaks.
 ///
@@ -96,6 +99,17 @@ impl Conduct {
             breaches,
             findings: monitors(meeting, thresholds),
         }
+    }
+
+    /// [`Conduct::judge`] of own ship along a track toward a target: of one that stays so far away that it has no role, by the nearest
+    /// sight alone.
+    pub(crate) fn along(track: &OwnTrack, target: &ShipTrack, thresholds: &Thresholds) -> Self {
+        let (risk, monitor) = (&thresholds.risk, &thresholds.monitor);
+        let length = track.hull().length.max(target.hull.length);
+        let near = (risk.lengths * length).max(monitor.lengths * target.hull.length);
+        let soon = risk.time.max(monitor.time).max(monitor.manoeuvre);
+        let far = near + soon * track.closing(target);
+        Self::judge(&track.meeting(target, far), thresholds)
     }
 
     /// True when neither judge finds a rule broken.

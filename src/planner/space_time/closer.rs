@@ -278,7 +278,7 @@ mod tests {
     /// On every way that Dijkstra finds, and on the plan that is refined, at every joint: the bounds against
     /// the cost that follows. How near the closer one comes.
     fn nearest(problem: &Problem) -> f64 {
-        let route = Route::new(problem).expect("a route");
+        let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
         let mut undisturbed = Vec::new();
         route.follow(0.0, 0.0, &mut undisturbed);
         let parts = parts(problem.obstacles, problem.horizon);

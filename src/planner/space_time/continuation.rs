@@ -42,7 +42,7 @@ pub fn continued(problem: &Problem, from: &Trajectory) -> Planned {
 }
 
 fn refined(problem: &Problem, hazards: &[Hazard], motion: &[Segment], clock: Clock) -> Planned {
-    let found = Route::new(problem).and_then(|route| {
+    let found = Route::new(problem, clock).and_then(|route| {
         let seed = seed_of(problem, &route, motion)?;
         let mut undisturbed = Vec::new();
         route.follow(0.0, 0.0, &mut undisturbed);
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn the_slots_of_a_plan_sail_it_again() {
         at_plans(|problem, trajectory, _| {
-            let route = Route::new(problem).expect("a route");
+            let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
             let Some(seed) = seed_of(problem, &route, trajectory.segments()) else {
                 // it only runs along the route
                 assert!(!trajectory.segments().iter().any(Segment::is_arc));

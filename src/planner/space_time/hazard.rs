@@ -1,11 +1,11 @@
 //! The parts of the obstacles of one problem with what a quick test needs.
 
 use super::part::{Body, Part, Window};
-use crate::frame::{Vector, cross};
+use crate::frame::{Pose, Vector, cross, to_port};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
 use crate::planner::Problem;
 use crate::trajectory::Segment;
-use crate::vessel::OwnShip;
+use crate::vessel::{Hull, OwnShip};
 
 /// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of what a checker
 /// rejects.
@@ -187,6 +187,24 @@ impl<'a> Hazard<'a> {
         })
     }
 
+    /// Metres between a hull at a pose and the section, by the axes of both: negative in overlap, else at most so far;
+    /// `None` while the part is not in force.
+    pub(crate) fn clearance_of(&self, hull: &Hull, pose: &Pose, time: f64) -> Option<f64> {
+        self.disc_at(time)?;
+        let (local, ahead) = (time - self.start(), pose.ahead());
+        let port = to_port(ahead);
+        let half =
+            |n: &Vector| 0.5 * (hull.length * n.dot(&ahead).abs() + hull.beam * n.dot(&port).abs());
+        let (initial, velocity) = (self.body.initial(), self.body.velocity());
+        let theirs = self.body.faces().iter();
+        let theirs = theirs.map(|f| f.slack(pose.position, local) - half(&f.normal));
+        let ours = [ahead, port, -ahead, -port].into_iter();
+        let ours = ours.map(|n| {
+            n.dot(&pose.position) - initial.support(n) - velocity.support(n) * local - half(&n)
+        });
+        Some(theirs.chain(ours).fold(f64::NEG_INFINITY, f64::max))
+    }
+
     /// Metres from a point inside to the boundary of the section in a direction.
     pub(crate) fn way_out(&self, position: Vector, time: f64, toward: Vector) -> f64 {
         let local = time - self.start();
@@ -308,9 +326,8 @@ pub(crate) fn by_obstacle<'h, 'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{Pose, direction};
+    use crate::frame::direction;
     use crate::geometry::{ConvexPolygon, outer_disc};
-    use crate::vessel::Hull;
     use rand::{Rng, SeedableRng};
 
     /// Against the same at many instants, for sets that move, stand still, come toward own ship and go away, and parts of them.

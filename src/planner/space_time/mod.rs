@@ -26,6 +26,7 @@ mod escape;
 mod factor;
 mod future;
 mod graph;
+mod harm;
 mod hazard;
 mod heuristic;
 mod interception;
@@ -51,7 +52,7 @@ mod template;
 
 pub use continuation::continued;
 pub use detour::detour;
-pub use escape::{after_holding, escape, undisturbed};
+pub use escape::{NominalTarget, after_holding, escape, undisturbed};
 
 use super::clock::Clock;
 use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
@@ -119,8 +120,16 @@ fn scaled(
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
 
-/// Own ship starts at the last waypoint: she has arrived.
-fn already_there(problem: &Problem) -> Planned {
+/// True where own ship starts at the last waypoint; a round trip ends where it begins, and is to be sailed.
+fn has_arrived(problem: &Problem) -> bool {
+    let here = problem.own.pose.position;
+    let at_end = (problem.desired.end() - here).norm() <= tolerance::LENGTH_M;
+    // a path that comes by there before, as a round trip does, is to be sailed
+    at_end && !problem.desired.comes_by(here)
+}
+
+/// The plan of a ship that has arrived.
+fn stay(problem: &Problem) -> Option<Plan> {
     let stay = Segment {
         start: problem.own.pose,
         start_time: 0.0,
@@ -128,8 +137,7 @@ fn already_there(problem: &Problem) -> Planned {
         speed: problem.own.max_speed(),
         turn_rate: 0.0,
     };
-    let plan = Plan::measured(problem, vec![stay], None);
-    Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved))
+    Plan::measured(problem, vec![stay], None)
 }
 
 fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned {
@@ -152,12 +160,11 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     {
         return refuse(NoPlan::StartAshore { depth });
     }
-    let at_end = (problem.desired.end() - own.pose.position).norm() <= tolerance::LENGTH_M;
-    // a path that comes by there before, as a round trip does, is to be sailed
-    if at_end && !problem.desired.comes_by(own.pose.position) {
-        return already_there(problem);
+    if has_arrived(problem) {
+        let plan = stay(problem);
+        return Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved));
     }
-    let Some(route) = Route::new(problem) else {
+    let Some(route) = Route::new(problem, clock) else {
         return refuse(NoPlan::NoRoute);
     };
     let mut undisturbed = Vec::new();

@@ -267,7 +267,7 @@ pub(crate) mod tests {
             first_turn: None,
             encountered: &[],
         };
-        let route = Route::new(&problem).expect("a route");
+        let route = Route::new(&problem, Clock::new(problem.deadline)).expect("a route");
         let parts = parts(&obstacles, problem.horizon);
         let hazards = [Hazard::new(&parts[0])];
         let scene = Scene {

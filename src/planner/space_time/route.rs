@@ -3,6 +3,7 @@
 
 use crate::frame::{Pose, cross, heading_of, wrap};
 use crate::planner::Problem;
+use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment};
@@ -90,14 +91,17 @@ pub(crate) struct Route {
 impl Route {
     /// The cheapest route of those that join the path at [`JOINS`] at each speed; corners are rounded
     /// with the turning radius where the legs are long enough, otherwise sailed through on the mean
-    /// course. `None` only when nothing is finite.
-    pub(crate) fn new(problem: &Problem) -> Option<Self> {
+    /// course. `None` only when nothing is finite. When the clock is up, what was found so far.
+    pub(crate) fn new(problem: &Problem, clock: Clock) -> Option<Self> {
         let own = problem.own;
         let desired = problem.desired;
         let mut best: Option<(f64, Self)> = None;
         for (leg, along) in joins(problem) {
             let moving = own.speeds.iter().copied().filter(|u| *u > 0.0);
             for speed in moving {
+                if best.is_some() && clock.is_up() {
+                    return best.map(|(_, route)| route);
+                }
                 let Some(mut route) = Self::joining(problem, leg, along, speed) else {
                     continue;
                 };
@@ -108,6 +112,9 @@ impl Route {
                         piece.due *= factor;
                         piece.slowness *= factor;
                     }
+                }
+                if clock.is_up() {
+                    return Some(route);
                 }
                 let mut followed = Vec::new();
                 route.follow(0.0, 0.0, &mut followed);
