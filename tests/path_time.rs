@@ -15,7 +15,6 @@ use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::{
     Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
-use searoom::pipeline::{self, Relaxation, Run, Rung};
 use searoom::planner::{NoPlan, Objective, Outcome, Planned, Problem, SearchKind, path_time};
 use searoom::target::VelocitySpell;
 use searoom::trajectory::{DesiredTrajectory, PathNetwork, Segment};

@@ -301,22 +301,25 @@ fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
         initial: ConvexPolygon::hull(&around.map(|(x, y)| Vector::new(x, y))).expect("a box"),
         velocity: ConvexPolygon::point(Vector::new(5.0, 0.0)),
     };
-    for planner in [PlannerKind::SpaceTime, PlannerKind::PathTime] {
-        let run = run(Scenario {
-            planner,
-            ..scenario.clone()
-        });
-        assert_eq!(run.rung, Rung::Inside, "{planner:?}");
-        let end = run
-            .planned
-            .outcome
-            .plan()
-            .expect("a plan")
-            .trajectory
-            .end_time();
-        assert_eq!(run.released, [Some(end), None, None], "{planner:?}");
-        assert!(run.evaluation.expect("judged").verified());
-    }
+    let off_paths = run(scenario.clone());
+    assert_eq!(off_paths.rung, Rung::Inside);
+    let plan = off_paths.planned.outcome.plan().expect("a plan");
+    let end = plan.trajectory.end_time();
+    assert_eq!(off_paths.released, [Some(end), None, None]);
+    assert!(off_paths.evaluation.expect("judged").verified());
+    // along its path it stops, and the box, 900 m to its edge at 5 m/s, sails away from over it
+    let along = run(Scenario {
+        planner: PlannerKind::PathTime,
+        ..scenario
+    });
+    assert_eq!(along.rung, Rung::Inside);
+    let [Some(until), None, None] = along.released[..] else {
+        panic!("{:?}", along.released);
+    };
+    assert!((until - 180.0).abs() < 1.0, "{until}");
+    let plan = along.planned.outcome.plan().expect("a plan");
+    assert_eq!(plan.trajectory.speed_at(0.5 * until), 0.0);
+    assert!(plan.to_go > 0.0 && along.evaluation.expect("judged").verified());
 }
 
 /// Out of time before anything was found: what is known is said, as what it is.

@@ -167,9 +167,30 @@ impl PathNetwork {
             .map(|same| same.contains(&last))
             .collect();
         network.places = places.iter().map(|(_, place)| *place).collect();
+        network.join();
         network.measure();
         network.check(&ways)?;
         Ok(network)
+    }
+
+    /// Of points at one place from which the same legs may be sailed, the first stands for all at the ends of legs.
+    fn join(&mut self) {
+        let sorted = |point: usize| {
+            let mut legs = self.onward[point].clone();
+            legs.sort_unstable();
+            (legs, self.is_end[point])
+        };
+        let first = |point: usize| {
+            let alike = self.same_place[point].iter().copied();
+            alike
+                .filter(|p| sorted(*p) == sorted(point))
+                .min()
+                .unwrap_or(point)
+        };
+        let joined: Vec<usize> = (0..self.onward.len()).map(first).collect();
+        for leg in &mut self.legs {
+            leg.ends = leg.ends.map(|point| joined[point]);
+        }
     }
 
     /// Shortest ways to the end, by relaxation until nothing changes.

@@ -3,7 +3,7 @@
 mod scene;
 
 use searoom::pipeline::{self, Relaxation, Run, Rung};
-use searoom::planner::{Objective, PlannerKind};
+use searoom::planner::{Objective, Outcome, PlannerKind};
 use searoom::report::document::PlanDocument;
 use searoom::scenario::Scenario;
 use searoom::trajectory::Trajectory;
@@ -61,23 +61,32 @@ fn trajectory(run: &Run) -> &Trajectory {
 fn plans_on_random_networks_pass_their_checks() {
     let count = super::scenes(200);
     let (mut read, mut solved, mut waiting, mut inside, mut none) = (0, 0, 0, 0, 0);
-    let mut wrong = Vec::new();
+    let (mut late, mut wrong) = (0, Vec::new());
     for seed in 0..count {
-        let run = match verified(&scene::draw(seed)) {
+        let text = scene::draw(seed);
+        let run = match verified(&text) {
             Ok(run) => run,
             Err(fault) if fault.starts_with("unreadable: ") => continue,
             Err(fault) => {
-                wrong.push(format!("{seed}: {fault}"));
+                wrong.push(format!("{seed}: {fault}\n{text}"));
                 continue;
             }
         };
         read += 1;
+        if matches!(run.planned.outcome, Outcome::Deadline(_)) {
+            println!("{seed}: out of time\n{text}");
+            late += 1;
+        }
         let Some(plan) = run.planned.outcome.plan() else {
             none += 1;
             continue;
         };
-        let late = |r: &Relaxation| matches!(r, Relaxation::Arrival { .. });
-        assert_eq!(run.relaxations.iter().any(late), plan.to_go > 0.0, "{seed}");
+        let short = |r: &Relaxation| matches!(r, Relaxation::Arrival { .. });
+        assert_eq!(
+            run.relaxations.iter().any(short),
+            plan.to_go > 0.0,
+            "{seed}"
+        );
         assert!(plan.to_go > 0.0 || run.rung != Rung::Waiting, "{seed}");
         match run.rung {
             Rung::Waiting => waiting += 1,
@@ -86,7 +95,7 @@ fn plans_on_random_networks_pass_their_checks() {
         }
     }
     let told = format!(
-        "{read} of {count}: {solved} arrive, {waiting} wait, {inside} enter, {none} without"
+        "{read} of {count}: {solved} arrive, {waiting} wait, {inside} enter, {none} without, {late} late"
     );
     println!("{told}");
     assert!(wrong.is_empty(), "{}\n{}", wrong.len(), wrong.join("\n"));

@@ -83,9 +83,7 @@ pub fn draw(seed: u64) -> String {
         text,
         "\n[planner]\nkind = \"path-time\"\ndeadline_s = 2.0\n{}\ncompliance = {:?}",
         objective.choose(rng).expect("some"),
-        ["none", "none", "shape", "rules"]
-            .choose(rng)
-            .expect("some"),
+        ["none", "shape"].choose(rng).expect("some"),
     )
     .expect("a string");
     for target in 0..rng.random_range(0..5) {

@@ -64,7 +64,8 @@ impl<'a> Graph<'a> {
         Self {
             scene,
             measure,
-            informed: search == SearchKind::AStar,
+            // the bound decides which end is the best where own ship need not arrive
+            informed: search == SearchKind::AStar || scene.aim == Aim::Last,
             settled: vec![false; nodes.len()],
             nodes,
             on,
@@ -200,12 +201,15 @@ impl<'a> Graph<'a> {
     /// True when own ship, having been at the place before, could as well have waited there: on a path from which all may be
     /// sailed that may be from here.
     fn waited_for(&self, point: usize, time: f64) -> bool {
+        let within = self.measure.as_good_within();
         let network = self.scene.network;
         let onward = network.onward(point);
         let as_good = |p: &&usize| onward.iter().all(|leg| network.onward(**p).contains(leg));
         network.same_place(point).iter().filter(as_good).any(|p| {
             self.reached[*p].iter().any(|before| {
-                *before <= time && self.scene.barrier_at(point, *before, time).is_none()
+                *before <= time
+                    && time - *before < within
+                    && self.scene.barrier_at(point, *before, time).is_none()
             })
         })
     }
@@ -297,7 +301,7 @@ impl Space for Graph<'_> {
             return false;
         }
         let node = self.nodes[state.node];
-        let made = node.mark == Mark::Arrival && self.measure.waits_are_free();
+        let made = node.mark == Mark::Arrival;
         if let (true, Place::At(point)) = (made, node.place)
             && self.waited_for(point, node.time)
         {

@@ -3,7 +3,7 @@
 use super::due::Due;
 use super::nodes::{Mark, Node, Place};
 use super::recovery::Recovery;
-use super::scene::{Aim, Scene};
+use super::scene::Scene;
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::PathTime;
 use crate::planner::cost::space_time_error;
@@ -14,6 +14,9 @@ use crate::trajectory::Segment;
 /// Metres per second. Of ways of one length the earliest is the best: a thousand seconds weigh a millimetre.
 const METRES_PER_SECOND: f64 = 1e-6;
 
+/// Of the horizon. Arrivals at a place on a network so soon after another are not followed.
+const ALIKE: f64 = 2e-3;
+
 /// See the head of the file.
 #[derive(Debug, Clone)]
 pub(crate) struct Measure<'a> {
@@ -22,10 +25,9 @@ pub(crate) struct Measure<'a> {
 }
 
 impl<'a> Measure<'a> {
-    pub(crate) fn new(problem: &'a Problem<'a>, aim: Aim) -> Self {
-        let informed = problem.search == SearchKind::AStar
-            && problem.objective == Objective::SpaceTimeError
-            && aim == Aim::Arrive;
+    pub(crate) fn new(problem: &'a Problem<'a>) -> Self {
+        let informed =
+            problem.search == SearchKind::AStar && problem.objective == Objective::SpaceTimeError;
         Self {
             problem,
             recovery: informed.then(|| Recovery::new(problem)).flatten(),
@@ -82,6 +84,19 @@ impl<'a> Measure<'a> {
         match self.problem.objective {
             Objective::Time | Objective::Length | Objective::LengthRisk { .. } => true,
             Objective::SpaceTimeError => false,
+        }
+    }
+
+    /// Seconds within which to arrive at a place after another way did, which costs less so far, is taken for worse. Of the space-time
+    /// error that is so where own ship could wait meanwhile, but for what the wait costs; on a network the ways would
+    /// be too many without it.
+    pub(crate) fn as_good_within(&self) -> f64 {
+        if self.waits_are_free() {
+            f64::INFINITY
+        } else if self.problem.alternatives.is_empty() {
+            0.0
+        } else {
+            ALIKE * self.problem.horizon
         }
     }
 

@@ -34,7 +34,7 @@ use super::{
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::planner::cost::space_time_error;
-use crate::search::{Fate, Search, Stop};
+use crate::search::{Counts, Fate, Search, Stop};
 use crate::tolerance;
 use crate::trajectory::{PathNetwork, Segment};
 use graph::{Graph, State};
@@ -49,6 +49,10 @@ const TOUCH_M: f64 = 1e-7;
 /// Expansions between two looks at the clock.
 const SLICE: usize = 50;
 
+/// Expansions after which a search takes long, and lines after which it is given up.
+const HARD: usize = 2_000;
+const MOST_LINES: usize = 500_000;
+
 /// Plans one problem along its desired path and the alternatives to it.
 ///
 /// The plan begins at the first waypoint at t = 0, keeps to the paths, goes forward at no more than the greatest speed or waits, is
@@ -60,8 +64,8 @@ pub fn plan(problem: &Problem) -> Planned {
     planned(problem, Aim::Arrive, 0.0)
 }
 
-/// The same where own ship cannot arrive in time: a motion that is clear of every obstacle up to the horizon, of least
-/// space-time error until then, whatever the objective. `risk` is that of the obstacles.
+/// The same where own ship cannot arrive in time: the motion that is clear of every obstacle up to the horizon and has the least
+/// way left then, whatever the objective. `risk` is that of the obstacles.
 pub fn stay_clear(problem: &Problem, risk: f64) -> Planned {
     planned(problem, Aim::Last, risk)
 }
@@ -98,15 +102,29 @@ fn planned(problem: &Problem, aim: Aim, risk: f64) -> Planned {
 
 /// The best motion that begins with a profile, as far as it goes, and is clear of every obstacle after that.
 fn search(problem: &Problem, scene: &Scene, begun: &Profile, risk: f64) -> Planned {
+    let objective = match scene.aim {
+        Aim::Arrive => problem.objective,
+        // the time to the horizon and from there on: the least way left
+        Aim::Last => Objective::Time,
+    };
+    search_for(objective, problem, scene, begun, risk)
+}
+
+/// The same for another objective. Where the least space-time error takes long to find, that of least time is found meanwhile:
+/// it shows whether there is a plan at all, and is the answer where the better one is not found.
+fn search_for(
+    objective: Objective,
+    problem: &Problem,
+    scene: &Scene,
+    begun: &Profile,
+    risk: f64,
+) -> Planned {
     let started = Instant::now();
     let asked = Problem {
-        objective: match scene.aim {
-            Aim::Arrive => problem.objective,
-            Aim::Last => Objective::SpaceTimeError,
-        },
+        objective,
         ..problem.clone()
     };
-    let measure = Measure::new(&asked, scene.aim);
+    let measure = Measure::new(&asked);
     let begins = begun.end();
     let root = Node {
         place: begun.place(scene),
@@ -117,25 +135,54 @@ fn search(problem: &Problem, scene: &Scene, begun: &Profile, risk: f64) -> Plann
         mark: Mark::Start,
     };
     let mut known = Known::corners(scene);
-    if asked.objective == Objective::SpaceTimeError {
+    if objective == Objective::SpaceTimeError {
         rays::add_rays(scene, &mut known, &root);
+    }
+    if scene.aim == Aim::Last {
+        known.add_last(scene, &root);
     }
     known.share(scene);
     let waits_are_free = measure.waits_are_free();
     let mut graph = Graph::new(scene, known, measure, problem.search, root);
     let mut search = Search::new(graph.root());
     let mut timed_out = false;
+    let mut quick: Option<Planned> = None;
     let goal = loop {
-        match search.next_goal(&mut graph, search.counts().expanded + SLICE) {
+        let Counts {
+            expanded,
+            generated,
+            ..
+        } = search.counts();
+        if objective == Objective::SpaceTimeError && quick.is_none() && expanded >= HARD {
+            let left = problem.deadline.saturating_sub(started.elapsed());
+            let left = Problem {
+                deadline: left,
+                ..problem.clone()
+            };
+            let found = search_for(Objective::Time, &left, scene, begun, risk);
+            if matches!(found.outcome, Outcome::Infeasible(_)) {
+                return found;
+            }
+            quick = Some(found);
+        }
+        match search.next_goal(&mut graph, expanded + SLICE) {
             Stop::Goal(goal) => break Some(goal),
             Stop::Exhausted => break None,
             Stop::Budget if started.elapsed() >= problem.deadline => {
                 timed_out = true;
                 break None;
             }
+            Stop::Budget if quick.is_some() && generated >= MOST_LINES => break None,
             Stop::Budget | Stop::Time => {}
         }
     };
+    if let (None, Some(quick)) = (goal, quick) {
+        let outcome = match quick.outcome {
+            Outcome::Solved(plan) if timed_out => Outcome::Deadline(Some(plan)),
+            outcome => outcome,
+        };
+        return Planned { outcome, ..quick };
+    }
     let counts = search.counts();
     let stats = SearchStats {
         expanded: counts.expanded,

@@ -115,6 +115,22 @@ impl Known {
         known
     }
 
+    /// Adds the places at which a motion may stay until the horizon: the ends of legs, and where it begins.
+    pub(crate) fn add_last(&mut self, scene: &Scene, root: &Node) {
+        let mut add = |leg: usize, distance: f64| {
+            let time = scene.horizon;
+            self.add(scene, leg, PathTime { distance, time }, None, Mark::Corner);
+        };
+        for (leg, track) in scene.tracks.iter().enumerate() {
+            add(leg, 0.0);
+            add(leg, track.length);
+        }
+        if let Place::On { leg, distance } = root.place {
+            add(leg, distance);
+        }
+        self.in_order();
+    }
+
     /// Adds a place on a leg, unless it is of no use.
     pub(crate) fn add(
         &mut self,

@@ -7,7 +7,7 @@
 
 use super::due::Due;
 use super::nodes::{Known, Mark, Node, Place};
-use super::scene::{Aim, Scene};
+use super::scene::Scene;
 use crate::obstacle::PathTime;
 use crate::tolerance;
 
@@ -21,18 +21,15 @@ pub(crate) fn add_rays(scene: &Scene, known: &mut Known, root: &Node) {
             schedule(scene, leg, due, known);
         }
     }
-    // the latest arrival: a schedule that is later is left for it; and where a motion that does not arrive may stay
-    let time = scene.horizon;
+    // the latest arrival: a schedule that is later is left for it
     for (leg, ends) in scene.network.legs().iter().map(|leg| leg.ends).enumerate() {
-        let ends = [(0.0, ends[0]), (scene.tracks[leg].length, ends[1])];
-        for (distance, point) in ends {
-            if scene.aim == Aim::Last || distance > 0.0 && scene.network.is_end(point) {
-                known.add(scene, leg, PathTime { distance, time }, None, Mark::Corner);
-            }
+        if scene.network.is_end(ends[1]) {
+            let last = PathTime {
+                distance: scene.tracks[leg].length,
+                time: scene.horizon,
+            };
+            known.add(scene, leg, last, None, Mark::Corner);
         }
-    }
-    if let (Aim::Last, Place::On { leg, distance }) = (scene.aim, root.place) {
-        known.add(scene, leg, PathTime { distance, time }, None, Mark::Corner);
     }
     let corners: Vec<(usize, PathTime)> = sources(scene, known, root);
     for (leg, at) in corners {
