@@ -50,7 +50,6 @@ mod tail;
 mod template;
 
 pub use continuation::continued;
-pub use detour::detour;
 pub use escape::{after_holding, escape, undisturbed};
 
 use super::clock::Clock;
@@ -88,6 +87,16 @@ pub fn plan(problem: &Problem) -> Planned {
     as_usual(problem, |problem, hazards, _| {
         plan_clear_of(problem, hazards, clock)
     })
+}
+
+/// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
+/// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
+pub fn detour(problem: &Problem) -> Option<Plan> {
+    let planned = as_usual(problem, |problem, _, _| {
+        let wide = detour::detour(problem);
+        Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
+    });
+    planned.outcome.into_plan()
 }
 
 /// Planned at the usual place and size; where the plan, brought back, touches a set, at the usual place alone, and where that does too,

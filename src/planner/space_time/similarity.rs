@@ -36,6 +36,9 @@ const WAYPOINT_GRID_M: f64 = 1.0 / 2_097_152.0;
 const VELOCITY_GRID_MPS: f64 = 1.0 / 17_179_869_184.0;
 const TIME_GRID_S: f64 = 1.0 / 1_073_741_824.0;
 
+/// Seconds, of motions to begin from.
+const DURATION_GRID_S: f64 = 1.0 / 1_048_576.0;
+
 /// Metres of the problem. Its waypoints are on no coarser grid.
 const WAYPOINTS_OFF_M: f64 = 0.7 * tolerance::ARRIVAL_M;
 
@@ -204,12 +207,8 @@ impl Similarity {
     /// The problem, planned so; `None` where it leaves no digits.
     pub(crate) fn alike(&self, problem: &Problem) -> Option<Alike> {
         let (own, speed, horizon) = (problem.own, self.speed(), problem.horizon);
-        let speeds: Vec<f64> = problem
-            .desired
-            .legs()
-            .iter()
-            .map(|l| l.speed / speed)
-            .collect();
+        let legs = problem.desired.legs().iter();
+        let speeds: Vec<f64> = legs.map(|l| digits(l.speed / speed)).collect();
         let obstacles = self
             .within
             .iter()
@@ -223,8 +222,8 @@ impl Similarity {
         };
         Some(Alike {
             own: OwnShip {
-                pose: self.pose(own.pose),
-                speed: own.speed / speed,
+                pose: Pose::new(Vector::zeros(), 0.0),
+                speed: digits(own.speed / speed),
                 hull: Hull {
                     length: own.hull.length / self.length,
                     beam: own.hull.beam / self.length,
@@ -301,13 +300,13 @@ impl Similarity {
         })
     }
 
-    /// A motion of the problem, planned so.
+    /// A motion of the problem, planned so, to the digits that it can be told apart by: a beginning, not a plan.
     pub(crate) fn motion(&self, motion: &[Segment]) -> Vec<Segment> {
         let segment = |s: &Segment| Segment {
             start: self.pose(s.start),
             start_time: s.start_time / self.time,
-            duration: s.duration / self.time,
-            speed: s.speed / self.speed(),
+            duration: number_on_grid(s.duration / self.time, DURATION_GRID_S),
+            speed: digits(s.speed / self.speed()),
             turn_rate: self.hand * s.turn_rate * self.time,
         };
         motion.iter().map(segment).collect()
