@@ -63,6 +63,28 @@ pub struct Shapes {
 /// start inside the hard set changes nothing: there is no plan to be had. A value that is not finite makes
 /// the set the origin; checked input has none.
 pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
+    // about the target: far from the origin digits of every edge would be lost
+    let place = target.pose.position;
+    let about = |pose: Pose| Pose::new(pose.position - place, pose.heading);
+    let own = &OwnShip {
+        pose: about(own.pose),
+        ..own.clone()
+    };
+    let target = &ShipTrack {
+        pose: about(target.pose),
+        ..target.clone()
+    };
+    let about = shapes_about(own, target, risk, horizon);
+    Shapes {
+        hard: about.hard.translated(place),
+        shaped: about.shaped.translated(place),
+        full: about.full.translated(place),
+        ..about
+    }
+}
+
+/// The same of a target at the origin.
+fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
     let around = outer_disc(
         own.hull.half_diagonal() + own.safety_margin + POSITION_SIGMAS * target.position_std,
         target.pose.heading,

@@ -189,6 +189,7 @@ mod tests {
             horizon: scenario.horizon,
             time_weight: 25.0,
             max_risk,
+            arrival_hold: scenario.arrival_hold,
         })
     }
 

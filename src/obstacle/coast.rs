@@ -46,10 +46,18 @@ impl Coast {
     /// heading, and what she keeps from land.
     pub fn around<'a>(pieces: impl IntoIterator<Item = &'a ConvexPolygon>, radius: f64) -> Self {
         let disc = outer_disc(radius, 0.0);
+        Self::of(pieces.into_iter().map(|p| p.minkowski_sum(&disc)))
+    }
+
+    /// The same land elsewhere, block by block.
+    pub(crate) fn mapped(&self, to: impl Fn(&ConvexPolygon) -> ConvexPolygon) -> Self {
+        Self::of(self.blocks.iter().map(|b| to(b.initial())))
+    }
+
+    fn of(blocks: impl Iterator<Item = ConvexPolygon>) -> Self {
         let rest = ConvexPolygon::point(Vector::zeros());
-        let blocks: Vec<PolytopeObstacle> = pieces
-            .into_iter()
-            .map(|piece| PolytopeObstacle::new(LAND, piece.minkowski_sum(&disc), rest.clone()))
+        let blocks: Vec<PolytopeObstacle> = blocks
+            .map(|block| PolytopeObstacle::new(LAND, block, rest.clone()))
             .collect();
         let windows = blocks
             .iter()

@@ -325,6 +325,14 @@ impl Outcome {
 }
 
 impl Outcome {
+    fn into_plan(self) -> Option<Plan> {
+        match self {
+            Self::Solved(plan) => Some(plan),
+            Self::Deadline(plan) => plan,
+            Self::Infeasible(_) => None,
+        }
+    }
+
     fn plan_mut(&mut self) -> Option<&mut Plan> {
         match self {
             Self::Solved(plan) => Some(plan),

@@ -3,11 +3,15 @@
 
 use std::f64::consts::TAU;
 
-use crate::frame::{Pose, Side, heading_of, wrap_positive};
+use crate::frame::{Pose, Side, heading_of, wrap, wrap_positive};
 
 /// Radians. An arc this close to a full circle is no arc: otherwise rounding adds a circle to a
 /// straight run.
 const FULL_CIRCLE_SLACK: f64 = 1e-10;
+
+/// Metres. Where the end moves by no more than this, the line between two circles of one side leaves at once, or ends at
+/// once: its direction is rounding where the circles are one, and rounding must not add a circle to an arc.
+const SAME_CIRCLE_M: f64 = 1e-7;
 
 /// Allowed rounding below zero of a squared length, relative to the radius.
 const ROUNDING: f64 = 1e-12;
@@ -81,8 +85,8 @@ const WORDS: [[Option<Side>; 3]; 6] = [
     [Some(Side::Port), Some(Side::Starboard), Some(Side::Port)],
 ];
 
-/// Every word that joins the two poses, in the order LSL, RSR, LSR, RSL, RLR, LRL. `radius` in metres,
-/// positive. Empty only when an input is not finite.
+/// Every word that joins the two poses, in the order LSL, RSR, LSR, RSL, RLR, LRL, to `SAME_CIRCLE_M`. `radius` in
+/// metres, positive. Empty only when an input is not finite.
 pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
     let step = to.position - from.position;
     let d = step.norm() / radius;
@@ -96,7 +100,12 @@ pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
         (cosine.abs() <= 1.0 + ROUNDING).then(|| TAU - cosine.clamp(-1.0, 1.0).acos())
     };
     // from centre to centre of the two circles: loses no digits where the way is short beside them
-    let same = |x: f64, y: f64| x.hypot(y).is_finite().then(|| (x.hypot(y), y.atan2(x)));
+    let same = |x: f64, y: f64| {
+        let (line, k) = (x.hypot(y), y.atan2(x));
+        let alike = |heading: f64| line * radius * wrap(k - heading).abs() <= SAME_CIRCLE_M;
+        let k = [a, b].into_iter().find(|h| alike(*h)).unwrap_or(k);
+        line.is_finite().then_some((line, k))
+    };
     let lsl = same(d + (sin_a - sin_b), cos_b - cos_a).map(|(p, k)| [k - a, p, b - k]);
     let rsr = same(d - (sin_a - sin_b), cos_a - cos_b).map(|(p, k)| [a - k, p, k - b]);
     let lsr = csc(-2.0 + d * d + 2.0 * c + 2.0 * d * (sin_a + sin_b)).map(|p| {
@@ -157,7 +166,7 @@ fn arc_angle(angle: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{Vector, wrap};
+    use crate::frame::Vector;
     use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
 
@@ -215,6 +224,34 @@ mod tests {
             let path = shortest(&from, &to, radius).expect("finite");
             let missed = (end(from, &path, radius).position - to.position).norm();
             assert!(missed < 1e-9, "{length} {radius}: {missed}");
+        }
+    }
+
+    /// Wherever it lies: the two circles of such a way are one, and the direction from the one to the other is rounding.
+    #[test]
+    fn an_arc_is_that_arc_and_no_circle_more() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(12);
+        for far in [0.0, 1e3, 7e6] {
+            for _ in 0..2000 {
+                let place = Vector::new(far * rng.random_range(-1.0..1.0), far);
+                let from = Pose::new(place, rng.random_range(-3.0..3.0));
+                let radius = rng.random_range(20.0..400.0);
+                let turn: f64 = rng.random_range(-3.0..3.0);
+                let piece = Piece {
+                    turn: Side::of_turn(turn),
+                    length: radius * turn.abs(),
+                };
+                let none = Piece {
+                    turn: None,
+                    length: 0.0,
+                };
+                let arc = DubinsPath {
+                    pieces: [piece, none, none],
+                };
+                let to = end(from, &arc, radius);
+                let found = shortest(&from, &to, radius).expect("finite");
+                assert!((found.length() - piece.length).abs() < 1e-6, "{found:?}");
+            }
         }
     }
 

@@ -30,13 +30,8 @@ const BESIDE: usize = 5;
 /// milliseconds: nothing is searched. Waits and motions of very many turns are no beginning: there is no plan then.
 pub fn continued(problem: &Problem, from: &Trajectory) -> Planned {
     let clock = Clock::new(problem.deadline);
-    super::at_usual_size(problem, |problem, hazards, scale| match scale {
-        Some(scale) => refined(
-            problem,
-            hazards,
-            &scale.shrink_motion(from.segments()),
-            clock,
-        ),
+    super::as_usual(problem, |problem, hazards, usual| match usual {
+        Some(usual) => refined(problem, hazards, &usual.motion(from.segments()), clock),
         None => refined(problem, hazards, from.segments(), clock),
     })
 }

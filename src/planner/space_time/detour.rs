@@ -115,7 +115,7 @@ impl Ord for Open {
 
 /// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
 /// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
-pub fn detour(problem: &Problem) -> Option<Plan> {
+pub(crate) fn detour(problem: &Problem) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     let parts = parts(problem.obstacles, problem.horizon);
     let hazards = within_reach(problem, &parts);

@@ -115,6 +115,11 @@ impl<'a> Hazard<'a> {
         ))
     }
 
+    /// m/s, of the middle of the disc.
+    pub(crate) fn drift(&self) -> Vector {
+        self.drift
+    }
+
     /// An upper bound of how fast any of it moves, m/s.
     pub(crate) fn speed(&self) -> f64 {
         self.drift.norm() + self.growth

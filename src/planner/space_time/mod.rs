@@ -42,16 +42,15 @@ mod refinement;
 mod returning;
 mod route;
 mod sailed;
-mod scale;
 mod seeds;
 mod selection;
+mod similarity;
 mod stages;
 mod stand_on;
 mod tail;
 mod template;
 
 pub use continuation::continued;
-pub use detour::detour;
 pub use escape::{NominalTarget, after_holding, escape, undisturbed};
 
 use super::clock::Clock;
@@ -63,13 +62,13 @@ use crate::trajectory::Segment;
 use approach::FINE_CHORD_RAD;
 use effort::Effort;
 use graph::Graph;
-use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact, within_reach};
+use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
 use outline::Scene;
 use part::parts;
 use route::Route;
-use scale::Scale;
 use seeds::Conflict;
 use selection::Selection;
+use similarity::Similarity;
 
 /// Plans of the graph that are refined, each passing the targets on other sides.
 const MAX_SIGNATURES: usize = 4;
@@ -85,15 +84,26 @@ const FURTHER_EXPANDED: usize = 4;
 /// problem gives the same plan unless the deadline strikes. Waypoints on a line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
     let clock = Clock::new(problem.deadline);
-    at_usual_size(problem, |problem, hazards, _| {
+    as_usual(problem, |problem, hazards, _| {
         plan_clear_of(problem, hazards, clock)
     })
 }
 
-/// Planned at a usual size, or as it is: where it is of one, and where the plan, at its own size again, touches a set.
-fn at_usual_size(
+/// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
+/// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
+pub fn detour(problem: &Problem) -> Option<Plan> {
+    let planned = as_usual(problem, |problem, _, _| {
+        let wide = detour::detour(problem);
+        Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
+    });
+    planned.outcome.into_plan()
+}
+
+/// Planned at the usual place and size; where the plan, brought back, touches a set, at the usual place alone, and where that does too,
+/// as it is.
+fn as_usual(
     problem: &Problem,
-    plan: impl Fn(&Problem, &[Hazard], Option<&Scale>) -> Planned,
+    plan: impl Fn(&Problem, &[Hazard], Option<&Similarity>) -> Planned,
 ) -> Planned {
     let desired = problem.desired.straightened();
     let problem = &Problem {
@@ -102,21 +112,28 @@ fn at_usual_size(
     };
     let parts = parts(problem.obstacles, problem.horizon);
     let hazards = within_reach(problem, &parts);
-    scaled(problem, &hazards, &plan).unwrap_or_else(|| plan(problem, &hazards, None))
+    let usual = Similarity::of(problem, &hazards);
+    let found = brought_back(problem, &hazards, &usual, &plan).or_else(|| {
+        let usual = usual.of_its_own_size()?;
+        brought_back(problem, &hazards, &usual, &plan)
+    });
+    found.unwrap_or_else(|| plan(problem, &hazards, None))
 }
 
-fn scaled(
+fn brought_back(
     problem: &Problem,
     hazards: &[Hazard],
-    plan: impl Fn(&Problem, &[Hazard], Option<&Scale>) -> Planned,
+    usual: &Similarity,
+    plan: impl Fn(&Problem, &[Hazard], Option<&Similarity>) -> Planned,
 ) -> Option<Planned> {
-    let scale = Scale::of(problem, hazards)?;
-    let shrunk = scale.shrink(problem)?;
-    let shrunk = shrunk.problem(problem);
-    let parts = parts(shrunk.obstacles, shrunk.horizon);
-    let shrunken = within_reach(&shrunk, &parts);
-    let planned = scale.restored(plan(&shrunk, &shrunken, Some(&scale)));
-    let touches = |plan: &Plan| first_contact(hazards, plan.trajectory.segments()).is_some();
+    let alike = usual.alike(problem)?;
+    let alike = alike.problem(problem);
+    let parts = parts(alike.obstacles, alike.horizon);
+    let planned = usual.restored(plan(&alike, &within_reach(&alike, &parts), Some(usual)));
+    let touches = |plan: &Plan| {
+        let segments = plan.trajectory.segments();
+        first_met(hazards, segments).is_some() || ashore::meets(problem.coast, segments)
+    };
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
 

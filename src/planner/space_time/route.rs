@@ -460,13 +460,7 @@ fn past(at: f64, step: f64) -> f64 {
 /// Places on the path at which own ship may join it: `(leg, metres along it)`.
 fn joins(problem: &Problem) -> Vec<(usize, f64)> {
     let (own, desired) = (problem.own, problem.desired);
-    let first = &desired.legs()[0];
     let here = own.pose.position;
-    if (here - first.start).norm() < tolerance::JOINT_M
-        && wrap(own.pose.heading - heading_of(first.direction)).abs() < tolerance::JOINT_RAD
-    {
-        return vec![(0, 0.0)];
-    }
     let geometric = desired.nearest(here, 0.0, 0.0).distance;
     let mut places: Vec<f64> = JOINS
         .iter()

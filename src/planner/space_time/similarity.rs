@@ -1,0 +1,481 @@
+//! The place, the direction and the size at which a problem is planned.
+//!
+//! Own ship starts at the origin with heading zero. Lengths and times of the graph and the refinement suit encounters in a harbour, so
+//! other problems are made alike first; where the two sides are alike, the first target is to starboard. Numbers are laid on
+//! a grid that is coarse beside the roundings of all this, sets from outside: the same scene elsewhere is the same problem to the last
+//! digit. The plan is brought back to where, which way and how large the scene is.
+
+use super::hazard::{Hazard, by_obstacle};
+use crate::colregs::{Encountered, SteadyShip};
+use crate::frame::{Pose, Vector, cross, heading_of, to_port, wrap};
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::obstacle::{
+    Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+};
+use crate::planner::{EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem};
+use crate::target::VelocitySpell;
+use crate::tolerance;
+use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
+use crate::vessel::{Hull, OwnShip};
+
+/// Metres and m/s. The turning radius and the desired speed at which problems are planned.
+const USUAL_TURN_M: f64 = 100.0;
+const USUAL_MPS: f64 = 5.0;
+
+/// Metres at that size. Where the first set met has a radius, when it is met, that is not between these, it decides on the size.
+const SMALLEST_M: f64 = 30.0;
+const LARGEST_M: f64 = 640.0;
+
+/// Metres. What other radii are brought to.
+const USUAL_M: f64 = 130.0;
+
+/// Grids at that size, powers of two, so that what is on one is exact: metres of sets, 0.06 mm, and of waypoints, on which plans have to
+/// end; m/s, and seconds.
+const SET_GRID_M: f64 = 1.0 / 16_384.0;
+const WAYPOINT_GRID_M: f64 = 1.0 / 2_097_152.0;
+const VELOCITY_GRID_MPS: f64 = 1.0 / 17_179_869_184.0;
+const TIME_GRID_S: f64 = 1.0 / 1_073_741_824.0;
+
+/// Seconds, of motions to begin from.
+const DURATION_GRID_S: f64 = 1.0 / 1_048_576.0;
+
+/// Metres of the problem. Its waypoints are on no coarser grid.
+const WAYPOINTS_OFF_M: f64 = 0.7 * tolerance::ARRIVAL_M;
+
+/// Relative, of other numbers: 40 binary digits.
+const DIGITS: i32 = 40;
+
+/// Beyond this a number is left as it is.
+const LARGEST_ON_GRID: f64 = 1e7;
+
+/// Metres at that size. Sets with less room about their middle are left as they are.
+const LEAST_ROOM_M: f64 = 1.0;
+
+/// The size by a set is a power of this times the size by the turning radius.
+const STEP: f64 = std::f64::consts::SQRT_2;
+
+/// Metres. The desired way is made no longer than this, lest a speck on it asks for more instants than there is memory.
+const LONGEST_M: f64 = 5e5;
+
+/// Larger or smaller at most, each way.
+const MOST: f64 = 1e12;
+
+/// Metres. A desired path that has to be moved by no more than this to lead through own ship's pose does: what a rounding put her
+/// beside it is not sailed.
+const ON_PATH_M: f64 = 1e-7;
+
+/// Metres at the size that is planned. Nothing is to one side that is no farther from own ship's line ahead.
+const AHEAD_M: f64 = 1e-3;
+
+/// Instants at which the desired trajectory is looked at.
+const LOOKS: usize = 64;
+
+/// From the problem that is planned to the one that was asked.
+#[derive(Debug, Clone)]
+pub(crate) struct Similarity {
+    origin: Pose,
+    /// Unit vector.
+    ahead: Vector,
+    /// -1 where port and starboard change places, or 1.
+    hand: f64,
+    /// Metres and seconds of the problem per metre and second of the one that is planned.
+    length: f64,
+    time: f64,
+    /// m/s, own ship's.
+    speeds: Vec<f64>,
+    /// The indices of the obstacles that are planned around, and how many there are in all.
+    within: Vec<usize>,
+    all: usize,
+}
+
+/// A problem in another place and of another size.
+pub(crate) struct Alike {
+    own: OwnShip,
+    desired: DesiredTrajectory,
+    obstacles: Vec<Obstacle>,
+    coast: Option<Coast>,
+    encountered: Vec<Encountered>,
+    horizon: f64,
+    time_weight: f64,
+}
+
+impl Similarity {
+    /// Of a problem, with the hazards that own ship can meet. Land and rules know metres and seconds of their own: those problems are of their own size.
+    pub(crate) fn of(problem: &Problem, hazards: &[Hazard]) -> Self {
+        let own = problem.own;
+        let mut of = Self {
+            origin: own.pose,
+            ahead: own.pose.ahead(),
+            hand: 1.0,
+            length: 1.0,
+            time: 1.0,
+            speeds: own.speeds.clone(),
+            within: by_obstacle(hazards).map(|h| h[0].obstacle).collect(),
+            all: problem.obstacles.len(),
+        };
+        if !problem.coast.is_empty() || !problem.encountered.is_empty() {
+            return of;
+        }
+        (of.length, of.time) = size(problem, hazards);
+        if problem.first_turn.is_none() {
+            of.hand = of.handed(problem, hazards);
+        }
+        of
+    }
+
+    /// The same place and direction, of the problem's own size.
+    pub(crate) fn of_its_own_size(self) -> Option<Self> {
+        let is_scaled = self.length != 1.0 || self.time != 1.0;
+        is_scaled.then_some(Self {
+            length: 1.0,
+            time: 1.0,
+            ..self
+        })
+    }
+
+    /// -1 where the first thing that is to a side is to port.
+    fn handed(&self, problem: &Problem, hazards: &[Hazard]) -> f64 {
+        let places = hazards.iter().filter_map(|h| h.disc_at(h.start()));
+        let places = places.map(|(centre, _)| self.place(centre).y);
+        let ways = hazards
+            .iter()
+            .map(|h| self.velocity(h.drift()).y * USUAL_TURN_M / USUAL_MPS);
+        let bends = problem
+            .desired
+            .waypoints()
+            .into_iter()
+            .map(|w| self.place(w).y);
+        let aside = places.chain(ways).chain(bends).find(|y| y.abs() > AHEAD_M);
+        aside.map_or(1.0, |y| -y.signum())
+    }
+
+    fn speed(&self) -> f64 {
+        self.length / self.time
+    }
+
+    fn turned(&self, v: Vector) -> Vector {
+        Vector::new(self.ahead.dot(&v), self.hand * cross(self.ahead, v))
+    }
+
+    fn place(&self, place: Vector) -> Vector {
+        self.turned(place - self.origin.position) / self.length
+    }
+
+    fn velocity(&self, velocity: Vector) -> Vector {
+        self.turned(velocity) / self.speed()
+    }
+
+    fn pose(&self, pose: Pose) -> Pose {
+        let heading = self.hand * wrap(pose.heading - self.origin.heading);
+        Pose::new(self.place(pose.position), heading)
+    }
+
+    fn polygon(&self, set: &ConvexPolygon, to: impl Fn(Vector) -> Vector) -> ConvexPolygon {
+        let mut vertices: Vec<Vector> = set.vertices().iter().map(|p| to(*p)).collect();
+        if self.hand < 0.0 {
+            vertices.reverse();
+        }
+        ConvexPolygon::from_ccw(vertices)
+    }
+
+    /// A set of positions at t = 0 with more around it than the grids take away, until the horizon; as it is where there is no room, or no
+    /// more for own ship.
+    fn places(&self, set: &ConvexPolygon, horizon: f64) -> ConvexPolygon {
+        let exact = self.polygon(set, |p| self.place(p));
+        let middle = on_grid(exact.centroid(), SET_GRID_M);
+        let room = -exact.signed_distance(middle);
+        // negated on purpose: a NaN is no room
+        if !(room >= LEAST_ROOM_M) {
+            return exact;
+        }
+        let grown = 1.0 + taken(horizon / self.time) / room;
+        let vertex = |p: &Vector| on_grid(middle + (p - middle) * grown, SET_GRID_M);
+        let vertices: Vec<Vector> = exact.vertices().iter().map(vertex).collect();
+        match ConvexPolygon::hull(&vertices) {
+            Ok(outer) if !outer.contains(Vector::zeros()) => outer,
+            _ => exact,
+        }
+    }
+
+    fn velocities(&self, set: &ConvexPolygon) -> ConvexPolygon {
+        let exact = self.polygon(set, |v| self.velocity(v));
+        let vertex = |v: &Vector| on_grid(*v, VELOCITY_GRID_MPS);
+        let vertices: Vec<Vector> = exact.vertices().iter().map(vertex).collect();
+        ConvexPolygon::hull(&vertices).unwrap_or(exact)
+    }
+
+    /// The problem, planned so; `None` where it leaves no digits.
+    pub(crate) fn alike(&self, problem: &Problem) -> Option<Alike> {
+        let (own, speed, horizon) = (problem.own, self.speed(), problem.horizon);
+        let legs = problem.desired.legs().iter();
+        let speeds: Vec<f64> = legs.map(|l| digits(l.speed / speed)).collect();
+        let obstacles = self
+            .within
+            .iter()
+            .map(|i| self.obstacle(&problem.obstacles[*i], horizon));
+        let ship = |e: &Encountered| Encountered {
+            ship: SteadyShip {
+                pose: self.pose(e.ship.pose),
+                ..e.ship
+            },
+            ..*e
+        };
+        Some(Alike {
+            own: OwnShip {
+                pose: Pose::new(Vector::zeros(), 0.0),
+                speed: digits(own.speed / speed),
+                hull: Hull {
+                    length: own.hull.length / self.length,
+                    beam: own.hull.beam / self.length,
+                },
+                turning_radius: digits(own.turning_radius / self.length),
+                speeds: own.speeds.iter().map(|u| digits(u / speed)).collect(),
+                safety_margin: own.safety_margin / self.length,
+            },
+            desired: DesiredTrajectory::new(&self.waypoints(problem), &speeds).ok()?,
+            obstacles: obstacles.collect::<Option<_>>()?,
+            coast: (!problem.coast.is_empty())
+                .then(|| problem.coast.mapped(|block| self.places(block, horizon))),
+            encountered: problem.encountered.iter().map(ship).collect(),
+            horizon: digits(horizon / self.time) * (1.0 - 2.0_f64.powi(-DIGITS)),
+            time_weight: digits(problem.time_weight / (speed * speed)),
+        })
+    }
+
+    /// Of the desired path, through own ship's pose where that is beside it by a rounding.
+    fn waypoints(&self, problem: &Problem) -> Vec<Vector> {
+        let mut waypoints = problem.desired.waypoints();
+        for w in &mut waypoints {
+            *w = self.place(*w);
+        }
+        let step = waypoints[1] - waypoints[0];
+        let along = step.normalize();
+        let beside = cross(along, waypoints[0]);
+        let reach = waypoints.iter().map(|w| w.norm()).fold(0.0, f64::max);
+        let moved = (beside.abs() + heading_of(along).abs() * reach) * self.length;
+        if moved <= ON_PATH_M {
+            for w in &mut waypoints {
+                *w = Vector::new(along.dot(w), cross(along, *w) - beside);
+            }
+        }
+        // a plan has to end on the last one of the problem
+        let coarse = WAYPOINT_GRID_M * self.length / WAYPOINTS_OFF_M;
+        let grid = WAYPOINT_GRID_M / coarse.max(1.0).log2().ceil().exp2();
+        waypoints.into_iter().map(|w| on_grid(w, grid)).collect()
+    }
+
+    fn obstacle(&self, obstacle: &Obstacle, horizon: f64) -> Option<Obstacle> {
+        let ellipse = |e: &Ellipse, centre: Vector, unit: f64| {
+            Ellipse::from_axes(centre, e.semi_axes().map(|a| self.turned(a) / unit))
+        };
+        Some(match obstacle {
+            Obstacle::Polytope(o) => PolytopeObstacle::new(
+                o.name(),
+                self.places(o.initial(), horizon),
+                self.velocities(o.velocity()),
+            )
+            .into(),
+            Obstacle::Ellipsoid(o) => {
+                let (initial, velocity) = (o.initial(), o.velocity());
+                EllipsoidObstacle::new(
+                    o.name(),
+                    ellipse(initial, self.place(initial.center()), self.length),
+                    ellipse(velocity, self.velocity(velocity.center()), self.speed()),
+                )
+                .into()
+            }
+            Obstacle::Slabs(o) => {
+                let spells = o.spells().iter().map(|s| VelocitySpell {
+                    until: number_on_grid(s.until / self.time, TIME_GRID_S),
+                    velocities: self.velocities(&s.velocities),
+                });
+                SlabObstacle::new(
+                    o.name(),
+                    self.places(o.initial(), horizon),
+                    spells.collect(),
+                )
+                .ok()?
+                .into()
+            }
+        })
+    }
+
+    /// A motion of the problem, planned so, to the digits that it can be told apart by: a beginning, not a plan.
+    pub(crate) fn motion(&self, motion: &[Segment]) -> Vec<Segment> {
+        let segment = |s: &Segment| Segment {
+            start: self.pose(s.start),
+            start_time: s.start_time / self.time,
+            duration: number_on_grid(s.duration / self.time, DURATION_GRID_S),
+            speed: digits(s.speed / self.speed()),
+            turn_rate: self.hand * s.turn_rate * self.time,
+        };
+        motion.iter().map(segment).collect()
+    }
+
+    /// What was planned, brought back.
+    pub(crate) fn restored(&self, planned: Planned) -> Planned {
+        let outcome = match planned.outcome {
+            Outcome::Solved(plan) => self
+                .plan(plan)
+                .map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved),
+            Outcome::Deadline(plan) => Outcome::Deadline(plan.and_then(|p| self.plan(p))),
+            Outcome::Infeasible(reason) => Outcome::Infeasible(self.reason(reason)),
+        };
+        Planned {
+            outcome,
+            explored: self.explored(planned.explored),
+            ..planned
+        }
+    }
+
+    fn cost(&self, cost: f64) -> f64 {
+        cost * (self.length * self.length)
+    }
+
+    fn restored_pose(&self, pose: Pose) -> Pose {
+        let (along, port) = (self.ahead, to_port(self.ahead) * self.hand);
+        let from = (along * pose.position.x + port * pose.position.y) * self.length;
+        Pose::new(
+            self.origin.position + from,
+            self.origin.heading + self.hand * pose.heading,
+        )
+    }
+
+    fn segment(&self, s: &Segment) -> Segment {
+        let speed = s.speed * self.speed();
+        // not a digit off own ship's
+        let known = self.speeds.iter().copied();
+        let known = known.min_by(|a, b| (a - speed).abs().total_cmp(&(b - speed).abs()));
+        Segment {
+            start: self.restored_pose(s.start),
+            start_time: s.start_time * self.time,
+            duration: s.duration * self.time,
+            speed: known.unwrap_or(speed),
+            turn_rate: self.hand * s.turn_rate / self.time,
+        }
+    }
+
+    fn plan(&self, plan: Plan) -> Option<Plan> {
+        let segments = plan.trajectory.segments().iter();
+        Some(Plan {
+            trajectory: Trajectory::new(segments.map(|s| self.segment(s)).collect()).ok()?,
+            cost: self.cost(plan.cost),
+            graph_cost: plan.graph_cost.map(|c| self.cost(c)),
+            to_go: plan.to_go * self.length,
+        })
+    }
+
+    fn explored(&self, mut explored: ExploredGraph) -> ExploredGraph {
+        for node in explored.node_weights_mut() {
+            node.pose = self.restored_pose(node.pose);
+            node.time *= self.time;
+            node.cost = self.cost(node.cost);
+        }
+        for edge in explored.edge_weights_mut() {
+            edge.cost = self.cost(edge.cost);
+            if let EdgeVerdict::Blocked { obstacle } = &mut edge.verdict {
+                *obstacle = self.within.get(*obstacle).copied().unwrap_or(self.all);
+            }
+            for segment in &mut edge.segments {
+                *segment = self.segment(segment);
+            }
+        }
+        explored
+    }
+
+    fn reason(&self, reason: NoPlan) -> NoPlan {
+        match reason {
+            NoPlan::StartInside { target, depth } => NoPlan::StartInside {
+                target,
+                depth: depth * self.length,
+            },
+            NoPlan::HorizonTooShort { earliest, horizon } => NoPlan::HorizonTooShort {
+                earliest: earliest * self.time,
+                horizon: horizon * self.time,
+            },
+            NoPlan::NoCandidate { target, time } => NoPlan::NoCandidate {
+                target,
+                time: time * self.time,
+            },
+            // of land or rules, which are of their own size, of other planners, or without a number
+            other => other,
+        }
+    }
+}
+
+impl Alike {
+    /// As a problem; what has no place and no size is that of the original.
+    pub(crate) fn problem<'a>(&'a self, of: &Problem<'a>) -> Problem<'a> {
+        Problem {
+            own: &self.own,
+            desired: &self.desired,
+            obstacles: &self.obstacles,
+            coast: self.coast.as_ref().unwrap_or(of.coast),
+            encountered: &self.encountered,
+            horizon: self.horizon,
+            time_weight: self.time_weight,
+            ..*of
+        }
+    }
+}
+
+/// Metres and seconds of a problem per metre and second of the one that is planned: from own ship's turning radius and the desired
+/// speed, or from the set that own ship, on schedule, meets first, where beside her turning circle that is very small or large.
+fn size(problem: &Problem, hazards: &[Hazard]) -> (f64, f64) {
+    let desired = problem.desired;
+    let by_turn = problem.own.turning_radius / USUAL_TURN_M;
+    let usual = SMALLEST_M..=LARGEST_M;
+    let radius = radius_met(desired, hazards).map(|radius| radius / by_turn);
+    let radius = radius.filter(|r| *r > 0.0 && !usual.contains(r));
+    let longer = (desired.length() / by_turn / LONGEST_M).max(1.0);
+    let larger = radius.map_or(1.0, |r| r / USUAL_M).max(longer);
+    let length = by_turn * STEP.powf(larger.log(STEP).round());
+    let time = length * USUAL_MPS / desired.legs()[0].speed;
+    let sound = |x: f64| x > 1.0 / MOST && x < MOST;
+    if sound(length) && sound(time) {
+        (length, time)
+    } else {
+        (1.0, 1.0)
+    }
+}
+
+/// Metres that roundings take from a set until a time: of its vertices, of its velocities, and of when they change.
+fn taken(time: f64) -> f64 {
+    SET_GRID_M + VELOCITY_GRID_MPS * time
+}
+
+fn on_grid(v: Vector, grid: f64) -> Vector {
+    v.map(|x| number_on_grid(x, grid))
+}
+
+/// The nearest number on a grid; never -0.
+fn number_on_grid(x: f64, grid: f64) -> f64 {
+    if x.abs() < LARGEST_ON_GRID {
+        (x / grid).round() * grid + 0.0
+    } else {
+        x
+    }
+}
+
+/// A number to so many binary digits as are no rounding.
+fn digits(x: f64) -> f64 {
+    let unit = 2.0_f64.powi(x.abs().max(f64::MIN_POSITIVE).log2().floor() as i32 - DIGITS);
+    if unit > 0.0 && x.is_finite() {
+        (x / unit).round() * unit
+    } else {
+        x
+    }
+}
+
+/// Metres: the radius of the disc around the section that contains own ship on schedule first.
+fn radius_met(desired: &DesiredTrajectory, hazards: &[Hazard]) -> Option<f64> {
+    (0..=LOOKS).find_map(|look| {
+        let time = desired.duration() * look as f64 / LOOKS as f64;
+        let place = desired.position_at(time);
+        let met = hazards.iter().filter_map(|h| {
+            let (centre, radius) = h.disc_at(time)?;
+            ((place - centre).norm() <= radius).then_some(radius)
+        });
+        met.max_by(f64::total_cmp)
+    })
+}

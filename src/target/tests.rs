@@ -1,0 +1,136 @@
+use super::*;
+use rand::{Rng, SeedableRng};
+
+#[test]
+fn the_velocity_set_contains_every_velocity_within_the_spreads() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(3);
+    for _ in 0..500 {
+        let ship = ShipTrack {
+            pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
+            speed: rng.random_range(0.0..10.0),
+            hull: Hull {
+                length: 50.0,
+                beam: 10.0,
+            },
+            position_std: 0.0,
+            speed_spread: rng.random_range(0.0..3.0),
+            course_spread: rng.random_range(0.0..3.5),
+            turn_rate: 0.0,
+            domain: DomainKind::Hull,
+        };
+        let set = ship.outer_velocity_set();
+        for _ in 0..50 {
+            let speed = (ship.speed + rng.random_range(-1.0..=1.0) * ship.speed_spread).max(0.0);
+            let course = ship.pose.heading + rng.random_range(-1.0..=1.0) * ship.course_spread;
+            assert!(set.signed_distance(direction(course) * speed) <= 1e-9);
+        }
+    }
+}
+
+fn turning_ship(rng: &mut rand_chacha::ChaCha8Rng) -> ShipTrack {
+    ShipTrack {
+        pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
+        speed: rng.random_range(0.0..10.0),
+        hull: Hull {
+            length: 50.0,
+            beam: 10.0,
+        },
+        position_std: 0.0,
+        speed_spread: rng.random_range(0.0..3.0),
+        course_spread: rng.random_range(0.0..1.0),
+        turn_rate: 0.0,
+        domain: DomainKind::Hull,
+    }
+}
+
+#[test]
+fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
+    for _ in 0..200 {
+        let ship = turning_ship(&mut rng);
+        let rate = rng.random_range(0.0_f64..0.05);
+        let horizon = rng.random_range(1.0..400.0);
+        let spells = ship.outer_velocity_spells(rate, horizon);
+        assert!(spells.windows(2).all(|w| w[0].until < w[1].until));
+        for _ in 0..100 {
+            let t = rng.random_range(0.0..500.0);
+            let turned = ship.course_spread + rate * t;
+            let course = ship.pose.heading + rng.random_range(-1.0..=1.0) * turned;
+            let speed = (ship.speed + rng.random_range(-1.0..=1.0) * ship.speed_spread).max(0.0);
+            let now = spells.iter().find(|s| t <= s.until).expect("a last one");
+            let v = direction(course) * speed;
+            assert!(now.velocities.signed_distance(v) <= 1e-9, "{ship:?} {t}");
+            if t < horizon {
+                let widest = ship.outer_velocities_within(turned + TURN_OF_A_SPELL + 1e-9);
+                for v in now.velocities.vertices() {
+                    assert!(widest.signed_distance(*v) <= 0.005 * v.norm() + 1e-9);
+                }
+            }
+        }
+    }
+    let ship = turning_ship(&mut rng);
+    assert_eq!(ship.outer_velocity_spells(0.0, 100.0).len(), 1);
+    for rate in [f64::NAN, f64::INFINITY] {
+        let all = ship.outer_velocity_spells(rate, 100.0);
+        assert_eq!(all.len(), 1);
+        assert!(all[0].velocities.contains(-ship.velocity()));
+    }
+}
+
+#[test]
+fn no_spread_is_a_point() {
+    let ship = ShipTrack {
+        pose: Pose::new(Vector::zeros(), 0.3),
+        speed: 5.0,
+        hull: Hull {
+            length: 50.0,
+            beam: 10.0,
+        },
+        position_std: 0.0,
+        speed_spread: 0.0,
+        course_spread: 0.0,
+        turn_rate: 0.0,
+        domain: DomainKind::Hull,
+    };
+    assert_eq!(ship.outer_velocity_set().vertices().len(), 1);
+}
+
+/// A tanker, a ferry, a raft: on any heading that she may have she is within the outer hull, which is little larger.
+#[test]
+fn the_outer_hull_holds_the_hull_on_every_heading() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(6);
+    for case in 0..400 {
+        let mut ship = turning_ship(&mut rng);
+        ship.pose.position = Vector::new(rng.random_range(-1e2..1e2), 50.0);
+        ship.hull.length = 10.0_f64.powf(rng.random_range(0.0..3.0));
+        ship.hull.beam = ship.hull.length * rng.random_range(0.01..1.2);
+        // from next to nothing to every heading
+        ship.course_spread = match case % 4 {
+            0 => 10.0_f64.powf(rng.random_range(-12.0..-3.0)),
+            _ => rng.random_range(0.0..1.0),
+        };
+        ship.turn_rate = [0.0, 0.003, 0.1][case % 3];
+        let time = rng.random_range(0.0..100.0);
+        let hull = ship.outer_hull(time);
+        let spread = ship.course_spread + ship.turn_rate * time;
+        let turned = |turn: f64| {
+            let pose = Pose::new(ship.pose.position, ship.pose.heading + turn);
+            ship.hull.polygon(&pose)
+        };
+        let mut all = Vec::new();
+        for k in -100..=100 {
+            let heading = turned(spread * f64::from(k) / 100.0);
+            all.extend_from_slice(heading.vertices());
+        }
+        assert!(all.iter().all(|p| hull.signed_distance(*p) < 1e-9));
+        let swept = ConvexPolygon::hull(&all).expect("finite");
+        let excess = hull.vertices().iter().map(|p| swept.signed_distance(*p));
+        let excess = excess.fold(0.0, f64::max) / ship.hull.half_diagonal();
+        assert!(excess < 0.021, "{excess} {ship:?}");
+        let around = crate::geometry::outer_disc(40.0, ship.pose.heading);
+        assert!(hull.minkowski_sum(&around).vertices().len() <= DISC_SIDES);
+    }
+    let mut known = turning_ship(&mut rng);
+    known.course_spread = 0.0;
+    assert_eq!(known.outer_hull(100.0), known.hull.polygon(&known.pose));
+}
