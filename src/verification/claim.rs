@@ -167,6 +167,15 @@ impl Claim {
         )?;
         let own = own_ship(&file.own_ship)?;
         let waypoints: Vec<Vector> = file.mission.waypoints.iter().copied().map(point).collect();
+        let speeds = file.mission.leg_speeds_mps.len();
+        if speeds + 1 != waypoints.len() {
+            let found = format!("{speeds} speeds for {} waypoints", waypoints.len());
+            return Err(fault(
+                "mission.leg_speeds_mps",
+                found,
+                "a speed for each leg",
+            ));
+        }
         let desired =
             DesiredTrajectory::new(&waypoints, &file.mission.leg_speeds_mps).map_err(|e| {
                 fault(

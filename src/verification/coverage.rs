@@ -120,8 +120,9 @@ fn in_sections(
         while slab + 1 < ends.len() && ends[slab] <= time {
             slab += 1;
         }
+        let rounding = known.rounding(&wanted, time, factor);
         // negated on purpose: a NaN is too small
-        if !(short <= known.rounding(&wanted, time, factor)) {
+        if !(short <= rounding && rounding.is_finite()) {
             let ship = matches!(target.motion, Motion::Ship(_));
             let part = match (time > from, ship) {
                 (false, _) if from > 0.0 => LEFT,

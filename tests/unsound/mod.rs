@@ -213,6 +213,20 @@ fn each_later_velocity_set_that_is_too_small_is_found() {
     assert!(found > 5, "{found}");
 }
 
+/// Numbers whose squares are none.
+#[test]
+fn what_is_known_may_be_too_large_for_any_set() {
+    let plan = document(scenario("uncertainty/spells.toml"));
+    for key in ["initial_set/vertices_m", "velocity_sets/0/vertices_mps"] {
+        let mut huge = plan.clone();
+        *at(&mut huge, &format!("/targets/0/{key}/0")) = json!([1e300, 0.0]);
+        match verify(&huge.to_string()) {
+            Ok(_) => assert!(said(&huge, "too small for")),
+            Err(error) => assert!(error.to_string().contains("vertices"), "{error}"),
+        }
+    }
+}
+
 /// A slab that ends before it begins, within the slack of a long horizon.
 #[test]
 fn slabs_follow_one_another_to_the_digit() {
