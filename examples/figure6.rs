@@ -16,16 +16,12 @@ use searoom::report::figure::{
 use searoom::scenario::Scenario;
 
 /// The fastest first.
-const SCENARIOS: [&str; 3] = [
-    "ferry-crossing",
-    "ferry-crossing-slower",
-    "ferry-crossing-slowest",
-];
+const SCENARIOS: [&str; 3] = ["figure_6", "figure_6_slower", "figure_6_slowest"];
 
 const STROKES: [(&str, bool); 3] = [("#000000", false), ("#000000", true), ("#777777", false)];
 
 fn main() -> Result<(), FigureError> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/harbour");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper");
     let runs: Vec<Run> = SCENARIOS
         .iter()
         .map(|name| folder.join(format!("{name}.toml")))

@@ -781,7 +781,8 @@ fn a_scaled_scene_has_the_scaled_plan() {
              beam_m = {}, turning_radius_m = {}, safety_margin_m = 0 }}\n\
              mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {}, north_m = {} }}], speed_mps = {} }}\n\
              [planner]\nkind = \"optimal-control\"\ndeadline_s = 300\n",
-            100.0 * v,
+            // before the desired trajectory ends, where rounding decides on which side of it an instant lies
+            97.0 * v,
             0.2 * v,
             1.255 * s,
             0.29 * s,

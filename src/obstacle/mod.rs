@@ -29,7 +29,9 @@ pub use cpa::ClosestApproach;
 pub use ellipsoid::EllipsoidObstacle;
 pub use ellipsoid_velocities::EllipsoidVelocityObstacle;
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
-pub use projection::{OUTER_EXCESS_M, PathTime, Track, along_path};
+pub use projection::{
+    OUTER_EXCESS_M, PathTime, Track, along_path, along_track_from, ellipsoid_along_track_from,
+};
 pub(crate) use projection::{PathTimeObstacle, outer_faces_along};
 pub use representation::Obstacle;
 pub use risk::PeakRisk;

@@ -352,11 +352,73 @@ pub fn along_path(
         direction,
         length,
     };
-    let faces = obstacle
-        .faces()
+    corners(obstacle.faces(), &track, 0.0, horizon)
+}
+
+/// Paper eq. (29) with any `t_0`: the corners of `{(s, t) : x(s) in O_(t_0 + t)}` along a track, `0 <= t <= duration` seconds after
+/// `t_0`, in order around it; empty where they do not meet. O((n + m)²).
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::{PolytopeObstacle, Track, along_track_from};
+///
+/// let square = |half: f64| {
+///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Vector::new(x, y)))
+/// };
+/// let target = PolytopeObstacle::new("anchored", square(10.0)?, ConvexPolygon::point(Vector::new(1.0, 0.0)));
+/// // a path to the north, 100 m east: the target is on it from 90 to 110 s, and own ship starts at 60 s
+/// let track = Track { start: Vector::new(100.0, -50.0), direction: Vector::new(0.0, 1.0), length: 100.0 };
+/// let corners = along_track_from(&target, &track, 60.0, 200.0);
+/// let first = corners.iter().map(|c| c.time).fold(f64::INFINITY, f64::min);
+/// assert!((first - 30.0).abs() < 1e-9, "{first} s after the start");
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
+pub fn along_track_from(
+    obstacle: &PolytopeObstacle,
+    track: &Track,
+    start_time: f64,
+    duration: f64,
+) -> Vec<PathTime> {
+    corners(obstacle.faces(), track, start_time, duration)
+}
+
+/// [`along_track_from`] of an ellipsoid, whose projection is convex with a curved edge: a polygon around it. At no time is a point
+/// of it farther than [`OUTER_EXCESS_M`] from the ellipse at that time.
+///
+/// ```
+/// use nalgebra::Matrix2;
+/// use searoom::frame::Vector;
+/// use searoom::geometry::Ellipse;
+/// use searoom::obstacle::{EllipsoidObstacle, Track, ellipsoid_along_track_from};
+///
+/// // eqs. (20) and (21)
+/// let initial = Ellipse::new(Vector::zeros(), Matrix2::new(100.0, 0.0, 0.0, 25.0))?;
+/// let velocity = Ellipse::new(Vector::new(1.0, 0.0), Matrix2::new(0.04, 0.0, 0.0, 0.0625))?;
+/// let target = EllipsoidObstacle::new("figure 2", initial, velocity);
+/// // along its own way it is ahead of its centre by 10 m and 0.2 m/s
+/// let track = Track { start: Vector::zeros(), direction: Vector::new(1.0, 0.0), length: 300.0 };
+/// let corners = ellipsoid_along_track_from(&target, &track, 40.0, 60.0);
+/// let farthest = corners.iter().map(|c| c.distance).fold(0.0, f64::max);
+/// assert!(farthest > 130.0 && farthest < 132.0, "{farthest} m at 100 s");
+/// # Ok::<(), searoom::geometry::ShapeError>(())
+/// ```
+pub fn ellipsoid_along_track_from(
+    obstacle: &EllipsoidObstacle,
+    track: &Track,
+    start_time: f64,
+    duration: f64,
+) -> Vec<PathTime> {
+    let faces = outer_faces_along(obstacle, &[*track], start_time + duration);
+    corners(&faces, track, start_time, duration)
+}
+
+fn corners(faces: &[HalfSpace], track: &Track, start_time: f64, duration: f64) -> Vec<PathTime> {
+    // the clock of the set starts before that of the track
+    let faces = faces
         .iter()
-        .map(|f| PathTimeFace::new(f, 0.0, &track));
-    Clipped::new(faces, length, [0.0, horizon]).map_or_else(Vec::new, |polygon| {
+        .map(|f| PathTimeFace::new(f, -start_time, track));
+    Clipped::new(faces, track.length, [0.0, duration]).map_or_else(Vec::new, |polygon| {
         polygon.sides.iter().map(|side| side.corner).collect()
     })
 }

@@ -258,8 +258,10 @@ fn polygon(list: &Entry, range: Range) -> Option<ConvexPolygon> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+    use crate::planner::PlannerKind;
     use crate::scenario::Scenario;
-    use crate::target::{Motion, Representation};
+    use crate::target::{DomainKind, Representation};
 
     const LEAST: &str = r#"
 title = "least"
@@ -404,5 +406,62 @@ name = "sets"
             read(&[ship, "turn_rate_deg_per_s = -0.1"]).expect_err("faulty"),
             ["turn_rate_deg_per_s"]
         );
+    }
+
+    /// Eqs. (10), (11), (20) and (21) are in the files of the paper's figures as they are printed; figure 6 has three greatest speeds,
+    /// figure 8 the paper's shape.
+    #[test]
+    fn the_scenes_of_the_paper_have_its_numbers() {
+        let read = |name: &str| {
+            let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+            let file = folder.join(format!("scenarios/paper/{name}.toml"));
+            Scenario::read(&file).expect(name)
+        };
+        let polygon = |points: &[(f64, f64)]| {
+            let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+            ConvexPolygon::from_vertices(&points).expect("convex")
+        };
+        let polytope = Motion::Sets {
+            initial: polygon(&[(-10.0, -5.0), (-10.0, 5.0), (10.0, 5.0), (10.0, -5.0)]),
+            velocity: polygon(&[(0.8, 0.0), (1.0, -0.25), (1.2, 0.0), (1.0, 0.25)]),
+        };
+        let ellipse = |x: f64, [a, b]: [f64; 2]| {
+            let shape = nalgebra::Matrix2::new(a * a, 0.0, 0.0, b * b);
+            Ellipse::new(Vector::new(x, 0.0), shape).expect("positive definite")
+        };
+        let same = |a: &Ellipse, b: &Ellipse| {
+            (a.center() - b.center()).norm() < 1e-12 && (a.shape() - b.shape()).amax() < 1e-12
+        };
+        let is_ellipsoid = |motion: &Motion| match motion {
+            Motion::Ellipses { initial, velocity } => {
+                same(initial, &ellipse(0.0, [10.0, 5.0]))
+                    && same(velocity, &ellipse(1.0, [0.2, 0.25]))
+            }
+            _ => false,
+        };
+        for name in ["figure_1", "figure_4", "figure_5"] {
+            assert_eq!(read(name).targets[0].motion, polytope, "{name}");
+        }
+        assert!(is_ellipsoid(&read("figure_2").targets[0].motion));
+        let both = read("figure_4");
+        assert!(is_ellipsoid(&both.targets[1].motion));
+        assert_eq!(both.own_ship.pose.position, Vector::new(50.0, 50.0));
+        for (name, speed) in [
+            ("figure_6", 5.0),
+            ("figure_6_slower", 4.0),
+            ("figure_6_slowest", 3.0),
+        ] {
+            let scene = read(name);
+            assert_eq!(
+                (scene.planner, scene.own_ship.max_speed()),
+                (PlannerKind::PathTime, speed)
+            );
+            assert_eq!(scene.targets.len(), 3);
+        }
+        for name in ["7", "8_overtaking", "8_head_on", "8_stand_on", "8_give_way"] {
+            let scene = read(&format!("figure_{name}"));
+            let ship = scene.targets[0].ship().expect("a ship");
+            assert_eq!(ship.domain, DomainKind::Paper, "{name}");
+        }
     }
 }

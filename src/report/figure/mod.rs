@@ -26,7 +26,7 @@ pub use outline::Stroke;
 pub use panel::Panel;
 pub use path_time::{ProfileLine, path_time_panel};
 pub(super) use plan::plan_panels;
-pub use plan::{chart_panel, path_panel, plan_figure};
+pub use plan::{chart_panel, explored_panel, path_panel, plan_figure};
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
 pub use volume::volume_panel;

@@ -12,8 +12,10 @@ use crate::frame::Vector;
 use crate::geometry::{self, ConvexPolygon};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::Run;
+use crate::planner::EdgeVerdict;
 use crate::report::words;
 use crate::scenario::Land;
+use crate::trajectory::Trajectory;
 
 /// The desired trajectory.
 pub(super) const DESIRED: Stroke = Stroke {
@@ -33,6 +35,13 @@ pub(super) const PLANNED: Stroke = Stroke {
 const ALTERNATIVE: Stroke = Stroke {
     colour: "#b0b0b0",
     width: 1.4,
+    dashed: false,
+};
+
+/// What a search found.
+const FOUND: Stroke = Stroke {
+    colour: "#009e73",
+    width: 0.8,
     dashed: false,
 };
 
@@ -101,6 +110,11 @@ pub fn path_panel(title: &str, obstacles: &[Obstacle], times: &[f64], path: &[Ve
 
 /// Desired and planned way, the sets at some times of the plan, each with own ship's place at that time.
 pub fn chart_panel(title: &str, run: &Run) -> Panel {
+    chart(title, run, Vec::new())
+}
+
+/// The chart with `others` drawn above the sets and below the plan.
+fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let scenario = &run.scenario;
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
     let end = trajectory.map_or(scenario.desired.duration(), |t| t.end_time());
@@ -152,6 +166,7 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
     for path in &scenario.alternatives {
         panel.plots.push(curve(path, false, ALTERNATIVE));
     }
+    panel.plots.extend(others);
     panel.plots.push(curve(&waypoints, false, DESIRED));
     if let Some(trajectory) = trajectory {
         panel.plots.push(curve(&way, false, PLANNED));
@@ -183,6 +198,21 @@ pub fn chart_panel(title: &str, run: &Run) -> Panel {
         };
         panel.line_key(&format!("set of {}", obstacle.name()), stroke);
     }
+    panel
+}
+
+/// The chart of a run of the space-time planner with every motion that its search found clear of all sets.
+pub fn explored_panel(title: &str, run: &Run) -> Panel {
+    let edges = run.planned.explored.edge_weights();
+    let free = edges.filter(|edge| edge.verdict == EdgeVerdict::Free);
+    let ways = free.filter_map(|edge| {
+        let trajectory = Trajectory::new(edge.segments.clone()).ok()?;
+        let times = trajectory.sample_times(STEP, MOST_POINTS).into_iter();
+        let way: Vec<Vector> = times.map(|t| trajectory.pose_at(t).position).collect();
+        Some(curve(&way, false, FOUND))
+    });
+    let mut panel = chart(title, run, ways.collect());
+    panel.line_key("found clear of all sets", FOUND);
     panel
 }
 
