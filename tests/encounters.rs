@@ -623,12 +623,12 @@ fn plans_of_another_size_are_the_same_plans() {
 }
 
 /// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste: in the median, in
-/// nine of ten scenes, and ever, where weights allow 4. Measured: 1.00, 1.00 and 1.00 of 25.
-const HASTE: [f64; 3] = [1.01, 1.2, 2.0];
+/// nine of ten scenes, and ever, where weights allow 4. Measured: 1.05, 1.16 and 1.36.
+const HASTE: [f64; 3] = [1.1, 1.3, 1.7];
 
-/// The same cost with one target; among several, where the search is in haste, hardly ever more.
+/// The same cost with one target; among several, where the search is in haste, a little more.
 #[test]
-fn a_star_finds_what_dijkstra_finds() {
+fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
     let alone = EncounterKind::ALL.into_iter().flat_map(|kind| {
         (0..25).map(move |seed| {
             (
@@ -673,12 +673,67 @@ fn a_star_finds_what_dijkstra_finds() {
         expanded += a;
         blind += b;
     }
-    println!("expanded {expanded}, without the bound {blind}; {equal} equal; in haste {hasty:?}");
+    println!("expanded {expanded}, without the bound {blind}; {equal} of the same cost");
     assert!(2 * expanded < blind, "{expanded} {blind}");
     assert!(equal >= 90 && hasty.len() >= 15, "{equal} {}", hasty.len());
     let found = [0.5, 0.9, 1.0].map(|share| quantile(&hasty, share));
     let within = found.iter().zip(HASTE).all(|(found, most)| *found <= most);
     assert!(within, "{found:?}, at most {HASTE:?}");
+}
+
+/// Ways to pass several ships on other sides are refined each, for the graph's cheapest is not always the cheapest in the end: where
+/// only the first is, these two cost 6,264 and 9,971 m².
+#[test]
+fn several_ways_of_passing_are_refined_and_the_cheapest_is_the_plan() {
+    // own ship's turning radius, speeds and margin; east, north, course, speed and the spreads of both of each ship
+    type Scene<'a> = (f64, &'a [f64], f64, &'a [[f64; 6]]);
+    let scenes: [(f64, Scene); 2] = [
+        (
+            3_558.1,
+            (
+                200.0,
+                &[0.0, 6.0],
+                30.0,
+                &[
+                    [3208.6, -0.5, 271.0, 4.0, 0.3, 3.0],
+                    [3238.3, 84.7, 263.2, 4.0, 0.0, 0.0],
+                    [1437.6, -38.4, 18.0, 0.0, 0.0, 0.0],
+                ],
+            ),
+        ),
+        (
+            8_590.5,
+            (
+                120.0,
+                &[3.0, 6.0],
+                100.0,
+                &[
+                    [839.6, -477.6, 357.4, 4.0, 0.0, 3.0],
+                    [2352.8, 22.6, 269.2, 2.0, 0.3, 3.0],
+                ],
+            ),
+        ),
+    ];
+    for (measured, (radius, speeds, margin, ships)) in scenes {
+        let mut text = format!(
+            "title = \"ways\"\nhorizon_s = 1000\n[own_ship]\nposition = {{ east_m = 0, north_m = 0 }}\ncourse_deg = 90\nspeed_mps = 6\n\
+             length_m = 60\nbeam_m = 12\nturning_radius_m = {radius}\nspeeds_mps = {speeds:?}\nsafety_margin_m = {margin}\n\
+             [mission]\nwaypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 3000, north_m = 0 }}]\n[planner]\ncompliance = \"none\"\n\
+             deadline_s = 60\n"
+        );
+        for (index, [east, north, course, speed, faster, aside]) in ships.iter().enumerate() {
+            text += &format!(
+                "[[targets]]\nname = \"{index}\"\nposition = {{ east_m = {east}, north_m = {north} }}\ncourse_deg = {course}\n\
+                 speed_mps = {speed}\nlength_m = 80\nbeam_m = 16\nspeed_spread_mps = {faster}\ncourse_spread_deg = {aside}\n"
+            );
+        }
+        let run = pipeline::run(Scenario::parse(&text).expect("no faults"));
+        let cost = run.planned.outcome.plan().expect("a plan").cost;
+        assert!(
+            run.relaxations.is_empty() && cost <= 1.05 * measured,
+            "{cost}"
+        );
+    }
 }
 
 /// On the four scenarios A* expands at most half as many nodes as Dijkstra, and finds the same cost.

@@ -1,8 +1,8 @@
 //! How own ship behaved toward a target: two judges that see trajectories alone.
 //!
 //! `score` computes the scores of the literature and names the rules that are broken; `monitor` reads the rules as formulas of
-//! temporal logic. They share the sights of a [`Meeting`] and no more, and may disagree: thresholds differ from source to
-//! source, so these are data (`thresholds.toml`).
+//! temporal logic. They share the sights of a [`Meeting`], the sectors of roles and the
+//! thresholds, which differ from source to source and so are data (`thresholds.toml`). No formula is shared: they may disagree.
 
 mod alteration;
 mod latch;
