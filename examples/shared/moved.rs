@@ -242,6 +242,7 @@ pub fn scene(seed: u64) -> Scenario {
         control: ControlSettings::of(VesselKind::CyberShip2),
         search: SearchKind::AStar,
         compliance: Compliance::None,
+        arrival_hold: 60.0,
         time_weight: speed * speed,
         max_risk: 0.0,
         deadline: 600.0,

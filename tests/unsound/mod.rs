@@ -123,6 +123,7 @@ fn a_path_is_sailed_to_its_end() {
                 horizon: 900.0,
                 time_weight: 25.0,
                 max_risk: 0.0,
+                arrival_hold: 60.0,
             };
             let found = evaluate(&request).violations;
             assert!(
@@ -179,6 +180,7 @@ fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
         horizon: 900.0,
         time_weight: 25.0,
         max_risk: 0.0,
+        arrival_hold: 60.0,
     });
     let through = |v: &searoom::evaluation::Violation| v.what.contains("'wall': distance");
     assert!(
