@@ -470,6 +470,31 @@ fn no_plan_is_an_answer() {
         .stdout(contains("where she may be"));
 }
 
+/// Behind a slower ship, on a path without a way past: clear up to the horizon, which is no plan to the end.
+#[test]
+fn a_plan_that_does_not_arrive_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let along = [
+        "plan",
+        "scenarios/colregs/overtaking.toml",
+        "--planner",
+        "path-time",
+    ];
+    searoom(&along)
+        .code(1)
+        .stdout(contains("does not arrive").and(contains("m are left at the horizon")))
+        .stdout(contains("COLLIDES").not().and(contains("NOT SAFE").not()));
+    let text = stdout(&searoom(&[&along[..], &["--json"]].concat()).code(1));
+    let plan: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(plan["relaxation"]["kind"], "arrival");
+    assert_eq!(
+        (&plan["cost"]["arrived"], &plan["cost"]["delay_s"]),
+        (&Value::from(false), &Value::Null)
+    );
+    let file = write(folder.path(), "plan.json", &text);
+    searoom(&["verify", &file]).success();
+}
+
 /// Targets that hold course and speed, on lines parallel to that of own ship: what is left between the hulls is the distance of the
 /// lines without half of both beams, 4 m and 6 m.
 #[test]

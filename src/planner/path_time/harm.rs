@@ -150,7 +150,9 @@ fn candidates(scene: &Scene) -> Vec<Profile> {
             let length: f64 = way.iter().map(|leg| scene.tracks[*leg].length).sum();
             let reach = length.min(speed * scene.horizon);
             let stops = (1..=STOPS).map(|k| reach * k as f64 / STOPS as f64);
-            all.extend(stops.map(|stop| along(scene, &way, speed, stop)));
+            let ends = stops.map(|stop| along(scene, &way, speed, stop));
+            // from the last piece of a path that leads nowhere there is no way on
+            all.extend(ends.filter(|profile| profile.to_go(scene).is_finite()));
         }
     }
     all
