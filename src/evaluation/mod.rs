@@ -38,7 +38,7 @@ use least::Least;
 use moving_ellipse::MovingEllipse;
 use moving_slabs::MovingSlabs;
 use piece::{Piece, at_rest};
-use safety::Claim;
+use safety::{Claim, collision, grounding};
 use shore::least_land_distance;
 use space_time_set::{MovingSet, since};
 use turn::{Turn, least_while_turning, turns};
@@ -363,50 +363,6 @@ fn shore<P: Piece>(
         violations.extend(grounding(&least, request.land_margin));
     }
     least
-}
-
-/// The violation of the land by a least distance, if there is one.
-fn grounding(least: &Least, margin: f64) -> Option<Violation> {
-    let allowed = margin - tolerance::DEPTH_M;
-    // negated on purpose: a NaN is aground
-    let what = if !(least.value >= allowed) {
-        format!(
-            "land: own hull at {:.6e} m, allowed {allowed:.6e}",
-            least.value
-        )
-    } else if !least.certified {
-        "land: distance not proven within the budget of the check".to_owned()
-    } else {
-        return None;
-    };
-    Some(Violation {
-        what,
-        time: least.time,
-    })
-}
-
-/// The violation of a set by a least distance, if there is one. A set without interior has no depth:
-/// there, nearer than the tolerance is a violation.
-fn collision(label: &str, least: &Least, has_interior: bool) -> Option<Violation> {
-    let allowed = if has_interior {
-        -tolerance::DEPTH_M
-    } else {
-        tolerance::DEPTH_M
-    };
-    let what = if !(least.value >= allowed) {
-        format!(
-            "{label}: distance {:.6e} m, allowed {allowed:.0e}",
-            least.value
-        )
-    } else if !least.certified {
-        format!("{label}: clearance not proven within the budget of the check")
-    } else {
-        return None;
-    };
-    Some(Violation {
-        what,
-        time: least.time,
-    })
 }
 
 /// The velocities of a ship scaled about their centre by `1 - risk`: the centroid of the polygon, or the centre of the

@@ -1,6 +1,6 @@
 //! What a motion enters: the fact beside that it is verified.
 
-use super::{Least, Request, collision, grounding};
+use super::{Least, Request, Violation};
 use crate::tolerance;
 
 /// What a motion enters from start to arrival, the worst last.
@@ -49,6 +49,50 @@ impl Safety {
             Self::Safe
         }
     }
+}
+
+/// The violation of the land by a least distance, if there is one.
+pub(super) fn grounding(least: &Least, margin: f64) -> Option<Violation> {
+    let allowed = margin - tolerance::DEPTH_M;
+    // negated on purpose: a NaN is aground
+    let what = if !(least.value >= allowed) {
+        format!(
+            "land: own hull at {:.6e} m, allowed {allowed:.6e}",
+            least.value
+        )
+    } else if !least.certified {
+        "land: distance not proven within the budget of the check".to_owned()
+    } else {
+        return None;
+    };
+    Some(Violation {
+        what,
+        time: least.time,
+    })
+}
+
+/// The violation of a set by a least distance, if there is one. A set without interior has no depth:
+/// there, nearer than the tolerance is a violation.
+pub(super) fn collision(label: &str, least: &Least, has_interior: bool) -> Option<Violation> {
+    let allowed = if has_interior {
+        -tolerance::DEPTH_M
+    } else {
+        tolerance::DEPTH_M
+    };
+    let what = if !(least.value >= allowed) {
+        format!(
+            "{label}: distance {:.6e} m, allowed {allowed:.0e}",
+            least.value
+        )
+    } else if !least.certified {
+        format!("{label}: clearance not proven within the budget of the check")
+    } else {
+        return None;
+    };
+    Some(Violation {
+        what,
+        time: least.time,
+    })
 }
 
 /// What is kept of the sets of one target.
