@@ -220,6 +220,7 @@ pub(crate) mod tests {
     use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
     use crate::obstacle::{Coast, PolytopeObstacle};
+    use crate::planner::clock::Clock;
     use crate::planner::space_time::part::parts;
     use crate::planner::space_time::refinement::Seed;
     use crate::planner::space_time::seeds::{Canonical, Conflict};
