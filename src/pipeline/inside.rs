@@ -133,3 +133,34 @@ fn greatest_speed(set: &Obstacle) -> f64 {
         Obstacle::Ellipsoid(_) => f64::INFINITY,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Vector};
+    use crate::geometry::Ellipse;
+    use crate::obstacle::EllipsoidObstacle;
+
+    /// Half an hour to sail out of a great set: found, or out of time, and then nothing is claimed.
+    #[test]
+    fn out_of_time_nothing_is_claimed_of_a_set() {
+        let around = |size: f64| {
+            Ellipse::from_axes(
+                Vector::zeros(),
+                [Vector::new(size, 0.0), Vector::new(0.0, size)],
+            )
+        };
+        let set = EllipsoidObstacle::new("storm", around(9000.0), around(1e-3)).into();
+        let way = Segment {
+            start: Pose::new(Vector::zeros(), 0.0),
+            start_time: 0.0,
+            duration: 4000.0,
+            speed: 5.0,
+            turn_rate: 0.0,
+        };
+        let way = Trajectory::new(vec![way]).expect("sound");
+        let found = left_for_good(&set, &way, || false).expect("it starts inside");
+        assert!((found - 1800.0).abs() < 2.0, "{found}");
+        assert_eq!(left_for_good(&set, &way, || true), Some(4000.0));
+    }
+}

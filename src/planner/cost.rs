@@ -504,4 +504,40 @@ mod tests {
         let lag = space_time_error(&desired, &run(260.0), 25.0);
         assert!((lag - 0.5 * 1600.0 * 150.0 / 300.0).abs() < 1e-9);
     }
+
+    /// Along a path that winds, the legs that are left out are never the nearest.
+    #[test]
+    fn of_many_legs_those_left_out_are_not_the_nearest() {
+        let place = |k: usize| {
+            let k = k as f64;
+            Vector::new(60.0 * (0.7 * k).sin() + 9.0 * k, 60.0 * (1.1 * k).cos())
+        };
+        let points: Vec<Vector> = (0..40).map(place).collect();
+        let desired = DesiredTrajectory::new(&points, &[4.0; 39]).expect("valid");
+        for k in 0..200_usize {
+            let f = k as f64;
+            let segment = Segment {
+                start: Pose::new(place(k % 40) + Vector::new(20.0 * f.sin(), 5.0), f),
+                start_time: 3.0 * f,
+                duration: 5.0 + (k % 7) as f64 * 20.0,
+                speed: 4.0,
+                turn_rate: 0.04,
+            };
+            let pieces = (segment.turn_rate * segment.duration / SEARCHED.arc).ceil();
+            let stretch = Stretch {
+                desired: &desired,
+                near: None,
+                mover: Mover::new(&segment),
+                time_weight: 16.0,
+                bent: true,
+            };
+            let duration = segment.duration / pieces;
+            let all: f64 = (0..pieces as usize)
+                .map(|k| segment.start_time + duration * k as f64)
+                .map(|from| stretch.integral(from, duration, MAX_HALVINGS))
+                .sum();
+            let found = space_time_error(&desired, &segment, 16.0) * desired.duration();
+            assert!((found - all).abs() <= 1e-12 * all, "{found} {all}");
+        }
+    }
 }

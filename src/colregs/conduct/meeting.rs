@@ -326,3 +326,87 @@ impl Between {
         if from > until { f64::INFINITY } else { from }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{planned, standard};
+    use super::super::{Conduct, Meeting};
+    use super::*;
+    use crate::frame::Pose;
+    use crate::target::DomainKind;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn ship(rng: &mut ChaCha8Rng, range: f64) -> SteadyShip {
+        let mut within = |r: f64| rng.random_range(-r..r);
+        SteadyShip {
+            pose: Pose::new(Vector::new(within(range), within(range)), within(3.1)),
+            speed: 5.0 + within(4.0),
+        }
+    }
+
+    /// Against sums of polygons, overlapping, close and far.
+    #[test]
+    fn the_distance_of_two_hulls_is_that_of_their_polygons() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let (mut met, mut meeting) = (0, 0);
+        for case in 0..4000 {
+            let range = [30.0, 100.0, 1000.0][case % 3];
+            let hull = |rng: &mut ChaCha8Rng| Hull {
+                length: rng.random_range(10.0..90.0),
+                beam: rng.random_range(3.0..20.0),
+            };
+            let (own, other) = (hull(&mut rng), hull(&mut rng));
+            let (a, b) = (ship(&mut rng, range), ship(&mut rng, range));
+            let sum = (other.polygon(&b.pose)).minkowski_sum(&own.polygon(&a.pose).negated());
+            let between = Between::of(&own, &a, &other, &b);
+            let exact = sum.signed_distance(Vector::zeros());
+            assert!((between.distance() - exact).abs() < 1e-9, "{exact}");
+            met += usize::from(exact < 0.0);
+            let velocity = a.velocity() - b.velocity();
+            let after = between.seconds_to(velocity);
+            if exact > 0.0 && after.is_finite() {
+                meeting += 1;
+                assert!(sum.signed_distance(velocity * after).abs() < 1e-6);
+            } else if exact > 0.0 {
+                let nearest = (0..4000).map(|k| sum.signed_distance(velocity * f64::from(k)));
+                assert!(nearest.fold(f64::INFINITY, f64::min) > -1e-6);
+            }
+        }
+        assert!(met > 300 && meeting > 300, "{met} {meeting}");
+    }
+
+    /// Judged by the nearest sight alone, a target that stays far away is judged as by all sights.
+    #[test]
+    fn a_far_target_is_judged_by_its_nearest_sight() {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let own = planned(&[(0.0, 240.0), (0.7, 120.0), (-0.9, 300.0)], 6.0);
+        let hull = Hull {
+            length: 50.0,
+            beam: 10.0,
+        };
+        let track = OwnTrack::along(&own, hull);
+        let (mut few, mut all) = (0, 0);
+        for case in 0..300 {
+            let SteadyShip { pose, speed } = ship(&mut rng, [9e3, 3e4][case % 2]);
+            let target = ShipTrack {
+                pose,
+                speed,
+                hull,
+                position_std: 0.0,
+                speed_spread: 0.0,
+                course_spread: 0.0,
+                turn_rate: 0.0,
+                domain: DomainKind::Hull,
+            };
+            let whole = Meeting::along(&own, hull, &target);
+            let found = Conduct::along(&track, &target, standard());
+            assert_eq!(found, Conduct::judge(&whole, standard()));
+            match track.meeting(&target, 12e3).sights().len() {
+                1 => few += 1,
+                _ => all += 1,
+            }
+        }
+        assert!(few > 30 && all > 30, "{few} {all}");
+    }
+}

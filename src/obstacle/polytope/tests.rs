@@ -120,3 +120,34 @@ fn degenerate_sets_block_exactly_their_points() {
     assert!(!line.contains(at(0.0, 0.0), -1.0));
     assert!(line.contains(at(f64::NAN, 0.0), 1.0) && line.contains(at(1e9, 0.0), f64::NAN));
 }
+
+/// Sought around the set, the faces and vertices of a set of many vertices are those that a look at all of them finds.
+#[test]
+fn a_set_of_many_vertices_has_the_supports_of_its_polygons() {
+    let round = |count: u32, size: f64| {
+        let place = |k: u32| {
+            crate::frame::direction(f64::from(k) * std::f64::consts::TAU / f64::from(count))
+        };
+        let points: Vec<Vector> = (0..count).map(|k| place(k) * size).collect();
+        ConvexPolygon::hull(&points).expect("finite")
+    };
+    let (initial, velocity) = (round(3000, 90.0), round(700, 2.0));
+    let set = PolytopeObstacle::new("", initial.clone(), velocity.clone());
+    assert!(set.faces().len() >= 3000);
+    for face in set.faces() {
+        let off = |found: f64, all: f64| (found - all).abs() <= 1e-12 * all.abs();
+        assert!(off(face.initial_support, initial.support(face.normal)));
+        assert!(off(face.velocity_support, velocity.support(face.normal)));
+    }
+    let vertices = set.moving_vertices();
+    assert!(vertices.len() >= 3000);
+    let section = set.section(10.0);
+    for vertex in vertices {
+        assert!(
+            section
+                .signed_distance(vertex.origin + vertex.velocity * 10.0)
+                .abs()
+                < 1e-9
+        );
+    }
+}

@@ -7,7 +7,7 @@
 //! A way out is one turn and a straight line at one speed. Of these the one that does the least harm is taken: [`Harm`].
 //! Where every way out of the sets meets a nominal hull, or none leads out, the sets are those of the nominal tracks.
 
-use super::harm::{Harm, Watch};
+use super::harm::{Harm, LEAST_STEP_M, Watch};
 use super::hazard::{Hazard, TOUCH_M, within_reach};
 use super::part::parts as parts_of;
 use super::route::Route;
@@ -96,8 +96,7 @@ pub fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Op
     let (sought, ways) = sought;
     let mut aways = aways(&ways);
     for away in &aways {
-        // from within a set nothing can be planned at once
-        if clock.is_up() || ways.is_empty() && !away.is_empty() {
+        if clock.is_up() {
             break;
         }
         if let Some(motion) = onward(sought, away, |rest| planned(rest, clock)) {
@@ -106,6 +105,9 @@ pub fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Op
     }
     if ways.is_empty() {
         aways.extend(detours(problem.own, problem.horizon));
+    } else {
+        // where every way out is too long for the horizon
+        aways.push(Vec::new());
     }
     let motion = on_to_the_end(problem, &aways, &watch, clock)?;
     Plan::measured(problem, motion, None)
@@ -133,7 +135,10 @@ fn on_to_the_end(
             continue;
         };
         let deep = watch.depth(problem.own, &found, f64::INFINITY);
-        if best.as_ref().is_none_or(|(least, _)| deep < *least) {
+        if best
+            .as_ref()
+            .is_none_or(|(least, _)| deep < least - LEAST_STEP_M)
+        {
             best = Some((deep, found));
         }
         if deep == 0.0 {
@@ -415,4 +420,59 @@ fn onward(
         ..s
     }));
     Some(motion)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Vector;
+    use std::cell::Cell;
+
+    fn own_ship(speeds: Vec<f64>) -> OwnShip {
+        OwnShip {
+            pose: Pose::new(Vector::zeros(), 0.0),
+            speed: 5.0,
+            hull: Hull {
+                length: 30.0,
+                beam: 8.0,
+            },
+            turning_radius: 100.0,
+            speeds,
+            safety_margin: 20.0,
+        }
+    }
+
+    #[test]
+    fn every_turn_is_tried_once_and_few_when_the_time_is_up() {
+        let mut all: Vec<(f64, bool)> = turns().collect();
+        assert_eq!(all.len(), 73);
+        assert_eq!(all.iter().filter(|(_, is_coarse)| *is_coarse).count(), 5);
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for pair in all.windows(2) {
+            assert!((pair[1].0 - pair[0].0 - TURN_RAD).abs() < 1e-9);
+        }
+        let many: Vec<f64> = (0..20).map(|k| 0.3 * f64::from(k)).collect();
+        let tried = speeds(&own_ship(many.clone()));
+        assert_eq!(tried.len(), MOST_SPEEDS);
+        assert_eq!((tried[0], tried[MOST_SPEEDS - 1]), (many[0], many[19]));
+        assert_eq!(speeds(&own_ship(vec![5.0])), [5.0]);
+    }
+
+    /// A day of horizon in a set that grows faster than own ship sails costs as many looks as an hour.
+    #[test]
+    fn a_set_that_is_never_left_costs_few_looks() {
+        let own = own_ship(vec![5.0]);
+        let (growing, looks) = (8.0, Cell::new(0));
+        let depth = |pose: &Pose, time: f64| {
+            looks.set(looks.get() + 1);
+            60.0 + growing * time - pose.position.norm()
+        };
+        let motion = turned(&own, 5.0, 0.0, 86_400.0);
+        assert_eq!(out_at(&motion, 86_400.0, 5.0 + growing, depth), None);
+        assert!(looks.get() < 100, "{}", looks.get());
+        // one that grows more slowly is left when its edge is reached
+        let depth = |pose: &Pose, time: f64| 60.0 + 3.0 * time - pose.position.norm();
+        let out = out_at(&motion, 86_400.0, 8.0, depth).expect("out");
+        assert!((out - 30.0).abs() < 1e-3, "{out}");
+    }
 }

@@ -12,8 +12,8 @@ use crate::vessel::{Hull, OwnShip};
 const DEPTH_STEP: f64 = 0.05;
 const TIME_STEP: f64 = 0.1;
 
-/// Metres. The least step of a depth: own ship may have no size.
-const LEAST_STEP_M: f64 = 0.1;
+/// Metres. Depths are told apart to no less: own ship may have no size.
+pub(crate) const LEAST_STEP_M: f64 = 0.1;
 
 /// Looks along a way out for its depth in the sets.
 const LOOKS: u32 = 200;
