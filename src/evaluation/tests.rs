@@ -1,9 +1,10 @@
 //! A valid plan, and every way to spoil it: each must be found, and nothing else.
 
+use super::moving_ellipse::MovingEllipse;
 use super::*;
-use crate::frame::{Pose, Vector};
-use crate::geometry::Ellipse;
-use crate::target::{DomainKind, Representation, ShipTrack};
+use crate::frame::{Pose, Side, Vector};
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::Hull;
 use crate::vessel::OwnShip;

@@ -1,0 +1,137 @@
+//! How one target is met along a chain of pieces.
+
+use super::clearance::{Body, least_distance};
+use super::least::Least;
+use super::moving_ellipse::MovingEllipse;
+use super::moving_slabs::MovingSlabs;
+use super::piece::{Piece, at_rest};
+use super::safety::Claim;
+use super::space_time_set::{MovingSet, since};
+use super::turn::{Turn, least_while_turning};
+use super::{Passage, Request, Safety, TurnedHull};
+use crate::frame::{Side, cross, direction};
+use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
+use crate::target::{Motion, Representation, Target, VelocitySpell};
+use crate::tolerance;
+
+/// Standard deviations of the position that the worst-case hull covers.
+const POSITION_SIGMAS: f64 = 3.0;
+
+/// The velocities of a ship scaled about their centre by `1 - risk`: the centroid of the polygon, or the centre of the
+/// smallest ellipse around it, as her representation has it.
+fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<VelocitySpell> {
+    let scaled = |spell: &VelocitySpell| {
+        let set = &spell.velocities;
+        let center = match target.representation {
+            Representation::Polytope => set.centroid(),
+            Representation::Ellipsoid => outer_enclosing_ellipse(set).center(),
+        };
+        VelocitySpell {
+            until: spell.until,
+            velocities: set
+                .translated(-center)
+                .scaled(1.0 - risk)
+                .translated(center),
+        }
+    };
+    spells.iter().map(scaled).collect()
+}
+
+/// How a target is met; the least clearance that has to be kept: to every hull she may have at the accepted
+/// risk, from the time on at which her set is in force; and what is entered of her.
+pub(super) fn passage<P: Piece>(
+    request: &Request,
+    pieces: &[P],
+    turns: &[Turn],
+    target: &Target,
+    claim: &Claim,
+) -> (Passage, Least, Safety) {
+    let (margin, from) = (&claim.margin, claim.from);
+    let lying = at_rest(pieces, request.arrival_hold);
+    let (closest, worst, kept, hold, safety) = match &target.motion {
+        Motion::Ship(ship) => {
+            let body = Body::hull(&request.own.hull);
+            let hull = ship.hull.polygon(&ship.pose);
+            let along = |slabs: &MovingSlabs, pieces: &[P], turns: &[Turn]| {
+                let mut least = slabs.least_distance(pieces, body);
+                let turning = least_while_turning(turns, body, slabs);
+                least.see(turning.value, turning.time);
+                least.certified &= turning.certified;
+                least
+            };
+            let held = VelocitySpell {
+                until: f64::INFINITY,
+                velocities: ConvexPolygon::point(ship.velocity()),
+            };
+            let nominal = MovingSlabs::new(&hull, &[held]);
+            let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
+            let turned = |until: f64| {
+                let hull = TurnedHull::of(ship, until).outer_polygon();
+                hull.minkowski_sum(&unknown)
+            };
+            let spells = ship.outer_velocity_spells(ship.turn_rate, request.horizon);
+            let whole = MovingSlabs::growing(turned, &spells);
+            let worst = along(&whole, pieces, turns);
+            let hold = whole.least_distance(&lying, body);
+            let kept = if from > 0.0 || request.max_risk > 0.0 {
+                let spells = at_risk(&spells, target, request.max_risk);
+                let later = turns.iter().filter(|turn| turn.time >= from).copied();
+                let later: Vec<Turn> = later.collect();
+                let slabs = MovingSlabs::growing(turned, &spells);
+                along(&slabs, &since(pieces, from, 0.0), &later)
+            } else {
+                worst
+            };
+            let closest = along(&nominal, pieces, turns);
+            let safety = claim.of_ship(request, [&closest, &worst], || {
+                whole.least_distance(pieces, Body::POINT)
+            });
+            (closest, worst, kept, hold, safety)
+        }
+        Motion::Sets { initial, velocity } => {
+            let set = MovingSet::new(initial, velocity);
+            let least = least_distance(pieces, Body::POINT, &set);
+            let hold = least_distance(&lying, Body::POINT, &set);
+            let safety = claim.of_set(request, &least, set.has_interior());
+            (least, least, least, hold, safety)
+        }
+        Motion::Ellipses { initial, velocity } => {
+            let set = MovingEllipse::new(initial, velocity);
+            let least = set.least_distance(pieces);
+            let hold = set.least_distance(&lying);
+            let safety = claim.of_set(request, &least, set.has_interior());
+            (least, least, least, hold, safety)
+        }
+        Motion::Spells { initial, spells } => {
+            let slabs = MovingSlabs::new(initial, spells);
+            let least = slabs.least_distance(pieces, Body::POINT);
+            let hold = slabs.least_distance(&lying, Body::POINT);
+            let safety = claim.of_set(request, &least, slabs.has_interior());
+            (least, least, least, hold, safety)
+        }
+    };
+    let passing_side =
+        pieces
+            .iter()
+            .find(|s| closest.time <= s.end_time())
+            .map_or(Side::Starboard, |s| {
+                let pose = s.pose_at(closest.time);
+                let off = target.position_at(closest.time) - pose.position;
+                // athwart by so little, the side is one of rounding
+                if cross(direction(pose.heading), off) > tolerance::DEPTH_M {
+                    Side::Port
+                } else {
+                    Side::Starboard
+                }
+            });
+    let passage = Passage {
+        dcpa: closest.value,
+        tcpa: closest.time,
+        passing_side,
+        min_clearance: worst.value,
+        hold_clearance: hold.value,
+        min_margin: margin.value,
+        min_margin_time: margin.time,
+    };
+    (passage, kept, safety)
+}
