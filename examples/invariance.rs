@@ -42,22 +42,6 @@ fn tracks(scene: &mut Scenario, change: impl Fn(&mut searoom::target::ShipTrack)
 }
 
 fn main() {
-    if let Some(seed) = std::env::args().nth(2).and_then(|n| n.parse().ok()) {
-        let placing: usize = std::env::args()
-            .nth(3)
-            .and_then(|n| n.parse().ok())
-            .unwrap_or(9);
-        let s = scene(seed);
-        let s = PLACINGS.get(placing).map_or(s.clone(), |p| p.of(&s));
-        let run = searoom::pipeline::run(s);
-        eprintln!(
-            "{:?} {:?} {:?}",
-            run.rung,
-            run.planned.outcome.plan().map(|p| p.cost),
-            run.planned.stats
-        );
-        return;
-    }
     let count = std::env::args().nth(1).and_then(|n| n.parse().ok());
     let count: u64 = count.unwrap_or(300);
     let scenes: Vec<(Scenario, Option<f64>)> = (0..count)

@@ -13,6 +13,8 @@
 //! whose velocity stays in their velocity set.
 
 mod dense_search;
+#[path = "../examples/shared/moved.rs"]
+mod moved;
 mod passing;
 mod statistics;
 
@@ -751,5 +753,83 @@ fn a_star_expands_half_of_dijkstra_on_the_four_scenarios() {
         println!("{name}: {} of {}", a.0, b.0);
         assert!(2 * a.0 <= b.0, "{name}: {a:?} {b:?}");
         assert!((a.1 - b.1).abs() <= 1e-9 * b.1, "{name}: {a:?} {b:?}");
+    }
+}
+
+/// Moved, turned, mirrored, larger, smaller, slower: the plan is the same. All 300 scenes: `cargo run --release --no-default-features
+/// --example invariance`.
+#[test]
+fn a_scene_elsewhere_another_way_or_of_another_size_has_the_same_plan() {
+    let scenes: Vec<u64> = (0..60).collect();
+    let compared: usize = (scenes.into_par_iter())
+        .map(|seed| {
+            let scene = moved::scene(seed);
+            let cost = moved::cost(scene.clone());
+            for placing in moved::PLACINGS {
+                let placed = placing.cost(&scene);
+                let apart = moved::apart(cost, placed);
+                assert!(
+                    apart <= 1e-6,
+                    "{seed} {}: {cost:?} {placed:?}",
+                    placing.name
+                );
+            }
+            usize::from(cost.is_some_and(|cost| cost > 1.0))
+        })
+        .sum();
+    assert!(compared > 50, "{compared} scenes have a conflict");
+}
+
+/// The costs of the plans of two files, the same scene twice.
+fn costs_of(files: [&str; 2]) -> [f64; 2] {
+    files.map(|file| {
+        let path = format!("tests/faults/{file}.toml");
+        let scenario = Scenario::read(std::path::Path::new(&path)).expect("reads");
+        moved::cost(scenario).expect("a plan")
+    })
+}
+
+/// Coordinates of millions of metres, and a scene moved by 1.6 km: corners of the path are no full circles.
+#[test]
+fn the_same_scene_in_another_place_costs_the_same() {
+    for files in [["utm-a", "utm-b"], ["dear-a", "dear-b"]] {
+        let [a, b] = costs_of(files);
+        assert!((a - b).abs() <= 1e-6 * a, "{files:?}: {a} {b}");
+        assert!(a < 100_000.0, "{files:?}: {a}");
+    }
+}
+
+/// Own ship a hair beside the path, before or behind its beginning, or turned a hair: nobody is there, and no circle is sailed.
+#[test]
+fn a_hair_beside_the_path_is_on_it() {
+    let file = std::path::Path::new("tests/faults/offset-circle.toml");
+    let asked = Scenario::read(file).expect("reads");
+    let hairs = (3..=12).map(|k| 10.0_f64.powi(-k)).chain([0.0]);
+    let both = hairs.flat_map(|hair| [hair, -hair]);
+    for hair in both {
+        for (along, across, turned) in [
+            (0.0, hair, 0.0),
+            (hair, 0.0, 0.0),
+            (0.0, 0.0, hair),
+            (hair, hair, hair),
+        ] {
+            for (far, course) in [(0.0, 0.0), (7e6, 0.0), (1e3, 2.0)] {
+                let beside = Pose::new(Vector::new(along, across), turned);
+                let place = Pose::new(Vector::new(0.1 * far, far), course);
+                let mut scenario = asked.clone();
+                let waypoints = asked.desired.waypoints();
+                let waypoints: Vec<Vector> = waypoints
+                    .into_iter()
+                    .map(|w| place.world_coordinates(w))
+                    .collect();
+                scenario.desired = DesiredTrajectory::new(&waypoints, &[5.0]).expect("a path");
+                scenario.own_ship.pose = Pose::new(
+                    place.world_coordinates(beside.position),
+                    beside.heading + course,
+                );
+                let cost = moved::cost(scenario).expect("a plan");
+                assert!(cost < 0.1, "{beside:?} of {place:?}: {cost}");
+            }
+        }
     }
 }

@@ -19,7 +19,7 @@ use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{Hull, OwnShip};
 
 /// Metres and m/s. The turning radius and the desired speed at which problems are planned.
-const USUAL_TURN_M: f64 = 100.0;
+const USUAL_TURN_M: f64 = 300.0;
 const USUAL_MPS: f64 = 5.0;
 
 /// Metres at that size. Where the first set met has a radius, when it is met, that is not between these, it decides on the size.
