@@ -4,7 +4,8 @@
 use super::piece::Piece;
 use super::{cost, steered};
 use crate::frame::Vector;
-use crate::trajectory::{Cubic, DesiredTrajectory, Trajectory};
+use crate::tolerance;
+use crate::trajectory::{Cubic, DesiredTrajectory, Segment, Trajectory};
 
 /// Of the duration: the motion is looked at at least this often near the edge of the disc of arrival. What is within it for less
 /// time may be missed.
@@ -63,6 +64,18 @@ pub fn counted_error(
             let kept = until(trajectory.segments(), counted.until);
             (cost::space_time_error(&kept, desired, q), counted)
         }
+    }
+}
+
+/// To the end of segments, which arrive at the last waypoint itself.
+pub(super) fn to_end(segments: &[Segment], desired: &DesiredTrajectory) -> Counted {
+    let off = |s: &Segment| (s.end().position - desired.end()).norm();
+    Counted {
+        within: tolerance::ARRIVAL_M,
+        until: segments.last().map_or(f64::NAN, Segment::end_time),
+        arrived: segments
+            .last()
+            .is_some_and(|s| off(s) <= tolerance::ARRIVAL_M),
     }
 }
 
@@ -155,7 +168,7 @@ fn entrance<P: Piece>(
 mod tests {
     use super::*;
     use crate::frame::Pose;
-    use crate::trajectory::{Node, Segment, Steered};
+    use crate::trajectory::{Node, Steered};
 
     fn desired(points: &[(f64, f64)]) -> DesiredTrajectory {
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();

@@ -237,17 +237,10 @@ pub fn evaluate(request: &Request) -> Evaluation {
     let shore = shore(request, segments, &turns, judged, &mut violations);
     let end = segments.last().map_or(f64::NAN, Segment::end_time);
     let or_nan = |value: f64| if judged { value } else { f64::NAN };
-    let off = segments.last().map_or(f64::NAN, |s| {
-        (s.end().position - request.desired.end()).norm()
-    });
     Evaluation {
         violations,
         safety: sound.max(met).max(Safety::of_land(&shore, request)),
-        counted: Counted {
-            within: tolerance::ARRIVAL_M,
-            until: end,
-            arrived: off <= tolerance::ARRIVAL_M,
-        },
+        counted: counted::to_end(segments, request.desired),
         space_time_error: or_nan(cost::space_time_error(
             segments,
             request.desired,
