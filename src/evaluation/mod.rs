@@ -45,7 +45,6 @@ use turn::{Turn, turns};
 use std::collections::HashMap;
 
 use crate::frame::Side;
-use crate::tolerance;
 use crate::trajectory::Segment;
 
 /// One violated requirement.
