@@ -127,7 +127,7 @@ pub struct Passage {
     pub dcpa: f64,
     /// And when, seconds.
     pub tcpa: f64,
-    /// Side of own ship on which the target lies then; dead ahead and astern, to [`tolerance::DEPTH_M`], count as
+    /// Side of own ship on which the target lies then; dead ahead and astern, to [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M), count as
     /// starboard.
     pub passing_side: Side,
     /// Least distance between own hull and any hull the target may have, metres; negative in overlap.
@@ -220,10 +220,10 @@ impl Evaluation {
 }
 
 /// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in continuous time,
-/// to [`tolerance::DEPTH_M`]; every hull that a target may have, whatever the sets say; own hull against
+/// to [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M); every hull that a target may have, whatever the sets say; own hull against
 /// the edges of the land; and the figures.
 ///
-/// Distances are certified least values ([`tolerance::MARGIN_M`]); the costs are integrated by quadrature
+/// Distances are certified least values ([`tolerance::MARGIN_M`](crate::tolerance::MARGIN_M)); the costs are integrated by quadrature
 /// of their own. A segment that is not a number is a violation, and the figures are then NaN.
 pub fn evaluate(request: &Request) -> Evaluation {
     let segments = request.segments;
