@@ -45,7 +45,7 @@ fn searoom(args: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The words of each line without rules and without the times, which are the last but one of a row.
+/// The words of each line without rules and without the times, which are before the last two facts of a row.
 fn untimed(table: &str) -> Vec<Vec<&str>> {
     table
         .lines()
@@ -57,7 +57,7 @@ fn untimed(table: &str) -> Vec<Vec<&str>> {
         })
         .map(|mut words| {
             if matches!(words.last(), Some(&("yes" | "NO" | "–"))) {
-                words.remove(words.len() - 2);
+                words.remove(words.len() - 3);
             }
             words
         })

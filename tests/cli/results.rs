@@ -91,7 +91,7 @@ fn every_planner_is_compared_on_the_same_scenarios() {
         "Head-on\n",
         "space-time, Dijkstra, ellipsoids",
         "hold course",
-        "collides",
+        "COLLIDES",
         "optimal control does not apply: ",
     ] {
         assert!(shown.contains(expected), "{expected}: {shown}");

@@ -358,10 +358,10 @@ fn every_view_tells_the_clearance_of_the_right_target() {
 
     let (page, csv, compared_page) = (at("page"), at("rows.csv"), at("compared"));
     let said = stdout(&searoom(&["plan", &file, "--report", &page]).success());
-    assert!(said.contains("clearance    290.0 m\n"), "{said}");
+    assert!(said.contains("clearance    290.0 m;"), "{said}");
     let page = fs::read_to_string(format!("{page}/index.html")).expect("a page");
     assert!(
-        page.contains("<dd>290.0 m</dd>") && page.contains("<span>290.0</span>"),
+        page.contains("<dd>290.0 m;") && page.contains("<span>290.0</span>"),
         "{page}"
     );
 
