@@ -266,7 +266,11 @@ fn ways_out(problem: &Problem, hazards: &[Hazard], watch: &Watch, clock: Clock) 
 /// Radians, to port positive, each once, and whether it is one of the coarsest; of equal ones that to starboard first.
 fn turns() -> impl Iterator<Item = (f64, bool)> {
     let levels = STEPS.iter().enumerate().flat_map(|(level, by)| {
-        let is_new = move |k: &u32| !STEPS[..level].iter().any(|coarser| k % coarser == 0);
+        let is_new = move |k: &u32| {
+            !STEPS[..level]
+                .iter()
+                .any(|coarser| k.is_multiple_of(*coarser))
+        };
         (0..=TURNS)
             .step_by(*by as usize)
             .filter(is_new)
