@@ -1,6 +1,7 @@
 //! Hulls that turn with their course.
 
 use super::*;
+use crate::frame::radians_from_deg;
 use std::f64::consts::FRAC_PI_2;
 
 /// A ship at rest abeam of own ship's way, her stem to own ship or to the side.
@@ -63,5 +64,5 @@ fn the_worst_hull_of_a_ship_that_turns_is_that_of_the_time() {
     let scan = scan.fold(f64::INFINITY, f64::min);
     // a spell of her turn is 5 degrees
     let off = found.min_clearance - scan;
-    assert!(off < 1e-6 && off > -31.0 * 5.1_f64.to_radians(), "{off}");
+    assert!(off < 1e-6 && off > -31.0 * radians_from_deg(5.1), "{off}");
 }

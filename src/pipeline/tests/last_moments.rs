@@ -1,6 +1,7 @@
 //! The last moments that are told of, from both sides: a second search finds an escape then, and none a little later.
 
 use super::*;
+use crate::frame::radians_from_deg;
 use crate::planner::space_time;
 
 /// Seconds for which the hull is looked at after an escape began.
@@ -39,7 +40,7 @@ fn escapes(sets: &[Obstacle], held: &[Segment], time: f64, turns: &[f64]) -> boo
 
 fn degrees(turns: impl Iterator<Item = i32>) -> Vec<f64> {
     turns
-        .map(|turn| 0.5 * f64::from(turn).to_radians())
+        .map(|turn| 0.5 * radians_from_deg(f64::from(turn)))
         .collect()
 }
 
