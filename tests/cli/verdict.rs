@@ -439,7 +439,12 @@ fn every_view_tells_the_clearance_of_the_right_target() {
         .as_array()
         .expect("a list")
     {
-        if entry["method"] != "constant velocity" {
+        // these keep to the path
+        let method = entry["method"].as_str().expect("a name");
+        if method == "hold course"
+            || method.starts_with("space-time")
+            || method.starts_with("path-time")
+        {
             near(&entry["cost"]["min_clearance_m"], least);
         }
     }
