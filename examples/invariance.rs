@@ -17,7 +17,8 @@ use searoom::target::Motion;
 const EQUAL: f64 = 1e-6;
 
 /// What makes the sets larger.
-const LARGER: [(&str, fn(&mut Scenario)); 4] = [
+type Change = fn(&mut Scenario);
+const LARGER: [(&str, Change); 4] = [
     ("margin + 20 m", |s| s.own_ship.safety_margin += 20.0),
     ("speed spread + 0.1 m/s", |s| {
         tracks(s, |ship| ship.speed_spread += 0.1);
