@@ -183,7 +183,7 @@ pub struct VerifyArgs {
     #[arg(required = true, value_name = "PLAN.json")]
     pub plans: Vec<PathBuf>,
     /// Seconds for each document: what is not proven by then is not verified
-    #[arg(long, value_name = "S", default_value = "10", value_parser = budget)]
+    #[arg(long, value_name = "S", default_value = "10", value_parser = budget, allow_negative_numbers = true)]
     pub budget_s: Duration,
     /// Print one JSON document instead of text
     #[arg(long)]

@@ -203,12 +203,4 @@ fn what_was_found_is_said_in_few_words() {
         );
         searoom(&["check", &file]).code(2).stderr(contains(said));
     }
-    // a model's forces move no ship of 30 m
-    let planner = ["--planner", "optimal-control"];
-    searoom(&["plan", "scenarios/colregs/head-on.toml", planner[0], planner[1]])
-        .code(2)
-        .stdout(predicates::str::is_empty())
-        .stderr(contains(
-            "own_ship.length_m: found 30 m, with the forces of \"cybership2\", 1.255 m long; allowed: 0.84 to 1.88 m",
-        ));
 }

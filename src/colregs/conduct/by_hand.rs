@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use super::tests::{LENGTH, standard, steady};
 use super::{Conduct, Measure, Verdict};
 use crate::colregs::Role;
-use crate::frame::{Pose, Vector, deg_from_radians};
+use crate::frame::{Pose, Vector, deg_from_radians, radians_from_deg};
 use crate::trajectory::{Segment, Trajectory};
 
 /// What own ship does next.
@@ -28,7 +28,7 @@ fn sailed(legs: &[Leg]) -> Trajectory {
             Straight(seconds, speed) => (seconds, speed, 0.0),
             Turn(degrees) => {
                 let rate = 6.0 / (2.5 * LENGTH);
-                let seconds = degrees.abs().to_radians() / rate;
+                let seconds = radians_from_deg(degrees.abs()) / rate;
                 (seconds, 6.0, rate * degrees.signum())
             }
         };

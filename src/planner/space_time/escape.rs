@@ -48,7 +48,7 @@ const LEAST_COMPARED: usize = 12;
 
 /// A target on its nominal track, without spreads.
 #[derive(Debug, Clone)]
-pub struct NominalTarget {
+pub(crate) struct NominalTarget {
     /// Its hull; of a target without one, its set.
     pub hull: Obstacle,
     /// Its hard set.
@@ -62,7 +62,7 @@ pub struct NominalTarget {
 /// them so and then follows the path at one speed. `None` where the path, as own ship can sail it, is too long for the horizon
 /// or leads ashore. The caller finds out from when on it is clear of what. Some milliseconds, and up to twenty plans; a few
 /// motions are compared even where the time is up.
-pub fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Option<Plan> {
+pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     if super::has_arrived(problem) {
         return super::stay(problem);

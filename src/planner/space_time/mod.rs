@@ -51,7 +51,8 @@ mod tail;
 mod template;
 
 pub use continuation::continued;
-pub use escape::{NominalTarget, after_holding, escape, undisturbed};
+pub(crate) use escape::{NominalTarget, escape};
+pub use escape::{after_holding, undisturbed};
 
 use super::clock::Clock;
 use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};

@@ -315,13 +315,14 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
     panel
 }
 
-/// What a verified plan costs that keeps to the accepted risk.
+/// What a verified plan costs that keeps to the accepted risk, and arrives where its planner asks for that.
 fn cost_within_risk(entry: &Entry) -> Option<f64> {
     let Sailed::Planned(run) = &entry.result else {
         return None;
     };
     let enters = run.released.iter().any(Option::is_some);
-    if enters || run.max_risk > entry.contender.max_risk {
+    let is_left = run.planned.outcome.plan().is_some_and(|p| p.to_go > 0.0);
+    if enters || is_left || run.max_risk > entry.contender.max_risk {
         return None;
     }
     let verified = run.evaluation.as_ref().filter(|e| e.verified());
@@ -339,7 +340,7 @@ mod tests {
     use crate::planner::{PlannerKind, SearchKind};
     use crate::target::Representation;
 
-    /// Head-on there is no way along the path: what is sailed there runs into the target, whatever may be risked.
+    /// Head-on there is no way along the path, whatever may be risked.
     #[test]
     fn what_goes_beyond_the_risk_has_no_point() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -361,7 +362,7 @@ mod tests {
             panic!("{costs:?}");
         };
         assert!(clear > risked && costs[2..] == [None, None], "{costs:?}");
-        // neither has one that is clear of the level sets of a greater risk than may be taken
+        // a plan that does not arrive has none either
         let forces = Scenario::read(&root.join("scenarios/forces/give-way.toml")).expect("valid");
         let along = Contender {
             max_risk: 0.2,
