@@ -4,7 +4,7 @@ use std::any::Any;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, Location, catch_unwind};
 use std::sync::mpsc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use searoom::pipeline::{self, Run};
 use searoom::scenario::ScenarioError;
@@ -57,10 +57,12 @@ pub fn guarded_within<T: Send + 'static>(
     time: Duration,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Option<Result<T, String>> {
+    let begun = Instant::now();
     let (done, result) = mpsc::channel();
     // nobody listens any more where the time is over
     std::thread::spawn(move || drop(done.send(guarded(work))));
-    result.recv_timeout(time).ok()
+    let found = result.recv_timeout(time).ok();
+    found.filter(|_| begun.elapsed() <= time)
 }
 
 /// A source file without the folders of the machine that it was built on.

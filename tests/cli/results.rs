@@ -126,10 +126,10 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     let entries = found["comparisons"][0]["entries"]
         .as_array()
         .expect("entries");
-    assert_eq!(entries.len(), 7 * 2 + 1);
+    assert_eq!(entries.len(), 8 * 2 + 1);
     assert_eq!(entries[1]["max_risk"], 0.2);
-    assert_eq!(entries[12]["method"], "hold course");
-    assert_eq!(entries[12]["verified"], false);
+    assert_eq!(entries[14]["method"], "hold course");
+    assert_eq!(entries[14]["verified"], false);
     assert!(
         entries
             .iter()
