@@ -1,4 +1,4 @@
-//! The exit status of the contract, section 2.
+//! The exit status.
 
 use std::process::ExitCode;
 

@@ -42,7 +42,7 @@ impl BevelledBox {
         }
     }
 
-    /// `P(f, a, p, s, kf, ka)` of `colregs.md` 3.3, `(ahead, to port)` in units of `length`.
+    /// `P(f, a, p, s, kf, ka)` of docs/colregs.md 3.3, `(ahead, to port)` in units of `length`.
     pub fn corners(&self, length: f64) -> [Vector; 8] {
         [
             (self.fore, -self.bow * self.starboard),

@@ -1,5 +1,5 @@
 //! Shapes of the initial set: where a target's ship may be, with what own ship is to keep of her
-//! folded in, and what the rules of the road add to it (`colregs.md` 3.2-3.3).
+//! folded in, and what the rules of the road add to it (docs/colregs.md 3.2-3.3).
 
 use super::bevelled_box::BevelledBox;
 use super::encounter::{Risk, risk_distance};
@@ -46,7 +46,7 @@ pub struct Shapes {
     pub reach: f64,
 }
 
-/// The initial sets of a tracked ship, `colregs.md` 3.3:
+/// The initial sets of a tracked ship, docs/colregs.md 3.3:
 ///
 /// - hull = [`ShipTrack::outer_hull`], on every heading that she may have until `horizon` seconds;
 /// - hard = hull ⊕ disc(own half-diagonal + safety margin + three standard deviations);
@@ -141,7 +141,7 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
     }
 }
 
-/// `colregs.md` 3.2: passing on the side that the rules forbid asks for at least two risk distances more than on the other, where
+/// docs/colregs.md 3.2: passing on the side that the rules forbid asks for at least two risk distances more than on the other, where
 /// the margin is kept. True of a shape that is not swept, and of one that has no size in numbers.
 fn keeps_the_design_inequality(
     own: &OwnShip,

@@ -6,7 +6,7 @@ use super::role::{Role, SteadyShip};
 use crate::frame::Side;
 
 /// Radians, 30°. A smaller alteration of course is not readily apparent to the other, Rule 8(b): the figure of Woerner and of
-/// evaluators of the NTNU lineage (`colregs.md` 2.2).
+/// evaluators of the NTNU lineage (docs/colregs.md 2.2).
 pub const APPARENT_TURN: f64 = FRAC_PI_6;
 
 /// Share of the speed before: a reduction to this or less is readily apparent, Rule 8(b).
@@ -26,7 +26,7 @@ pub const SMALL_TURN: f64 = PI / 9.0;
 pub const MOST_SMALL_TURNS: usize = 2;
 
 /// Lengths of the overtaken ship, and seconds of her way, ahead of her within which own ship does not cross her course line:
-/// Krasowski and Althoff 2021; `colregs.md` 2.3.
+/// Krasowski and Althoff 2021; docs/colregs.md 2.3.
 const BOW_LENGTHS: f64 = 3.0;
 const BOW_TIME: f64 = 60.0;
 

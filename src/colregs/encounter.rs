@@ -1,4 +1,4 @@
-//! Encounters, judged once along the undisturbed desired trajectory: `colregs.md` 1.3, "when planning once".
+//! Encounters, judged once along the undisturbed desired trajectory: docs/colregs.md 1.3, "when planning once".
 
 use super::role::{Role, SteadyShip, raw_role};
 use crate::frame::{Pose, Vector, cross, heading_of, relative_bearing, wrap};
@@ -61,13 +61,13 @@ pub struct Risk {
 }
 
 /// Metres. Two centres that will pass nearer than this are at risk: twice the longer ship, or half of
-/// own safety margin where that is more (`colregs.md` 1.3).
+/// own safety margin where that is more (docs/colregs.md 1.3).
 pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
     (2.0 * own.hull.length.max(target.hull.length)).max(0.5 * own.safety_margin)
 }
 
 /// The first instant of risk along the undisturbed desired trajectory against the nominal track, for
-/// planning once (`colregs.md` 1.3): the distance shrinks, and two ships that held course and speed
+/// planning once (docs/colregs.md 1.3): the distance shrinks, and two ships that held course and speed
 /// from that instant would pass within [`risk_distance`] and `horizon` seconds. Looked for from 0 to
 /// the horizon or the desired arrival, whichever is first. Own ship is where the desired trajectory
 /// has her, wherever she starts.

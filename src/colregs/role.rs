@@ -1,4 +1,4 @@
-//! Roles of two ships that meet: `colregs.md` 1.3.
+//! Roles of two ships that meet: docs/colregs.md 1.3.
 
 use crate::frame::{Pose, Vector, relative_bearing};
 
@@ -147,7 +147,7 @@ impl SteadyShip {
 }
 
 /// The role that the geometry alone gives `own` toward `target`, whether or not there is risk:
-/// `raw(own, obs)` of `colregs.md` 1.3, an ordered list, so that every state has one role and the two
+/// `raw(own, obs)` of docs/colregs.md 1.3, an ordered list, so that every state has one role and the two
 /// ships agree: head-on/head-on, give-way/stand-on, overtaking/overtaken, both-give-way twice,
 /// port-to-port twice, and none twice in line where they do not close. Of a mirrored state it is the mirrored role.
 ///
@@ -237,7 +237,7 @@ pub(super) mod tests {
         )
     }
 
-    /// `colregs.md` 0.1.
+    /// docs/colregs.md 0.1.
     pub fn fixtures() -> [(SteadyShip, Role, Role); 5] {
         [
             (ship(1440.0, 0.0, PI, 6.0), Role::HeadOn, Role::HeadOn),
@@ -307,7 +307,7 @@ pub(super) mod tests {
         ]
     }
 
-    /// Each role by a condition of its own, in no order: `colregs.md` 1.3 once more, from angles found another way.
+    /// Each role by a condition of its own, in no order: docs/colregs.md 1.3 once more, from angles found another way.
     fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {
         let seen = |from: &SteadyShip, of: &SteadyShip| {
             let p = of.pose.position - from.pose.position;

@@ -13,7 +13,7 @@ const SWEEP_EXCESS: f64 = 0.1;
 /// Radians. Own ship this far off the wake of the ship that she overtakes passes on that side (5°).
 const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
 
-/// `e` of `colregs.md` 3.3, metres: which way, and how far, the base is swept. Passing on the side that
+/// `e` of docs/colregs.md 3.3, metres: which way, and how far, the base is swept. Passing on the side that
 /// the rules forbid then costs `|e| = 2 (1 + 0.1)` risk distances more of displacement than on the other,
 /// so that the cheaper side is the compliant one for every miss distance that is a risk (3.2).
 ///

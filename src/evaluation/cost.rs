@@ -1,4 +1,4 @@
-//! The two figures for how far a plan strays, formulas section 7, by quadrature of their own.
+//! The two figures for how far a plan strays, docs/theory.md section 7, by quadrature of their own.
 
 use super::quadrature::{adaptive, smooth};
 use crate::trajectory::{DesiredTrajectory, Segment};
@@ -6,7 +6,7 @@ use crate::trajectory::{DesiredTrajectory, Segment};
 /// Radians. Arcs are cut to this before a rule is put on them.
 const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
 
-/// The space-time error `J = (1 / T_d) ∫ e² dt` in m², formulas section 7, `q` in m²/s². Accurate to
+/// The space-time error `J = (1 / T_d) ∫ e² dt` in m², docs/theory.md section 7, `q` in m²/s². Accurate to
 /// 1e-9 of itself; corners of `e²`, where the nearest leg changes, are closed in on by halving.
 pub(super) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
     let error = |s: &Segment, time: f64| desired.nearest(s.pose_at(time).position, time, q).error;

@@ -14,7 +14,7 @@ const STEP: f64 = std::f64::consts::TAU / DIRECTIONS as f64;
 /// Sections of its neighbourhood by the golden ratio: a direction to 4e-8, so a distance to 1e-15 of the set's size.
 const GOLDEN_STEPS: usize = 32;
 
-/// Every position in the ellipse of least trace around `O_0 + t V`, formulas section 3, by its support function
+/// Every position in the ellipse of least trace around `O_0 + t V`, docs/theory.md section 3, by its support function
 ///
 /// ```text
 /// h(n, t) = n . p_t + sqrt((r_o + r_v t) (n' Q_o n / r_o + t n' Q_v n / r_v)),    r = sqrt(trace Q)

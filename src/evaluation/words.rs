@@ -11,7 +11,7 @@ pub(crate) enum Tone {
     Bad,
 }
 
-/// The word that people see for how something ended, by what happens to hulls: `ended` is the contract's word (of a baseline also
+/// The word that people see for how something ended, by what happens to hulls: `ended` is the word of the documents (of a baseline also
 /// `"clear"`, or `"collides"` where it enters a set), `safety` what is entered, `None` without a motion, `risk` the largest that is taken.
 ///
 /// # Examples

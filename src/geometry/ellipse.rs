@@ -226,7 +226,7 @@ impl Ellipse {
     }
 
     /// The signed distance of `p`; a segment and a point have no inside. NaN in, NaN out. Newton on the
-    /// secular equation `sum q_i z_i² / (q_i + s)² = 1` (formulas section 5.2), in the form in which every
+    /// secular equation `sum q_i z_i² / (q_i + s)² = 1` (docs/theory.md section 5.2), in the form in which every
     /// step falls short of the root, to rounding.
     pub fn signed_distance(&self, p: Vector) -> SignedDistance {
         let [a, b] = self.axes;

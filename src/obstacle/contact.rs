@@ -1,4 +1,4 @@
-//! First contact of a line or an arc in time with a space-time polytope: exact, formulas section 10
+//! First contact of a line or an arc in time with a space-time polytope: exact, docs/theory.md section 10
 //! (iv) and (v).
 //!
 //! Contact at depth `d` is contact with the body whose faces are moved inward by `d` metres: at 0 the
@@ -69,7 +69,7 @@ pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64)
 }
 
 /// The interval during which a straight segment (or a wait) is at least `depth` inside: Cyrus-Beck
-/// over the faces, formulas section 10 (iv). The body is convex, so there is at most one. O(n + m).
+/// over the faces, docs/theory.md section 10 (iv). The body is convex, so there is at most one. O(n + m).
 pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> Option<Interval> {
     let velocity = line.start.ahead() * line.speed;
     clip(

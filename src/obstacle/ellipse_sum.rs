@@ -1,4 +1,4 @@
-//! The Minkowski sum of two ellipses itself, which no ellipse is; formulas section 3.
+//! The Minkowski sum of two ellipses itself, which no ellipse is; docs/theory.md section 3.
 
 use super::{EllipsoidObstacle, SpaceTimeObstacle};
 use crate::frame::{Vector, cross, to_starboard};

@@ -22,7 +22,7 @@ pub(super) const MAX_STEPS: usize = 100;
 /// ```
 ///
 /// paper eq. (18) in a form that divides by no zero: a term without trace is dropped, and `Q_o`, `Q_v` may be
-/// singular. Convex in space-time (formulas section 3). It contains the Minkowski sum `O_0 ⊕ t V` and touches
+/// singular. Convex in space-time (docs/theory.md section 3). It contains the Minkowski sum `O_0 ⊕ t V` and touches
 /// it; see [`EllipsoidObstacle::sum_contains`] for the sum itself and [`EllipsoidObstacle::outer_excess`]
 /// for the difference.
 ///
@@ -337,7 +337,7 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
     }
 
     /// The positive root of a cubic: the sets `O_alpha` at `t` are the sections at `alpha t` about the centre of
-    /// `t`, formulas section 4. O(1). With regard to the outer set, so never below that of the sum.
+    /// `t`, docs/theory.md section 4. O(1). With regard to the outer set, so never below that of the sum.
     fn alpha(&self, position: Vector, time: f64) -> f64 {
         if let Some(flat) = &self.flat {
             return flat.alpha(position, time);

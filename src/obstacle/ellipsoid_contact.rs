@@ -1,4 +1,4 @@
-//! First contact of a straight motion with an ellipsoid obstacle, by a cubic; formulas sections 3 and 10.
+//! First contact of a straight motion with an ellipsoid obstacle, by a cubic; docs/theory.md sections 3 and 10.
 
 use super::EllipsoidObstacle;
 use super::contact::{self, Interval};
@@ -51,7 +51,7 @@ impl EllipsoidObstacle {
     }
 
     /// The first instant at which a straight motion is inside: the sign of a cubic in t, whose turning points
-    /// part its roots; formulas section 3. O(1).
+    /// part its roots; docs/theory.md section 3. O(1).
     pub(super) fn line_start(&self, line: &Line) -> Option<f64> {
         if let Some(flat) = &self.flat {
             let at = line.origin + line.velocity * line.start;

@@ -251,7 +251,7 @@ impl PolytopeObstacle {
         }
     }
 
-    /// `g(x, t) = max over faces of the signed distance`, formulas section 1. O(n + m). NaN in, NaN out.
+    /// `g(x, t) = max over faces of the signed distance`, docs/theory.md section 1. O(n + m). NaN in, NaN out.
     pub fn slack(&self, position: Vector, time: f64) -> Slack {
         let mut best = Slack {
             value: f64::NEG_INFINITY,

@@ -1,4 +1,4 @@
-//! A space-time obstacle seen along a straight path: paper eqs. (27)-(29), formulas section 6.
+//! A space-time obstacle seen along a straight path: paper eqs. (27)-(29), docs/theory.md section 6.
 
 use super::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::Vector;

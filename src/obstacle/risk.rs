@@ -1,5 +1,5 @@
 //! Risk: by how much the velocities of a target have to shrink before a point is out of reach; paper eqs.
-//! (22)-(25), formulas section 4.
+//! (22)-(25), docs/theory.md section 4.
 
 use super::HalfSpace;
 use crate::frame::Vector;
@@ -93,7 +93,7 @@ impl FaceSpread {
     }
 }
 
-/// `alpha* = max over faces of (n . (x - v t) - h_O0(n)) / (t (h_V(n) - n . v))`, formulas section 4. O(n + m).
+/// `alpha* = max over faces of (n . (x - v t) - h_O0(n)) / (t (h_V(n) - n . v))`, docs/theory.md section 4. O(n + m).
 pub(super) fn polytope_alpha(
     faces: &[HalfSpace],
     spreads: &[FaceSpread],

@@ -1,4 +1,4 @@
-//! Velocity sets that change with time: one polytope after another, formulas section 10 (ii).
+//! Velocity sets that change with time: one polytope after another, docs/theory.md section 10 (ii).
 
 use std::sync::{Arc, OnceLock};
 

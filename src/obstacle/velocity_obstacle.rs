@@ -1,4 +1,4 @@
-//! The velocity obstacle of polytopes as a region of velocities: paper eq. (26), formulas section 5.3.
+//! The velocity obstacle of polytopes as a region of velocities: paper eq. (26), docs/theory.md section 5.3.
 
 use super::{HalfSpace, PolytopeObstacle, SlabObstacle};
 use crate::frame::{Vector, cross, to_port, to_starboard};

@@ -13,7 +13,7 @@ pub(super) fn first_turn(sets: &[TargetSets]) -> Option<Side> {
 }
 
 /// The sets where own ship stands on and gives way to none: of those who are to give way the hard ones alone. She keeps course and speed
-/// as long as these can be kept clear of (`colregs.md` 3.6).
+/// as long as these can be kept clear of (docs/colregs.md 3.6).
 pub(super) fn without_shapes_stood_on_for(
     scenario: &Scenario,
     mut sets: Vec<TargetSets>,

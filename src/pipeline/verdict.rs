@@ -40,7 +40,7 @@ impl Verdict {
         }
     }
 
-    /// The contract's word.
+    /// The word of the documents.
     pub fn word(self) -> &'static str {
         match self {
             Self::Solved => "solved",

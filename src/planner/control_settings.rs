@@ -36,7 +36,7 @@ pub struct ControlSettings {
 }
 
 impl ControlSettings {
-    /// Of a vessel at the size of its model, with what the contract gives where a file says nothing.
+    /// Of a vessel at the size of its model, with the defaults of docs/scenario.md.
     pub fn of(vessel: VesselKind) -> Self {
         Self::at_length(vessel, vessel.length())
     }

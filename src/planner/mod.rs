@@ -93,7 +93,7 @@ impl PlannerKind {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
-    /// The space-time error, formulas section 7, m².
+    /// The space-time error, docs/theory.md section 7, m².
     SpaceTimeError,
     /// The time of arrival, s.
     Time,

@@ -54,7 +54,7 @@ pub struct Turn {
 pub struct Meeting {
     /// Its name.
     pub target: String,
-    /// Own ship's role, in the contract's word.
+    /// Own ship's role, in the word of the documents.
     pub role: &'static str,
     /// Seconds at which own ship would come closest, undisturbed.
     pub undisturbed_tcpa: f64,

@@ -1,4 +1,4 @@
-//! The words of the contract for what the program computes.
+//! The words of the documents for what the program computes.
 
 use crate::frame::{Side, clockwise_deg};
 use crate::planner::path_time::PathTimeDiagram;

@@ -101,7 +101,7 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads and checks a scenario file (`contract.md` section 1). Every fault of the file is in the
+    /// Reads and checks a scenario file (docs/scenario.md). Every fault of the file is in the
     /// error, not only the first.
     pub fn read(file: &Path) -> Result<Self, ScenarioError> {
         let text = reading::text_of(file, limits::FILE_BYTES)?;

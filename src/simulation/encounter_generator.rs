@@ -51,7 +51,7 @@ const COURSE_SPREAD: RangeInclusive<f64> = PI / 180.0..=8.0 * PI / 180.0;
 /// Metres.
 const POSITION_STD: RangeInclusive<f64> = 0.0..=5.0;
 
-/// Radians, 10°: bearings within which two ships meet head-on, colregs.md section 1.3.
+/// Radians, 10°: bearings within which two ships meet head-on, docs/colregs.md section 1.3.
 const HEAD_ON: f64 = PI / 18.0;
 /// Radians, 112.5°: a ship abaft this bearing overtakes, Rule 13(b).
 const ABAFT: f64 = 0.625 * PI;
@@ -119,7 +119,7 @@ impl EncounterKind {
         }
     }
 
-    /// The sectors of colregs.md section 1.3, first the one of Rule 13: whoever is abaft overtakes.
+    /// The sectors of docs/colregs.md section 1.3, first the one of Rule 13: whoever is abaft overtakes.
     fn describes(self, own: &Pose, target: &Pose) -> bool {
         let bearing = relative_bearing(own, target.position);
         let aspect = relative_bearing(target, own.position);

@@ -273,7 +273,7 @@ impl DesiredTrajectory {
     }
 
     /// The nearest point in space-time: `min over sigma of |x - x_d(sigma)|² + q (t - t_d(sigma))²`,
-    /// formulas section 7, in closed form per leg. `q` in m²/s². Of equal legs the earlier. Looks from the leg of that
+    /// docs/theory.md section 7, in closed form per leg. `q` in m²/s². Of equal legs the earlier. Looks from the leg of that
     /// time on at later and earlier ones, until they are too far off in time alone: O(legs) at worst, and for `q = 0`.
     pub fn nearest(&self, position: Vector, time: f64, q: f64) -> Nearest {
         let mut best = Nearest {

@@ -135,7 +135,7 @@ fn while_turning(claim: &Claim, target: &Target, turn: (&Pose, &Pose), time: f64
     least
 }
 
-/// The ellipse of least trace around `initial + t velocity`, formulas section 3.
+/// The ellipse of least trace around `initial + t velocity`, docs/theory.md section 3.
 fn least_trace_sum(initial: &Ellipse, velocity: &Ellipse, time: f64) -> Option<Ellipse> {
     let center = initial.center() + velocity.center() * time;
     let (still, moving) = (initial.shape(), velocity.shape() * (time * time));

@@ -24,7 +24,7 @@ const YAW: f64 = 0.5;
 /// width itself, a micrometre in two seconds.
 const ROUNDED_MPS: f64 = 1e-3;
 
-/// `M v' = tau - C(v) v - D(v) v`, formulas section 9. The printed rates have the opposite sign, with which damping
+/// `M v' = tau - C(v) v - D(v) v`, docs/theory.md section 9. The printed rates have the opposite sign, with which damping
 /// adds energy. Unstable on a straight course at transit speed: left alone, an error of the heading grows a
 /// millionfold in 100 s.
 ///

@@ -43,7 +43,7 @@ fn at_most(k: usize, n: usize, p: f64) -> f64 {
 
 #[test]
 fn bounds_match_published_values() {
-    // colregs.md section 4.1
+    // docs/colregs.md section 4.1
     for (failures, trials, bound) in [
         (0, 299, 9.97e-3),
         (0, 10_000, 3.0e-4),

@@ -1,4 +1,4 @@
-//! Roles over time: taken when there is risk, kept until it is over (`colregs.md` 1.3, Rule 13(d)).
+//! Roles over time: taken when there is risk, kept until it is over (docs/colregs.md 1.3, Rule 13(d)).
 
 use super::super::role::{Role, role_within};
 use super::meeting::{Meeting, Sight};
@@ -123,7 +123,7 @@ mod tests {
         spells.iter().map(|s| s.role).collect()
     }
 
-    /// `colregs.md` 0.1: each fixture has its role all along, on a straight course and on one that bears away.
+    /// docs/colregs.md 0.1: each fixture has its role all along, on a straight course and on one that bears away.
     #[test]
     fn a_role_is_kept_while_own_ship_manoeuvres() {
         let straight = planned(&[(0.0, 240.0)], 6.0);

@@ -1,4 +1,4 @@
-//! The second judge: rules as formulas of temporal logic over a trace, each with its robustness (`colregs.md` 4.2; Krasowski &
+//! The second judge: rules as formulas of temporal logic over a trace, each with its robustness (docs/colregs.md 4.2; Krasowski &
 //! Althoff, doi:10.1109/IV48863.2021.9575294). It shares the sights, the sectors of roles and the thresholds with the first judge, and no formula.
 
 use super::super::role::{Role, SteadyShip, role_within};

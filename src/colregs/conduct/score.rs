@@ -1,4 +1,4 @@
-//! The first judge: scores in `[0, 1]` and hard rules, as evaluators of collision avoidance compute them (`colregs.md` 2).
+//! The first judge: scores in `[0, 1]` and hard rules, as evaluators of collision avoidance compute them (docs/colregs.md 2).
 
 use std::f64::consts::FRAC_PI_2;
 

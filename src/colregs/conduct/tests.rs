@@ -1,4 +1,4 @@
-//! Fixtures of `colregs.md` 0.1, sailed well and badly.
+//! Fixtures of docs/colregs.md 0.1, sailed well and badly.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -47,7 +47,7 @@ fn random_set(rng: &mut ChaCha8Rng, scale: f64) -> ConvexPolygon {
     ConvexPolygon::hull(&points).expect("finite")
 }
 
-/// Definition: the hull of all vertex sums, formulas eq. (6).
+/// Definition: the hull of all vertex sums, docs/theory.md section 1.
 fn hull_of_sums(o: &PolytopeObstacle, t: f64) -> ConvexPolygon {
     let points: Vec<Vector> = o
         .initial()

@@ -1,4 +1,4 @@
-//! Meeting a moving vertex by turning and then running straight, formulas section 10 (vi).
+//! Meeting a moving vertex by turning and then running straight, docs/theory.md section 10 (vi).
 
 use std::f64::consts::TAU;
 

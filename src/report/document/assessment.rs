@@ -1,4 +1,4 @@
-//! The assessment document, contract section 4.
+//! The assessment document: docs/documents.md.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,10 +24,7 @@ use crate::obstacle::Section;
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 4, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct AssessmentDocument {
     pub scenario: String,
     pub horizon_s: f64,
@@ -54,10 +51,7 @@ pub struct AssessmentDocument {
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 4, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct TargetSectionsDocument {
     pub name: String,
     pub representation: String,

@@ -1,4 +1,4 @@
-//! The JSON documents of the contract, sections 3 to 5.
+//! The JSON documents, docs/documents.md.
 //!
 //! A number that is not finite is written as null. Keys of what does not exist yet are absent.
 

@@ -38,10 +38,7 @@ pub struct PositionDocument {
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 1, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct OwnShipDocument {
     pub position: PositionDocument,
     pub course_deg: f64,
@@ -71,10 +68,7 @@ pub struct OwnShipDocument {
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 1, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct MissionDocument {
     pub waypoints: Vec<PositionDocument>,
     pub leg_speeds_mps: Vec<f64>,
@@ -99,10 +93,7 @@ pub struct MissionDocument {
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 3, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct RelaxationDocument {
     pub kind: String,
     pub target: String,
@@ -171,10 +162,7 @@ pub struct ViolationDocument {
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 3, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct CostDocument {
     pub objective: f64,
     pub space_time_error_m2: f64,
@@ -440,10 +428,7 @@ pub enum VelocitySetDocument {
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 3, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct ObstacleDocument {
     pub name: String,
     pub valid_s: [f64; 2],
@@ -467,10 +452,7 @@ pub struct ObstacleDocument {
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 3, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct EncounterDocument {
     pub target: String,
     pub role: String,

@@ -1,4 +1,4 @@
-//! The diagram of a path-time plan, contract section 3.
+//! The diagram of a path-time plan: docs/documents.md.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,10 +25,7 @@ use crate::report::words;
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 3, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct PathTimeDocument {
     /// `"main"`, `"alternative 1"` …; where own ship changes, one after another.
     pub path: String,

@@ -1,4 +1,4 @@
-//! The plan document, contract section 3.
+//! The plan document: docs/documents.md.
 
 use serde::{Deserialize, Serialize};
 
@@ -53,10 +53,7 @@ const MOST_SAMPLES: u32 = 20_000;
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 3, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct PlanDocument {
     pub format: String,
     pub scenario: String,

@@ -1,4 +1,4 @@
-//! The suite document, contract section 5.
+//! The suite document: docs/documents.md.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,10 +34,7 @@ pub const NOT_APPLICABLE: &str = "not-applicable";
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 5, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct SuiteDocument {
     pub runs: Vec<SuiteRunDocument>,
     pub summary: SuiteSummaryDocument,
@@ -61,10 +58,7 @@ pub struct SuiteDocument {
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "the contract, section 5, says what each key means"
-)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct SuiteRunDocument {
     pub file: String,
     pub scenario: Option<String>,
