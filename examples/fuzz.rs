@@ -4,7 +4,7 @@
 //! cargo run --release --no-default-features --example fuzz -- --scenes 10000 --seed 1 [--planner KIND] [--keep DIR]
 //! ```
 //!
-//! Counts what must not happen, and ends with status 1 if something did. Scenes with a fault are written to DIR as scenario files;
+//! Counts what must not happen, and ends with status 1 if something did, lateness aside. Scenes with a fault are written to DIR as scenario files;
 //! `--scenes 1 --seed N` runs one of them again. Scenes that the program refuses are drawn too, and not counted as scenes.
 
 #[path = "../tests/wild/mod.rs"]
@@ -32,6 +32,9 @@ const FAULTS: [&str; 6] = [
     "plan late",
     "program late",
 ];
+
+/// From here on the faults are of time.
+const LATENESS: usize = 4;
 
 /// A plan may take this much longer than its budget, and the program.
 const LATE: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(50)];
@@ -115,7 +118,9 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     for (fault, count) in FAULTS.iter().zip(counts) {
         println!("{fault:>20} {count:>6}");
     }
-    Ok(ExitCode::from(u8::from(counts.iter().any(|n| *n > 0))))
+    // times are of the machine: they are printed
+    let wrong = counts[..LATENESS].iter().any(|n| *n > 0);
+    Ok(ExitCode::from(u8::from(wrong)))
 }
 
 fn arguments() -> Result<Arguments, Box<dyn Error>> {
@@ -142,7 +147,7 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
 
 /// `None` for a scene that the program refuses. A late one has another chance.
 fn of(text: &str) -> Option<Found> {
-    let is_late = |found: &Found| found.faults.keys().any(|k| *k >= 4);
+    let is_late = |found: &Found| found.faults.keys().any(|k| *k >= LATENESS);
     let mut best = run(text)?;
     for _ in 1..TRIES {
         if !is_late(&best) {
