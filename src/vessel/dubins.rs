@@ -96,15 +96,17 @@ pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
     let (sin_b, cos_b) = b.sin_cos();
     let c = (a - b).cos();
     let csc = |square: f64| (square >= -ROUNDING).then(|| square.max(0.0).sqrt());
-    let ccc = |cosine: f64| {
-        (cosine.abs() <= 1.0 + ROUNDING).then(|| TAU - cosine.clamp(-1.0, 1.0).acos())
-    };
     // from centre to centre of the two circles: loses no digits where the way is short beside them
     let same = |x: f64, y: f64| {
         let (line, k) = (x.hypot(y), y.atan2(x));
         let alike = |heading: f64| line * radius * wrap(k - heading).abs() <= SAME_CIRCLE_M;
         let k = [a, b].into_iter().find(|h| alike(*h)).unwrap_or(k);
         line.is_finite().then_some((line, k))
+    };
+    // likewise from the first circle to the last: by the cosine eight digits are lost where these are nearly one
+    let ccc = |x: f64, y: f64| {
+        let sine = x.hypot(y) / 4.0;
+        (sine <= 1.0 + ROUNDING).then(|| TAU - 2.0 * sine.min(1.0).asin())
     };
     let lsl = same(d + (sin_a - sin_b), cos_b - cos_a).map(|(p, k)| [k - a, p, b - k]);
     let rsr = same(d - (sin_a - sin_b), cos_a - cos_b).map(|(p, k)| [a - k, p, k - b]);
@@ -116,11 +118,11 @@ pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
         let k = (cos_a + cos_b).atan2(d - sin_a - sin_b) - 2.0_f64.atan2(p);
         [a - k, p, b - k]
     });
-    let rlr = ccc((6.0 - d * d + 2.0 * c + 2.0 * d * (sin_a - sin_b)) / 8.0).map(|p| {
+    let rlr = ccc(d - (sin_a - sin_b), cos_a - cos_b).map(|p| {
         let t = wrap_positive(a - (cos_a - cos_b).atan2(d - sin_a + sin_b) + p / 2.0);
         [t, p, a - b - t + p]
     });
-    let lrl = ccc((6.0 - d * d + 2.0 * c + 2.0 * d * (sin_b - sin_a)) / 8.0).map(|p| {
+    let lrl = ccc(d + (sin_a - sin_b), cos_b - cos_a).map(|p| {
         let k = (cos_b - cos_a).atan2(d + sin_a - sin_b);
         let t = wrap_positive(k - a + p / 2.0);
         [t, p, b - a - t + p]
@@ -251,6 +253,26 @@ mod tests {
                 let to = end(from, &arc, radius);
                 let found = shortest(&from, &to, radius).expect("finite");
                 assert!((found.length() - piece.length).abs() < 1e-6, "{found:?}");
+            }
+        }
+    }
+
+    /// Nearly the same pose: no word leaves out a circle that it needs, nor ends beside its goal.
+    #[test]
+    fn every_word_between_poses_a_hair_apart_reaches_its_goal() {
+        let from = Pose::new(Vector::zeros(), 0.0);
+        for hair in (3..=12).map(|k| 10.0_f64.powi(-k)) {
+            for (along, across, turned) in [(0, 0, 1), (1, 0, 0), (0, 1, 0), (1, 1, 1), (0, 1, -1)]
+            {
+                let [x, y, heading] = [along, across, turned].map(|n| hair * f64::from(n));
+                let to = Pose::new(Vector::new(x, y), heading);
+                for path in paths(&from, &to, 300.0) {
+                    let missed = (end(from, &path, 300.0).position - to.position).norm();
+                    assert!(
+                        missed <= 2.0 * SAME_CIRCLE_M,
+                        "{hair:e}: {missed:e} {path:?}"
+                    );
+                }
             }
         }
     }
