@@ -360,7 +360,7 @@ suite!(of_slabs, slabs);
 fn a_contact_begins_and_ends_where_the_set_does() {
     let mut rng = seeded(505);
     let (mut begun, mut ended, mut twice) = (0, 0, 0);
-    for case in 0..3000 {
+    for case in 0..4000 {
         let o = polytope(&mut rng);
         let s = segment(&mut rng, case % 2 == 0);
         let contacts: Vec<Interval> = if s.is_arc() {

@@ -1559,6 +1559,7 @@ fn every_claim_of_a_document_is_held() {
     let mut late = clear.clone();
     for outcome in ["solved", "deadline"] {
         late["outcome"] = json!(outcome);
+        late["verdict"] = json!(outcome);
         assert!(!is_caught(&late), "{outcome}");
     }
 }
@@ -1654,6 +1655,13 @@ fn what_is_no_plan_document_is_named() {
         ),
         (
             said(&|d| d["mission"]["waypoints"] = json!([])),
+            "mission.leg_speeds_mps: found 1 speeds for 0 waypoints",
+        ),
+        (
+            said(&|d| {
+                d["mission"]["waypoints"] = json!([{ "east_m": 0.0, "north_m": 0.0 }]);
+                d["mission"]["leg_speeds_mps"] = json!([]);
+            }),
             "mission: found what makes no way",
         ),
         (
@@ -1686,7 +1694,7 @@ fn what_is_no_plan_document_is_named() {
         ),
         (
             said(&|d| give_up(d, "bogus", "target", 1.0)),
-            "relaxations[0].kind: found 'bogus'; allowed: compliance, domain, risk",
+            "relaxations[0].kind: found 'bogus'; allowed: compliance, domain, risk, arrival",
         ),
         (
             said(&|d| give_up(d, "risk", "nobody", 0.9)),

@@ -69,10 +69,16 @@ impl MovingSlabs {
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
         let mut least = Least::new();
         for slab in &self.slabs {
+            // what ends as a slab begins, but for rounding, is in the slab before: a set that grows is not as large yet
+            let begun = slab.start * (1.0 + 8.0 * f64::EPSILON);
+            let before = |s: &P| {
+                s.end_time() < slab.start
+                    || slab.start > 0.0 && s.start_time() <= slab.start && s.end_time() <= begun
+            };
             let parts: Vec<P> = pieces
                 .iter()
                 // negated on purpose: a NaN is looked at
-                .filter(|s| !(s.end_time() < slab.start || s.start_time() > slab.end))
+                .filter(|s| !(before(s) || s.start_time() > slab.end))
                 .map(|s| s.part(slab.start, slab.end, slab.start))
                 .collect();
             // what is not nearer than in the slabs before is not looked at closely

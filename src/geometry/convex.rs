@@ -26,7 +26,7 @@ pub enum GeometryError {
     /// No points at all.
     #[error("no vertices; at least one is needed")]
     Empty,
-    /// A coordinate that is not a finite number.
+    /// A coordinate that is not a finite number, or so large that its fourth power is none.
     #[error("vertex {index} is not finite")]
     NotFinite {
         /// Which vertex, from 0.
@@ -41,6 +41,9 @@ pub enum GeometryError {
         depth: f64,
     },
 }
+
+/// A coordinate beyond it has no finite fourth power.
+const LARGEST: f64 = 1e75;
 
 /// A convex polygon with counter-clockwise vertices, none repeated and none on the line through its
 /// neighbours. One vertex is a point, two are a segment.
@@ -70,10 +73,9 @@ impl ConvexPolygon {
         if points.is_empty() {
             return Err(GeometryError::Empty);
         }
-        if let Some(index) = points
-            .iter()
-            .position(|p| !(p.x.is_finite() && p.y.is_finite()))
-        {
+        // negated on purpose: a NaN is none
+        let too_large = |p: &Vector| !(p.amax() <= LARGEST);
+        if let Some(index) = points.iter().position(too_large) {
             return Err(GeometryError::NotFinite { index });
         }
         let mut sorted = unsigned_zeros(points);

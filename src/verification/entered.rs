@@ -40,6 +40,8 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
             Some(ClaimedMotion::Steered { .. }) | None => None,
         };
         let end = end.unwrap_or(0.0).min(claim.file.horizon_s);
+        // of a ship that has arrived nothing is claimed at all
+        let end = if end > 0.0 { end } else { claim.file.horizon_s };
         // negated on purpose: a NaN is never
         if !(until > 0.0 && until <= end + tolerance::TIME_S * (1.0 + end)) {
             found.push(untrue(

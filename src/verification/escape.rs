@@ -113,9 +113,17 @@ fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
         let along = (s.end().position - legs[0].start).dot(&legs[0].direction);
         along <= straight
     });
+    // from beside the leg by a rounding a way onto it turns by one
+    let heading = crate::frame::heading_of(legs[0].direction);
+    let kept = |s: &Segment| {
+        [s.start.heading, s.end().heading]
+            .iter()
+            .all(|course| wrap(course - heading).abs() <= HELD_RAD)
+            && (s.turn_rate * s.duration).abs() <= HELD_RAD
+    };
     let wrong = on_leg.into_iter().find(|s| {
         // negated on purpose: a NaN is no hold
-        !(s.turn_rate == 0.0 && near(s.speed, legs[0].speed))
+        !(kept(s) && near(s.speed, legs[0].speed))
     })?;
     Some(Violation {
         time: wrong.start_time,
@@ -126,6 +134,9 @@ fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
         )
     })
 }
+
+/// Radians off the course that is held: nobody steers that exactly.
+const HELD_RAD: f64 = 1e-6;
 
 /// Turning radii before a corner within which she may begin to turn.
 const CORNER_RADII: f64 = 4.0;

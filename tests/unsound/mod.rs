@@ -368,7 +368,8 @@ fn each_target_has_its_own_clearance_in_every_view() {
 }
 
 /// Plans that are what they say: something given up when the time was out, a node at a rounding past a whole second, ellipses and sets
-/// at the ends of the numbers, an arc of a millimetre at the end of a long way.
+/// at the ends of the numbers, an arc of a millimetre at the end of a long way; a ship that stands on from beside her leg by a rounding; one that has arrived
+/// within a set; a plan until the horizon near a ship that turns.
 #[test]
 fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
     for name in [
@@ -377,6 +378,9 @@ fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
         "ellipse-1e-300",
         "left-set",
         "millimetre-radius",
+        "hold-with-a-rounding",
+        "arrived-inside",
+        "horizon-at-a-turn",
     ] {
         let scenario = Scenario::parse(&fault(&format!("{name}.toml"))).expect(name);
         let found = checked(&document(scenario));
