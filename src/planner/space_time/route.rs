@@ -422,17 +422,19 @@ impl Route {
                 },
             );
         }
+        // what is due at once, or was due before, is to be sailed: a wait there would be of no duration, again and again
+        if slowness <= 0.0 {
+            return (fastest, left);
+        }
         let speed = 1.0 / slowness;
-        if let Some(same) = self
-            .speeds
-            .iter()
-            .find(|u| (*u - speed).abs() <= 1e-9 * speed)
-        {
+        let mut moving = self.speeds.iter().filter(|u| **u > 0.0);
+        if let Some(same) = moving.find(|u| (*u - speed).abs() <= 1e-9 * speed) {
             return (*same, left);
         }
         // faster first: she then falls back to schedule within the same cycle
         let cycle = left / (left / ALTERNATION_M).ceil().max(1.0);
-        match self.speeds.iter().find(|u| **u > speed) {
+        let faster = |u: &&f64| **u > speed && **u > 0.0;
+        match self.speeds.iter().find(faster) {
             Some(&fast) => {
                 let slow = self.speeds.iter().rev().find(|u| **u < speed && **u > 0.0);
                 let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
@@ -477,4 +479,34 @@ fn joins(problem: &Problem) -> Vec<(usize, f64)> {
             (leg, s - desired.legs()[leg].start_distance)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Vector;
+
+    /// A ship that may stop, on a line that is due earlier at its end than at its start, or at no speed at all.
+    #[test]
+    fn what_is_due_before_it_can_be_reached_is_not_waited_for() {
+        for (slowness, fastest) in [(-0.1, true), (0.0, true), (f64::INFINITY, false)] {
+            let piece = Piece {
+                start: Pose::new(Vector::zeros(), 0.0),
+                distance: 0.0,
+                length: 1000.0,
+                curvature: 0.0,
+                due: 0.0,
+                slowness,
+                leg: None,
+                speed: None,
+            };
+            let route = Route {
+                pieces: vec![piece],
+                speeds: vec![0.0, 2.0, 4.0],
+            };
+            let (speed, length) = route.pace(&piece, 0.0, piece.length, 0.0);
+            assert_eq!(speed, if fastest { 4.0 } else { 2.0 }, "{slowness}");
+            assert!(length >= LEAST_ALTERNATION_M, "{slowness}: {length}");
+        }
+    }
 }
