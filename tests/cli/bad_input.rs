@@ -71,8 +71,11 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
         );
     }
     let file = write(folder.path(), "many.toml", &scenario);
-    let plan = document(&searoom(&["plan", &file, "--json"]).code(1));
+    // how far the search gets depends on the machine: with a plan that is clear of the ships, the status is 0
+    let ended = searoom(&["plan", &file, "--json"]).code(vec![0, 1]);
+    let plan = document(&ended);
     assert_eq!(plan["outcome"], "deadline");
+    assert_eq!(plan["safe"] == true, ended.get_output().status.success());
     let took = plan["timing"]["plan_s"].as_f64().expect("seconds");
     // far more than is left over, for a machine with other things to do
     assert!((0.4..1.2).contains(&took), "{took}");

@@ -422,17 +422,19 @@ impl Route {
                 },
             );
         }
+        // what is due at once, or was due before, is to be sailed: a wait there would be of no duration, again and again
+        if slowness <= 0.0 {
+            return (fastest, left);
+        }
         let speed = 1.0 / slowness;
-        if let Some(same) = self
-            .speeds
-            .iter()
-            .find(|u| (*u - speed).abs() <= 1e-9 * speed)
-        {
+        let mut moving = self.speeds.iter().filter(|u| **u > 0.0);
+        if let Some(same) = moving.find(|u| (*u - speed).abs() <= 1e-9 * speed) {
             return (*same, left);
         }
         // faster first: she then falls back to schedule within the same cycle
         let cycle = left / (left / ALTERNATION_M).ceil().max(1.0);
-        match self.speeds.iter().find(|u| **u > speed) {
+        let faster = |u: &&f64| **u > speed && **u > 0.0;
+        match self.speeds.iter().find(faster) {
             Some(&fast) => {
                 let slow = self.speeds.iter().rev().find(|u| **u < speed && **u > 0.0);
                 let share = slow.map_or(1.0, |s| (1.0 / s - slowness) / (1.0 / s - 1.0 / fast));
@@ -478,3 +480,6 @@ fn joins(problem: &Problem) -> Vec<(usize, f64)> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests;
