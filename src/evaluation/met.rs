@@ -110,20 +110,21 @@ pub(super) fn passage<P: Piece>(
             (least, least, least, hold, safety)
         }
     };
-    let passing_side =
-        pieces
-            .iter()
-            .find(|s| closest.time <= s.end_time())
-            .map_or(Side::Starboard, |s| {
-                let pose = s.pose_at(closest.time);
-                let off = target.position_at(closest.time) - pose.position;
-                // athwart by so little, the side is one of rounding
-                if cross(direction(pose.heading), off) > tolerance::DEPTH_M {
-                    Side::Port
-                } else {
-                    Side::Starboard
-                }
-            });
+    let passing_side = pieces
+        .iter()
+        .find(|s| closest.time <= s.end_time())
+        // at the end of all, but for rounding
+        .or(pieces.last())
+        .map_or(Side::Starboard, |s| {
+            let pose = s.pose_at(closest.time);
+            let off = target.position_at(closest.time) - pose.position;
+            // athwart by so little, the side is one of rounding
+            if cross(direction(pose.heading), off) > tolerance::DEPTH_M {
+                Side::Port
+            } else {
+                Side::Starboard
+            }
+        });
     let passage = Passage {
         dcpa: closest.value,
         tcpa: closest.time,
