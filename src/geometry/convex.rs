@@ -74,7 +74,7 @@ impl ConvexPolygon {
             return Err(GeometryError::Empty);
         }
         // negated on purpose: a NaN is none
-        let too_large = |p: &Vector| !(p.amax() <= LARGEST);
+        let too_large = |p: &Vector| !(p.x.abs() <= LARGEST && p.y.abs() <= LARGEST);
         if let Some(index) = points.iter().position(too_large) {
             return Err(GeometryError::NotFinite { index });
         }

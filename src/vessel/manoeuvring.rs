@@ -48,7 +48,7 @@ pub struct Scales {
 ///     time
 /// }
 ///
-/// let model = seconds_to_half(VesselKind::CyberShip2.exact().as_ref(), 0.2);
+/// let model = seconds_to_half(VesselKind::CyberShip2.exact(1.255).as_ref(), 0.2);
 /// assert!((1.0..60.0).contains(&model), "{model}");
 /// ```
 pub trait Manoeuvring: std::fmt::Debug + Sync {

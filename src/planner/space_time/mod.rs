@@ -130,7 +130,8 @@ fn brought_back(
     let alike = usual.alike(problem)?;
     let alike = alike.problem(problem);
     let parts = parts(alike.obstacles, alike.horizon);
-    let planned = usual.restored(plan(&alike, &within_reach(&alike, &parts), Some(usual)));
+    let planned = plan(&alike, &within_reach(&alike, &parts), Some(usual));
+    let planned = usual.restored(planned, problem.horizon);
     let touches = |plan: &Plan| {
         let segments = plan.trajectory.segments();
         first_met(hazards, segments).is_some() || ashore::meets(problem.coast, segments)

@@ -313,13 +313,13 @@ impl Similarity {
     }
 
     /// What was planned, brought back.
-    pub(crate) fn restored(&self, planned: Planned) -> Planned {
+    pub(crate) fn restored(&self, planned: Planned, horizon: f64) -> Planned {
         let outcome = match planned.outcome {
             Outcome::Solved(plan) => self
                 .plan(plan)
                 .map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved),
             Outcome::Deadline(plan) => Outcome::Deadline(plan.and_then(|p| self.plan(p))),
-            Outcome::Infeasible(reason) => Outcome::Infeasible(self.reason(reason)),
+            Outcome::Infeasible(reason) => Outcome::Infeasible(self.reason(reason, horizon)),
         };
         Planned {
             outcome,
@@ -383,15 +383,15 @@ impl Similarity {
         explored
     }
 
-    fn reason(&self, reason: NoPlan) -> NoPlan {
+    fn reason(&self, reason: NoPlan, horizon: f64) -> NoPlan {
         match reason {
             NoPlan::StartInside { target, depth } => NoPlan::StartInside {
                 target,
                 depth: depth * self.length,
             },
-            NoPlan::HorizonTooShort { earliest, horizon } => NoPlan::HorizonTooShort {
+            NoPlan::HorizonTooShort { earliest, .. } => NoPlan::HorizonTooShort {
                 earliest: earliest * self.time,
-                horizon: horizon * self.time,
+                horizon,
             },
             NoPlan::NoCandidate { target, time } => NoPlan::NoCandidate {
                 target,

@@ -158,7 +158,7 @@ pub struct ViolationDocument {
 /// let plan = PlanDocument::of(&pipeline::run(scenario));
 /// let cost: &CostDocument = plan.cost.as_ref().expect("there is room");
 /// assert!(cost.arrived && cost.max_risk == 0.0);
-/// assert!(cost.min_clearance_m > Some(20.0) && cost.delay_s < Some(10.0));
+/// assert!(cost.min_clearance_m > Some(20.0) && cost.delay_s < Some(15.0));
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
