@@ -684,62 +684,6 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
     assert!(within, "{found:?}, at most {HASTE:?}");
 }
 
-/// Ways to pass several ships on other sides are refined each, for the graph's cheapest is not always the cheapest in the end: where
-/// only the first is, these two cost 14,005 and 6,329 m².
-#[test]
-fn several_ways_of_passing_are_refined_and_the_cheapest_is_the_plan() {
-    // own ship's turning radius, speeds and margin; east, north, course, speed and the spreads of both of each ship
-    type Scene<'a> = (f64, &'a [f64], f64, &'a [[f64; 6]]);
-    let scenes: [(f64, Scene); 2] = [
-        (
-            11_437.0,
-            (
-                200.0,
-                &[6.0],
-                100.0,
-                &[
-                    [1290.3, 13.4, 258.5, 0.0, 0.0, 0.0],
-                    [751.4, 516.2, 138.8, 4.0, 0.0, 0.0],
-                    [107.4, -719.3, 73.6, 6.0, 0.0, 0.0],
-                    [4981.7, -275.1, 277.4, 8.0, 0.0, 0.0],
-                ],
-            ),
-        ),
-        (
-            5_543.7,
-            (
-                120.0,
-                &[3.0, 6.0],
-                100.0,
-                &[
-                    [839.6, -477.6, 357.4, 4.0, 0.0, 0.0],
-                    [2352.8, 22.6, 269.2, 2.0, 0.3, 0.0],
-                ],
-            ),
-        ),
-    ];
-    for (measured, (radius, speeds, margin, ships)) in scenes {
-        let mut text = format!(
-            "title = \"ways\"\nhorizon_s = 1000\n[own_ship]\nposition = {{ east_m = 0, north_m = 0 }}\ncourse_deg = 90\nspeed_mps = 6\n\
-             length_m = 60\nbeam_m = 12\nturning_radius_m = {radius}\nspeeds_mps = {speeds:?}\nsafety_margin_m = {margin}\n\
-             [mission]\nwaypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 3000, north_m = 0 }}]\n[planner]\ncompliance = \"none\"\n\
-             deadline_s = 60\n"
-        );
-        for (index, [east, north, course, speed, faster, aside]) in ships.iter().enumerate() {
-            text += &format!(
-                "[[targets]]\nname = \"{index}\"\nposition = {{ east_m = {east}, north_m = {north} }}\ncourse_deg = {course}\n\
-                 speed_mps = {speed}\nlength_m = 80\nbeam_m = 16\nspeed_spread_mps = {faster}\ncourse_spread_deg = {aside}\n"
-            );
-        }
-        let run = pipeline::run(Scenario::parse(&text).expect("no faults"));
-        let cost = run.planned.outcome.plan().expect("a plan").cost;
-        assert!(
-            run.relaxations.is_empty() && cost <= 1.05 * measured,
-            "{cost}"
-        );
-    }
-}
-
 /// On the four scenarios together A* expands at most half as many nodes as Dijkstra, on each fewer, and finds the same cost.
 #[test]
 fn a_star_expands_half_of_dijkstra_on_the_four_scenarios() {

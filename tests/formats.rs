@@ -771,7 +771,7 @@ fn every_rung_of_the_ladder_is_the_answer_to_some_encounter() {
     // wide ways are no plans of the graph
     let around = answer(dnv("53"), Compliance::Shape);
     assert!(around.rung == Rung::Domains && !searched(&around));
-    let crowd = random_traffic(10, 366, Placement::Origin).expect("drawn");
+    let crowd = random_traffic(10, 201, Placement::Origin).expect("drawn");
     let half = answer(crowd.scenario, Compliance::Shape);
     assert!(half.rung == Rung::Domains && half.max_risk == 0.0);
 }
