@@ -402,6 +402,9 @@ fn onward(
     away: &[Segment],
     follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
 ) -> Option<Vec<Segment>> {
+    if super::ashore::meets(problem.coast, away) {
+        return None;
+    }
     let begun = away.last().map_or(0.0, Segment::end_time);
     let own = OwnShip {
         pose: away.last().map_or(problem.own.pose, Segment::end),
