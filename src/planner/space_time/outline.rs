@@ -29,7 +29,7 @@ pub(crate) struct Scene<'a> {
     pub hazards: &'a [Hazard<'a>],
     /// The land, block by block.
     pub blocks: &'a [Hazard<'a>],
-    /// Radians, see [`approaches`].
+    /// Radians, of an approach.
     pub chord: f64,
 }
 
