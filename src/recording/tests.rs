@@ -296,11 +296,11 @@ fn a_comparison_is_one_recording_with_every_motion() {
             format!("/space_time/methods/{name}/way"),
             format!("/curves/clearance_m/{name}"),
         ];
-        if matches!(
-            entry.contender.method,
-            crate::comparison::Method::Planner { .. }
-        ) {
-            parts.push(format!("/chart/map/methods/{name}/explored/free"));
+        if let crate::comparison::Method::Planner { kind, .. } = entry.contender.method {
+            // no graph is searched for forces
+            if kind != crate::planner::PlannerKind::OptimalControl {
+                parts.push(format!("/chart/map/methods/{name}/explored/free"));
+            }
             let target = EntityPathPart::new(NAME).escaped_string();
             parts.push(format!("/chart/map/methods/{name}/sets/{target}"));
             parts.push(format!("/space_time/methods/{name}/sets/{target}"));
