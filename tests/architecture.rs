@@ -508,7 +508,7 @@ fn every_border_can_be_broken() {
             "use crate::{frame::Pose, evaluation::Evaluation};",
         ),
         (
-            "planner/space_time/graph.rs",
+            "planner/space_time/graph/mod.rs",
             "use super::super::super::scenario::Scenario;",
         ),
         (
@@ -566,7 +566,7 @@ fn what_is_allowed_passes() {
         ("geometry/disc.rs", "#[cfg(test)] pub(crate) mod tests;"),
         ("geometry/disc.rs", "const A: &str = \"use crate::vessel\";"),
         (
-            "planner/space_time/graph.rs",
+            "planner/space_time/graph/mod.rs",
             "use super::super::{Problem, cost}; use super::route;",
         ),
         ("scenario/mod.rs", "use crate::planner::SearchKind;"),

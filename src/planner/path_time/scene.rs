@@ -8,7 +8,7 @@ use crate::obstacle::{
     HalfSpace, PathTime, PathTimeObstacle, SpaceTimeObstacle, Track, outer_faces_along,
 };
 use crate::planner::Problem;
-use crate::planner::space_time::part::{Body, Part, parts};
+use crate::planner::space_time::piece::{Body, Part, parts};
 use crate::tolerance;
 use crate::trajectory::PathNetwork;
 

@@ -9,50 +9,22 @@
 //! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
 //! plan is one of the candidates.
 
-mod active_set;
-mod addition;
-mod aims;
-mod apparent;
-mod approach;
-mod ashore;
+mod bound;
 mod chain;
-mod closer;
-mod compliance;
-mod continuation;
-mod departure;
-mod detour;
-mod effort;
-mod escape;
-mod factor;
-mod future;
+mod fallback;
 mod graph;
-mod harm;
-mod hazard;
-mod heuristic;
-mod interception;
-mod keep_out;
-mod model;
-mod moments;
-mod node;
-mod outline;
-mod outside;
-pub(super) mod part;
-mod quadratic;
+mod land;
+pub(super) mod piece;
+mod proxy;
 mod refinement;
-mod returning;
 mod route;
-mod sailed;
-mod seeds;
+mod rules;
 mod selection;
 mod similarity;
-mod stages;
-mod stand_on;
-mod tail;
-mod template;
 
-pub use continuation::continued;
-pub(crate) use escape::{NominalTarget, escape};
-pub use escape::{after_holding, undisturbed};
+pub(crate) use fallback::escape::{NominalTarget, escape};
+pub use fallback::escape::{after_holding, undisturbed};
+pub use selection::warm_start::continued;
 
 use super::clock::Clock;
 use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
@@ -60,15 +32,17 @@ use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::Segment;
-use approach::FINE_CHORD_RAD;
-use effort::Effort;
-use graph::Graph;
-use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
-use outline::Scene;
-use part::parts;
+use fallback::{hybrid_a_star, sequential};
+use graph::{Graph, node};
+use piece::parts;
+use proxy::{Hazard, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
+use refinement::approach::FINE_CHORD_RAD;
+use refinement::trial::Scene;
 use route::Route;
-use seeds::Conflict;
+use rules::stand_on;
 use selection::Selection;
+use selection::budget::Effort;
+use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
 /// Plans of the graph that are refined, each passing the targets on other sides.
@@ -94,7 +68,7 @@ pub fn plan(problem: &Problem) -> Planned {
 /// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
 pub fn detour(problem: &Problem) -> Option<Plan> {
     let planned = as_usual(problem, |problem, _, _| {
-        let wide = detour::detour(problem);
+        let wide = hybrid_a_star::detour(problem);
         Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
     });
     planned.outcome.into_plan()
@@ -134,7 +108,7 @@ fn brought_back(
     let planned = usual.restored(planned, problem.horizon);
     let touches = |plan: &Plan| {
         let segments = plan.trajectory.segments();
-        first_met(hazards, segments).is_some() || ashore::meets(problem.coast, segments)
+        first_met(hazards, segments).is_some() || land::meets(problem.coast, segments)
     };
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
@@ -196,7 +170,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
             horizon: problem.horizon,
         });
     }
-    let blocks = ashore::hazards(problem);
+    let blocks = land::hazards(problem);
     let scene = Scene {
         problem,
         route: &route,
@@ -205,7 +179,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         chord: FINE_CHORD_RAD,
     };
     let contact = first_contact(hazards, &undisturbed);
-    let grounding = ashore::first_contact(problem.coast, &undisturbed);
+    let grounding = land::first_contact(problem.coast, &undisturbed);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
     if problem.duty().stands_on
@@ -254,18 +228,18 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     if contact.is_some() || grounding.is_some() {
         conflicts = by_obstacle(hazards)
             .filter_map(|h| Conflict::of(h, &undisturbed))
-            .map(|conflict| ashore::beyond_land(problem.coast, conflict, &undisturbed))
+            .map(|conflict| land::beyond_land(problem.coast, conflict, &undisturbed))
             .collect();
-        conflicts.extend(ashore::conflicts(problem.coast, &undisturbed));
+        conflicts.extend(land::conflicts(problem.coast, &undisturbed));
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, clock);
     }
     // one manoeuvre around conflicts that are far apart is long and dear, if there is one
     let is_bent = problem.desired.legs().len() > 1;
     if !timed_out
-        && (stages::are_several(&conflicts) || is_bent && !selection.has_plan())
+        && (sequential::are_several(&conflicts) || is_bent && !selection.has_plan())
         && let Some(motion) =
-            stages::one_after_another(problem, hazards, &route, &undisturbed, clock)
+            sequential::one_after_another(problem, hazards, &route, &undisturbed, clock)
     {
         selection.consider(motion);
         timed_out = clock.is_up();

@@ -5,13 +5,13 @@
 //! a grid that is coarse beside the roundings of all this, sets from outside: the same scene elsewhere is the same problem to the last
 //! digit. The plan is brought back to where, which way and how large the scene is.
 
-use super::hazard::{Hazard, by_obstacle};
 use crate::colregs::{Encountered, SteadyShip};
 use crate::frame::{Pose, Vector, cross, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{
     Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
+use crate::planner::space_time::proxy::{Hazard, by_obstacle};
 use crate::planner::{EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem};
 use crate::target::VelocitySpell;
 use crate::tolerance;

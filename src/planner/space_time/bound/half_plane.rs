@@ -1,0 +1,208 @@
+//! What half-planes and bodies together ask of own ship for a while: a part of [`crate::planner::space_time::bound::tight`].
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::frame::{Vector, direction, heading_of};
+use crate::planner::space_time::bound::obstacle::KeepOut;
+
+/// Radians from straight to the path toward straight ahead.
+const ASLANT: [f64; LIMITS] = [-1.0, -0.4, 0.2, 0.7, 1.1, 1.57];
+pub(crate) const LIMITS: usize = 6;
+
+/// The directions in which own ship makes way: straight to the path, ahead, and those of [`ASLANT`].
+pub(crate) const WAYS: usize = LIMITS + 2;
+
+/// What lies ahead from one side of the leg: headings are relative to the leg.
+#[derive(Debug)]
+pub(crate) struct View {
+    /// Radians, of every way, and where it leads.
+    pub headings: [f64; WAYS],
+    pub directions: [Vector; WAYS],
+    pub limits: [Limit; LIMITS],
+    /// Of the faces of all bodies, in order, with the limits.
+    pairs: Vec<[Pair; LIMITS]>,
+}
+
+/// A half-plane that own ship cannot be beyond: its outer normal in the error's metric.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limit {
+    pub metric: Vector,
+    pub scale: f64,
+}
+
+/// Two unit normals: their product and the inverse square of their sine, zero where they are parallel.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    cosine: f64,
+    spread: f64,
+}
+
+impl Pair {
+    fn new(cosine: f64) -> Self {
+        let square = 1.0 - cosine * cosine;
+        Self {
+            cosine,
+            spread: if square < 1e-9 { 0.0 } else { 1.0 / square },
+        }
+    }
+
+    /// Least square of a vector with at least these components along the two; the first is positive.
+    fn least_square(self, a: f64, b: f64) -> f64 {
+        if self.spread == 0.0 {
+            greater(a, b).powi(2)
+        } else if b <= self.cosine * a {
+            a * a
+        } else if b > 0.0 && a <= self.cosine * b {
+            b * b
+        } else {
+            (a * a + b * b - 2.0 * self.cosine * a * b) * self.spread
+        }
+    }
+}
+
+impl View {
+    /// `side` is 1 where the path is to port.
+    pub(crate) fn new(side: f64, root: f64, keep_out: &KeepOut) -> Self {
+        let mut headings = [0.0; WAYS];
+        headings[0] = side * FRAC_PI_2;
+        let limits: [Limit; LIMITS] = std::array::from_fn(|k| {
+            let normal = Vector::new(ASLANT[k].sin(), side * ASLANT[k].cos());
+            headings[k + 2] = heading_of(normal);
+            let metric = Vector::new(normal.x / root, normal.y);
+            let scale = metric.norm();
+            Limit {
+                metric: metric / scale,
+                scale,
+            }
+        });
+        let faces = keep_out.bodies().iter().flat_map(|b| &b.faces);
+        let pairs = faces
+            .map(|f| limits.map(|l| Pair::new(-l.metric.dot(&f.metric))))
+            .collect();
+        Self {
+            headings,
+            directions: headings.map(direction),
+            limits,
+            pairs,
+        }
+    }
+}
+
+/// What is asked of own ship in one interval.
+pub(crate) struct Outside<'a> {
+    pub keep_out: &'a KeepOut,
+    pub view: &'a View,
+    pub reached: &'a [f64],
+    /// Metres that the point on schedule is beyond each limit at least.
+    pub limits: [f64; LIMITS],
+}
+
+impl Outside<'_> {
+    /// Least mean squared error between two times outside every body and within the limits; `known` is what
+    /// the limits ask for by themselves.
+    pub(crate) fn least(&self, known: f64, from: f64, to: f64) -> f64 {
+        let mut greatest = known;
+        let mut first = 0;
+        for body in self.keep_out.bodies() {
+            let faces = first..first + body.faces.len();
+            first = faces.end;
+            if to < body.from || from > body.to {
+                continue;
+            }
+            let (mut a, mut b) = (f64::INFINITY, f64::INFINITY);
+            let mut shallowest = (f64::INFINITY, first);
+            for (face, index) in body.faces.iter().zip(faces.clone()) {
+                if self.reached[index] <= to {
+                    let (start, end) = (face.depth_at(from), face.depth_at(to));
+                    (a, b) = (lesser(start, a), lesser(end, b));
+                    let depth = lesser(start, end);
+                    if depth < shallowest.0 {
+                        shallowest = (depth, index);
+                    }
+                }
+            }
+            greatest = greater(greatest, squared_chord(a, b));
+            // behind a face that is not deep the limits by themselves are all
+            if !(shallowest.0 > 0.0) || greatest == f64::INFINITY {
+                continue;
+            }
+            // the least first: it leaves little to do for the others
+            let mut joint = self.both(shallowest.0, shallowest.1);
+            for (face, index) in body.faces.iter().zip(faces) {
+                if joint <= greatest {
+                    break;
+                }
+                if self.reached[index] <= to {
+                    let depth = lesser(face.depth_at(from), face.depth_at(to));
+                    if depth * depth < joint {
+                        joint = lesser(self.both(depth, index), joint);
+                    }
+                }
+            }
+            greatest = greater(greatest, joint);
+        }
+        greatest
+    }
+
+    /// Least squared error beyond a face and within the limits at once.
+    fn both(&self, depth: f64, face: usize) -> f64 {
+        let pairs = self.view.pairs[face].iter();
+        pairs
+            .zip(&self.limits)
+            .map(|(pair, beyond)| pair.least_square(depth, *beyond))
+            .fold(depth * depth, greater)
+    }
+}
+
+/// The lesser; the second when the first is not a number. One instruction, unlike [`f64::min`].
+pub(crate) fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater, likewise.
+pub(crate) fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// Mean of the squared positive part along a line from `a` to `b`.
+pub(crate) fn squared_chord(a: f64, b: f64) -> f64 {
+    let (low, high) = (lesser(a, b), greater(a, b));
+    if high <= 0.0 {
+        0.0
+    } else if low >= 0.0 {
+        (a * a + a * b + b * b) * (1.0 / 3.0)
+    } else {
+        high * high * high / (3.0 * (high - low))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pair_of_normals_gives_the_least_of_a_dense_scan() {
+        for (a, b, angle) in [
+            (1.0, 0.5, 0.3_f64),
+            (1.0, 0.9, 2.0),
+            (0.7, -0.3, 1.9),
+            (0.2, 1.0, 1.2),
+        ] {
+            let mut least = f64::INFINITY;
+            for i in -400..=400 {
+                for k in -400..=400 {
+                    let v = Vector::new(f64::from(i), f64::from(k)) * 0.01;
+                    let second = v.x * angle.cos() + v.y * angle.sin();
+                    if v.x >= a && second >= b {
+                        least = least.min(v.norm());
+                    }
+                }
+            }
+            let found = Pair::new(angle.cos()).least_square(a, b).sqrt();
+            assert!(
+                (found - least).abs() < 0.02,
+                "{a} {b} {angle}: {found} {least}"
+            );
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! From where the end can still be reached, and at what cost: a grid over east, north and time.
+//!
+//! A guide, not a proof: own ship is a point there that may turn at once, and sets are looked at in the middles of cells at
+//! instants.
+
+use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
+use crate::planner::Problem;
+use crate::planner::space_time::proxy::Hazard;
+
+/// Cells of the grid to either axis.
+const CELLS: usize = 80;
+
+/// Cells that she makes from one instant to the next at her greatest speed.
+const REACH: i32 = 2;
+
+/// Cells of a row with those beyond the edges that she might make for, from which nothing can be reached.
+const WIDE: usize = CELLS + 2 * REACH as usize;
+
+/// The cost to go, m², from the middles of cells at evenly spaced instants.
+#[derive(Debug)]
+pub(crate) struct Future {
+    corner: Vector,
+    /// Metres.
+    pub cell: f64,
+    /// Seconds from one instant to the next.
+    pub step: f64,
+    layers: usize,
+    to_go: Vec<f32>,
+}
+
+impl Future {
+    /// Backward from the horizon over all places from which the way from the start and to the end is within it.
+    /// O(cells x instants x (moves + legs)); some ten milliseconds.
+    pub(crate) fn of(problem: &Problem, hazards: &[Hazard]) -> Option<Self> {
+        let (start, end) = (problem.own.pose.position, problem.desired.end());
+        let top = problem.own.max_speed();
+        let half = 0.5 * top * problem.horizon;
+        let cell = 2.0 * half / (CELLS as f64 - 1.0);
+        let step = f64::from(REACH) * cell / top;
+        let layers = (problem.horizon / step).floor() as usize + 1;
+        // negated on purpose: a NaN has no grid
+        if !(cell > 0.0 && step > 0.0 && cell.is_finite()) {
+            return None;
+        }
+        let middle = (start + end) * 0.5;
+        let mut future = Self {
+            corner: middle - Vector::new(half, half),
+            cell,
+            step,
+            layers,
+            to_go: vec![f32::INFINITY; WIDE * WIDE * layers],
+        };
+        let ashore: Vec<bool> = (0..CELLS * CELLS)
+            .map(|k| {
+                let depth = problem.coast.depth(future.middle(k));
+                depth.is_some_and(|depth| depth > 0.0)
+            })
+            .collect();
+        let mut moves = Vec::new();
+        for dx in -REACH..=REACH {
+            for dy in -REACH..=REACH {
+                if dx * dx + dy * dy <= REACH * REACH {
+                    moves.push((dy * WIDE as i32 + dx) as isize);
+                }
+            }
+        }
+        let per_second = 1.0 / problem.desired.duration();
+        let mut later = [f32::INFINITY; CELLS];
+        for layer in (0..layers).rev() {
+            let time = step * layer as f64;
+            let mut blocked = ashore.clone();
+            for hazard in hazards {
+                future.block(&mut blocked, hazard, time);
+            }
+            for row in 0..CELLS {
+                if layer + 1 < layers {
+                    future.best_after(layer, row, &moves, &mut later);
+                }
+                for (column, later) in later.iter().enumerate() {
+                    let k = row * CELLS + column;
+                    let (here, at) = (future.middle(k), future.index(layer, column, row));
+                    if blocked[k] {
+                        continue;
+                    }
+                    if (here - end).norm() <= cell {
+                        future.to_go[at] = 0.0;
+                    } else if later.is_finite() {
+                        let nearest = problem.desired.nearest(here, time, problem.time_weight);
+                        let error = nearest.error * step * per_second;
+                        future.to_go[at] = later + error as f32;
+                    }
+                }
+            }
+        }
+        Some(future)
+    }
+
+    fn middle(&self, k: usize) -> Vector {
+        let (column, row) = ((k % CELLS) as f64, (k / CELLS) as f64);
+        self.corner + Vector::new(column, row) * self.cell
+    }
+
+    fn index(&self, layer: usize, column: usize, row: usize) -> usize {
+        let edge = REACH as usize;
+        (layer * WIDE + row + edge) * WIDE + column + edge
+    }
+
+    /// The least cost to go one instant later from what can be made from each cell of a row.
+    fn best_after(&self, layer: usize, row: usize, moves: &[isize], least: &mut [f32; CELLS]) {
+        least.fill(f32::INFINITY);
+        for by in moves {
+            let first = self.index(layer + 1, 0, row).saturating_add_signed(*by);
+            for (least, there) in least.iter_mut().zip(&self.to_go[first..first + CELLS]) {
+                // one instruction, unlike `f32::min`; a NaN leads nowhere
+                *least = if *there < *least { *there } else { *least };
+            }
+        }
+    }
+
+    /// Marks the cells whose middles are in a set.
+    fn block(&self, blocked: &mut [bool], hazard: &Hazard, time: f64) {
+        if let Some(window) = &hazard.window
+            && !(time >= window.start && time <= window.end)
+        {
+            return;
+        }
+        let section: ConvexPolygon = hazard.body.section(time - hazard.start());
+        let range = |along: Vector, corner: f64| {
+            let (low, high) = (-section.support(-along), section.support(along));
+            let low = ((low - corner) / self.cell).ceil().max(0.0) as usize;
+            let high = ((high - corner) / self.cell).floor();
+            low..(high + 1.0).clamp(0.0, CELLS as f64) as usize
+        };
+        for row in range(Vector::new(0.0, 1.0), self.corner.y) {
+            for column in range(Vector::new(1.0, 0.0), self.corner.x) {
+                let k = row * CELLS + column;
+                if !blocked[k] && section.contains(self.middle(k)) {
+                    blocked[k] = true;
+                }
+            }
+        }
+    }
+
+    /// The cost to go from about a place at about a time, m²; infinite where the end cannot be reached any more.
+    pub(crate) fn from(&self, place: Vector, time: f64) -> f64 {
+        let at = (place - self.corner) / self.cell;
+        let layer = (time / self.step).floor();
+        let mut least = f32::INFINITY;
+        for dx in [0.0, 1.0] {
+            for dy in [0.0, 1.0] {
+                for dt in [0.0, 1.0] {
+                    let (x, y, t) = (at.x.floor() + dx, at.y.floor() + dy, layer + dt);
+                    let within = |v: f64, most: usize| v >= 0.0 && v < most as f64;
+                    if within(x, CELLS) && within(y, CELLS) && within(t, self.layers) {
+                        let at = self.index(t as usize, x as usize, y as usize);
+                        least = least.min(self.to_go[at]);
+                    }
+                }
+            }
+        }
+        f64::from(least)
+    }
+}

@@ -1,0 +1,8 @@
+//! What is tried where the graph and its refinement have no plan: conflicts one after another, a
+//! coarse hybrid A*, and ways out of sets that own ship starts in.
+
+pub(crate) mod cost_to_go;
+pub(crate) mod escape;
+pub(crate) mod harm;
+pub(crate) mod hybrid_a_star;
+pub(crate) mod sequential;

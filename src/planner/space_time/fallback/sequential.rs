@@ -1,0 +1,98 @@
+//! Conflicts that are far apart, one after another: where no one manoeuvre is clear of them all.
+//!
+//! The graph leaves the route once and comes back once. Here its best plan for the first conflict, back on the route and
+//! blind to what comes later, is what the next conflict is met from.
+
+use crate::planner::Problem;
+use crate::planner::clock::Clock;
+use crate::planner::space_time::graph::Graph;
+use crate::planner::space_time::graph::node;
+use crate::planner::space_time::land;
+use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::route::Route;
+use crate::planner::space_time::selection::initial_guess::Conflict;
+use crate::search::{Search, Stop};
+use crate::trajectory::Segment;
+
+/// Seconds. Conflicts that begin this soon after another are dealt with together.
+pub(crate) const TOGETHER_S: f64 = 120.0;
+
+/// Seconds before a conflict at which she may leave at the earliest.
+const LEAD_S: f64 = 100.0;
+
+/// Conflicts at most.
+const MAX_STAGES: usize = 30;
+
+/// Expansions for one conflict.
+const MAX_EXPANDED: usize = 500;
+
+/// True when conflicts, in order of their beginnings, do not all begin together.
+pub(crate) fn are_several(conflicts: &[Conflict]) -> bool {
+    let ends = conflicts.first().zip(conflicts.last());
+    ends.is_some_and(|(first, last)| last.from > first.from + TOGETHER_S)
+}
+
+/// A motion to the last waypoint that is clear of every hazard and of land, from an undisturbed one that is not; `None` when a
+/// conflict finds no way around, or a later one begins no later.
+pub(crate) fn one_after_another(
+    problem: &Problem,
+    hazards: &[Hazard],
+    route: &Route,
+    undisturbed: &[Segment],
+    clock: Clock,
+) -> Option<Vec<Segment>> {
+    let mut motion = undisturbed.to_vec();
+    let mut before = f64::NEG_INFINITY;
+    for _ in 0..MAX_STAGES {
+        let Some(contact) = first_conflict(problem, hazards, &motion) else {
+            return Some(motion);
+        };
+        // negated on purpose: a NaN is no progress
+        if !(contact > before) || clock.is_up() {
+            return None;
+        }
+        before = contact;
+        let leaves = (contact - LEAD_S).max(0.0);
+        let cut = |from: f64, until: f64| -> Vec<Segment> {
+            motion
+                .iter()
+                .filter(|s| s.end_time() > from && s.start_time < until)
+                .map(|s| s.between(from, until))
+                .collect()
+        };
+        let rest = cut(leaves, f64::INFINITY);
+        let near = cut(leaves, contact + 2.0 * TOGETHER_S);
+        let mut graph =
+            Graph::for_conflict(problem, hazards, route, [&near, &rest], contact, clock);
+        let mut search = Search::new(graph.root());
+        let Stop::Goal(goal) = search.next_goal(&mut graph, MAX_EXPANDED) else {
+            return None;
+        };
+        let mut next = cut(f64::NEG_INFINITY, leaves);
+        next.extend(node::motion_to(&search, goal));
+        motion = next;
+    }
+    None
+}
+
+/// What of a way to the end has to be clear: until so late, and for a while from where it begins. What comes later is the next
+/// conflict's.
+pub(crate) fn soon(way: &[Segment], until: f64) -> Vec<Segment> {
+    let begun = way.first().map_or(until, |s| s.start_time);
+    let until = until.max(begun + TOGETHER_S);
+    way.iter()
+        .filter(|s| s.start_time < until)
+        .map(|s| s.between(s.start_time, until))
+        .collect()
+}
+
+/// When a motion first meets a hazard or the land.
+fn first_conflict(problem: &Problem, hazards: &[Hazard], motion: &[Segment]) -> Option<f64> {
+    let met = |s: &Segment| {
+        let contacts = hazards.iter().filter_map(|h| h.first_contact(s));
+        contacts.min_by(f64::total_cmp)
+    };
+    let target = motion.iter().find_map(met);
+    let land = land::first_contact(problem.coast, motion);
+    target.into_iter().chain(land).min_by(f64::total_cmp)
+}

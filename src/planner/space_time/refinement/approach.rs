@@ -1,0 +1,455 @@
+//! Where a manoeuvre comes closest to a part of an obstacle: the local minima of the slack in time.
+
+use crate::frame::{Vector, to_port, to_starboard};
+use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::planner::space_time::piece::Window;
+use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::refinement::rollout::{Leg, Sailed};
+use crate::tolerance;
+
+/// Metres. Approaches closer than this become rows.
+pub(crate) const NEAR_M: f64 = 40.0;
+
+/// Metres. Where legs meet closer than this the joint is a row too: a leg that slides along a face touches it at both
+/// ends, and of two ends only one is a minimum.
+const SLIDING_M: f64 = 20.0;
+
+/// Seconds within which a joint is the minimum beside it.
+const SAME_S: f64 = 0.2;
+
+/// Radians. Longest arc that one chord stands for when a minimum is sought, to begin with and at the end.
+pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;
+pub(crate) const FINE_CHORD_RAD: f64 = 0.05;
+
+/// Cuts of one minimum at most.
+const MAX_CUTS: usize = 30;
+
+/// Metres. A smooth minimum is found to this.
+const SETTLED_M: f64 = 1e-7;
+
+/// A local minimum of the slack along a manoeuvre.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Approach {
+    /// Index of the leg, and where on it.
+    pub leg: usize,
+    pub fraction: f64,
+    /// Metres.
+    pub slack: f64,
+    /// Of the slack per metre east, metre north and second of the place: of the face that attains it, or of two
+    /// mixed so that the slack's rate along the manoeuvre vanishes.
+    pub rates: [f64; 3],
+}
+
+/// What the slack is taken to: for a motion along a line it is convex in time.
+trait Shape {
+    /// What attains the slack.
+    type Face: Copy;
+
+    /// Metres, and what attains it; `near` attains it nearby.
+    fn slack(&self, position: Vector, time: f64, near: Option<Self::Face>) -> Slack<Self::Face>;
+
+    /// Its outward normal, and how fast it moves that way, m/s.
+    fn plane(&self, face: Self::Face) -> (Vector, f64);
+
+    /// True when no better minimum lies between: `gap` metres below `found` is what its neighbours allow.
+    fn is_settled(found: Self::Face, neighbours: [Self::Face; 2], gap: f64) -> bool;
+}
+
+/// A signed distance or a lower bound of it.
+#[derive(Debug, Clone, Copy)]
+struct Slack<F> {
+    value: f64,
+    face: F,
+}
+
+impl Shape for PolytopeObstacle {
+    type Face = usize;
+
+    fn slack(&self, position: Vector, time: f64, near: Option<usize>) -> Slack<usize> {
+        let slack = match near {
+            Some(face) => self.slack_near(position, time, face),
+            None => self.slack(position, time),
+        };
+        Slack {
+            value: slack.value,
+            face: slack.face,
+        }
+    }
+
+    fn plane(&self, face: usize) -> (Vector, f64) {
+        let face = &self.faces()[face];
+        (face.normal, face.velocity_support)
+    }
+
+    fn is_settled(found: usize, neighbours: [usize; 2], _: f64) -> bool {
+        neighbours.contains(&found)
+    }
+}
+
+impl Shape for EllipsoidObstacle {
+    type Face = (Vector, f64);
+
+    fn slack(&self, position: Vector, time: f64, _: Option<Self::Face>) -> Slack<Self::Face> {
+        let found = self.signed_distance(position, time);
+        Slack {
+            value: found.distance,
+            face: (found.normal, self.support(found.normal, time).rate),
+        }
+    }
+
+    fn plane(&self, face: (Vector, f64)) -> (Vector, f64) {
+        face
+    }
+
+    fn is_settled(_: (Vector, f64), _: [(Vector, f64); 2], gap: f64) -> bool {
+        // negated on purpose: a NaN ends the search
+        !(gap > SETTLED_M)
+    }
+}
+
+/// Adds the local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`], and joints below [`SLIDING_M`]; arcs
+/// are cut into chords of `chord` radians at most. `middles` are those of the legs, see [`Sailed::middles`].
+pub(crate) fn add_approaches(
+    hazard: &Hazard,
+    sailed: &Sailed,
+    middles: &[Vector],
+    chord: f64,
+    found: &mut Vec<Approach>,
+) {
+    match hazard.round {
+        Some(ellipsoid) => add_of(ellipsoid, hazard, sailed, (middles, chord), found),
+        None => add_of(hazard.body, hazard, sailed, (middles, chord), found),
+    }
+}
+
+fn add_of<S: Shape>(
+    shape: &S,
+    hazard: &Hazard,
+    sailed: &Sailed,
+    (middles, chord): (&[Vector], f64),
+    found: &mut Vec<Approach>,
+) {
+    let already = found.len();
+    let mut minima = Minima::new(shape, hazard, sailed, found);
+    let mut joints: Vec<Approach> = Vec::new();
+    let clock = hazard.start();
+    // where a leg begins the one before it ended
+    let mut near = None;
+    for (leg, (l, middle)) in sailed.legs.iter().zip(middles).enumerate() {
+        let segment = &l.segment;
+        if segment.duration <= 0.0 {
+            continue;
+        }
+        if hazard.clearance_bound_about(segment, *middle) > NEAR_M {
+            minima.end_run();
+            continue;
+        }
+        let Span { first, last } = Span::of(l, hazard.window);
+        let count = (segment.turn_rate.abs() * segment.duration * (last - first) / chord)
+            .ceil()
+            .max(1.0);
+        let sample = |fraction: f64, position: Vector, near: Option<S::Face>| {
+            let time = segment.start_time + segment.duration * fraction - clock;
+            Sample {
+                position,
+                time,
+                fraction,
+                slack: shape.slack(position, time, near),
+            }
+        };
+        // each sample is the one before turned about the centre of the arc
+        let turn = segment.turn_rate * segment.duration * (last - first) / count;
+        let (sin, cos) = if segment.is_arc() {
+            turn.sin_cos()
+        } else {
+            (0.0, 1.0)
+        };
+        let (start, ahead) = if first > 0.0 {
+            l.along(first)
+        } else {
+            (segment.start.position, l.ahead)
+        };
+        let mut arm = to_starboard(ahead) * segment.radius();
+        let mut from = sample(first, start, near);
+        if first == 0.0 && from.slack.value < SLIDING_M {
+            joints.push(joint(shape, leg, &from));
+        }
+        let closing = (segment.speed + hazard.speed()) * segment.duration * (last - first) / count;
+        let mut k = 0.0;
+        loop {
+            // what is far from near is so for as long as closing takes
+            let far = ((from.slack.value - NEAR_M) / closing).floor();
+            if far >= 1.0 {
+                minima.end_run();
+                k += far;
+                if k >= count {
+                    break;
+                }
+                let fraction = first + (last - first) * (k / count);
+                let (position, ahead) = l.along(fraction);
+                arm = to_starboard(ahead) * segment.radius();
+                from = sample(fraction, position, Some(from.slack.face));
+                continue;
+            }
+            if k >= count {
+                break;
+            }
+            k += 1.0;
+            let fraction = first + (last - first) * (k / count);
+            let position = if segment.is_arc() {
+                let turned = arm * cos + to_port(arm) * sin;
+                let moved = turned - arm;
+                arm = turned;
+                from.position + moved
+            } else {
+                from.position + l.ahead * (segment.length() * (last - first))
+            };
+            let to = sample(fraction, position, Some(from.slack.face));
+            let mut piece = Chord::new(shape, leg, &from, &to);
+            if count > 1.0 && piece.least.is_mixed() {
+                let place = l.along(piece.least.fraction).0;
+                let at = sample(piece.least.fraction, place, Some(to.slack.face));
+                piece.least.slack = at.slack.value;
+            }
+            minima.push(piece);
+            from = to;
+        }
+        near = Some(from.slack.face);
+    }
+    minima.end_run();
+    let time = |a: &Approach| {
+        let s = &sailed.legs[a.leg].segment;
+        s.start_time + s.duration * a.fraction
+    };
+    let end = found.len();
+    for joint in joints {
+        let is_apart = |f: &Approach| (time(f) - time(&joint)).abs() > SAME_S;
+        if found[already..end].iter().all(is_apart) {
+            found.push(joint);
+        }
+    }
+}
+
+/// The start of a leg: its place on the leg is fixed, so any face that attains the slack gives its rates.
+fn joint<S: Shape>(shape: &S, leg: usize, at: &Sample<S::Face>) -> Approach {
+    let (normal, speed) = shape.plane(at.slack.face);
+    Approach {
+        leg,
+        fraction: at.fraction,
+        slack: at.slack.value,
+        rates: [normal.x, normal.y, -speed],
+    }
+}
+
+/// What of a leg is sailed while a part is in force, as fractions of it.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    first: f64,
+    last: f64,
+}
+
+impl Span {
+    fn of(leg: &Leg, window: Option<Window>) -> Self {
+        let whole = Self {
+            first: 0.0,
+            last: 1.0,
+        };
+        let Some(window) = window else {
+            return whole;
+        };
+        let s = &leg.segment;
+        let fraction = |time: f64| ((time - s.start_time) / s.duration).clamp(0.0, 1.0);
+        let (first, last) = (fraction(window.start), fraction(window.end));
+        Self {
+            first,
+            last: last.max(first),
+        }
+    }
+}
+
+/// Own ship's velocity at a minimum that is at the edge of a window: its instant is fixed, not its share of the leg.
+fn velocity_at_edge<F>(hazard: &Hazard, sailed: &Sailed, least: &Minimum<F>) -> Option<Vector> {
+    let window = hazard.window?;
+    let leg = &sailed.legs[least.leg];
+    let time = leg.segment.start_time + leg.segment.duration * least.fraction;
+    let near = |edge: f64| (time - edge).abs() <= tolerance::TIME_S;
+    (near(window.start) || near(window.end))
+        .then(|| leg.along(least.fraction).1 * leg.segment.speed)
+}
+
+/// The local minima of runs of chords, found as the chords come.
+struct Minima<'a, S: Shape> {
+    shape: &'a S,
+    hazard: &'a Hazard<'a>,
+    sailed: &'a Sailed,
+    /// The last chord of the run, and the least slack on the one before it.
+    last: Option<Chord<S::Face>>,
+    before: f64,
+    found: &'a mut Vec<Approach>,
+}
+
+impl<'a, S: Shape> Minima<'a, S> {
+    fn new(
+        shape: &'a S,
+        hazard: &'a Hazard<'a>,
+        sailed: &'a Sailed,
+        found: &'a mut Vec<Approach>,
+    ) -> Self {
+        Self {
+            shape,
+            hazard,
+            sailed,
+            last: None,
+            before: f64::INFINITY,
+            found,
+        }
+    }
+
+    fn push(&mut self, chord: Chord<S::Face>) {
+        let Some(last) = self.last.replace(chord) else {
+            return;
+        };
+        let slack = last.least.slack;
+        if slack < self.before && slack <= chord.least.slack {
+            self.add(&last, Some(&chord));
+        }
+        self.before = slack;
+    }
+
+    /// What comes next does not follow on what came.
+    fn end_run(&mut self) {
+        if let Some(last) = self.last.take()
+            && last.least.slack < self.before
+        {
+            self.add(&last, None);
+        }
+        self.before = f64::INFINITY;
+    }
+
+    fn add(&mut self, chord: &Chord<S::Face>, next: Option<&Chord<S::Face>>) {
+        let here = &chord.least;
+        if !(here.slack < NEAR_M) {
+            return;
+        }
+        let mut faces = here.faces;
+        // at a joint the two sides share the instant: its faces are one falling, one rising
+        if let Some(next) = next
+            && next.least.slack - here.slack < 1e-9
+            && !here.is_mixed()
+            && chord.end_rate < 0.0
+            && next.start_rate > 0.0
+        {
+            let weight = next.start_rate / (next.start_rate - chord.end_rate);
+            faces = [
+                (here.faces[0].0, weight),
+                (next.least.faces[0].0, 1.0 - weight),
+            ];
+        }
+        let edge = velocity_at_edge(self.hazard, self.sailed, here);
+        let mut rates = [0.0; 3];
+        for (face, weight) in faces {
+            let (normal, speed) = self.shape.plane(face);
+            let clock = edge.map_or(speed, |velocity| normal.dot(&velocity));
+            for (sum, rate) in rates.iter_mut().zip([normal.x, normal.y, -clock]) {
+                *sum += weight * rate;
+            }
+        }
+        self.found.push(Approach {
+            leg: here.leg,
+            fraction: here.fraction,
+            slack: here.slack,
+            rates,
+        });
+    }
+}
+
+/// An instant of a segment with its slack.
+#[derive(Debug, Clone, Copy)]
+struct Sample<F> {
+    position: Vector,
+    time: f64,
+    fraction: f64,
+    slack: Slack<F>,
+}
+
+/// The least slack on a chord.
+#[derive(Debug, Clone, Copy)]
+struct Minimum<F> {
+    leg: usize,
+    fraction: f64,
+    slack: f64,
+    /// Faces that attain it with their weights.
+    faces: [(F, f64); 2],
+}
+
+impl<F> Minimum<F> {
+    fn is_mixed(&self) -> bool {
+        self.faces[1].1 != 0.0
+    }
+}
+
+/// A straight piece between two samples, with the least slack on it. Along it the slack is a convex
+/// function, of a polytope piecewise linear, so tangents of a falling and a rising face are intersected until they
+/// meet.
+#[derive(Debug, Clone, Copy)]
+struct Chord<F> {
+    least: Minimum<F>,
+    /// m/s of the slack at the start and at the end.
+    start_rate: f64,
+    end_rate: f64,
+}
+
+impl<F: Copy> Chord<F> {
+    fn new<S: Shape<Face = F>>(shape: &S, leg: usize, from: &Sample<F>, to: &Sample<F>) -> Self {
+        let width = (to.time - from.time).max(1e-12);
+        let velocity = (to.position - from.position) / width;
+        let rate = |face: F| {
+            let (normal, speed) = shape.plane(face);
+            normal.dot(&velocity) - speed
+        };
+        let (start_rate, end_rate) = (rate(from.slack.face), rate(to.slack.face));
+        let end = |s: &Sample<F>| Minimum {
+            leg,
+            fraction: s.fraction,
+            slack: s.slack.value,
+            faces: [(s.slack.face, 1.0), (s.slack.face, 0.0)],
+        };
+        let least = if start_rate >= 0.0 {
+            end(from)
+        } else if end_rate <= 0.0 {
+            end(to)
+        } else {
+            let (mut a, mut b) = ((0.0, from.slack), (width, to.slack));
+            let mut best = (0.0, from.slack.value, [(a.1.face, 1.0), (b.1.face, 0.0)]);
+            for _ in 0..MAX_CUTS {
+                let (fall, rise) = (rate(a.1.face), rate(b.1.face));
+                let s = (a.0 + (b.1.value - a.1.value - rise * (b.0 - a.0)) / (fall - rise))
+                    .clamp(a.0, b.0);
+                let place = from.position + velocity * s;
+                let g = shape.slack(place, from.time + s, Some(a.1.face));
+                let weight = rise / (rise - fall);
+                best = (s, g.value, [(a.1.face, weight), (b.1.face, 1.0 - weight)]);
+                let gap = g.value - a.1.value - fall * (s - a.0);
+                if S::is_settled(g.face, [a.1.face, b.1.face], gap) || !(s > a.0 && s < b.0) {
+                    break;
+                }
+                if rate(g.face) < 0.0 {
+                    a = (s, g)
+                } else {
+                    b = (s, g)
+                }
+            }
+            Minimum {
+                leg,
+                fraction: from.fraction + (to.fraction - from.fraction) * best.0 / width,
+                slack: best.1,
+                faces: best.2,
+            }
+        };
+        Self {
+            least,
+            start_rate,
+            end_rate,
+        }
+    }
+}

@@ -1,0 +1,467 @@
+//! Finds the lengths of a manoeuvre: sequential quadratic programming with an L1 merit.
+
+pub(crate) mod active_set;
+pub(crate) mod approach;
+pub(crate) mod factor;
+pub(crate) mod gauss_newton;
+pub(crate) mod insertion;
+pub(crate) mod model;
+pub(crate) mod quadratic;
+pub(crate) mod return_segments;
+pub(crate) mod rollout;
+pub(crate) mod structure;
+pub(crate) mod trial;
+
+use crate::frame::Side;
+use crate::planner::AGAINST_THE_RULES;
+use crate::planner::space_time::refinement::approach::FINE_CHORD_RAD;
+use crate::planner::space_time::refinement::model::Model;
+use crate::planner::space_time::refinement::quadratic::{
+    Constraint, MAX_VARIABLES, Programme, Row,
+};
+use crate::planner::space_time::refinement::structure::{Ending, Slot, Template};
+use crate::planner::space_time::refinement::trial::{Outline, Scene};
+use crate::planner::space_time::rules::readily_apparent::Apparent;
+use crate::trajectory::Segment;
+
+/// Metres by which one step may change a length, at first, at most, at least.
+const FIRST_RADIUS_M: f64 = 80.0;
+const LARGEST_RADIUS_M: f64 = 400.0;
+const SMALLEST_RADIUS_M: f64 = 0.02;
+
+/// Steps of one refinement at most.
+pub(crate) const MAX_STEPS: usize = 40;
+
+/// Last corrections of a refinement that ends a little inside, and how far inside that may be, metres.
+const RESTORATIONS: usize = 3;
+const RESTORABLE_M: f64 = 5.0;
+
+/// Radians. Longest turn of one slot.
+const LONGEST_ARC: f64 = 2.0;
+
+/// The merit's weight of a missing metre, m²/m: at first a multiple of the seed's cost, which a plan
+/// loses over some tens of metres; later at least the multipliers.
+const LEAST_PENALTY: f64 = 10.0;
+const PENALTY_PER_COST: f64 = 0.01;
+
+/// A step that does not fit or gain is shortened by this, so many times, before the programme is solved
+/// anew in a smaller box.
+const BACKTRACK: f64 = 0.4;
+const MAX_BACKTRACKS: usize = 2;
+
+/// Share of what the box allows that an unmet row asks for.
+const REACHABLE: f64 = 0.8;
+
+/// By how much a missing metre is dearer for a refinement that has come to rest inside a set, and how often.
+const DEARER: f64 = 6.0;
+const MAX_RAISES: usize = 3;
+
+/// Share of the predicted gain that a step has to bring.
+const LEAST_GAIN: f64 = 0.05;
+
+/// Metres inside that are not worth a correction.
+const CLEAR_ENOUGH_M: f64 = 1e-3;
+
+/// Relative decrease that is no progress.
+const STALLED: f64 = 1e-3;
+
+/// A manoeuvre to begin from.
+#[derive(Debug, Clone)]
+pub(crate) struct Seed {
+    pub template: Template,
+    pub lengths: Row,
+}
+
+/// Side of the first turn of some length.
+fn first_turn(seed: &Seed) -> Option<Side> {
+    let mut slots = seed.template.slots.iter().zip(&seed.lengths);
+    slots.find_map(|(slot, length)| match slot {
+        Slot::Arc { side, .. } if *length > 0.0 => Some(*side),
+        _ => None,
+    })
+}
+
+/// A manoeuvre clear of every set, with the margin, as far as its contact rows tell.
+#[derive(Debug, Clone, Copy)]
+struct Refined {
+    cost: f64,
+    /// Of its slots.
+    lengths: Row,
+}
+
+/// A refinement under way.
+#[derive(Debug)]
+pub(crate) struct Refinement {
+    template: Template,
+    lengths: Row,
+    model: Model,
+    /// Which turn others have to see; `None` where none.
+    apparent: Option<Apparent>,
+    /// What its costs are multiplied by where it is ranked among others.
+    handicap: f64,
+    best: Option<Refined>,
+    penalty: f64,
+    /// Sum of the multipliers of the last step, m²/m.
+    price: f64,
+    radius: f64,
+    stalled: usize,
+    raised: usize,
+    steps: usize,
+    finished: bool,
+    overtaken: bool,
+}
+
+impl Refinement {
+    /// Begins from the seed, or, where its return does not fit before the end of the leg, from one with
+    /// shorter lines or that steers for the last waypoint.
+    pub(crate) fn fitting(scene: &Scene, seed: Seed) -> Option<Self> {
+        let mut shorter = seed.clone();
+        for _ in 0..4 {
+            if let Some(refinement) = Self::new(scene, shorter.clone()) {
+                return Some(refinement);
+            }
+            for (slot, length) in shorter.template.slots.iter().zip(&mut shorter.lengths) {
+                if matches!(slot, Slot::Line { .. }) {
+                    *length *= 0.6;
+                }
+            }
+        }
+        let last = seed.template.slots.iter().rev().find_map(|s| match s {
+            Slot::Arc { side, speed } => Some((*side, *speed)),
+            _ => None,
+        });
+        let mut onward = seed;
+        for _ in 0..4 {
+            let (side, speed) = last?;
+            onward.template.ending = Ending::Goal { side, speed };
+            if let Some(refinement) = Self::new(scene, onward.clone()) {
+                return Some(refinement);
+            }
+            for (slot, length) in onward.template.slots.iter().zip(&mut onward.lengths) {
+                if matches!(slot, Slot::Line { .. }) {
+                    *length *= 0.6;
+                }
+            }
+        }
+        None
+    }
+
+    /// `None` when the seed's ending does not fit, or its first turn is not what the rules ask for.
+    fn new(scene: &Scene, mut seed: Seed) -> Option<Self> {
+        let apparent = if scene.problem.duty().is_none() {
+            None
+        } else {
+            Some(Apparent::in_seed(&mut seed, scene.problem)?)
+        };
+        let model = scene.model(&seed.template, &seed.lengths)?;
+        let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
+        let first = first_turn(&seed);
+        let wanted = scene.problem.first_turn;
+        let against = wanted.is_some_and(|side| first.is_some_and(|first| first != side));
+        let mut refinement = Self {
+            apparent,
+            handicap: if against {
+                1.0 + AGAINST_THE_RULES
+            } else {
+                1.0
+            },
+            template: seed.template,
+            lengths: seed.lengths,
+            model,
+            best: None,
+            penalty,
+            price: penalty,
+            radius: FIRST_RADIUS_M,
+            stalled: 0,
+            raised: 0,
+            steps: 0,
+            finished: false,
+            overtaken: false,
+        };
+        refinement.keep(scene);
+        Some(refinement)
+    }
+
+    pub(crate) fn is_finished(&self) -> bool {
+        self.finished
+    }
+
+    /// The motion of the cheapest clear manoeuvre so far.
+    pub(crate) fn best_motion(&self, scene: &Scene) -> Option<Vec<Segment>> {
+        let best = self.best?;
+        let sailed = self
+            .template
+            .sail(scene.problem, scene.route, &best.lengths)?;
+        Some(sailed.motion())
+    }
+
+    /// The cheapest clear manoeuvre so far, as a seed.
+    pub(crate) fn best(&self) -> Option<Seed> {
+        Some(Seed {
+            template: self.template.clone(),
+            lengths: self.best.as_ref()?.lengths,
+        })
+    }
+
+    /// Cost of the best clear manoeuvre, m²; infinite before there is one.
+    pub(crate) fn best_cost(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |b| b.cost)
+    }
+
+    /// Cost of the manoeuvre at hand with its penalty, m².
+    pub(crate) fn merit(&self) -> f64 {
+        self.model.cost + self.penalty * self.model.violation
+    }
+
+    /// Sum of the multipliers of the last step: what a missing metre costs to first order, m²/m.
+    pub(crate) fn price(&self) -> f64 {
+        self.price
+    }
+
+    /// What the manoeuvre at hand will cost once it is clear, to first order, m²: the missing metres at the
+    /// multipliers of its last step, or at `least` where those are smaller.
+    pub(crate) fn expected_cost(&self, least: f64) -> f64 {
+        self.handicap * (self.model.cost + self.price.max(least) * self.model.violation)
+    }
+
+    /// What it is ranked by among others that are clear, m².
+    pub(crate) fn rank(&self) -> f64 {
+        self.handicap * self.best_cost()
+    }
+
+    /// True where next to nothing is missing, or was on the way.
+    pub(crate) fn is_nearly_clear(&self) -> bool {
+        self.best.is_some() || self.model.violation < RESTORABLE_M
+    }
+
+    /// Gives up: another one is ahead.
+    pub(crate) fn stop(&mut self) {
+        (self.finished, self.overtaken) = (true, true);
+    }
+
+    pub(crate) fn is_overtaken(&self) -> bool {
+        self.overtaken
+    }
+
+    /// Only what fine chords have seen is known to be clear.
+    fn keep(&mut self, scene: &Scene) {
+        let clear = self.model.least_slack >= 0.0 && scene.chord <= FINE_CHORD_RAD;
+        let better = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
+        if clear && better {
+            self.best = Some(Refined {
+                cost: self.model.cost,
+                lengths: self.lengths,
+            });
+        }
+    }
+
+    /// The nearest manoeuvre that is clear, from one that is nearly so: least change of lengths under the
+    /// linearised rows, a few times.
+    fn restore(&mut self, scene: &Scene) {
+        let n = self.template.free();
+        let mut identity = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
+        for (i, row) in identity.iter_mut().enumerate() {
+            row[i] = 1.0;
+        }
+        for _ in 0..RESTORATIONS {
+            let clear = self.model.least_slack >= 0.0;
+            let close = self.model.violation < RESTORABLE_M;
+            let worth = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
+            if clear || !close || !worth {
+                return;
+            }
+            let (mut low, mut high) = (self.lengths.map(|l| -l), [LARGEST_RADIUS_M; MAX_VARIABLES]);
+            self.keep_apparent(&self.lengths, &mut low, &mut high);
+            let programme = Programme {
+                size: n,
+                hessian: &identity,
+                gradient: &[0.0; MAX_VARIABLES],
+                low: &low,
+                high: &high,
+                rows: &self.model.rows,
+                price: None,
+            };
+            let Some(solution) = programme.solve() else {
+                return;
+            };
+            let mut trial = self.lengths;
+            for (length, step) in trial.iter_mut().zip(&solution.x).take(n) {
+                *length = (*length + step).max(0.0);
+            }
+            let Some(model) = scene.model(&self.template, &trial) else {
+                return;
+            };
+            if model.violation >= self.model.violation {
+                return;
+            }
+            (self.lengths, self.model) = (trial, model);
+            self.keep(scene);
+        }
+    }
+
+    /// Looks at the manoeuvre at hand anew, with other chords.
+    pub(crate) fn look_again(&mut self, scene: &Scene) {
+        if let Some(model) = scene.model(&self.template, &self.lengths) {
+            self.model = model;
+            (self.finished, self.stalled) = (false, 0);
+            self.keep(scene);
+        }
+    }
+
+    /// Ends here, clear if it is nearly so.
+    pub(crate) fn settle(&mut self, scene: &Scene) {
+        self.finished = true;
+        self.restore(scene);
+    }
+
+    /// Narrows a box of steps so that what others have to see stays so.
+    fn keep_apparent(&self, lengths: &Row, low: &mut Row, high: &mut Row) {
+        if let Some(apparent) = &self.apparent {
+            apparent.narrow(lengths, low, high);
+        }
+    }
+
+    /// One step.
+    pub(crate) fn step(&mut self, scene: &Scene) {
+        self.steps += 1;
+        let advanced = self.advance(scene);
+        if !advanced && self.model.least_slack < 0.0 && self.raised < MAX_RAISES {
+            // at rest in a set: what is missing is worth more
+            self.raised += 1;
+            self.penalty *= DEARER;
+            self.radius = FIRST_RADIUS_M;
+            self.stalled = 0;
+            return;
+        }
+        if self.steps >= MAX_STEPS || !advanced {
+            self.settle(scene);
+        }
+    }
+
+    /// A second-order correction: the least change, by the Hessian, that brings a full step back outside the sets
+    /// that it curves into. Without it steps along a face are cut to nothing.
+    fn corrected(&self, scene: &Scene, trial: &Row, outline: &Outline) -> Option<(Row, Outline)> {
+        if outline.violation <= CLEAR_ENOUGH_M {
+            return None;
+        }
+        let mut low = trial.map(|l| (-self.radius).max(-l));
+        let mut high = [self.radius; MAX_VARIABLES];
+        self.keep_apparent(trial, &mut low, &mut high);
+        let programme = Programme {
+            size: self.template.free(),
+            hessian: &self.model.hessian,
+            gradient: &[0.0; MAX_VARIABLES],
+            low: &low,
+            high: &high,
+            rows: &scene.rows(&self.template, outline),
+            price: None,
+        };
+        let solution = programme.solve()?;
+        let mut corrected = *trial;
+        for (length, step) in corrected.iter_mut().zip(&solution.x) {
+            *length = (*length + step).max(0.0);
+        }
+        let outline = scene.outline(&self.template, &corrected)?;
+        Some((corrected, outline))
+    }
+
+    fn advance(&mut self, scene: &Scene) -> bool {
+        let n = self.template.free();
+        let (mut low, mut high) = ([0.0; MAX_VARIABLES], [0.0; MAX_VARIABLES]);
+        let longest = LONGEST_ARC * scene.problem.own.turning_radius;
+        for i in 0..n {
+            low[i] = (-self.radius).max(-self.lengths[i]);
+            high[i] = self.radius;
+            if matches!(self.template.slots[i], Slot::Arc { .. }) {
+                high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
+            }
+        }
+        self.keep_apparent(&self.lengths, &mut low, &mut high);
+        let mut rows = Vec::with_capacity(self.model.rows.len());
+        for row in &self.model.rows {
+            let (mut reach, mut least) = (0.0, 0.0);
+            for i in 0..n {
+                let ends = (row.coefficients[i] * low[i], row.coefficients[i] * high[i]);
+                reach += ends.0.max(ends.1);
+                least += ends.0.min(ends.1);
+            }
+            // negated on purpose: a NaN stays. What is met all over the box needs no row
+            if !(least >= row.bound) {
+                // a row that the box cannot meet asks for what it can
+                rows.push(Constraint {
+                    bound: row.bound.min(REACHABLE * reach),
+                    ..*row
+                });
+            }
+        }
+        let programme = Programme {
+            size: n,
+            hessian: &self.model.hessian,
+            gradient: &self.model.gradient,
+            low: &low,
+            high: &high,
+            rows: &rows,
+            price: Some(self.penalty),
+        };
+        let Some(solution) = programme.solve() else {
+            return false;
+        };
+        self.price = solution.multipliers.iter().sum::<f64>();
+        self.penalty = self.penalty.max(1.5 * self.price);
+        let met = self.model.violation - solution.missing;
+        let step = solution.x;
+        let largest = step[..n].iter().fold(0.0_f64, |m, s| m.max(s.abs()));
+        let linear: f64 = (0..n).map(|i| step[i] * self.model.gradient[i]).sum();
+        let bent: f64 = (0..n)
+            .map(|i| {
+                step[i]
+                    * (0..n)
+                        .map(|k| self.model.hessian[i][k] * step[k])
+                        .sum::<f64>()
+            })
+            .sum();
+        let merit = self.merit();
+        let mut share = 1.0;
+        for _ in 0..=MAX_BACKTRACKS {
+            let predicted = share * (self.penalty * met - linear) - 0.5 * share * share * bent;
+            let mut trial = self.lengths;
+            for i in 0..n {
+                trial[i] = (trial[i] + share * step[i]).max(0.0);
+            }
+            let mut found = scene.outline(&self.template, &trial);
+            let gain = |o: &Outline| merit - o.cost - self.penalty * o.violation;
+            let enough = |gained: f64| gained > 0.0 && gained >= LEAST_GAIN * predicted;
+            if share == 1.0
+                && let Some(outline) = &found
+                && !enough(gain(outline))
+                && let Some(corrected) = self.corrected(scene, &trial, outline)
+                && enough(gain(&corrected.1))
+            {
+                trial = corrected.0;
+                found = Some(corrected.1);
+            }
+            let found = found.map(|outline| (gain(&outline), outline));
+            if let Some((gained, outline)) = found
+                && enough(gained)
+            {
+                let model = scene.completed(&self.template, outline);
+                let settled =
+                    gained < STALLED * model.cost.max(1.0) && model.violation < CLEAR_ENOUGH_M;
+                self.stalled = if settled { self.stalled + 1 } else { 0 };
+                (self.lengths, self.model) = (trial, model);
+                self.keep(scene);
+                if share < 1.0 {
+                    self.radius = (2.0 * share * largest)
+                        .min(self.radius)
+                        .max(SMALLEST_RADIUS_M);
+                } else if gained > 0.6 * predicted && largest > 0.9 * self.radius {
+                    self.radius = (1.7 * self.radius).min(LARGEST_RADIUS_M);
+                }
+                return self.stalled < 2;
+            }
+            share *= BACKTRACK;
+        }
+        self.radius = share * largest.min(self.radius);
+        self.radius >= SMALLEST_RADIUS_M
+    }
+}

@@ -1,0 +1,354 @@
+//! The refinement's view of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the
+//! contact rows, all in the free lengths.
+
+use crate::frame::to_port;
+use crate::planner::space_time::refinement::approach::Approach;
+use crate::planner::space_time::refinement::gauss_newton::{
+    Moments, Residuals, reduce, reduce_matrix,
+};
+use crate::planner::space_time::refinement::quadratic::{Constraint, MAX_VARIABLES, Row};
+use crate::planner::space_time::refinement::rollout::{Owner, Place};
+use crate::planner::space_time::refinement::structure::Template;
+use crate::planner::space_time::refinement::trial::{Outline, Scene, Weighed};
+
+/// Metres that solved slots and the leg after the return keep, so that a step does not run out of them.
+const ROOM_M: f64 = 1.0;
+
+/// Metres kept from every set while refining, so that the exact test afterwards passes.
+pub(crate) const MARGIN_M: f64 = 0.02;
+
+/// One manoeuvre, evaluated.
+#[derive(Debug)]
+pub(crate) struct Model {
+    pub cost: f64,
+    pub gradient: Row,
+    /// Positive definite, a row per variable.
+    pub hessian: Vec<Row>,
+    /// Contact rows and the signs of the solved slots, linearised: `row . step >= bound`.
+    pub rows: Vec<Constraint>,
+    /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
+    /// splits in two must not make the merit jump.
+    pub violation: f64,
+    /// Least slack of all contact rows, metres.
+    pub least_slack: f64,
+}
+
+/// Share of the cost per square metre that is added to the Hessian's diagonal, and the least cost it is taken of, m²:
+/// Gauss-Newton leaves directions flat.
+const REGULARISATION: f64 = 1e-5;
+const LEAST_REGULARISED: f64 = 20.0;
+
+/// One manoeuvre with its rates in all its slots, the solved ones included.
+#[derive(Debug)]
+pub(crate) struct Full {
+    pub outline: Outline,
+    pub gradient: Row,
+    /// The lower triangle.
+    hessian: Vec<Row>,
+    pub moments: Moments,
+}
+
+impl Scene<'_> {
+    /// Sails and evaluates; `None` when the manoeuvre's ending does not fit.
+    pub(crate) fn model(&self, template: &Template, lengths: &Row) -> Option<Model> {
+        Some(self.completed(template, self.outline(template, lengths)?))
+    }
+
+    /// The rates of a manoeuvre that has been outlined.
+    pub(crate) fn completed(&self, template: &Template, outline: Outline) -> Model {
+        let full = self.full(template, outline);
+        let outline = &full.outline;
+        let (all, free) = (template.all(), template.free());
+        let solved = &outline.sailed.solved_rates[..all - free];
+        let gradient = reduce(&full.gradient, solved, free);
+        let mut hessian = reduce_matrix(full.hessian, solved, free);
+        for (i, row) in hessian.iter_mut().enumerate() {
+            row[i] += REGULARISATION * outline.cost.max(LEAST_REGULARISED);
+        }
+        Model {
+            cost: outline.cost,
+            gradient,
+            hessian,
+            rows: self.rows(template, outline),
+            violation: outline.violation,
+            least_slack: outline.least_slack,
+        }
+    }
+
+    /// Contact rows and the signs of the solved slots, linearised.
+    pub(crate) fn rows(&self, template: &Template, outline: &Outline) -> Vec<Constraint> {
+        let (all, free) = (template.all(), template.free());
+        let sailed = &outline.sailed;
+        let solved = &sailed.solved_rates[..all - free];
+        let mut rows = Vec::with_capacity(outline.approaches.len() + 3);
+        for approach in &outline.approaches {
+            let coefficients = self.approach_row(outline, approach);
+            rows.push(Constraint {
+                coefficients: reduce(&coefficients, solved, free),
+                bound: MARGIN_M - approach.slack,
+            });
+        }
+        for k in 0..all - free {
+            let bound = ROOM_M.min(sailed.solved[k]) - sailed.solved[k];
+            rows.push(Constraint {
+                coefficients: sailed.solved_rates[k],
+                bound,
+            });
+        }
+        if let Some(room) = sailed.room {
+            let coefficients = reduce(&outline.joining.0, solved, free).map(|c| -c);
+            rows.push(Constraint {
+                coefficients,
+                bound: ROOM_M.min(room) - room,
+            });
+        }
+        rows
+    }
+
+    /// The rates before the solved slots are eliminated.
+    pub(crate) fn full(&self, template: &Template, outline: Outline) -> Full {
+        let all = template.all();
+        let mut full = Full {
+            gradient: [0.0; MAX_VARIABLES],
+            hessian: vec![[0.0; MAX_VARIABLES]; all],
+            moments: Moments::new(all),
+            outline,
+        };
+        let outline = &full.outline;
+        let sailed = &outline.sailed;
+        let origin = self.problem.own.pose.position;
+        for point in &outline.points {
+            full.gradient[point.slot] += point.growth;
+            let Some(weighed) = &point.weighed else {
+                continue;
+            };
+            let Weighed {
+                place,
+                nearest,
+                weight,
+            } = weighed;
+            let residuals = self.residuals(place, nearest.leg, nearest.distance, *weight);
+            if point.slot < sailed.runs {
+                let mut rates = [[0.0; 3]; MAX_VARIABLES];
+                for (i, rate) in rates.iter_mut().enumerate().take(point.slot + 1) {
+                    *rate = sailed.own_rate(place, i);
+                }
+                Moments::add_directly(
+                    &rates[..=point.slot],
+                    &residuals,
+                    &mut full.gradient,
+                    &mut full.hessian,
+                );
+            } else {
+                let at = place.position - origin;
+                let own = sailed.own_rate(place, point.slot);
+                full.moments.add(point.slot, [at.x, at.y], own, &residuals);
+            }
+        }
+        let motors = sailed.motors(origin);
+        full.moments
+            .finish(&motors, &mut full.gradient, &mut full.hessian);
+        if let Some(tail) = &outline.tail {
+            let (distance, clock) = &outline.joining;
+            let mut lateness = [0.0; MAX_VARIABLES];
+            for i in 0..all {
+                full.gradient[i] += tail.by_time * clock[i] + tail.by_distance * distance[i];
+                lateness[i] = clock[i] - tail.slowness * distance[i];
+            }
+            for i in 0..all {
+                for k in 0..=i {
+                    full.hessian[i][k] += tail.bend * lateness[i] * lateness[k];
+                }
+            }
+        }
+        full
+    }
+
+    /// The residuals of a point whose nearest desired place is `distance` along the path, on `leg`.
+    fn residuals(&self, place: &Place, leg: usize, distance: f64, weight: f64) -> Residuals {
+        let l = &self.problem.desired.legs()[leg];
+        let q = self.problem.time_weight;
+        let sigma = distance - l.start_distance;
+        let (ahead, normal) = (l.direction, to_port(l.direction));
+        let offset = place.position - l.start;
+        let behind = ahead.dot(&offset) - sigma;
+        let late = place.time - l.start_time - sigma / l.speed;
+        let mut residuals = Residuals::default();
+        let scale = 2.0 * weight;
+        residuals.add(scale, normal.dot(&offset), [normal.x, normal.y, 0.0]);
+        if sigma > 0.0 && sigma < l.length {
+            let share = (q / (q + l.speed * l.speed)).sqrt();
+            let lag = share * (l.speed * late - behind);
+            let rates = [-share * ahead.x, -share * ahead.y, share * l.speed];
+            residuals.add(scale, lag, rates);
+        } else {
+            let root = q.sqrt();
+            residuals.add(scale, behind, [ahead.x, ahead.y, 0.0]);
+            residuals.add(scale, root * late, [0.0, 0.0, root]);
+        }
+        residuals
+    }
+
+    /// Rates of the slack at an approach.
+    pub(crate) fn approach_row(&self, outline: &Outline, approach: &Approach) -> Row {
+        let of = approach.rates;
+        let sailed = &outline.sailed;
+        match (
+            sailed.place(approach.leg, approach.fraction),
+            sailed.legs[approach.leg].owner,
+        ) {
+            (Some(place), _) => sailed.rates(&place, of),
+            (None, Owner::Tail { index }) => {
+                let (by_distance, by_time) = self.tail_rates(sailed, index, approach);
+                let mut row = [0.0; MAX_VARIABLES];
+                let (distances, clocks) = &outline.joining;
+                for (to, (distance, clock)) in row.iter_mut().zip(distances.iter().zip(clocks)) {
+                    *to = by_distance * distance + by_time * clock;
+                }
+                row
+            }
+            (None, Owner::Slot { .. }) => [0.0; MAX_VARIABLES],
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::frame::{Pose, Side, Vector};
+    use crate::geometry::outer_disc;
+    use crate::obstacle::{Coast, PolytopeObstacle};
+    use crate::planner::clock::Clock;
+    use crate::planner::space_time::piece::parts;
+    use crate::planner::space_time::proxy::Hazard;
+    use crate::planner::space_time::refinement::Seed;
+    use crate::planner::space_time::refinement::approach::FINE_CHORD_RAD;
+    use crate::planner::space_time::refinement::structure::Ending;
+    use crate::planner::space_time::refinement::structure::Slot;
+    use crate::planner::space_time::route::Route;
+    use crate::planner::space_time::selection::initial_guess::{Canonical, Conflict};
+    use crate::planner::{Problem, SearchKind};
+    use crate::trajectory::DesiredTrajectory;
+    use crate::vessel::{Hull, OwnShip};
+
+    /// Checks three manoeuvres with all slots open, two that return and one that steers for the goal, near a target.
+    pub(crate) fn at_manoeuvres(check: impl Fn(&Scene, &Seed)) {
+        let own = OwnShip {
+            pose: Pose::new(Vector::new(0.0, 0.0), 0.0),
+            speed: 5.0,
+            hull: Hull {
+                length: 30.0,
+                beam: 8.0,
+            },
+            turning_radius: 100.0,
+            speeds: vec![2.5, 5.0, 6.0],
+            safety_margin: 20.0,
+        };
+        let points = [(0.0, 0.0), (2500.0, 0.0)].map(|(x, y)| Vector::new(x, y));
+        let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
+        let velocity = crate::geometry::ConvexPolygon::hull(&[
+            Vector::new(-4.0, 0.3),
+            Vector::new(-5.0, -0.4),
+        ]);
+        let obstacles = [PolytopeObstacle::new(
+            "x",
+            outer_disc(60.0, 0.1).translated(Vector::new(1300.0, -10.0)),
+            velocity.expect("finite"),
+        )
+        .into()];
+        let problem = Problem {
+            own: &own,
+            desired: &desired,
+            alternatives: &[],
+            objective: crate::planner::Objective::SpaceTimeError,
+            obstacles: &obstacles,
+            coast: Coast::none(),
+            horizon: 900.0,
+            time_weight: 25.0,
+            search: SearchKind::AStar,
+            deadline: std::time::Duration::from_secs(5),
+            first_turn: None,
+            encountered: &[],
+        };
+        let route = Route::new(&problem, Clock::new(problem.deadline)).expect("a route");
+        let parts = parts(&obstacles, problem.horizon);
+        let hazards = [Hazard::new(&parts[0])];
+        let scene = Scene {
+            problem: &problem,
+            route: &route,
+            hazards: &hazards,
+            blocks: &[],
+            chord: FINE_CHORD_RAD,
+        };
+        let canonical = Canonical {
+            turn: 0.7,
+            lead: 0.9,
+            reach: 1.0,
+            slow: false,
+            rush: 0.0,
+        };
+        let conflict = Conflict {
+            from: 140.0,
+            to: 180.0,
+            through: 200.0,
+            offsets: [80.0, 90.0],
+            astern: (90.0, 160.0),
+            ahead: (90.0, 160.0),
+        };
+        for (side, goal) in [
+            (Side::Starboard, false),
+            (Side::Port, false),
+            (Side::Port, true),
+        ] {
+            let mut seed = canonical
+                .seed(&problem, &route, side, &conflict, 0)
+                .expect("a seed");
+            if goal {
+                seed.template.ending = Ending::Goal { side, speed: 6.0 };
+            }
+            for (i, slot) in seed.template.slots.iter().enumerate() {
+                seed.lengths[i] += if matches!(slot, Slot::Arc { .. }) {
+                    7.0
+                } else {
+                    11.0
+                } + i as f64;
+            }
+            check(&scene, &seed);
+        }
+    }
+
+    /// Every rate against central differences.
+    #[test]
+    fn rates_match_differences() {
+        at_manoeuvres(|scene, seed| {
+            let goal = matches!(seed.template.ending, Ending::Goal { .. });
+            let here = scene.model(&seed.template, &seed.lengths).expect("fits");
+            let contact_rows = here.rows.len() - if goal { 2 } else { 3 };
+            assert!(contact_rows > 0);
+            let step = 1e-4;
+            for i in 0..seed.template.free() {
+                let at = |d: f64| {
+                    let mut lengths = seed.lengths;
+                    lengths[i] += d;
+                    scene.model(&seed.template, &lengths).expect("fits")
+                };
+                let (less, more) = (at(-step), at(step));
+                let rate = (more.cost - less.cost) / (2.0 * step);
+                let scale = 1.0 + rate.abs();
+                assert!(
+                    (here.gradient[i] - rate).abs() < 2e-4 * scale,
+                    "slot {i}: {} {rate}",
+                    here.gradient[i]
+                );
+                for k in 0..here.rows.len() {
+                    let rate = (less.rows[k].bound - more.rows[k].bound) / (2.0 * step);
+                    let found = here.rows[k].coefficients[i];
+                    assert!(
+                        (found - rate).abs() < 2e-3 * (1.0 + rate.abs()),
+                        "row {k} slot {i}: {found} {rate}"
+                    );
+                }
+            }
+        });
+    }
+}

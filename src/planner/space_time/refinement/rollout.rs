@@ -1,0 +1,255 @@
+//! A manoeuvre that has been sailed: its motions, whose they are, and how they move with the lengths.
+
+use crate::frame::{Vector, cross, to_port};
+use crate::planner::Problem;
+use crate::planner::space_time::refinement::gauss_newton::Motor;
+use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
+use crate::planner::space_time::refinement::structure::Ending;
+use crate::trajectory::Segment;
+
+/// Which variable a motion's length belongs to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Owner {
+    /// Part `[from, to]` of slot `index`.
+    Slot { index: usize, from: f64, to: f64 },
+    /// The route followed after the manoeuvre.
+    Tail { index: usize },
+}
+
+/// A motion and whose it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Leg {
+    pub segment: Segment,
+    /// The unit vector ahead at its start.
+    pub ahead: Vector,
+    pub owner: Owner,
+}
+
+impl Leg {
+    /// Position and unit vector ahead at a fraction.
+    pub(crate) fn along(&self, fraction: f64) -> (Vector, Vector) {
+        let s = &self.segment;
+        let length = s.speed * s.duration * fraction;
+        if s.is_arc() {
+            turned(s.start.position, self.ahead, length, s.turn_rate / s.speed)
+        } else {
+            (s.start.position + self.ahead * length, self.ahead)
+        }
+    }
+}
+
+/// Position and unit vector ahead after an arc; `1 - cos` without cancellation.
+pub(crate) fn turned(from: Vector, ahead: Vector, length: f64, curvature: f64) -> (Vector, Vector) {
+    let (sin, cos) = (curvature * length).sin_cos();
+    let versine = if cos > 0.0 {
+        sin * sin / (1.0 + cos)
+    } else {
+        1.0 - cos
+    };
+    let port = to_port(ahead);
+    let end = from + (ahead * sin + port * versine) / curvature;
+    (end, ahead * cos + port * sin)
+}
+
+/// How everything after a slot moves per metre of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rigid {
+    /// Where the slot ends, its direction there, its curvature.
+    pub end: Vector,
+    pub ahead: Vector,
+    pub curvature: f64,
+    pub slowness: f64,
+}
+
+impl Rigid {
+    pub(crate) fn moves(&self, point: Vector) -> Vector {
+        self.ahead + to_port(point - self.end) * self.curvature
+    }
+}
+
+/// A manoeuvre with its lengths.
+#[derive(Debug, Clone)]
+pub(crate) struct Sailed {
+    /// In order of time; slots of no length are there too.
+    pub legs: Vec<Leg>,
+    /// Index in `legs` of the first of the tail.
+    pub tail: usize,
+    /// Distance along the route and time at which the tail begins.
+    pub joined: (f64, f64),
+    /// Metres left of the leg after a return.
+    pub room: Option<f64>,
+    /// Lengths of the solved slots.
+    pub solved: [f64; 2],
+    /// Rates of the solved slots with each free one.
+    pub solved_rates: [Row; 2],
+    /// Slots at the beginning that run along the route.
+    pub runs: usize,
+    pub rigid: Vec<Rigid>,
+}
+
+/// A point of a manoeuvre that belongs to a slot.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub position: Vector,
+    pub ahead: Vector,
+    pub time: f64,
+    /// The slot, and the share of it that lies before the point.
+    pub slot: usize,
+    pub share: f64,
+}
+
+impl Sailed {
+    /// Of each leg the place halfway between its ends: no place on it is farther from there than half its length.
+    pub(crate) fn middles(&self) -> Vec<Vector> {
+        let ends = self.legs.iter().skip(1).map(|l| l.segment.start.position);
+        let last = self.legs.last().map(|l| l.along(1.0).0);
+        let pairs = self.legs.iter().zip(ends.chain(last));
+        pairs
+            .map(|(l, end)| l.segment.start.position.lerp(&end, 0.5))
+            .collect()
+    }
+
+    /// The point at `fraction` of a leg; `None` on the tail.
+    pub(crate) fn place(&self, leg: usize, fraction: f64) -> Option<Place> {
+        let l = &self.legs[leg];
+        let Owner::Slot { index, from, to } = l.owner else {
+            return None;
+        };
+        let (position, ahead) = l.along(fraction);
+        Some(Place {
+            position,
+            ahead,
+            time: l.segment.start_time + l.segment.duration * fraction,
+            slot: index,
+            share: from + (to - from) * fraction,
+        })
+    }
+
+    /// How slot `index` moves a point of its own: (east, north, clock) per metre.
+    pub(crate) fn own_rate(&self, place: &Place, index: usize) -> [f64; 3] {
+        let share = if index == place.slot {
+            place.share
+        } else {
+            1.0
+        };
+        [
+            share * place.ahead.x,
+            share * place.ahead.y,
+            share * self.rigid[index].slowness,
+        ]
+    }
+
+    /// `of . (east, north, clock)` per metre of each slot up to the point's own.
+    pub(crate) fn rates(&self, place: &Place, of: [f64; 3]) -> Row {
+        let mut row = [0.0; MAX_VARIABLES];
+        let on_route = place.slot < self.runs;
+        let all = row.iter_mut().zip(&self.rigid).enumerate();
+        for (i, (rate, rigid)) in all.take(place.slot + 1) {
+            *rate = if on_route || i == place.slot {
+                let own = self.own_rate(place, i);
+                of[0] * own[0] + of[1] * own[1] + of[2] * own[2]
+            } else {
+                let moved = rigid.moves(place.position);
+                of[0] * moved.x + of[1] * moved.y + of[2] * rigid.slowness
+            };
+        }
+        row
+    }
+
+    /// How each slot moves what follows it, about `origin`.
+    pub(crate) fn motors(&self, origin: Vector) -> Vec<Motor> {
+        let motor = |r: &Rigid| {
+            let end = r.end - origin;
+            [
+                r.ahead.x + r.curvature * end.y,
+                r.ahead.y - r.curvature * end.x,
+                r.slowness,
+                r.curvature,
+            ]
+        };
+        self.rigid.iter().map(motor).collect()
+    }
+
+    /// The rates of the solved slots with any change given as a motor about `origin`: linear forms.
+    pub(crate) fn solved_by(
+        &self,
+        ending: Ending,
+        problem: &Problem,
+        origin: Vector,
+    ) -> [Motor; 2] {
+        let [.., line_or_arc, last] = &self.rigid[..] else {
+            return [[0.0; 4]; 2];
+        };
+        match ending {
+            Ending::Follow => [[0.0; 4]; 2],
+            Ending::Return { leg, .. } => {
+                let normal = to_port(problem.desired.legs()[leg].direction);
+                let across = normal.dot(&line_or_arc.ahead);
+                let by_place = along(normal / -across, last.end - origin);
+                [by_place, [0.0, 0.0, 0.0, -1.0 / last.curvature]]
+            }
+            Ending::Goal { .. } => {
+                let goal = problem.desired.end();
+                let (by_arc, by_line) = (line_or_arc.moves(goal), last.ahead);
+                let determinant = cross(by_arc, by_line);
+                let at = goal - origin;
+                [
+                    along(to_port(by_line) / determinant, at),
+                    along(to_port(by_arc) / -determinant, at),
+                ]
+            }
+        }
+    }
+
+    /// The rate of the place at which the tail begins, along the route, as a linear form of a motor about `origin`.
+    pub(crate) fn joined_by(&self, origin: Vector) -> Motor {
+        self.rigid
+            .last()
+            .map_or([0.0; 4], |last| along(last.ahead, last.end - origin))
+    }
+
+    /// The rates of the place and time at which the tail begins: metres along the route and seconds per
+    /// metre of each slot.
+    pub(crate) fn joining_rates(&self) -> (Row, Row) {
+        let mut distance = [0.0; MAX_VARIABLES];
+        let mut clock = [0.0; MAX_VARIABLES];
+        let Some(last) = self.rigid.last() else {
+            return (distance, clock);
+        };
+        let runs_only = self.runs == self.rigid.len();
+        for (i, r) in self.rigid.iter().enumerate() {
+            distance[i] = if runs_only {
+                1.0
+            } else {
+                last.ahead.dot(&r.moves(last.end))
+            };
+            clock[i] = r.slowness;
+        }
+        (distance, clock)
+    }
+
+    /// Every motion of some length, in order; one where neighbours are alike.
+    pub(crate) fn motion(&self) -> Vec<Segment> {
+        let mut motion: Vec<Segment> = Vec::with_capacity(self.legs.len());
+        for segment in self.legs.iter().map(|l| l.segment) {
+            let has_length = segment.length() > crate::tolerance::LENGTH_M || segment.speed == 0.0;
+            if !(segment.duration > 0.0 && has_length) {
+                continue;
+            }
+            match motion.last_mut() {
+                Some(last)
+                    if last.speed == segment.speed && last.turn_rate == segment.turn_rate =>
+                {
+                    last.duration = segment.end_time() - last.start_time;
+                }
+                _ => motion.push(segment),
+            }
+        }
+        motion
+    }
+}
+
+/// `direction . (where a motor moves the point)`, as a linear form of the motor.
+fn along(direction: Vector, point: Vector) -> Motor {
+    [direction.x, direction.y, 0.0, cross(point, direction)]
+}

@@ -1,0 +1,336 @@
+//! A manoeuvre as a chain of slots with free lengths, and how it changes with them.
+//!
+//! The slots' kinds, sides and speeds are fixed; their lengths in metres are the variables of the
+//! refinement. Lengthening a slot moves everything after it as a rigid body: along a line, or about the
+//! centre of its circle. That gives every derivative in closed form. Two last slots, where there are
+//! any, are not free: they are solved so that the chain ends on the desired path or at its end.
+
+use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
+use crate::planner::Problem;
+use crate::planner::space_time::graph::intercept::Chase;
+use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
+use crate::planner::space_time::refinement::rollout::{Leg, Owner, Rigid, Sailed, turned};
+use crate::planner::space_time::route::{Route, Stretch};
+use crate::trajectory::Segment;
+
+/// Radians. A return flatter than this is not solvable.
+pub(crate) const FLATTEST_RETURN: f64 = 0.01;
+
+/// A part of a manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Slot {
+    /// Along the route.
+    Run { speed: f64 },
+    /// A turn with the turning radius.
+    Arc { side: Side, speed: f64 },
+    /// Straight ahead.
+    Line { speed: f64 },
+}
+
+impl Slot {
+    pub(crate) fn speed(&self) -> f64 {
+        match *self {
+            Self::Run { speed } | Self::Arc { speed, .. } | Self::Line { speed } => speed,
+        }
+    }
+}
+
+/// How a manoeuvre ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Ending {
+    /// It never left the route, and follows it.
+    Follow,
+    /// A line and an arc back onto a leg, then the route.
+    Return { leg: usize, speed: f64 },
+    /// An arc and a line to the last waypoint.
+    Goal { side: Side, speed: f64 },
+}
+
+impl Ending {
+    /// Slots that are solved, not free.
+    fn dependents(self) -> usize {
+        if self == Self::Follow { 0 } else { 2 }
+    }
+}
+
+/// Slots with an ending: what is fixed of a manoeuvre.
+#[derive(Debug, Clone)]
+pub(crate) struct Template {
+    pub slots: Vec<Slot>,
+    pub ending: Ending,
+}
+
+impl Template {
+    /// Free variables.
+    pub(crate) fn free(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// All slots, the solved ones included.
+    pub(crate) fn all(&self) -> usize {
+        self.slots.len() + self.ending.dependents()
+    }
+
+    /// Sails the manoeuvre with the given lengths; `None` when its ending does not fit.
+    pub(crate) fn sail(&self, problem: &Problem, route: &Route, lengths: &Row) -> Option<Sailed> {
+        let radius = problem.own.turning_radius;
+        let mut sailed = Sailed {
+            legs: Vec::with_capacity(2 * self.all() + 8),
+            tail: 0,
+            joined: (0.0, 0.0),
+            room: None,
+            solved: [0.0; 2],
+            solved_rates: [[0.0; MAX_VARIABLES]; 2],
+            runs: 0,
+            rigid: Vec::with_capacity(self.all()),
+        };
+        let mut at = Cursor {
+            pose: problem.own.pose,
+            ahead: problem.own.pose.ahead(),
+            time: 0.0,
+            route: 0.0,
+            radius,
+        };
+        let mut runs = 0;
+        for (index, slot) in self.slots.iter().enumerate() {
+            if let Slot::Run { speed } = *slot {
+                at.run(route, index, lengths[index], speed, &mut sailed);
+                runs = index + 1;
+            } else {
+                at.sail(*slot, index, lengths[index], &mut sailed);
+            }
+        }
+        // runs move what follows them along the route where the last of them ends
+        sailed.runs = runs;
+        if runs > 0 {
+            let (pose, curvature) = route.pose_at(lengths[..runs].iter().sum());
+            for r in &mut sailed.rigid[..runs] {
+                (r.end, r.ahead, r.curvature) = (pose.position, pose.ahead(), curvature);
+            }
+        }
+        match self.ending {
+            Ending::Follow => sailed.joined = (at.route, at.time),
+            Ending::Return { leg, speed } => {
+                let stretch = route.stretch(leg, problem.desired)?;
+                self.return_to(problem, leg, stretch, speed, &mut at, &mut sailed)?;
+            }
+            Ending::Goal { side, speed } => {
+                self.approach(problem, side, speed, &mut at, &mut sailed)?
+            }
+        }
+        sailed.tail = sailed.legs.len();
+        if !matches!(self.ending, Ending::Goal { .. }) {
+            let mut tail = Vec::with_capacity(4);
+            route.follow(sailed.joined.0, sailed.joined.1, &mut tail);
+            for (index, segment) in tail.into_iter().enumerate() {
+                let ahead = at.ahead_of(&segment);
+                sailed.legs.push(Leg {
+                    segment,
+                    ahead,
+                    owner: Owner::Tail { index },
+                });
+                at.pass(&segment, ahead);
+            }
+        }
+        let end = sailed.legs.last().map_or(at.time, |l| l.segment.end_time());
+        // negated on purpose: a NaN does not fit
+        if !(end <= problem.horizon) {
+            return None;
+        }
+        Some(sailed)
+    }
+
+    /// Solves line and arc back onto a leg.
+    fn return_to(
+        &self,
+        problem: &Problem,
+        leg: usize,
+        stretch: Stretch,
+        speed: f64,
+        at: &mut Cursor,
+        sailed: &mut Sailed,
+    ) -> Option<()> {
+        let l = &problem.desired.legs()[leg];
+        let radius = at.radius;
+        let relative = wrap(at.pose.heading - heading_of(l.direction));
+        if !(relative.abs() >= FLATTEST_RETURN && relative.abs() < 2.5) {
+            return None;
+        }
+        let side = if relative > 0.0 {
+            Side::Starboard
+        } else {
+            Side::Port
+        };
+        let offset = cross(l.direction, at.pose.position - l.start);
+        let gain = side.turn_sign() * radius * (relative.cos() - 1.0);
+        let line = -(offset + gain) / relative.sin();
+        if !(line >= 0.0) {
+            return None;
+        }
+        sailed.solved = [line, radius * relative.abs()];
+        let n = self.slots.len();
+        at.sail(Slot::Line { speed }, n, sailed.solved[0], sailed);
+        at.sail(Slot::Arc { side, speed }, n + 1, sailed.solved[1], sailed);
+        let along = l.direction.dot(&(at.pose.position - l.start));
+        if !(along >= stretch.from && along <= stretch.to) {
+            return None;
+        }
+        sailed.joined = (stretch.distance + along - stretch.from, at.time);
+        sailed.room = Some(stretch.to - along);
+        let normal = to_port(l.direction);
+        let end = at.pose.position;
+        let across = normal.dot(&sailed.rigid[n].ahead);
+        let curvature = sailed.rigid[n + 1].curvature;
+        for i in 0..n {
+            let r = &sailed.rigid[i];
+            sailed.solved_rates[0][i] = -normal.dot(&r.moves(end)) / across;
+            sailed.solved_rates[1][i] = -r.curvature / curvature;
+        }
+        Some(())
+    }
+
+    /// Solves arc and line to the last waypoint.
+    fn approach(
+        &self,
+        problem: &Problem,
+        side: Side,
+        speed: f64,
+        at: &mut Cursor,
+        sailed: &mut Sailed,
+    ) -> Option<()> {
+        let radius = at.radius;
+        let goal = problem.desired.end();
+        let chase = Chase::new(&at.pose, at.time, speed, radius, side);
+        let (turn, line) = chase.way_to(goal)?;
+        if !(turn < 2.5) {
+            return None;
+        }
+        sailed.solved = [turn * radius, line];
+        let n = self.slots.len();
+        at.sail(Slot::Arc { side, speed }, n, sailed.solved[0], sailed);
+        at.sail(Slot::Line { speed }, n + 1, sailed.solved[1], sailed);
+        let (by_arc, by_line) = (sailed.rigid[n].moves(goal), sailed.rigid[n + 1].ahead);
+        let determinant = cross(by_arc, by_line);
+        if determinant.abs() < 1e-9 {
+            return None;
+        }
+        for i in 0..n {
+            let moved = sailed.rigid[i].moves(goal);
+            sailed.solved_rates[0][i] = -cross(moved, by_line) / determinant;
+            sailed.solved_rates[1][i] = -cross(by_arc, moved) / determinant;
+        }
+        Some(())
+    }
+}
+
+/// Where own ship is while a template is sailed.
+struct Cursor {
+    pose: Pose,
+    ahead: Vector,
+    time: f64,
+    route: f64,
+    radius: f64,
+}
+
+impl Cursor {
+    /// The unit vector ahead at the start of a motion that follows.
+    fn ahead_of(&self, next: &Segment) -> Vector {
+        if next.start.heading == self.pose.heading {
+            self.ahead
+        } else {
+            next.start.ahead()
+        }
+    }
+
+    /// Goes on to the end of a motion.
+    fn pass(&mut self, segment: &Segment, ahead: Vector) {
+        (self.pose, self.time) = (segment.end(), segment.end_time());
+        self.ahead = if segment.is_arc() {
+            self.pose.ahead()
+        } else {
+            ahead
+        };
+    }
+
+    fn run(&mut self, route: &Route, index: usize, length: f64, speed: f64, sailed: &mut Sailed) {
+        let mut motions = Vec::new();
+        let before = self.route;
+        self.route = route.run(self.route, self.time, length, speed, &mut motions);
+        let total = (self.route - before).max(1e-12);
+        let mut from = 0.0;
+        for segment in motions {
+            let to = from + segment.length() / total;
+            let ahead = self.ahead_of(&segment);
+            sailed.legs.push(Leg {
+                segment,
+                ahead,
+                owner: Owner::Slot { index, from, to },
+            });
+            self.pass(&segment, ahead);
+            from = to;
+        }
+        if from == 0.0 {
+            let segment = Segment {
+                start: self.pose,
+                start_time: self.time,
+                duration: 0.0,
+                speed,
+                turn_rate: 0.0,
+            };
+            sailed.legs.push(Leg {
+                segment,
+                ahead: self.ahead,
+                owner: Owner::Slot {
+                    index,
+                    from: 0.0,
+                    to: 1.0,
+                },
+            });
+        }
+        sailed.rigid.push(Rigid {
+            end: self.pose.position,
+            ahead: self.ahead,
+            curvature: 0.0,
+            slowness: 1.0 / speed,
+        });
+    }
+
+    fn sail(&mut self, slot: Slot, index: usize, length: f64, sailed: &mut Sailed) {
+        let curvature = match slot {
+            Slot::Arc { side, .. } => side.turn_sign() / self.radius,
+            _ => 0.0,
+        };
+        let speed = slot.speed();
+        let segment = Segment {
+            start: self.pose,
+            start_time: self.time,
+            duration: length / speed,
+            speed,
+            turn_rate: curvature * speed,
+        };
+        sailed.legs.push(Leg {
+            segment,
+            ahead: self.ahead,
+            owner: Owner::Slot {
+                index,
+                from: 0.0,
+                to: 1.0,
+            },
+        });
+        if length > 0.0 {
+            let (position, ahead) = if curvature == 0.0 {
+                (self.pose.position + self.ahead * length, self.ahead)
+            } else {
+                turned(self.pose.position, self.ahead, length, curvature)
+            };
+            self.pose = Pose::new(position, self.pose.heading + curvature * length);
+            (self.ahead, self.time) = (ahead, segment.end_time());
+        }
+        sailed.rigid.push(Rigid {
+            end: self.pose.position,
+            ahead: self.ahead,
+            curvature,
+            slowness: 1.0 / speed,
+        });
+    }
+}

@@ -1,0 +1,151 @@
+//! One manoeuvre outlined: sailed, with its cost and where it comes near the sets. All that a step of the refinement is
+//! judged by; the rates are found for those that are taken.
+
+use crate::planner::Problem;
+use crate::planner::cost::{GAUSS_2, GAUSS_4};
+use crate::planner::space_time::land;
+use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::refinement::approach::{Approach, NEAR_M, add_approaches};
+use crate::planner::space_time::refinement::model::MARGIN_M;
+use crate::planner::space_time::refinement::quadratic::Row;
+use crate::planner::space_time::refinement::return_segments::Tail;
+use crate::planner::space_time::refinement::rollout::{Owner, Place, Sailed};
+use crate::planner::space_time::refinement::structure::{Ending, Template};
+use crate::planner::space_time::route::Route;
+use crate::trajectory::Nearest;
+
+/// Three Gauss-Legendre points on [0, 1], for short arcs.
+const GAUSS_3: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
+    (0.5, 0.444_444_444_444_444_4),
+    (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
+];
+
+/// What stays the same for every manoeuvre of a problem.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub problem: &'a Problem<'a>,
+    pub route: &'a Route,
+    pub hazards: &'a [Hazard<'a>],
+    /// The land, block by block.
+    pub blocks: &'a [Hazard<'a>],
+    /// Radians, of an approach.
+    pub chord: f64,
+}
+
+/// A manoeuvre, outlined.
+#[derive(Debug)]
+pub(crate) struct Outline {
+    pub sailed: Sailed,
+    /// m².
+    pub cost: f64,
+    /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
+    /// splits in two must not make the merit jump.
+    pub violation: f64,
+    /// Least slack of all approaches, metres.
+    pub least_slack: f64,
+    pub approaches: Vec<Approach>,
+    /// Where there is one.
+    pub tail: Option<Tail>,
+    /// Rates of the place and time at which the tail begins.
+    pub joining: (Row, Row),
+    /// What the cost before the tail is the sum of.
+    pub points: Vec<Point>,
+}
+
+/// A Gauss point of a slot's cost.
+#[derive(Debug)]
+pub(crate) struct Point {
+    pub slot: usize,
+    /// m² per metre of the slot: what it costs to stay longer.
+    pub growth: f64,
+    /// `None` where the slot is empty.
+    pub weighed: Option<Weighed>,
+}
+
+/// Where a Gauss point is, the desired place nearest to it, and its weight.
+#[derive(Debug)]
+pub(crate) struct Weighed {
+    pub place: Place,
+    pub nearest: Nearest,
+    pub weight: f64,
+}
+
+impl Scene<'_> {
+    /// Sails and prices; `None` when the manoeuvre's ending does not fit.
+    pub(crate) fn outline(&self, template: &Template, lengths: &Row) -> Option<Outline> {
+        let sailed = template.sail(self.problem, self.route, lengths)?;
+        let mut points = Vec::with_capacity(GAUSS_4.len() * sailed.tail);
+        for leg in 0..sailed.tail {
+            self.add_points(&sailed, leg, &mut points);
+        }
+        let weighed = points.iter().filter_map(|p| p.weighed.as_ref());
+        let mut cost: f64 = weighed.map(|w| w.weight * w.nearest.error).sum();
+        let tail = (!matches!(template.ending, Ending::Goal { .. }))
+            .then(|| self.tail(sailed.joined.0, sailed.joined.1));
+        cost += tail.as_ref().map_or(0.0, |t| t.cost);
+        let sails = sailed.legs.iter().map(|l| &l.segment);
+        let land = land::near(self.problem.coast, sails, NEAR_M);
+        let middles = sailed.middles();
+        let mut approaches = Vec::new();
+        let near_land = land.into_iter().map(|b| &self.blocks[b]);
+        for hazard in self.hazards.iter().chain(near_land) {
+            add_approaches(hazard, &sailed, &middles, self.chord, &mut approaches);
+        }
+        let least_slack = approaches
+            .iter()
+            .fold(f64::INFINITY, |least, a| least.min(a.slack));
+        let joining = sailed.joining_rates();
+        Some(Outline {
+            sailed,
+            cost,
+            violation: (MARGIN_M - least_slack).max(0.0),
+            least_slack,
+            approaches,
+            tail,
+            joining,
+            points,
+        })
+    }
+
+    /// The Gauss points of a leg.
+    fn add_points(&self, sailed: &Sailed, leg: usize, points: &mut Vec<Point>) {
+        let Owner::Slot { index, from, to } = sailed.legs[leg].owner else {
+            return;
+        };
+        let segment = sailed.legs[leg].segment;
+        let desired = self.problem.desired;
+        let q = self.problem.time_weight;
+        let per_time = 1.0 / desired.duration();
+        let growth = (to - from) / segment.speed * per_time;
+        if segment.duration <= 0.0 {
+            let nearest = desired.nearest(segment.start.position, segment.start_time, q);
+            points.push(Point {
+                slot: index,
+                growth: growth * nearest.error,
+                weighed: None,
+            });
+            return;
+        }
+        let nodes: &[(f64, f64)] = match segment.turn_rate.abs() * segment.duration {
+            turn if turn < 0.3 => &GAUSS_2,
+            turn if turn < 1.0 => &GAUSS_3,
+            _ => &GAUSS_4,
+        };
+        for (fraction, share) in nodes {
+            let Some(place) = sailed.place(leg, *fraction) else {
+                continue;
+            };
+            let nearest = desired.nearest(place.position, place.time, q);
+            points.push(Point {
+                slot: index,
+                growth: growth * share * nearest.error,
+                weighed: Some(Weighed {
+                    place,
+                    nearest,
+                    weight: segment.duration * per_time * share,
+                }),
+            });
+        }
+    }
+}

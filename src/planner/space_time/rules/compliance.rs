@@ -1,0 +1,234 @@
+//! Whether a manoeuvre does what the rules of the road ask, toward targets on their nominal tracks.
+
+use crate::colregs::{
+    APPARENT_SPEED, APPARENT_TIME, Duty, Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN,
+    SteadyShip,
+};
+use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
+use crate::planner::Problem;
+use crate::planner::space_time::refinement::trial::Scene;
+use crate::planner::space_time::selection::initial_guess::Paces;
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// Instants of a segment at which the other ship is looked at.
+const ARC_SAMPLES: u32 = 32;
+
+/// Seconds after the closest approach of the centres at which a target has passed: that of the hulls may be later.
+const PASSED_S: f64 = 2.0;
+
+/// m/s. Below this relative speed the distance does not change.
+const NO_RELATIVE_SPEED: f64 = 1e-9;
+
+/// m/s: at this speed or less own ship has visibly slowed down.
+pub(crate) fn slow(problem: &Problem) -> f64 {
+    APPARENT_SPEED * Paces::of(problem).normal * (1.0 + 1e-9)
+}
+
+/// Metres at the end of a motion along the route that are sailed at less speed, for the other to see.
+pub(crate) fn visibly_slow(problem: &Problem, motion: &[Segment]) -> f64 {
+    if problem.duty().is_none() {
+        return 0.0;
+    }
+    let last = motion.iter().rev();
+    last.take_while(|s| s.speed <= slow(problem))
+        .map(Segment::length)
+        .sum()
+}
+
+/// True when a motion complies with own ship's duty. `undisturbed` is the route on schedule: who need not alter does not.
+pub(crate) fn complies(scene: &Scene, undisturbed: &[Segment], motion: &[Segment]) -> bool {
+    let problem = scene.problem;
+    let duty = problem.duty();
+    if duty.is_none() || motion == undisturbed {
+        return true;
+    }
+    let departure = Departure::of(scene, motion);
+    departure.is_apparent(duty)
+        && problem.encountered.iter().all(|encountered| {
+            let role = encountered.role;
+            let nearest = Nearest::of(&encountered.ship, motion);
+            let passes = nearest.drifts_to_port || !role.passes_port_to_port();
+            let heads = !role.bars_port_until_passed()
+                || departure.keeps_off_port(problem, motion, nearest.time + PASSED_S);
+            let plain =
+                !role.keeps_clear() || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
+            passes && heads && plain && keeps_off_bow(encountered, motion)
+        })
+}
+
+/// Turns until a time that are too small to be seen; of turns to one side, one right after another, the sum.
+fn small_turns(motion: &[Segment], until: f64) -> usize {
+    let turns = |a: &Segment, b: &Segment| a.turn_rate * b.turn_rate > 0.0;
+    let before: Vec<Segment> = motion
+        .iter()
+        .filter(|s| s.start_time < until)
+        .map(|s| s.between(s.start_time, until))
+        .collect();
+    let sums = before
+        .chunk_by(turns)
+        .map(|c| c.iter().map(|s| s.turn_rate * s.duration).sum::<f64>());
+    sums.filter(|turn| turn.abs() > ON_COURSE && turn.abs() < SMALL_TURN)
+        .count()
+}
+
+/// True when a motion crosses the target's course line nowhere within [`Encountered::bow_room`] ahead of her.
+fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
+    let room = encountered.bow_room();
+    if room <= 0.0 {
+        return true;
+    }
+    let ship = &encountered.ship;
+    let seen = |s: &Segment, time: f64| {
+        let target = Pose {
+            position: ship.pose.position + ship.velocity() * time,
+            ..ship.pose
+        };
+        target.body_coordinates(s.pose_at(time).position)
+    };
+    let mut before: Option<Vector> = None;
+    motion.iter().all(|s| {
+        (0..=ARC_SAMPLES).all(|k| {
+            let share = f64::from(k) / f64::from(ARC_SAMPLES);
+            let here = seen(s, s.start_time + s.duration * share);
+            let from = before.replace(here).unwrap_or(here);
+            if (from.y < 0.0) == (here.y < 0.0) {
+                return true;
+            }
+            let ahead = from.x + (here.x - from.x) * from.y / (from.y - here.y);
+            // a NaN is on the bow
+            ahead <= 0.0 || ahead >= room
+        })
+    })
+}
+
+/// How a motion leaves the route.
+#[derive(Debug)]
+struct Departure {
+    /// The first of its segments that is not on the route.
+    index: usize,
+    /// Her course before.
+    heading: f64,
+    /// Radians of the first turn from there, to port positive.
+    turn: f64,
+    /// Slowed down before it, visibly.
+    slowed: bool,
+}
+
+impl Departure {
+    fn of(scene: &Scene, motion: &[Segment]) -> Self {
+        let slow = slow(scene.problem);
+        let (mut slow_for, mut slowed) = (0.0, false);
+        let mut sees = |s: &Segment| {
+            // negated on purpose: a NaN is fast
+            slow_for = if !(s.speed <= slow) {
+                0.0
+            } else {
+                slow_for + s.duration
+            };
+            slowed |= slow_for >= APPARENT_TIME;
+            slowed
+        };
+        let mut along = 0.0;
+        let mut index = 0;
+        for s in motion {
+            along += s.length();
+            let (due, _) = scene.route.pose_at(along);
+            let end = s.end();
+            let near = (end.position - due.position).norm() <= tolerance::JOINT_M;
+            if !(near && wrap(end.heading - due.heading).abs() <= tolerance::JOINT_RAD) {
+                break;
+            }
+            sees(s);
+            index += 1;
+        }
+        let mut departure = Self {
+            index,
+            heading: motion.get(index).map_or(0.0, |s| s.start.heading),
+            turn: 0.0,
+            slowed: false,
+        };
+        for s in &motion[index..] {
+            let turn = s.turn_rate * s.duration;
+            if departure.turn == 0.0 {
+                departure.turn = turn;
+                if turn == 0.0 {
+                    sees(s);
+                }
+            } else if turn * departure.turn > 0.0 {
+                departure.turn += turn;
+            } else {
+                break;
+            }
+        }
+        departure.slowed = slowed;
+        departure
+    }
+
+    fn is_apparent(&self, duty: Duty) -> bool {
+        let allowed = Side::of_turn(self.turn).is_none_or(|side| duty.sides().contains(&side));
+        allowed
+            && (self.slowed && duty.may_slow
+                || self.turn.abs() >= duty.least_turn() - tolerance::JOINT_RAD)
+    }
+
+    /// True when own ship heads nowhere to port of her course before, nor of the path's there, until a time.
+    fn keeps_off_port(&self, problem: &Problem, motion: &[Segment], until: f64) -> bool {
+        let off = motion[self.index..].iter().filter(|s| s.start_time < until);
+        off.map(|s| s.between(s.start_time, until)).all(|s| {
+            [s.start, s.end()].iter().all(|pose| {
+                let at = problem
+                    .desired
+                    .nearest(pose.position, s.start_time, problem.time_weight);
+                let path = heading_of(problem.desired.legs()[at.leg].direction);
+                let beyond = |course: f64| wrap(pose.heading - course) > ON_COURSE;
+                !(beyond(self.heading) && beyond(path))
+            })
+        })
+    }
+}
+
+/// The closest approach of a motion to a target that holds course and speed.
+#[derive(Debug)]
+struct Nearest {
+    time: f64,
+    /// Then the target goes from starboard to port, seen from own ship.
+    drifts_to_port: bool,
+}
+
+impl Nearest {
+    fn of(ship: &SteadyShip, motion: &[Segment]) -> Self {
+        let mut least = f64::INFINITY;
+        let mut nearest = Self {
+            time: 0.0,
+            drifts_to_port: false,
+        };
+        let mut look = |s: &Segment, time: f64| {
+            let target = ship.pose.position + ship.velocity() * time;
+            let offset = s.pose_at(time).position - target;
+            let relative = s.velocity_at(time) - ship.velocity();
+            if offset.norm() < least {
+                least = offset.norm();
+                nearest = Self {
+                    time,
+                    drifts_to_port: cross(relative, offset) < 0.0,
+                };
+            }
+            (offset, relative)
+        };
+        for s in motion {
+            let (offset, relative) = look(s, s.start_time);
+            if s.is_arc() {
+                for k in 1..ARC_SAMPLES {
+                    let share = f64::from(k) / f64::from(ARC_SAMPLES);
+                    look(s, s.start_time + s.duration * share);
+                }
+            } else if relative.norm() > NO_RELATIVE_SPEED {
+                let ahead = -offset.dot(&relative) / relative.norm_squared();
+                look(s, s.start_time + ahead.clamp(0.0, s.duration));
+            }
+            look(s, s.end_time());
+        }
+        nearest
+    }
+}

@@ -1,0 +1,500 @@
+//! Manoeuvres from which the refinement begins: the graph's plans, and canonical ones on both sides.
+
+use crate::colregs::APPARENT_TIME;
+use crate::frame::{Side, to_port};
+use crate::planner::Problem;
+use crate::planner::space_time::graph::node::State;
+use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::refinement::Seed;
+use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
+use crate::planner::space_time::refinement::structure::{Ending, Slot, Template};
+use crate::planner::space_time::route::Route;
+use crate::planner::space_time::rules::compliance::{slow, visibly_slow};
+use crate::trajectory::Segment;
+
+/// Speeds of the templates: the finite set's extremes, and the desired one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Paces {
+    pub slow: f64,
+    pub normal: f64,
+    pub fast: f64,
+}
+
+impl Paces {
+    /// The least and the greatest moving speed, and the one nearest to the desired.
+    pub(crate) fn of(problem: &Problem) -> Self {
+        let moving: Vec<f64> = problem
+            .own
+            .speeds
+            .iter()
+            .copied()
+            .filter(|u| *u > 0.0)
+            .collect();
+        let desired = problem.desired.length() / problem.desired.duration();
+        let nearest = moving
+            .iter()
+            .copied()
+            .min_by(|a, b| (a - desired).abs().total_cmp(&(b - desired).abs()));
+        let fast = problem.own.max_speed();
+        Self {
+            slow: moving.first().copied().unwrap_or(fast),
+            normal: nearest.unwrap_or(fast),
+            fast,
+        }
+    }
+}
+
+/// A stretch of the undisturbed motion inside a set, and what it takes to pass beside it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Conflict {
+    /// Seconds at which the contact begins and ends.
+    pub from: f64,
+    pub to: f64,
+    /// Metres sailed between them.
+    pub through: f64,
+    /// Metres to starboard and to port that clear the set throughout.
+    pub offsets: [f64; 2],
+    /// Metres astern that clear the set throughout, and the time at which so many are needed.
+    pub astern: (f64, f64),
+    /// Metres ahead that clear the set throughout, and the time at which so many are needed.
+    pub ahead: (f64, f64),
+}
+
+impl Conflict {
+    /// Metres to a side.
+    pub(crate) fn offset(&self, side: Side) -> f64 {
+        self.offsets[usize::from(side == Side::Port)]
+    }
+
+    /// Metres sailed inside over the shortest way around.
+    pub(crate) fn slenderness(&self) -> f64 {
+        self.through / self.nearest_offset().max(1.0)
+    }
+
+    /// Metres to the nearer side.
+    pub(crate) fn nearest_offset(&self) -> f64 {
+        self.offsets[0].min(self.offsets[1])
+    }
+
+    /// The contact of one obstacle, given by its hazards, with the undisturbed motion, from first to last instant.
+    pub(crate) fn of(hazards: &[Hazard], undisturbed: &[Segment]) -> Option<Self> {
+        let from = hazards
+            .iter()
+            .filter_map(|h| undisturbed.iter().find_map(|s| h.first_contact(s)))
+            .min_by(f64::total_cmp)?;
+        let end = undisturbed.last()?.end_time();
+        let mut conflict = Self {
+            from,
+            to: from,
+            through: 0.0,
+            offsets: [0.0; 2],
+            astern: (0.0, from),
+            ahead: (0.0, from),
+        };
+        for k in 0..=CONFLICT_SAMPLES {
+            let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
+            let segment = undisturbed
+                .iter()
+                .find(|s| s.end_time() >= time)
+                .or(undisturbed.last())?;
+            let pose = segment.pose_at(time);
+            let inside = |h: &&Hazard| {
+                h.slack(pose.position, time)
+                    .is_some_and(|slack| !(slack > 0.0))
+            };
+            let Some(hazard) = hazards.iter().find(inside) else {
+                continue;
+            };
+            conflict.to = time;
+            let behind = hazard.way_out(pose.position, time, -pose.ahead());
+            if behind > conflict.astern.0 {
+                conflict.astern = (behind, time);
+            }
+            let before = hazard.way_out(pose.position, time, pose.ahead());
+            if before > conflict.ahead.0 {
+                conflict.ahead = (before, time);
+            }
+            for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
+                let beam = to_port(pose.ahead()) * side.turn_sign();
+                *offset = offset.max(hazard.way_out(pose.position, time, beam));
+            }
+        }
+        conflict.through = undisturbed
+            .iter()
+            .map(|s| s.between(conflict.from, conflict.to).length())
+            .sum();
+        Some(conflict)
+    }
+}
+
+/// Radians at which a canonical manoeuvre returns, the flattest that fits.
+const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
+
+/// Radians.
+const WAITING_TURN: f64 = 0.6;
+
+/// Radians of the turns, and metres of the way out, of a manoeuvre that only slows down on the route.
+const SLOWING_TURN: f64 = 0.2;
+const SLOWING_OUT_M: f64 = 20.0;
+
+/// Metres by which own ship goes on beyond the route behind a target that she let pass, and radians at which she
+/// comes back.
+const OVERSHOOT_M: f64 = 20.0;
+const OVERSHOOT_RETURN: f64 = 0.08;
+
+/// A manoeuvre that passes ahead: seconds of rushing over those there are, at most; its turn out, radians; the way back
+/// in, radians; its lines, metres.
+const MOST_RUSHING: f64 = 1.6;
+const AHEAD_TURN: f64 = 0.5;
+const AHEAD_RETURN: f64 = 0.3;
+const AHEAD_OUT_M: f64 = 40.0;
+
+/// Instants at which a conflict's width is taken.
+const CONFLICT_SAMPLES: usize = 24;
+
+/// A canonical manoeuvre: turn, a line out to the offset that clears the set, turn back, a line until
+/// the set is passed, return.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Canonical {
+    /// Radians.
+    pub turn: f64,
+    /// Share of the way out that is to be sailed before the contact begins.
+    pub lead: f64,
+    /// Share of the offset that is aimed at.
+    pub reach: f64,
+    /// The turn out at the least speed, not at the greatest.
+    pub slow: bool,
+    /// Share of the time before it that is sailed at the greatest speed.
+    pub rush: f64,
+}
+
+/// Slots and lengths while they are put together.
+#[derive(Debug, Default)]
+pub(crate) struct Draft {
+    slots: Vec<Slot>,
+    lengths: Vec<f64>,
+}
+
+impl Draft {
+    pub(crate) fn push(&mut self, slot: Slot, length: f64) {
+        self.slots.push(slot);
+        self.lengths.push(length);
+    }
+
+    fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
+        for (speed, length) in lengths {
+            self.push(
+                Slot::Arc {
+                    side,
+                    speed: *speed,
+                },
+                *length,
+            );
+        }
+    }
+
+    fn line(&mut self, lengths: &[(f64, f64)]) {
+        for (speed, length) in lengths {
+            self.push(Slot::Line { speed: *speed }, *length);
+        }
+    }
+
+    pub(crate) fn runs(&mut self, paces: &Paces, normal: f64, fast: f64, slow: f64) {
+        self.push(
+            Slot::Run {
+                speed: paces.normal,
+            },
+            normal,
+        );
+        self.push(Slot::Run { speed: paces.fast }, fast);
+        self.push(Slot::Run { speed: paces.slow }, slow);
+    }
+
+    pub(crate) fn seed(self, ending: Ending) -> Option<Seed> {
+        if self.slots.len() + 2 > MAX_VARIABLES {
+            return None;
+        }
+        let mut lengths: Row = [0.0; MAX_VARIABLES];
+        lengths[..self.lengths.len()].copy_from_slice(&self.lengths);
+        Some(Seed {
+            template: Template {
+                slots: self.slots,
+                ending,
+            },
+            lengths,
+        })
+    }
+}
+
+impl Canonical {
+    /// The seed on one side of the route.
+    pub(crate) fn seed(
+        &self,
+        problem: &Problem,
+        route: &Route,
+        side: Side,
+        conflict: &Conflict,
+        leg: usize,
+    ) -> Option<Seed> {
+        let paces = Paces::of(problem);
+        let radius = problem.own.turning_radius;
+        let (slow, fast) = (paces.slow, paces.fast);
+        let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
+        // two arcs alone reach twice the versine
+        let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
+        let turn = self
+            .turn
+            .min(needed.max(0.1))
+            .max(problem.duty().least_turn());
+        let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
+        let arc = turn * radius;
+        let way_out = (2.0 * arc + out) / if self.slow { paces.normal } else { fast };
+        let departure = (conflict.from - self.lead * way_out).max(0.0);
+        let lead = (departure * paces.normal).min(route.length());
+        // made good along the route on the way out, and on the way back at the flattest angle that fits
+        let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
+        let room = route.length() - made_good;
+        let way_back = |angle: f64| {
+            let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
+            2.0 * radius * angle.sin() + line / angle.tan()
+        };
+        let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
+        let along = ((conflict.to - departure - way_out) * fast).max(0.0);
+        let along = along
+            .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
+            .max(0.0);
+        let mut draft = Draft::default();
+        draft.runs(
+            &paces,
+            (1.0 - self.rush) * lead,
+            self.rush * departure * fast,
+            0.0,
+        );
+        let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
+        let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
+        let back = side.opposite();
+        draft.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
+        draft.line(&[(slow, slow_line), (fast, fast_line)]);
+        draft.turn(back, &[(fast, arc)]);
+        draft.line(&[(fast, 0.5 * along)]);
+        draft.turn(back, &[(fast, 0.0)]);
+        draft.line(&[(fast, 0.5 * along)]);
+        let Some(angle) = angle else {
+            return draft.seed(Ending::Goal {
+                side: back,
+                speed: fast,
+            });
+        };
+        draft.push(
+            Slot::Arc {
+                side: back,
+                speed: fast,
+            },
+            angle.min(needed.max(0.1)) * radius,
+        );
+        draft.seed(Ending::Return { leg, speed: fast })
+    }
+}
+
+/// A manoeuvre that lets the target pass ahead: as late as will do, own ship slows down and loses way by a
+/// turn of [`WAITING_TURN`] to the side, twice as far back, and on to the route.
+pub(crate) fn waiting(
+    problem: &Problem,
+    side: Side,
+    across: bool,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (slow, normal, fast) = (paces.slow, paces.normal, paces.fast);
+    let (lag, due) = conflict.astern;
+    let needed = lag / (normal - slow * WAITING_TURN.cos());
+    let begin = (due - needed).max(0.0);
+    let arc = WAITING_TURN * problem.own.turning_radius;
+    let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
+    // negated on purpose: a NaN is no seed
+    if !(normal > slow && needed < 1.3 * due && lines.is_finite()) {
+        return None;
+    }
+    let back = side.opposite();
+    let mut draft = Draft::default();
+    draft.runs(&paces, begin * normal, 0.0, 0.0);
+    draft.turn(side, &[(fast, 0.0), (slow, arc)]);
+    draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
+    draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
+    draft.line(&[(slow, 0.4 * lines)]);
+    if across {
+        let (sine, cosine) = WAITING_TURN.sin_cos();
+        let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
+        draft.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
+        draft.turn(back, &[(fast, 0.0)]);
+        draft.turn(
+            side,
+            &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
+        );
+        draft.line(&[(fast, 0.0)]);
+        return draft.seed(Ending::Return { leg, speed: fast });
+    }
+    draft.line(&[(fast, 0.0)]);
+    draft.turn(back, &[(fast, 0.0)]);
+    draft.line(&[(fast, 0.0)]);
+    draft.turn(back, &[(fast, 0.0)]);
+    draft.seed(Ending::Return { leg, speed: fast })
+}
+
+/// A manoeuvre that slows down on the route until the target is past, then goes a little to the side and back, or not at all.
+pub(crate) fn slowing(
+    problem: &Problem,
+    side: Side,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (lag, due) = conflict.astern;
+    let spell = (lag / (paces.normal - paces.slow)).max(APPARENT_TIME);
+    let begin = (due - spell).max(0.0);
+    // negated on purpose: a NaN is no seed
+    if !(problem.duty().may_slow && paces.slow <= slow(problem) && spell < 2.0 * due) {
+        return None;
+    }
+    let radius = problem.own.turning_radius;
+    let arc = SLOWING_TURN * radius;
+    let back = side.opposite();
+    let mut draft = Draft::default();
+    draft.runs(&paces, begin * paces.normal, 0.0, spell * paces.slow);
+    draft.turn(side, &[(paces.slow, arc), (paces.fast, 0.0)]);
+    draft.line(&[(paces.slow, 0.0), (paces.fast, SLOWING_OUT_M)]);
+    draft.turn(back, &[(paces.fast, arc)]);
+    draft.line(&[(paces.slow, 0.0), (paces.fast, 0.0)]);
+    draft.turn(back, &[(paces.fast, arc)]);
+    draft.seed(Ending::Return {
+        leg,
+        speed: paces.fast,
+    })
+}
+
+/// A manoeuvre that passes ahead of the target: own ship rushes as early as will do, turns to the side halfway through
+/// the contact for what is missing, and loses her lead on a slow way back.
+pub(crate) fn ahead(
+    problem: &Problem,
+    side: Side,
+    conflict: &Conflict,
+    leg: usize,
+) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (slow, normal, fast) = (paces.slow, paces.normal, paces.fast);
+    let (lead, due) = conflict.ahead;
+    let needed = lead / (fast - normal);
+    let begin = (due - needed).max(0.0);
+    let turn = 0.5 * (conflict.from + due);
+    // negated on purpose: a NaN is no seed
+    if !(fast > normal && needed < MOST_RUSHING * due && turn > begin) {
+        return None;
+    }
+    let radius = problem.own.turning_radius;
+    let arc = AHEAD_TURN * radius;
+    let back = side.opposite();
+    let mut draft = Draft::default();
+    draft.runs(&paces, begin * normal, (turn - begin) * fast, 0.0);
+    draft.turn(side, &[(fast, arc)]);
+    draft.line(&[(fast, AHEAD_OUT_M)]);
+    draft.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
+    draft.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
+    draft.turn(side, &[(slow, 0.0), (fast, 0.0)]);
+    draft.line(&[(slow, 0.0), (fast, 0.0)]);
+    draft.seed(Ending::Return { leg, speed: normal })
+}
+
+/// A plan of the graph as a seed: its arcs and lines in its own order, each with the other speeds beside
+/// it, and an empty turn back where it has one turn only. `way` are the states after the root.
+pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
+    let paces = Paces::of(problem);
+    let (last, before) = way.split_last()?;
+    let (departure, vertices) = before.split_first()?;
+    if vertices.is_empty() {
+        return None;
+    }
+    let mut draft = Draft::default();
+    let along: f64 = departure.motion.iter().map(Segment::length).sum();
+    let slow = visibly_slow(problem, &departure.motion);
+    draft.runs(&paces, along - slow, 0.0, slow);
+    let mut side = None;
+    let mut turns = 0;
+    for vertex in vertices {
+        let turn = vertex.motion.iter().find(|s| s.is_arc());
+        let line = vertex.motion.iter().find(|s| !s.is_arc());
+        let before = side;
+        side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
+        let side = side.unwrap_or(Side::Starboard);
+        turns += usize::from(before != Some(side));
+        group(&mut draft, &paces, side, turn, line, vertices.len());
+        if vertices.len() == 1 {
+            draft.turn(side, &[(paces.fast, 0.0)]);
+            draft.line(&[(paces.fast, 0.0)]);
+        }
+    }
+    let back = side.unwrap_or(Side::Starboard).opposite();
+    if turns < 2 && vertices.len() < 3 {
+        group(&mut draft, &paces, back, None, None, vertices.len());
+    }
+    match last.ending {
+        Ending::Return { leg, .. } => {
+            let first = last.motion.first().filter(|s| s.is_arc());
+            let side = first
+                .and_then(|s| Side::of_turn(s.turn_rate))
+                .unwrap_or(back);
+            let length = first.map_or(0.0, Segment::length);
+            draft.push(
+                Slot::Arc {
+                    side,
+                    speed: paces.fast,
+                },
+                length,
+            );
+            draft.seed(Ending::Return {
+                leg,
+                speed: paces.fast,
+            })
+        }
+        Ending::Goal { side, speed } => draft.seed(Ending::Goal { side, speed }),
+        Ending::Follow => None,
+    }
+}
+
+/// A turn and a line, with fewer speeds where there are many such groups.
+fn group(
+    draft: &mut Draft,
+    paces: &Paces,
+    side: Side,
+    turn: Option<&Segment>,
+    line: Option<&Segment>,
+    groups: usize,
+) {
+    let Paces { slow, normal, fast } = *paces;
+    let own = turn.or(line).map_or(fast, |s| s.speed);
+    let (turns, lines): (&[f64], &[f64]) = match groups {
+        0..=3 => (&[slow, fast], &[slow, normal, fast]),
+        // no more variables than there may be
+        4 => (&[own], &[slow, normal, fast]),
+        _ => (&[own], &[slow, fast]),
+    };
+    let turns = shared(turn, turns);
+    draft.turn(side, &turns);
+    let lines = shared(line, lines);
+    draft.line(&lines);
+}
+
+/// The speeds, without repetition, the nearest to the segment's own with its length.
+fn shared(segment: Option<&Segment>, speeds: &[f64]) -> Vec<(f64, f64)> {
+    let mut lengths: Vec<(f64, f64)> = speeds.iter().map(|u| (*u, 0.0)).collect();
+    lengths.dedup();
+    if let Some(s) = segment {
+        let nearest = lengths
+            .iter_mut()
+            .min_by(|a, b| (a.0 - s.speed).abs().total_cmp(&(b.0 - s.speed).abs()));
+        if let Some(nearest) = nearest {
+            nearest.1 = s.length();
+        }
+    }
+    lengths
+}
