@@ -230,8 +230,8 @@ impl Ladder<'_> {
         let risk = self.scenario.max_risk;
         let whole: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let obstacles = level_sets(&whole, risk);
-        let wide = space_time::detour(&self.problem(&obstacles))?;
-        let refined = space_time::continued(&self.problem(&obstacles), &wide.trajectory).outcome;
+        let wide = space_time::hybrid_a_star(&self.problem(&obstacles))?;
+        let refined = space_time::warm_started(&self.problem(&obstacles), &wide.trajectory).outcome;
         let plan = match refined.plan() {
             Some(refined) if refined.cost < wide.cost => refined.clone(),
             _ => wide,
@@ -295,7 +295,7 @@ impl Ladder<'_> {
         }
         let obstacles = level_sets(&attempt.whole, risk);
         let outcome =
-            space_time::continued(&self.problem(&obstacles), attempt.trajectory()?).outcome;
+            space_time::warm_started(&self.problem(&obstacles), attempt.trajectory()?).outcome;
         let mut drawn = Attempt {
             obstacles,
             risk,

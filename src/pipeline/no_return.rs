@@ -58,7 +58,7 @@ impl Run {
         let hard: Vec<Obstacle> = self.sets.iter().map(TargetSets::hard_set).collect();
         let coast = coast(scenario, &self.land);
         let asked = problem(scenario, &hard, &coast);
-        let held = space_time::undisturbed(&asked)?;
+        let held = space_time::nominal_motion(&asked)?;
         let contacts = hard.iter().filter_map(|set| {
             held.iter()
                 .find_map(|s| set.first_contact(s, super::ladder::TOUCH_M))

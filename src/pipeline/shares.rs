@@ -137,7 +137,7 @@ impl Ladder<'_> {
             let Some(from) = best.trajectory() else {
                 return best;
             };
-            let outcome = space_time::continued(&self.problem(&obstacles), from).outcome;
+            let outcome = space_time::warm_started(&self.problem(&obstacles), from).outcome;
             if matches!(outcome, Outcome::Deadline(_)) {
                 return out_of_time(best);
             }

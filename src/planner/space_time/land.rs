@@ -1,15 +1,15 @@
-//! Land in the planner: where the undisturbed motion would go ashore, and which blocks are near a manoeuvre.
+//! Land in the planner: where the nominal motion would go ashore, and which blocks are near a manoeuvre.
 
 use crate::frame::{Pose, Side, Vector, to_port};
 use crate::geometry::{ConvexPolygon, outer_simplified};
 use crate::obstacle::{Coast, LAND, PolytopeObstacle, window_of};
 use crate::planner::Problem;
-use crate::planner::space_time::graph::tangent::Aims;
-use crate::planner::space_time::proxy::{Hazard, TOUCH_M};
-use crate::planner::space_time::selection::initial_guess::{Conflict, Paces};
+use crate::planner::space_time::graph::tangent::TangentEdges;
+use crate::planner::space_time::proxy::{Proxy, TOUCH_M};
+use crate::planner::space_time::selection::initial_guess::{Conflict, SpeedTable};
 use crate::trajectory::Segment;
 
-/// Metres. Blocks farther than this from the undisturbed motion are not aimed at.
+/// Metres. Blocks farther than this from the nominal motion are not aimed at.
 const AIMED_M: f64 = 40.0;
 
 /// Vertices at most of a block whose corners are nodes.
@@ -18,14 +18,14 @@ const BLOCK_VERTICES: usize = 8;
 /// Metres. A corner this deep inside another block is inside it, not on its edge.
 const CORNER_M: f64 = 1e-3;
 
-/// Seconds between the instants at which the undisturbed motion is compared with the land.
+/// Seconds between the instants at which the nominal motion is compared with the land.
 const STEP_S: f64 = 2.0;
 
-/// The blocks of the land as hazards, in their order. Of their obstacle's index there is no target.
-pub(crate) fn hazards<'a>(problem: &Problem<'a>) -> Vec<Hazard<'a>> {
+/// The blocks of the land as proxies, in their order. Of their obstacle's index there is no target.
+pub(crate) fn proxies<'a>(problem: &Problem<'a>) -> Vec<Proxy<'a>> {
     let index = problem.obstacles.len();
     let blocks = problem.coast.blocks().iter();
-    blocks.map(|block| Hazard::at_rest(index, block)).collect()
+    blocks.map(|block| Proxy::at_rest(index, block)).collect()
 }
 
 /// The first instant at which a chain of segments is ashore, deeper than touching.
@@ -58,10 +58,14 @@ pub(crate) fn near<'s>(
 }
 
 /// A conflict with a target whose ways to the sides end on land: there they lead on to the water behind it.
-pub(crate) fn beyond_land(coast: &Coast, conflict: Conflict, undisturbed: &[Segment]) -> Conflict {
+pub(crate) fn beyond_land(
+    coast: &Coast,
+    conflict: Conflict,
+    nominal_motion: &[Segment],
+) -> Conflict {
     let mut conflict = conflict;
     let middle = 0.5 * (conflict.from + conflict.to);
-    let Some(pose) = pose_at(undisturbed, middle).filter(|_| !coast.is_empty()) else {
+    let Some(pose) = pose_at(nominal_motion, middle).filter(|_| !coast.is_empty()) else {
         return conflict;
     };
     for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
@@ -71,18 +75,18 @@ pub(crate) fn beyond_land(coast: &Coast, conflict: Conflict, undisturbed: &[Segm
     conflict
 }
 
-/// The stretches of the undisturbed motion that are ashore, seen every [`STEP_S`] from the first contact on, each with
+/// The stretches of the nominal motion that are ashore, seen every [`STEP_S`] from the first contact on, each with
 /// what it takes to pass beside the land. Land does not pass: there is no waiting for it and no passing ahead.
-pub(crate) fn conflicts(coast: &Coast, undisturbed: &[Segment]) -> Vec<Conflict> {
+pub(crate) fn conflicts(coast: &Coast, nominal_motion: &[Segment]) -> Vec<Conflict> {
     let mut found: Vec<Conflict> = Vec::new();
-    let Some(first) = first_contact(coast, undisturbed) else {
+    let Some(first) = first_contact(coast, nominal_motion) else {
         return found;
     };
-    let end = undisturbed.last().map_or(first, Segment::end_time);
+    let end = nominal_motion.last().map_or(first, Segment::end_time);
     let mut on_water = true;
     for step in 0..=((end - first) / STEP_S) as usize {
         let time = first + STEP_S * step as f64;
-        let Some(pose) = pose_at(undisturbed, time) else {
+        let Some(pose) = pose_at(nominal_motion, time) else {
             break;
         };
         let ashore = coast.depth(pose.position).is_some_and(|d| d > TOUCH_M);
@@ -111,10 +115,10 @@ pub(crate) fn conflicts(coast: &Coast, undisturbed: &[Segment]) -> Vec<Conflict>
         }
     }
     for conflict in &mut found {
-        let sailed = undisturbed
+        let rollout = nominal_motion
             .iter()
             .map(|s| s.between(conflict.from, conflict.to).length());
-        conflict.through = sailed.sum();
+        conflict.through = rollout.sum();
     }
     found
 }
@@ -127,18 +131,21 @@ fn pose_at(segments: &[Segment], time: f64) -> Option<Pose> {
         .map(|s| s.pose_at(time))
 }
 
-/// The corners of the land near the undisturbed motion, where that goes aground, each block with few: those that are
+/// The corners of the land near the nominal motion, where that goes aground, each block with few: those that are
 /// inside other blocks are left out, for no way leads past them. Where it stays on water ways around targets need no
 /// corner of the land: to aim at them too took twice the time and found no cheaper plan among 60 along quays.
-pub(crate) fn aims(problem: &Problem, undisturbed: &[Segment]) -> impl Iterator<Item = Aims> {
+pub(crate) fn tangent_edges(
+    problem: &Problem,
+    nominal_motion: &[Segment],
+) -> impl Iterator<Item = TangentEdges> {
     let coast = problem.coast;
-    let aground = first_contact(coast, undisturbed).is_some();
+    let aground = first_contact(coast, nominal_motion).is_some();
     let blocks = if aground {
-        near(coast, undisturbed.iter(), AIMED_M)
+        near(coast, nominal_motion.iter(), AIMED_M)
     } else {
         Vec::new()
     };
-    let paces = Paces::of(problem);
+    let speed_table = SpeedTable::of(problem);
     blocks.into_iter().filter_map(move |b| {
         let block = &coast.blocks()[b];
         let around = outer_simplified(block.initial(), BLOCK_VERTICES);
@@ -148,11 +155,15 @@ pub(crate) fn aims(problem: &Problem, undisturbed: &[Segment]) -> impl Iterator<
         }
         let rest = ConvexPolygon::point(Vector::zeros());
         let body = PolytopeObstacle::new(LAND, around, rest);
-        let hazard = Hazard::at_rest(problem.obstacles.len(), block);
-        let speeds = [paces.normal, paces.fast];
+        let proxy = Proxy::at_rest(problem.obstacles.len(), block);
+        let speeds = [speed_table.normal, speed_table.fast];
         let speeds = speeds
             .into_iter()
-            .take(if paces.normal < paces.fast { 2 } else { 1 });
-        Some(Aims::past(&hazard, &body, speeds, open))
+            .take(if speed_table.normal < speed_table.fast {
+                2
+            } else {
+                1
+            });
+        Some(TangentEdges::past(&proxy, &body, speeds, open))
     })
 }

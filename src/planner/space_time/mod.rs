@@ -2,7 +2,7 @@
 //! least space-time error, then refined.
 //!
 //! ```text
-//! route ─► undisturbed motion ─► graph (A*, k best) ─► seeds ─► refinement (SQP) ─► exact contact test ─► plan
+//! route ─► nominal motion ─► graph (A*, k best) ─► initial guesses ─► refinement (SQP) ─► exact contact test ─► plan
 //! ```
 //!
 //! The graph decides the side, the order and whether to wait; the refinement finds the numbers, speeds
@@ -23,8 +23,8 @@ mod selection;
 mod similarity;
 
 pub(crate) use fallback::escape::{NominalTarget, escape};
-pub use fallback::escape::{after_holding, undisturbed};
-pub use selection::warm_start::continued;
+pub use fallback::escape::{after_holding, nominal_motion};
+pub use selection::warm_start::warm_started;
 
 use super::clock::Clock;
 use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
@@ -34,14 +34,14 @@ use crate::tolerance;
 use crate::trajectory::Segment;
 use fallback::{hybrid_a_star, sequential};
 use graph::{Graph, node};
-use piece::parts;
-use proxy::{Hazard, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
+use piece::pieces;
+use proxy::{Proxy, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
 use refinement::approach::FINE_CHORD_RAD;
-use refinement::trial::Scene;
+use refinement::trial::Context;
 use route::Route;
 use rules::stand_on;
 use selection::Selection;
-use selection::budget::Effort;
+use selection::budget::SearchBudget;
 use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
@@ -59,16 +59,16 @@ const FURTHER_EXPANDED: usize = 4;
 /// problem gives the same plan unless the deadline strikes. Waypoints on a line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
     let clock = Clock::new(problem.deadline);
-    as_usual(problem, |problem, hazards, _| {
-        plan_clear_of(problem, hazards, clock)
+    as_usual(problem, |problem, proxies, _| {
+        plan_clear_of(problem, proxies, clock)
     })
 }
 
 /// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
 /// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
-pub fn detour(problem: &Problem) -> Option<Plan> {
+pub fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     let planned = as_usual(problem, |problem, _, _| {
-        let wide = hybrid_a_star::detour(problem);
+        let wide = hybrid_a_star::hybrid_a_star(problem);
         Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
     });
     planned.outcome.into_plan()
@@ -78,37 +78,37 @@ pub fn detour(problem: &Problem) -> Option<Plan> {
 /// as it is.
 fn as_usual(
     problem: &Problem,
-    plan: impl Fn(&Problem, &[Hazard], Option<&Similarity>) -> Planned,
+    plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
 ) -> Planned {
     let desired = problem.desired.straightened();
     let problem = &Problem {
         desired: &desired,
         ..*problem
     };
-    let parts = parts(problem.obstacles, problem.horizon);
-    let hazards = within_reach(problem, &parts);
-    let usual = Similarity::of(problem, &hazards);
-    let found = brought_back(problem, &hazards, &usual, &plan).or_else(|| {
+    let pieces = pieces(problem.obstacles, problem.horizon);
+    let proxies = within_reach(problem, &pieces);
+    let usual = Similarity::of(problem, &proxies);
+    let found = brought_back(problem, &proxies, &usual, &plan).or_else(|| {
         let usual = usual.of_its_own_size()?;
-        brought_back(problem, &hazards, &usual, &plan)
+        brought_back(problem, &proxies, &usual, &plan)
     });
-    found.unwrap_or_else(|| plan(problem, &hazards, None))
+    found.unwrap_or_else(|| plan(problem, &proxies, None))
 }
 
 fn brought_back(
     problem: &Problem,
-    hazards: &[Hazard],
+    proxies: &[Proxy],
     usual: &Similarity,
-    plan: impl Fn(&Problem, &[Hazard], Option<&Similarity>) -> Planned,
+    plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
 ) -> Option<Planned> {
     let alike = usual.alike(problem)?;
     let alike = alike.problem(problem);
-    let parts = parts(alike.obstacles, alike.horizon);
-    let planned = plan(&alike, &within_reach(&alike, &parts), Some(usual));
+    let pieces = pieces(alike.obstacles, alike.horizon);
+    let planned = plan(&alike, &within_reach(&alike, &pieces), Some(usual));
     let planned = usual.restored(planned, problem.horizon);
     let touches = |plan: &Plan| {
         let segments = plan.trajectory.segments();
-        first_met(hazards, segments).is_some() || land::meets(problem.coast, segments)
+        first_met(proxies, segments).is_some() || land::meets(problem.coast, segments)
     };
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
@@ -133,16 +133,16 @@ fn stay(problem: &Problem) -> Option<Plan> {
     Plan::measured(problem, vec![stay], None)
 }
 
-fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned {
+fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let own = problem.own;
-    for hazard in hazards {
-        if let Some(slack) = hazard.slack(own.pose.position, 0.0)
+    for proxy in proxies {
+        if let Some(slack) = proxy.slack(own.pose.position, 0.0)
             // negated on purpose: a NaN is inside
             && !(slack >= -TOUCH_M)
         {
             return refuse(NoPlan::StartInside {
-                target: problem.obstacles[hazard.obstacle].name().to_owned(),
+                target: problem.obstacles[proxy.obstacle].name().to_owned(),
                 depth: -slack,
             });
         }
@@ -160,9 +160,9 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     let Some(route) = Route::new(problem, clock) else {
         return refuse(NoPlan::NoRoute);
     };
-    let mut undisturbed = Vec::new();
-    route.follow(0.0, 0.0, &mut undisturbed);
-    let arrival = undisturbed.last().map_or(0.0, Segment::end_time);
+    let mut nominal_motion = Vec::new();
+    route.follow(0.0, 0.0, &mut nominal_motion);
+    let arrival = nominal_motion.last().map_or(0.0, Segment::end_time);
     // negated on purpose: a NaN is too late
     if !(arrival <= problem.horizon) {
         return refuse(NoPlan::HorizonTooShort {
@@ -170,29 +170,29 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
             horizon: problem.horizon,
         });
     }
-    let blocks = land::hazards(problem);
-    let scene = Scene {
+    let blocks = land::proxies(problem);
+    let context = Context {
         problem,
         route: &route,
-        hazards,
+        proxies,
         blocks: &blocks,
         chord: FINE_CHORD_RAD,
     };
-    let contact = first_contact(hazards, &undisturbed);
-    let grounding = land::first_contact(problem.coast, &undisturbed);
+    let contact = first_contact(proxies, &nominal_motion);
+    let grounding = land::first_contact(problem.coast, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
     if problem.duty().stands_on
         && let Some(end) = first_conflict
-        && let Some(held) = stand_on::hold(&scene, &undisturbed, end, clock)
+        && let Some(held) = stand_on::hold(&context, &nominal_motion, end, clock)
     {
         return held.planned(problem);
     }
-    let mut graph = Graph::new(problem, hazards, &route, &undisturbed, clock);
+    let mut graph = Graph::new(problem, proxies, &route, &nominal_motion, clock);
     let mut search = Search::new(graph.root());
-    let effort = Effort::of(by_obstacle(hazards).count());
-    let mut selection = Selection::new(scene, &undisturbed, effort);
-    let mut stages = effort.stages.iter();
+    let search_budget = SearchBudget::of(by_obstacle(proxies).count());
+    let mut selection = Selection::new(context, &nominal_motion, search_budget);
+    let mut stages = search_budget.stages.iter();
     let mut budget = 0;
     let mut timed_out = false;
     let mut optimum = None;
@@ -226,11 +226,11 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     }
     let mut conflicts: Vec<Conflict> = Vec::new();
     if contact.is_some() || grounding.is_some() {
-        conflicts = by_obstacle(hazards)
-            .filter_map(|h| Conflict::of(h, &undisturbed))
-            .map(|conflict| land::beyond_land(problem.coast, conflict, &undisturbed))
+        conflicts = by_obstacle(proxies)
+            .filter_map(|h| Conflict::of(h, &nominal_motion))
+            .map(|conflict| land::beyond_land(problem.coast, conflict, &nominal_motion))
             .collect();
-        conflicts.extend(land::conflicts(problem.coast, &undisturbed));
+        conflicts.extend(land::conflicts(problem.coast, &nominal_motion));
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, clock);
     }
@@ -239,7 +239,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     if !timed_out
         && (sequential::are_several(&conflicts) || is_bent && !selection.has_plan())
         && let Some(motion) =
-            sequential::one_after_another(problem, hazards, &route, &undisturbed, clock)
+            sequential::one_after_another(problem, proxies, &route, &nominal_motion, clock)
     {
         selection.consider(motion);
         timed_out = clock.is_up();
@@ -248,7 +248,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         && !selection.has_plan()
         && !problem.duty().is_none()
         && let Some(end) = first_conflict
-        && let Some(motion) = stand_on::cheapest(&scene, &undisturbed, end, clock)
+        && let Some(motion) = stand_on::cheapest(&context, &nominal_motion, end, clock)
     {
         selection.consider(motion);
         timed_out = clock.is_up();
@@ -275,7 +275,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     }
 }
 
-/// What the undisturbed motion meets first, the land or the set of a target.
+/// What the nominal motion meets first, the land or the set of a target.
 fn no_candidate(
     problem: &Problem,
     contact: Option<(usize, f64)>,

@@ -14,7 +14,7 @@ const MOST_GROWTH: f64 = 2.0;
 
 /// See the head of the file.
 #[derive(Debug)]
-pub(crate) struct Part {
+pub(crate) struct Piece {
     /// Index of the obstacle.
     pub obstacle: usize,
     /// Until when it is in force, and since when: `None` for ever.
@@ -47,11 +47,11 @@ pub(crate) struct Rounded {
 }
 
 /// The parts of all obstacles until the horizon, in their order.
-pub(crate) fn parts(obstacles: &[Obstacle], horizon: f64) -> Vec<Part> {
-    let mut parts = Vec::with_capacity(obstacles.len());
+pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
+    let mut pieces = Vec::with_capacity(obstacles.len());
     for (obstacle, o) in obstacles.iter().enumerate() {
         let mut push = |window, body| {
-            parts.push(Part {
+            pieces.push(Piece {
                 obstacle,
                 window,
                 body,
@@ -73,7 +73,7 @@ pub(crate) fn parts(obstacles: &[Obstacle], horizon: f64) -> Vec<Part> {
             }
         }
     }
-    parts
+    pieces
 }
 
 fn rounded(exact: EllipsoidObstacle, horizon: f64) -> Body {

@@ -3,7 +3,7 @@
 use crate::frame::{Pose, Vector, cross, to_port};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
 use crate::planner::Problem;
-use crate::planner::space_time::piece::{Body, Part, Window};
+use crate::planner::space_time::piece::{Body, Piece, Window};
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
 
@@ -16,7 +16,7 @@ const REACH_M: f64 = 1e-3;
 
 /// A part of an obstacle inside a growing disc that moves with its middle.
 #[derive(Debug)]
-pub(crate) struct Hazard<'a> {
+pub(crate) struct Proxy<'a> {
     /// Index of the obstacle.
     pub obstacle: usize,
     /// The part, where it is a polytope; of an ellipsoid, the polytope around it. Its time counts from the window's
@@ -34,8 +34,8 @@ pub(crate) struct Hazard<'a> {
     growth: f64,
 }
 
-impl<'a> Hazard<'a> {
-    pub(crate) fn new(part: &'a Part) -> Self {
+impl<'a> Proxy<'a> {
+    pub(crate) fn new(part: &'a Piece) -> Self {
         let (body, within, round) = match &part.body {
             Body::Polytope(polytope) => (polytope, polytope, None),
             Body::Ellipsoid(e) => (&e.around, &e.within, Some(&e.exact)),
@@ -290,19 +290,19 @@ fn round_contact(ellipsoid: &EllipsoidObstacle, segment: &Segment) -> Option<f64
 }
 
 /// The first obstacle, in their order, that the first segment to meet any meets deeper than touching.
-pub(crate) fn first_met(hazards: &[Hazard], segments: &[Segment]) -> Option<usize> {
+pub(crate) fn first_met(proxies: &[Proxy], segments: &[Segment]) -> Option<usize> {
     segments.iter().find_map(|s| {
         let middle = s.middle().position;
-        let met = hazards.iter().find(|h| h.meets_about(s, middle));
+        let met = proxies.iter().find(|h| h.meets_about(s, middle));
         met.map(|h| h.obstacle)
     })
 }
 
 /// The first contact of a chain of segments with any obstacle: `(obstacle, time)`; of several at one
 /// instant the first obstacle.
-pub(crate) fn first_contact(hazards: &[Hazard], segments: &[Segment]) -> Option<(usize, f64)> {
+pub(crate) fn first_contact(proxies: &[Proxy], segments: &[Segment]) -> Option<(usize, f64)> {
     for segment in segments {
-        let hit = hazards
+        let hit = proxies
             .iter()
             .filter_map(|h| h.first_contact(segment).map(|t| (h.obstacle, t)))
             .min_by(|a, b| a.1.total_cmp(&b.1));
@@ -313,19 +313,19 @@ pub(crate) fn first_contact(hazards: &[Hazard], segments: &[Segment]) -> Option<
     None
 }
 
-/// The hazards that own ship can meet until the horizon: the broad phase. What follows costs as much as these.
-pub(crate) fn within_reach<'a>(problem: &Problem, parts: &'a [Part]) -> Vec<Hazard<'a>> {
-    let hazards = parts.iter().map(Hazard::new);
-    hazards
+/// The proxies that own ship can meet until the horizon: the broad phase. What follows costs as much as these.
+pub(crate) fn within_reach<'a>(problem: &Problem, pieces: &'a [Piece]) -> Vec<Proxy<'a>> {
+    let proxies = pieces.iter().map(Proxy::new);
+    proxies
         .filter(|h| h.is_within_reach(problem.own, problem.horizon))
         .collect()
 }
 
-/// The hazards of each obstacle, in their order.
+/// The proxies of each obstacle, in their order.
 pub(crate) fn by_obstacle<'h, 'a>(
-    hazards: &'h [Hazard<'a>],
-) -> impl Iterator<Item = &'h [Hazard<'a>]> {
-    hazards.chunk_by(|a, b| a.obstacle == b.obstacle)
+    proxies: &'h [Proxy<'a>],
+) -> impl Iterator<Item = &'h [Proxy<'a>]> {
+    proxies.chunk_by(|a, b| a.obstacle == b.obstacle)
 }
 
 #[cfg(test)]
@@ -369,22 +369,22 @@ mod tests {
                 start: 200.0,
                 end: 500.0,
             });
-            let part = Part {
+            let piece = Piece {
                 obstacle: 0,
                 window,
                 body: Body::Polytope(body),
             };
-            let hazard = Hazard::new(&part);
+            let proxy = Proxy::new(&piece);
             let horizon = 900.0;
             let least = (0..=9000)
                 .filter_map(|k| {
                     let time = horizon * f64::from(k) / 9000.0;
-                    let (centre, radius) = hazard.disc_at(time)?;
+                    let (centre, radius) = proxy.disc_at(time)?;
                     let apart = (centre - own.pose.position).norm();
                     Some(apart - radius - own.max_speed() * time)
                 })
                 .fold(f64::INFINITY, f64::min);
-            if hazard.is_within_reach(&own, horizon) {
+            if proxy.is_within_reach(&own, horizon) {
                 within += 1;
                 // an instant is at most so far from those that were looked at
                 assert!(least <= REACH_M + 0.05 * 30.0, "{least}");

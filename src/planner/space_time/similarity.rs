@@ -11,7 +11,7 @@ use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{
     Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
-use crate::planner::space_time::proxy::{Hazard, by_obstacle};
+use crate::planner::space_time::proxy::{Proxy, by_obstacle};
 use crate::planner::{EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem};
 use crate::target::VelocitySpell;
 use crate::tolerance;
@@ -100,8 +100,8 @@ pub(crate) struct Alike {
 }
 
 impl Similarity {
-    /// Of a problem, with the hazards that own ship can meet. Land and rules know metres and seconds of their own: those problems are of their own size.
-    pub(crate) fn of(problem: &Problem, hazards: &[Hazard]) -> Self {
+    /// Of a problem, with the proxies that own ship can meet. Land and rules know metres and seconds of their own: those problems are of their own size.
+    pub(crate) fn of(problem: &Problem, proxies: &[Proxy]) -> Self {
         let own = problem.own;
         let mut of = Self {
             origin: own.pose,
@@ -110,15 +110,15 @@ impl Similarity {
             length: 1.0,
             time: 1.0,
             speeds: own.speeds.clone(),
-            within: by_obstacle(hazards).map(|h| h[0].obstacle).collect(),
+            within: by_obstacle(proxies).map(|h| h[0].obstacle).collect(),
             all: problem.obstacles.len(),
         };
         if !problem.coast.is_empty() || !problem.encountered.is_empty() {
             return of;
         }
-        (of.length, of.time) = size(problem, hazards);
+        (of.length, of.time) = size(problem, proxies);
         if problem.first_turn.is_none() {
-            of.hand = of.handed(problem, hazards);
+            of.hand = of.handed(problem, proxies);
         }
         of
     }
@@ -134,10 +134,10 @@ impl Similarity {
     }
 
     /// -1 where the first thing that is to a side is to port.
-    fn handed(&self, problem: &Problem, hazards: &[Hazard]) -> f64 {
-        let places = hazards.iter().filter_map(|h| h.disc_at(h.start()));
+    fn handed(&self, problem: &Problem, proxies: &[Proxy]) -> f64 {
+        let places = proxies.iter().filter_map(|h| h.disc_at(h.start()));
         let places = places.map(|(centre, _)| self.place(centre).y);
-        let ways = hazards
+        let ways = proxies
             .iter()
             .map(|h| self.velocity(h.drift()).y * USUAL_TURN_M / USUAL_MPS);
         let bends = problem
@@ -421,11 +421,11 @@ impl Alike {
 
 /// Metres and seconds of a problem per metre and second of the one that is planned: from own ship's turning radius and the desired
 /// speed, or from the set that own ship, on schedule, meets first, where beside her turning circle that is very small or large.
-fn size(problem: &Problem, hazards: &[Hazard]) -> (f64, f64) {
+fn size(problem: &Problem, proxies: &[Proxy]) -> (f64, f64) {
     let desired = problem.desired;
     let by_turn = problem.own.turning_radius / USUAL_TURN_M;
     let usual = SMALLEST_M..=LARGEST_M;
-    let radius = radius_met(desired, hazards).map(|radius| radius / by_turn);
+    let radius = radius_met(desired, proxies).map(|radius| radius / by_turn);
     let radius = radius.filter(|r| *r > 0.0 && !usual.contains(r));
     let longer = (desired.length() / by_turn / LONGEST_M).max(1.0);
     let larger = radius.map_or(1.0, |r| r / USUAL_M).max(longer);
@@ -468,11 +468,11 @@ fn digits(x: f64) -> f64 {
 }
 
 /// Metres: the radius of the disc around the section that contains own ship on schedule first.
-fn radius_met(desired: &DesiredTrajectory, hazards: &[Hazard]) -> Option<f64> {
+fn radius_met(desired: &DesiredTrajectory, proxies: &[Proxy]) -> Option<f64> {
     (0..=LOOKS).find_map(|look| {
         let time = desired.duration() * look as f64 / LOOKS as f64;
         let place = desired.position_at(time);
-        let met = hazards.iter().filter_map(|h| {
+        let met = proxies.iter().filter_map(|h| {
             let (centre, radius) = h.disc_at(time)?;
             ((place - centre).norm() <= radius).then_some(radius)
         });

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::frame::{Vector, direction, heading_of};
-use crate::planner::space_time::bound::obstacle::KeepOut;
+use crate::planner::space_time::bound::obstacle::ObstacleBound;
 
 /// Radians from straight to the path toward straight ahead.
 const ASLANT: [f64; LIMITS] = [-1.0, -0.4, 0.2, 0.7, 1.1, 1.57];
@@ -62,7 +62,7 @@ impl Pair {
 
 impl View {
     /// `side` is 1 where the path is to port.
-    pub(crate) fn new(side: f64, root: f64, keep_out: &KeepOut) -> Self {
+    pub(crate) fn new(side: f64, root: f64, obstacle_bound: &ObstacleBound) -> Self {
         let mut headings = [0.0; WAYS];
         headings[0] = side * FRAC_PI_2;
         let limits: [Limit; LIMITS] = std::array::from_fn(|k| {
@@ -75,7 +75,7 @@ impl View {
                 scale,
             }
         });
-        let faces = keep_out.bodies().iter().flat_map(|b| &b.faces);
+        let faces = obstacle_bound.bodies().iter().flat_map(|b| &b.faces);
         let pairs = faces
             .map(|f| limits.map(|l| Pair::new(-l.metric.dot(&f.metric))))
             .collect();
@@ -89,21 +89,21 @@ impl View {
 }
 
 /// What is asked of own ship in one interval.
-pub(crate) struct Outside<'a> {
-    pub keep_out: &'a KeepOut,
+pub(crate) struct HalfPlanes<'a> {
+    pub obstacle_bound: &'a ObstacleBound,
     pub view: &'a View,
     pub reached: &'a [f64],
     /// Metres that the point on schedule is beyond each limit at least.
     pub limits: [f64; LIMITS],
 }
 
-impl Outside<'_> {
+impl HalfPlanes<'_> {
     /// Least mean squared error between two times outside every body and within the limits; `known` is what
     /// the limits ask for by themselves.
     pub(crate) fn least(&self, known: f64, from: f64, to: f64) -> f64 {
         let mut greatest = known;
         let mut first = 0;
-        for body in self.keep_out.bodies() {
+        for body in self.obstacle_bound.bodies() {
             let faces = first..first + body.faces.len();
             first = faces.end;
             if to < body.from || from > body.to {

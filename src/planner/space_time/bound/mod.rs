@@ -18,16 +18,16 @@
 //! closed form. For a polyline the distance `d` to the nearest leg replaces `c`: it shrinks by at most
 //! `u_max` per second and is zero at the end, `h = d³ / (3 u_max T_d)`.
 //!
-//! The obstacles give a second bound, [`KeepOut`]; the greater of two bounds is a bound. For nodes that would be
-//! expanded next there is a third, [`Closer`].
+//! The obstacles give a second bound, [`ObstacleBound`]; the greater of two bounds is a bound. For nodes that would be
+//! expanded next there is a third, [`TightBound`].
 
 pub(crate) mod half_plane;
 pub(crate) mod obstacle;
 pub(crate) mod tight;
 
 use crate::frame::{Pose, Vector, cross, direction, heading_of, to_port};
-use crate::planner::space_time::bound::obstacle::KeepOut;
-use crate::planner::space_time::bound::tight::Closer;
+use crate::planner::space_time::bound::obstacle::ObstacleBound;
+use crate::planner::space_time::bound::tight::TightBound;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
@@ -45,9 +45,9 @@ pub(crate) struct Heuristic<'a> {
     /// Metres.
     radius: f64,
     /// What the obstacles cost.
-    keep_out: KeepOut,
+    obstacle_bound: ObstacleBound,
     /// For one straight leg.
-    closer: Option<Closer<'a>>,
+    tight_bound: Option<TightBound<'a>>,
 }
 
 impl<'a> Heuristic<'a> {
@@ -55,13 +55,19 @@ impl<'a> Heuristic<'a> {
         desired: &'a DesiredTrajectory,
         time_weight: f64,
         own: &OwnShip,
-        keep_out: KeepOut,
+        obstacle_bound: ObstacleBound,
     ) -> Self {
         let (max_speed, radius) = (own.max_speed(), own.turning_radius);
-        let closer = match desired.legs() {
+        let tight_bound = match desired.legs() {
             [leg] => {
                 let kappa = time_weight / (time_weight + leg.speed * leg.speed);
-                Some(Closer::new(leg, kappa, max_speed, radius, &keep_out))
+                Some(TightBound::new(
+                    leg,
+                    kappa,
+                    max_speed,
+                    radius,
+                    &obstacle_bound,
+                ))
             }
             _ => None,
         };
@@ -70,28 +76,29 @@ impl<'a> Heuristic<'a> {
             time_weight,
             max_speed,
             radius,
-            keep_out,
-            closer,
+            obstacle_bound,
+            tight_bound,
         }
     }
 
     /// Least space-time error of any way from here to the last waypoint, m².
     pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
-        let keep_out = |from: f64| self.keep_out.cost_from(from) / self.desired.duration();
+        let obstacle_bound =
+            |from: f64| self.obstacle_bound.cost_from(from) / self.desired.duration();
         let (across, lag) = self.way_back(pose, time);
         // bounds of separate stretches of time add up
-        let both = across.cost + lag.cost + keep_out(time + across.span.max(lag.span));
-        both.max(across.cost + keep_out(time + across.span))
-            .max(keep_out(time))
+        let both = across.cost + lag.cost + obstacle_bound(time + across.span.max(lag.span));
+        both.max(across.cost + obstacle_bound(time + across.span))
+            .max(obstacle_bound(time))
     }
 
     /// The same, greater as a rule, for one straight leg; takes longer.
     pub(crate) fn closer_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
-        let Some(closer) = &self.closer else {
+        let Some(tight_bound) = &self.tight_bound else {
             return 0.0;
         };
         let arrival = (self.desired.end() - pose.position).norm() / self.max_speed;
-        closer.cost_to_go(&self.keep_out, pose, time, arrival) / self.desired.duration()
+        tight_bound.cost_to_go(&self.obstacle_bound, pose, time, arrival) / self.desired.duration()
     }
 
     /// True when no way from here clears the obstacles.
@@ -103,7 +110,7 @@ impl<'a> Heuristic<'a> {
         let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
         let kappa = self.time_weight / (self.time_weight + leg.speed * leg.speed);
         let error = (cross(leg.direction, offset).powi(2) + kappa * lag * lag).sqrt();
-        self.keep_out.forbids(error, time)
+        self.obstacle_bound.forbids(error, time)
     }
 
     /// The bounds that see no obstacle: across the path, and along it.
@@ -251,7 +258,7 @@ mod tests {
                 speeds: vec![6.0],
                 safety_margin: 0.0,
             };
-            let bound = Heuristic::new(&desired, 25.0, &own, KeepOut::none());
+            let bound = Heuristic::new(&desired, 25.0, &own, ObstacleBound::none());
             let mut pose = Pose::new(
                 Vector::new(
                     rng.random_range(0.0..1300.0),

@@ -15,12 +15,12 @@
 //!
 //! Of an ellipsoid the faces are those of a polytope within it: who is outside the ellipsoid is outside of that. A part
 //! that is in force for a while counts at the instants of its window alone; `E` is asked at instants only, so nothing
-//! else changes. Such parts are left out of [`KeepOut::bodies`].
+//! else changes. Such parts are left out of [`ObstacleBound::bodies`].
 
 use crate::frame::{Vector, cross, heading_of};
 use crate::obstacle::HalfSpace;
 use crate::planner::Problem;
-use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::proxy::Proxy;
 use crate::trajectory::DesiredLeg;
 
 /// Seconds between two instants.
@@ -28,7 +28,7 @@ const STEP_S: f64 = 0.5;
 
 /// The bound by time.
 #[derive(Debug, Clone)]
-pub(crate) struct KeepOut {
+pub(crate) struct ObstacleBound {
     /// m² s, what is still to come at every multiple of [`STEP_S`]; decreasing.
     to_come: Vec<f64>,
     bodies: Vec<Body>,
@@ -37,7 +37,7 @@ pub(crate) struct KeepOut {
     fall: f64,
 }
 
-impl KeepOut {
+impl ObstacleBound {
     /// No obstacles, or more than one leg: zero.
     pub(crate) fn none() -> Self {
         Self {
@@ -49,7 +49,7 @@ impl KeepOut {
     }
 
     /// For the obstacles that the motion on schedule enters.
-    pub(crate) fn new(problem: &Problem, hazards: &[Hazard]) -> Self {
+    pub(crate) fn new(problem: &Problem, proxies: &[Proxy]) -> Self {
         let [leg] = problem.desired.legs() else {
             return Self::none();
         };
@@ -60,17 +60,17 @@ impl KeepOut {
         let count = (until / STEP_S).floor().max(0.0) as usize;
         let mut least = vec![0.0; count + 1];
         let mut bodies = Vec::new();
-        for hazard in hazards {
-            let faces = hazard.within.faces().iter();
+        for proxy in proxies {
+            let faces = proxy.within.faces().iter();
             let faces: Vec<Face> = faces
-                .map(|f| Face::new(by_the_clock(f, hazard.start()), leg, kappa))
+                .map(|f| Face::new(by_the_clock(f, proxy.start()), leg, kappa))
                 .collect();
             let mut contact = None;
             let steps = inside(&faces).map(|time| (time / STEP_S).clamp(0.0, least.len() as f64));
             let (first, last) = (steps[0].floor() as usize, steps[1].ceil() as usize + 1);
             for (k, least) in least.iter_mut().enumerate().take(last).skip(first) {
                 let time = STEP_S * k as f64;
-                if hazard
+                if proxy
                     .window
                     .is_some_and(|w| !(time >= w.start && time <= w.end))
                 {
@@ -86,7 +86,7 @@ impl KeepOut {
                 }
             }
             // the closer bound takes its faces to hold for ever
-            let contact = contact.filter(|_| hazard.window.is_none());
+            let contact = contact.filter(|_| proxy.window.is_none());
             bodies.extend(contact.map(|(from, to)| Body { faces, from, to }));
         }
         let fall = rate(own.max_speed(), leg.speed, kappa) * STEP_S;

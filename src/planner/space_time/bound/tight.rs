@@ -29,9 +29,9 @@ use std::f64::consts::{PI, TAU};
 
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::planner::space_time::bound::half_plane::{
-    LIMITS, Outside, View, WAYS, greater, lesser, squared_chord,
+    HalfPlanes, LIMITS, View, WAYS, greater, lesser, squared_chord,
 };
-use crate::planner::space_time::bound::obstacle::{Face, KeepOut};
+use crate::planner::space_time::bound::obstacle::{Face, ObstacleBound};
 use crate::planner::space_time::bound::squared_ramp;
 use crate::trajectory::DesiredLeg;
 
@@ -41,7 +41,7 @@ const MOST_INTERVALS: f64 = 24.0;
 
 /// What the bound depends on beside the node.
 #[derive(Debug)]
-pub(crate) struct Closer<'a> {
+pub(crate) struct TightBound<'a> {
     leg: &'a DesiredLeg,
     /// Heading of the leg, radians.
     course: f64,
@@ -79,11 +79,11 @@ impl Ways {
     }
 
     /// Metres made good at most after so many metres sailed.
-    fn made_good(&self, sailed: f64) -> [f64; WAYS] {
-        let (turned, r) = (sailed / self.radius, self.radius);
+    fn made_good(&self, rollout: f64) -> [f64; WAYS] {
+        let (turned, r) = (rollout / self.radius, self.radius);
         if turned >= self.greatest {
             return std::array::from_fn(|k| {
-                greater(sailed - r * (self.angles[k] - self.sines[k]), 0.0)
+                greater(rollout - r * (self.angles[k] - self.sines[k]), 0.0)
             });
         }
         let (sin, cos) = turned.sin_cos();
@@ -93,7 +93,7 @@ impl Ways {
                 let left = self.sines[k] * cos - self.cosines[k] * sin;
                 r * (self.sines[k] - left)
             } else {
-                sailed - r * (self.angles[k] - self.sines[k])
+                rollout - r * (self.angles[k] - self.sines[k])
             };
             way.max(0.0)
         })
@@ -106,13 +106,13 @@ fn between(a: f64, b: f64) -> f64 {
     if apart > PI { TAU - apart } else { apart }
 }
 
-impl<'a> Closer<'a> {
+impl<'a> TightBound<'a> {
     pub(crate) fn new(
         leg: &'a DesiredLeg,
         kappa: f64,
         speed: f64,
         radius: f64,
-        keep_out: &KeepOut,
+        obstacle_bound: &ObstacleBound,
     ) -> Self {
         let root = kappa.sqrt();
         Self {
@@ -122,7 +122,7 @@ impl<'a> Closer<'a> {
             root,
             speed,
             radius,
-            views: [1.0, -1.0].map(|side| View::new(side, root, keep_out)),
+            views: [1.0, -1.0].map(|side| View::new(side, root, obstacle_bound)),
         }
     }
 
@@ -130,7 +130,7 @@ impl<'a> Closer<'a> {
     /// `arrival` seconds away; m² s.
     pub(crate) fn cost_to_go(
         &self,
-        keep_out: &KeepOut,
+        obstacle_bound: &ObstacleBound,
         pose: &Pose,
         time: f64,
         arrival: f64,
@@ -165,9 +165,9 @@ impl<'a> Closer<'a> {
             });
             ((across.abs() - made_good[0], late), beyond)
         };
-        let reached = self.reached(keep_out, pose, ahead, time);
+        let reached = self.reached(obstacle_bound, pose, ahead, time);
         let turned = ways.angles[0].max(ways.angles[1]) * self.radius / u;
-        let until = arrival.min(turned.max(keep_out.last_contact() - time));
+        let until = arrival.min(turned.max(obstacle_bound.last_contact() - time));
         let interval = INTERVAL_S.max(until / MOST_INTERVALS);
         let (mut from, mut sum) = (0.0, 0.0);
         let (mut back, mut beyond) = apart(0.0);
@@ -181,27 +181,33 @@ impl<'a> Closer<'a> {
                 least = greater(least, squared_chord(beyond[k], next.1[k]));
                 *limit = lesser(beyond[k], next.1[k]);
             }
-            let outside = Outside {
-                keep_out,
+            let outside = HalfPlanes {
+                obstacle_bound,
                 view,
                 reached: &reached,
                 limits,
             };
             least = outside.least(least, time + from, time + to);
-            let envelope = keep_out.cost_between(time + from, time + to);
+            let envelope = obstacle_bound.cost_between(time + from, time + to);
             sum += (least * (to - from)).max(envelope);
             from = to;
             (back, beyond) = next;
         }
         let rest = squared_ramp(back.0, -u, f64::INFINITY).cost
             + kappa * squared_ramp(back.1, slope, arrival - from).cost;
-        sum + rest.max(keep_out.cost_from(time + from))
+        sum + rest.max(obstacle_bound.cost_from(time + from))
     }
 
     /// The earliest time at which own ship can be beyond each face of each body.
-    fn reached(&self, keep_out: &KeepOut, pose: &Pose, ahead: Vector, time: f64) -> Vec<f64> {
+    fn reached(
+        &self,
+        obstacle_bound: &ObstacleBound,
+        pose: &Pose,
+        ahead: Vector,
+        time: f64,
+    ) -> Vec<f64> {
         let heading = wrap(pose.heading);
-        keep_out
+        obstacle_bound
             .bodies()
             .iter()
             .flat_map(|b| &b.faces)
@@ -249,9 +255,9 @@ mod tests {
     use crate::planner::cost::space_time_error;
     use crate::planner::space_time::graph::Graph;
     use crate::planner::space_time::graph::node::State;
-    use crate::planner::space_time::piece::parts;
+    use crate::planner::space_time::piece::pieces;
     use crate::planner::space_time::plan;
-    use crate::planner::space_time::proxy::Hazard;
+    use crate::planner::space_time::proxy::Proxy;
     use crate::planner::space_time::route::Route;
     use crate::planner::{Problem, SearchKind};
     use crate::search::{Search, Space, Stop};
@@ -281,15 +287,15 @@ mod tests {
     /// the cost that follows. How near the closer one comes.
     fn nearest(problem: &Problem) -> f64 {
         let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
-        let mut undisturbed = Vec::new();
-        route.follow(0.0, 0.0, &mut undisturbed);
-        let parts = parts(problem.obstacles, problem.horizon);
-        let hazards: Vec<Hazard> = parts.iter().map(Hazard::new).collect();
+        let mut nominal_motion = Vec::new();
+        route.follow(0.0, 0.0, &mut nominal_motion);
+        let pieces = pieces(problem.obstacles, problem.horizon);
+        let proxies: Vec<Proxy> = pieces.iter().map(Proxy::new).collect();
         let mut graph = Graph::new(
             problem,
-            &hazards,
+            &proxies,
             &route,
-            &undisturbed,
+            &nominal_motion,
             Clock::new(Duration::MAX),
         );
         let mut search = Search::new(graph.root());
@@ -325,12 +331,15 @@ mod tests {
         }
         let mut nearest = 0.0_f64;
         for (state, to_go) in joints {
-            let (bound, closer) = (graph.bound(&state), graph.closer_bound(&state));
+            let (bound, tight_bound) = (graph.bound(&state), graph.closer_bound(&state));
             let limit = to_go * (1.0 + 1e-9) + 1e-6;
             assert!(bound <= limit, "{bound} > {to_go} at {state:?}");
-            assert!(closer <= limit, "closer: {closer} > {to_go} at {state:?}");
+            assert!(
+                tight_bound <= limit,
+                "closer: {tight_bound} > {to_go} at {state:?}"
+            );
             if to_go > 100.0 {
-                nearest = nearest.max(closer / to_go);
+                nearest = nearest.max(tight_bound / to_go);
             }
         }
         nearest
@@ -350,10 +359,10 @@ mod tests {
     #[test]
     fn no_way_costs_less_than_its_bounds() {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
-            (0..12).map(move |seed| random_encounter(kind, seed, Placement::Random))
+            (0..12).map(move |guess| random_encounter(kind, guess, Placement::Random))
         });
         let traffic = [2, 4].into_iter().flat_map(|count| {
-            (0..8).map(move |seed| random_traffic(count, seed, Placement::Random))
+            (0..8).map(move |guess| random_traffic(count, guess, Placement::Random))
         });
         let mut greatest = 0.0_f64;
         for drawn in encounters.chain(traffic) {

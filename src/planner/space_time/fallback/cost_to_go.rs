@@ -6,7 +6,7 @@
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::planner::Problem;
-use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::proxy::Proxy;
 
 /// Cells of the grid to either axis.
 const CELLS: usize = 80;
@@ -19,7 +19,7 @@ const WIDE: usize = CELLS + 2 * REACH as usize;
 
 /// The cost to go, m², from the middles of cells at evenly spaced instants.
 #[derive(Debug)]
-pub(crate) struct Future {
+pub(crate) struct CostToGoGrid {
     corner: Vector,
     /// Metres.
     pub cell: f64,
@@ -29,10 +29,10 @@ pub(crate) struct Future {
     to_go: Vec<f32>,
 }
 
-impl Future {
+impl CostToGoGrid {
     /// Backward from the horizon over all places from which the way from the start and to the end is within it.
     /// O(cells x instants x (moves + legs)); some ten milliseconds.
-    pub(crate) fn of(problem: &Problem, hazards: &[Hazard]) -> Option<Self> {
+    pub(crate) fn of(problem: &Problem, proxies: &[Proxy]) -> Option<Self> {
         let (start, end) = (problem.own.pose.position, problem.desired.end());
         let top = problem.own.max_speed();
         let half = 0.5 * top * problem.horizon;
@@ -44,7 +44,7 @@ impl Future {
             return None;
         }
         let middle = (start + end) * 0.5;
-        let mut future = Self {
+        let mut grid = Self {
             corner: middle - Vector::new(half, half),
             cell,
             step,
@@ -53,7 +53,7 @@ impl Future {
         };
         let ashore: Vec<bool> = (0..CELLS * CELLS)
             .map(|k| {
-                let depth = problem.coast.depth(future.middle(k));
+                let depth = problem.coast.depth(grid.middle(k));
                 depth.is_some_and(|depth| depth > 0.0)
             })
             .collect();
@@ -70,30 +70,30 @@ impl Future {
         for layer in (0..layers).rev() {
             let time = step * layer as f64;
             let mut blocked = ashore.clone();
-            for hazard in hazards {
-                future.block(&mut blocked, hazard, time);
+            for proxy in proxies {
+                grid.block(&mut blocked, proxy, time);
             }
             for row in 0..CELLS {
                 if layer + 1 < layers {
-                    future.best_after(layer, row, &moves, &mut later);
+                    grid.best_after(layer, row, &moves, &mut later);
                 }
                 for (column, later) in later.iter().enumerate() {
                     let k = row * CELLS + column;
-                    let (here, at) = (future.middle(k), future.index(layer, column, row));
+                    let (here, at) = (grid.middle(k), grid.index(layer, column, row));
                     if blocked[k] {
                         continue;
                     }
                     if (here - end).norm() <= cell {
-                        future.to_go[at] = 0.0;
+                        grid.to_go[at] = 0.0;
                     } else if later.is_finite() {
                         let nearest = problem.desired.nearest(here, time, problem.time_weight);
                         let error = nearest.error * step * per_second;
-                        future.to_go[at] = later + error as f32;
+                        grid.to_go[at] = later + error as f32;
                     }
                 }
             }
         }
-        Some(future)
+        Some(grid)
     }
 
     fn middle(&self, k: usize) -> Vector {
@@ -119,13 +119,13 @@ impl Future {
     }
 
     /// Marks the cells whose middles are in a set.
-    fn block(&self, blocked: &mut [bool], hazard: &Hazard, time: f64) {
-        if let Some(window) = &hazard.window
+    fn block(&self, blocked: &mut [bool], proxy: &Proxy, time: f64) {
+        if let Some(window) = &proxy.window
             && !(time >= window.start && time <= window.end)
         {
             return;
         }
-        let section: ConvexPolygon = hazard.body.section(time - hazard.start());
+        let section: ConvexPolygon = proxy.body.section(time - proxy.start());
         let range = |along: Vector, corner: f64| {
             let (low, high) = (-section.support(-along), section.support(along));
             let low = ((low - corner) / self.cell).ceil().max(0.0) as usize;

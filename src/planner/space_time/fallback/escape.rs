@@ -11,8 +11,8 @@ use crate::frame::{Pose, Side};
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, Watch};
-use crate::planner::space_time::piece::parts as parts_of;
-use crate::planner::space_time::proxy::{Hazard, TOUCH_M, within_reach};
+use crate::planner::space_time::piece::pieces as parts_of;
+use crate::planner::space_time::proxy::{Proxy, TOUCH_M, within_reach};
 use crate::planner::space_time::route::Route;
 use crate::planner::{Plan, Problem};
 use crate::trajectory::{DesiredTrajectory, Segment};
@@ -67,9 +67,9 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
     if crate::planner::space_time::has_arrived(problem) {
         return crate::planner::space_time::stay(problem);
     }
-    let parts = parts_of(problem.obstacles, problem.horizon);
-    let hazards = within_reach(problem, &parts);
-    let mut near: Vec<usize> = hazards.iter().map(|h| h.obstacle).collect();
+    let pieces = parts_of(problem.obstacles, problem.horizon);
+    let proxies = within_reach(problem, &pieces);
+    let mut near: Vec<usize> = proxies.iter().map(|h| h.obstacle).collect();
     near.dedup();
     let targets: Vec<NominalTarget> = near.into_iter().map(nominal).collect();
     let (hulls, own): (Vec<_>, Vec<_>) = targets.iter().map(|t| (t.hull.clone(), t.own)).unzip();
@@ -80,12 +80,12 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
         obstacles: &sets,
         ..problem.clone()
     };
-    let mut sought = (problem, ways_out(problem, &hazards, &watch, clock));
+    let mut sought = (problem, ways_out(problem, &proxies, &watch, clock));
     if !sought.1.first().is_some_and(|way| way.harm.is_clear()) {
-        let parts = parts_of(&sets, problem.horizon);
+        let pieces = parts_of(&sets, problem.horizon);
         let ways = ways_out(
             &nominal,
-            &parts.iter().map(Hazard::new).collect::<Vec<_>>(),
+            &pieces.iter().map(Proxy::new).collect::<Vec<_>>(),
             &watch,
             clock,
         );
@@ -175,7 +175,7 @@ fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment
 }
 
 /// The motion along the path as if nobody else were there; `None` where it is not at the end before the horizon.
-pub fn undisturbed(problem: &Problem) -> Option<Vec<Segment>> {
+pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
     let route = Route::new(problem, Clock::new(problem.deadline))?;
     let mut motion = Vec::new();
     route.follow(0.0, 0.0, &mut motion);
@@ -208,25 +208,25 @@ struct WayOut {
 }
 
 /// The ways out of the sets that own ship starts in, least harm first; when the clock is up, of coarse turns alone.
-fn ways_out(problem: &Problem, hazards: &[Hazard], watch: &Watch, clock: Clock) -> Vec<WayOut> {
+fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -> Vec<WayOut> {
     let own = problem.own;
-    let inside = |h: &&Hazard| {
+    let inside = |h: &&Proxy| {
         h.slack(own.pose.position, 0.0)
             // negated on purpose: a NaN is inside
             .is_some_and(|slack| !(slack >= -TOUCH_M))
     };
-    let held: Vec<usize> = hazards.iter().filter(inside).map(|h| h.obstacle).collect();
+    let held: Vec<usize> = proxies.iter().filter(inside).map(|h| h.obstacle).collect();
     if held.is_empty() {
         return Vec::new();
     }
-    let (held, others): (Vec<&Hazard>, Vec<&Hazard>) =
-        hazards.iter().partition(|h| held.contains(&h.obstacle));
+    let (held, others): (Vec<&Proxy>, Vec<&Proxy>) =
+        proxies.iter().partition(|h| held.contains(&h.obstacle));
     let depth = |pose: &Pose, time: f64| {
         let slacks = held.iter().filter_map(|h| h.slack(pose.position, time));
         -slacks.fold(f64::INFINITY, f64::min)
     };
     let fastest = held.iter().map(|h| h.speed()).fold(0.0, f64::max);
-    let meets = |any: &[&Hazard], motion: &[Segment]| {
+    let meets = |any: &[&Proxy], motion: &[Segment]| {
         let mut pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
         pairs.any(|(h, s)| h.first_contact(s).is_some())
     };
@@ -386,8 +386,8 @@ fn out_at(
 
 /// Until a time.
 fn cut(motion: &[Segment], until: f64) -> Vec<Segment> {
-    let sailed = motion.iter().filter(|s| s.start_time < until);
-    sailed.map(|s| s.between(s.start_time, until)).collect()
+    let rollout = motion.iter().filter(|s| s.start_time < until);
+    rollout.map(|s| s.between(s.start_time, until)).collect()
 }
 
 /// From a time on.

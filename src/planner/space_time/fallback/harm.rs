@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 use crate::frame::Pose;
-use crate::planner::space_time::piece::Part;
-use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::piece::Piece;
+use crate::planner::space_time::proxy::Proxy;
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
 
@@ -83,15 +83,15 @@ impl Harm {
 
 /// The hulls of targets on their nominal tracks.
 pub(crate) struct Watch<'a> {
-    hulls: Vec<(Hazard<'a>, Hull)>,
+    hulls: Vec<(Proxy<'a>, Hull)>,
 }
 
 impl<'a> Watch<'a> {
     /// From the parts of the hulls, and own hull toward each.
-    pub(crate) fn new(parts: &'a [Part], own: &[Hull]) -> Self {
-        let hulls = parts
+    pub(crate) fn new(pieces: &'a [Piece], own: &[Hull]) -> Self {
+        let hulls = pieces
             .iter()
-            .map(|part| (Hazard::new(part), own[part.obstacle]));
+            .map(|part| (Proxy::new(part), own[part.obstacle]));
         Self {
             hulls: hulls.collect(),
         }
@@ -102,7 +102,7 @@ impl<'a> Watch<'a> {
     pub(crate) fn depth(&self, own: &OwnShip, motion: &[Segment], until: f64) -> f64 {
         let until = until.min(motion.last().map_or(0.0, Segment::end_time));
         let mut deepest: f64 = 0.0;
-        for (hazard, hull) in &self.hulls {
+        for (proxy, hull) in &self.hulls {
             let mut least = LOOK_BEAMS * own.hull.beam.max(LEAST_STEP_M);
             let (mut time, mut at, mut looks): (f64, _, u32) = (0.0, 0, 0);
             while let Some(segment) = motion.get(at) {
@@ -115,8 +115,8 @@ impl<'a> Watch<'a> {
                     least *= 2.0;
                 }
                 let turning = segment.turn_rate.abs() * hull.half_diagonal();
-                let closing = segment.speed + turning + hazard.speed();
-                let apart = hazard
+                let closing = segment.speed + turning + proxy.speed();
+                let apart = proxy
                     .clearance_of(hull, &segment.pose_at(time), time)
                     .unwrap_or(f64::INFINITY);
                 deepest = deepest.max(-apart);

@@ -2,7 +2,7 @@
 //! or late.
 //!
 //! Turns and lines of about the length of a grid's cell, one after another, best first by cost plus what the grid says is still to
-//! come ([`Future`]); from each of them also a turn and a line straight to the end. A piece is tested when it leaves the queue: most
+//! come ([`CostToGoGrid`]); from each of them also a turn and a line straight to the end. A piece is tested when it leaves the queue: most
 //! never do.
 
 use std::cmp::Ordering;
@@ -11,10 +11,10 @@ use std::collections::{BinaryHeap, HashSet};
 use crate::frame::{Pose, Side, Vector, heading_of, to_port, wrap};
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
-use crate::planner::space_time::fallback::cost_to_go::Future;
+use crate::planner::space_time::fallback::cost_to_go::CostToGoGrid;
 use crate::planner::space_time::land;
-use crate::planner::space_time::piece::parts;
-use crate::planner::space_time::proxy::{Hazard, first_met, within_reach};
+use crate::planner::space_time::piece::pieces;
+use crate::planner::space_time::proxy::{Proxy, first_met, within_reach};
 use crate::planner::{Plan, Problem};
 use crate::tolerance;
 use crate::trajectory::Segment;
@@ -115,16 +115,16 @@ impl Ord for Open {
 
 /// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
 /// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
-pub(crate) fn detour(problem: &Problem) -> Option<Plan> {
+pub(crate) fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
-    let parts = parts(problem.obstacles, problem.horizon);
-    let hazards = within_reach(problem, &parts);
-    let future = Future::of(problem, &hazards)?;
+    let pieces = pieces(problem.obstacles, problem.horizon);
+    let proxies = within_reach(problem, &pieces);
+    let grid = CostToGoGrid::of(problem, &proxies)?;
     FINENESSES.into_iter().find_map(|fineness| {
         let mut search = Detour {
             problem,
-            hazards: &hazards,
-            future: &future,
+            proxies: &proxies,
+            grid: &grid,
             fineness,
             reached: Vec::new(),
             open: BinaryHeap::new(),
@@ -149,8 +149,8 @@ fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
 
 struct Detour<'a> {
     problem: &'a Problem<'a>,
-    hazards: &'a [Hazard<'a>],
-    future: &'a Future,
+    proxies: &'a [Proxy<'a>],
+    grid: &'a CostToGoGrid,
     fineness: Fineness,
     reached: Vec<Reached>,
     open: BinaryHeap<Open>,
@@ -190,20 +190,20 @@ impl Detour<'_> {
     }
 
     fn key(&self, state: &Reached) -> [i64; 4] {
-        let place = state.pose.position / self.future.cell;
+        let place = state.pose.position / self.grid.cell;
         let course = wrap(state.pose.heading) / std::f64::consts::TAU * COURSES;
-        let time = state.time / self.future.step;
+        let time = state.time / self.grid.step;
         [place.x, place.y, course, time].map(|v| (self.fineness.apart * v).round() as i64)
     }
 
     fn expand(&mut self, index: usize) {
         let own = self.problem.own;
         let pose = self.reached[index].pose;
-        let way = self.fineness.way * self.future.cell;
+        let way = self.fineness.way * self.grid.cell;
         let end = self.problem.desired.end();
         for speed in own.speeds.iter().copied() {
             if speed == 0.0 {
-                let duration = self.future.step;
+                let duration = self.grid.step;
                 self.offer(index, Piece::Wait { duration }, false);
                 continue;
             }
@@ -232,7 +232,7 @@ impl Detour<'_> {
     /// True where the piece that leads to a state is clear.
     fn admits(&self, index: usize) -> bool {
         let motion = self.motion_to(index);
-        first_met(self.hazards, &motion).is_none() && !land::meets(self.problem.coast, &motion)
+        first_met(self.proxies, &motion).is_none() && !land::meets(self.problem.coast, &motion)
     }
 
     /// Takes a way on where it is in time and leads on.
@@ -248,7 +248,7 @@ impl Detour<'_> {
         if !(time <= problem.horizon) {
             return;
         }
-        if !is_end && !self.future.from(pose.position, time).is_finite() {
+        if !is_end && !self.grid.from(pose.position, time).is_finite() {
             return;
         }
         let more = |s| space_time_error(problem.desired, s, problem.time_weight);
@@ -266,7 +266,7 @@ impl Detour<'_> {
         let to_go = if state.is_end {
             0.0
         } else {
-            self.future.from(state.pose.position, state.time)
+            self.grid.from(state.pose.position, state.time)
         };
         self.open.push(Open {
             total: state.cost + WEIGHT * to_go,

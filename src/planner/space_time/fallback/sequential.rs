@@ -8,7 +8,7 @@ use crate::planner::clock::Clock;
 use crate::planner::space_time::graph::Graph;
 use crate::planner::space_time::graph::node;
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::selection::initial_guess::Conflict;
 use crate::search::{Search, Stop};
@@ -32,19 +32,19 @@ pub(crate) fn are_several(conflicts: &[Conflict]) -> bool {
     ends.is_some_and(|(first, last)| last.from > first.from + TOGETHER_S)
 }
 
-/// A motion to the last waypoint that is clear of every hazard and of land, from an undisturbed one that is not; `None` when a
+/// A motion to the last waypoint that is clear of every proxy and of land, from an nominal one that is not; `None` when a
 /// conflict finds no way around, or a later one begins no later.
 pub(crate) fn one_after_another(
     problem: &Problem,
-    hazards: &[Hazard],
+    proxies: &[Proxy],
     route: &Route,
-    undisturbed: &[Segment],
+    nominal_motion: &[Segment],
     clock: Clock,
 ) -> Option<Vec<Segment>> {
-    let mut motion = undisturbed.to_vec();
+    let mut motion = nominal_motion.to_vec();
     let mut before = f64::NEG_INFINITY;
     for _ in 0..MAX_STAGES {
-        let Some(contact) = first_conflict(problem, hazards, &motion) else {
+        let Some(contact) = first_conflict(problem, proxies, &motion) else {
             return Some(motion);
         };
         // negated on purpose: a NaN is no progress
@@ -63,7 +63,7 @@ pub(crate) fn one_after_another(
         let rest = cut(leaves, f64::INFINITY);
         let near = cut(leaves, contact + 2.0 * TOGETHER_S);
         let mut graph =
-            Graph::for_conflict(problem, hazards, route, [&near, &rest], contact, clock);
+            Graph::for_conflict(problem, proxies, route, [&near, &rest], contact, clock);
         let mut search = Search::new(graph.root());
         let Stop::Goal(goal) = search.next_goal(&mut graph, MAX_EXPANDED) else {
             return None;
@@ -86,10 +86,10 @@ pub(crate) fn soon(way: &[Segment], until: f64) -> Vec<Segment> {
         .collect()
 }
 
-/// When a motion first meets a hazard or the land.
-fn first_conflict(problem: &Problem, hazards: &[Hazard], motion: &[Segment]) -> Option<f64> {
+/// When a motion first meets a proxy or the land.
+fn first_conflict(problem: &Problem, proxies: &[Proxy], motion: &[Segment]) -> Option<f64> {
     let met = |s: &Segment| {
-        let contacts = hazards.iter().filter_map(|h| h.first_contact(s));
+        let contacts = proxies.iter().filter_map(|h| h.first_contact(s));
         contacts.min_by(f64::total_cmp)
     };
     let target = motion.iter().find_map(met);

@@ -1,4 +1,4 @@
-//! Where the undisturbed motion is left.
+//! Where the nominal motion is left.
 
 use crate::colregs::APPARENT_TIME;
 use crate::planner::Problem;
@@ -6,7 +6,7 @@ use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::rules::compliance::slow;
-use crate::planner::space_time::selection::initial_guess::Paces;
+use crate::planner::space_time::selection::initial_guess::SpeedTable;
 use crate::trajectory::Segment;
 
 /// Seconds for which less speed is kept before a turn.
@@ -14,13 +14,13 @@ const SLOW_SPELLS_S: [f64; 3] = [APPARENT_TIME, 2.0 * APPARENT_TIME, 4.0 * APPAR
 
 /// The time at which a motion is to be left for a constant speed, to be at a distance along it at a time.
 pub(crate) fn leave_for(
-    undisturbed: &[Segment],
+    nominal_motion: &[Segment],
     distance: f64,
     time: f64,
     speed: f64,
 ) -> Option<f64> {
     let mut at = 0.0;
-    for s in undisturbed {
+    for s in nominal_motion {
         // at + s.speed (t - s.start_time) + speed (time - t) = distance
         let gap = distance - at + s.speed * s.start_time - speed * time;
         let t = gap / (s.speed - speed);
@@ -33,8 +33,8 @@ pub(crate) fn leave_for(
 }
 
 /// A motion up to a time.
-pub(crate) fn until(undisturbed: &[Segment], time: f64) -> Vec<Segment> {
-    undisturbed
+pub(crate) fn until(nominal_motion: &[Segment], time: f64) -> Vec<Segment> {
+    nominal_motion
         .iter()
         .filter(|s| s.start_time < time)
         .map(|s| s.between(s.start_time, time))
@@ -50,7 +50,7 @@ pub(crate) fn ways_out(
 ) -> Vec<(Vec<Segment>, f64)> {
     let duty = problem.duty();
     let mut found = vec![(before.to_vec(), duty.least_turn())];
-    let speed = Paces::of(problem).slow;
+    let speed = SpeedTable::of(problem).slow;
     if duty.is_none() || !duty.may_slow || speed > slow(problem) {
         return found;
     }

@@ -251,8 +251,8 @@ impl Chase {
                 let Some((turn, line)) = self.way_to(origin + velocity * root) else {
                     continue;
                 };
-                let sailed = self.radius * turn + line;
-                let met = (sailed - self.speed * (root - from)).abs() <= MEETING_M;
+                let rollout = self.radius * turn + line;
+                let met = (rollout - self.speed * (root - from)).abs() <= MEETING_M;
                 if met && turn <= limits.turn {
                     return Some(Interception {
                         turn,
@@ -394,8 +394,8 @@ mod tests {
             }
             if let Some(meeting) = found {
                 met += 1;
-                let sailed = 100.0 * meeting.turn + meeting.line;
-                assert!((sailed - chase.speed * (meeting.time - chase.time)).abs() < 1e-6);
+                let rollout = 100.0 * meeting.turn + meeting.line;
+                assert!((rollout - chase.speed * (meeting.time - chase.time)).abs() < 1e-6);
             }
             if let Some(t) = dense {
                 let first = found.expect("the scan met it").time;

@@ -17,16 +17,16 @@ use crate::obstacle::{PolytopeObstacle, along_path};
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::planner::space_time::bound::Heuristic;
-use crate::planner::space_time::bound::obstacle::KeepOut;
+use crate::planner::space_time::bound::obstacle::ObstacleBound;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::fallback::sequential::{TOGETHER_S, soon};
 use crate::planner::space_time::graph::departure::{apparent_turns, leave_for, until, ways_out};
 use crate::planner::space_time::graph::intercept::{Chase, Limits};
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::graph::return_to_line::return_to_line;
-use crate::planner::space_time::graph::tangent::Aims;
+use crate::planner::space_time::graph::tangent::TangentEdges;
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::{Hazard, by_obstacle, first_met};
+use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
 use crate::planner::space_time::refinement::structure::Ending;
 use crate::planner::space_time::route::Route;
 use crate::planner::{NodeKind, Problem, SearchKind};
@@ -49,7 +49,7 @@ const MAX_CHAIN: u8 = 5;
 /// Vertices at most of the sets whose moving vertices are nodes: others are simplified first.
 const INITIAL_VERTICES: usize = 24;
 const VELOCITY_VERTICES: usize = 12;
-/// Metres. Obstacles farther than this from the undisturbed motion are not met.
+/// Metres. Obstacles farther than this from the nominal motion are not met.
 const RELEVANT_M: f64 = 120.0;
 /// Seconds of the pieces in which that is looked at.
 const PIECE_S: f64 = 5.0;
@@ -63,11 +63,11 @@ fn moving(own: &OwnShip) -> impl Iterator<Item = f64> + '_ {
 #[derive(Debug)]
 pub(crate) struct Graph<'a> {
     problem: &'a Problem<'a>,
-    hazards: &'a [Hazard<'a>],
+    proxies: &'a [Proxy<'a>],
     route: &'a Route,
-    undisturbed: &'a [Segment],
+    nominal_motion: &'a [Segment],
     contacts: Vec<f64>,
-    aims: Vec<Aims>,
+    tangent_edges: Vec<TangentEdges>,
     heuristic: Option<Heuristic<'a>>,
     clock: Clock,
     /// The time up to which a way to the end has to be clear, where only one conflict is asked about.
@@ -75,19 +75,19 @@ pub(crate) struct Graph<'a> {
 }
 
 impl<'a> Graph<'a> {
-    /// `undisturbed` is the route followed from t = 0. Makes nothing more once the clock is up.
+    /// `nominal_motion` is the route followed from t = 0. Makes nothing more once the clock is up.
     pub(crate) fn new(
         problem: &'a Problem<'a>,
-        hazards: &'a [Hazard<'a>],
+        proxies: &'a [Proxy<'a>],
         route: &'a Route,
-        undisturbed: &'a [Segment],
+        nominal_motion: &'a [Segment],
         clock: Clock,
     ) -> Self {
-        let first = |h: &Hazard| undisturbed.iter().find_map(|s| h.first_contact(s));
-        let mut contacts: Vec<f64> = by_obstacle(hazards)
+        let first = |h: &Proxy| nominal_motion.iter().find_map(|s| h.first_contact(s));
+        let mut contacts: Vec<f64> = by_obstacle(proxies)
             .filter_map(|parts| parts.iter().filter_map(first).min_by(f64::total_cmp))
             .chain(
-                land::conflicts(problem.coast, undisturbed)
+                land::conflicts(problem.coast, nominal_motion)
                     .iter()
                     .map(|c| c.from),
             )
@@ -95,7 +95,7 @@ impl<'a> Graph<'a> {
         contacts.sort_by(f64::total_cmp);
         contacts.dedup_by(|a, b| *a - *b < LEADS_S[3]);
         // short pieces: the bound is loose on long ones
-        let pieces: Vec<Segment> = undisturbed
+        let pieces: Vec<Segment> = nominal_motion
             .iter()
             .flat_map(|s| {
                 let count = (s.duration / PIECE_S).ceil() as usize;
@@ -105,7 +105,7 @@ impl<'a> Graph<'a> {
                 })
             })
             .collect();
-        let aims = hazards
+        let tangent_edges = proxies
             .iter()
             .filter(|_| !contacts.is_empty())
             .filter(|h| pieces.iter().any(|s| h.clearance_bound(s) < RELEVANT_M))
@@ -115,21 +115,26 @@ impl<'a> Graph<'a> {
                     outer_simplified(h.body.initial(), INITIAL_VERTICES),
                     outer_simplified(h.body.velocity(), VELOCITY_VERTICES),
                 );
-                Aims::new(h, &body, moving(problem.own))
+                TangentEdges::new(h, &body, moving(problem.own))
             })
-            .chain(land::aims(problem, undisturbed).filter(|_| !contacts.is_empty()))
+            .chain(land::tangent_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
             .collect();
         let heuristic = (problem.search == SearchKind::AStar).then(|| {
-            let keep_out = KeepOut::new(problem, hazards);
-            Heuristic::new(problem.desired, problem.time_weight, problem.own, keep_out)
+            let obstacle_bound = ObstacleBound::new(problem, proxies);
+            Heuristic::new(
+                problem.desired,
+                problem.time_weight,
+                problem.own,
+                obstacle_bound,
+            )
         });
         Self {
             problem,
-            hazards,
+            proxies,
             route,
-            undisturbed,
+            nominal_motion,
             contacts,
-            aims,
+            tangent_edges,
             heuristic,
             clock,
             stage: None,
@@ -140,22 +145,22 @@ impl<'a> Graph<'a> {
     /// Ways to the end have to be clear of what comes soon, not of all.
     pub(crate) fn for_conflict(
         problem: &'a Problem<'a>,
-        hazards: &'a [Hazard<'a>],
+        proxies: &'a [Proxy<'a>],
         route: &'a Route,
         [near, rest]: [&'a [Segment]; 2],
         contact: f64,
         clock: Clock,
     ) -> Self {
-        let mut graph = Self::new(problem, hazards, route, near, clock);
+        let mut graph = Self::new(problem, proxies, route, near, clock);
         graph.contacts.retain(|c| *c <= contact + TOGETHER_S);
-        graph.undisturbed = rest;
+        graph.nominal_motion = rest;
         graph.stage = Some(contact + TOGETHER_S);
         graph
     }
 
     /// Own ship at t = 0.
     pub(crate) fn root(&self) -> State {
-        match (self.stage, self.undisturbed.first()) {
+        match (self.stage, self.nominal_motion.first()) {
             (Some(_), Some(first)) => State {
                 time: first.start_time,
                 ..State::start(first.start)
@@ -205,11 +210,11 @@ impl<'a> Graph<'a> {
         ));
     }
 
-    /// Ways to a first vertex from several places of the undisturbed motion, and those that never leave
+    /// Ways to a first vertex from several places of the nominal motion, and those that never leave
     /// the route. A departure is no node: it costs nothing and decides nothing.
     fn departures(&self, from: &State, out: &mut Vec<(State, f64)>) {
-        let undisturbed = self.undisturbed.to_vec();
-        self.push(out, NodeKind::End, Ending::Follow, undisturbed, 0, from);
+        let nominal_motion = self.nominal_motion.to_vec();
+        self.push(out, NodeKind::End, Ending::Follow, nominal_motion, 0, from);
         if self.contacts.is_empty() {
             return;
         }
@@ -226,7 +231,7 @@ impl<'a> Graph<'a> {
             self.paced(from, out);
         }
         for &time in &times {
-            let before = until(self.undisturbed, time);
+            let before = until(self.nominal_motion, time);
             let along = before.len();
             for (motion, least_turn) in ways_out(self.problem, self.route, &before) {
                 self.interceptions(from, &motion, least_turn, out);
@@ -241,11 +246,11 @@ impl<'a> Graph<'a> {
     /// touch a corner of a path-time obstacle, then on to the schedule.
     fn paced(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let (own, desired) = (self.problem.own, self.problem.desired);
-        for (hazard, (index, leg)) in self
-            .hazards
+        for (proxy, (index, leg)) in self
+            .proxies
             .iter()
             .filter(|h| {
-                self.undisturbed
+                self.nominal_motion
                     .iter()
                     .any(|s| h.first_contact(s).is_some())
             })
@@ -260,10 +265,10 @@ impl<'a> Graph<'a> {
             let start = leg.start + leg.direction * stretch.from;
             let length = stretch.to - stretch.from;
             // by the clock of the part
-            let clock = hazard.start();
-            let end = hazard.window.map_or(f64::INFINITY, |w| w.end);
+            let clock = proxy.start();
+            let end = proxy.window.map_or(f64::INFINITY, |w| w.end);
             let corners = along_path(
-                hazard.body,
+                proxy.body,
                 start,
                 leg.direction,
                 length,
@@ -273,11 +278,11 @@ impl<'a> Graph<'a> {
                 corner.time += clock;
                 let goal = stretch.distance + corner.distance;
                 for speed in [own.min_speed(), own.max_speed()] {
-                    let Some(departure) = leave_for(self.undisturbed, goal, corner.time, speed)
+                    let Some(departure) = leave_for(self.nominal_motion, goal, corner.time, speed)
                     else {
                         continue;
                     };
-                    let mut motion = until(self.undisturbed, departure);
+                    let mut motion = until(self.nominal_motion, departure);
                     let at: f64 = motion.iter().map(Segment::length).sum();
                     let (pose, _) = self.route.pose_at(at);
                     if speed > 0.0 {
@@ -323,8 +328,8 @@ impl<'a> Graph<'a> {
         let duty = self.problem.duty();
         let mut scratch = Vec::new();
         let first = out.len();
-        for aims in &self.aims {
-            let (clock, until) = aims.window();
+        for tangent_edges in &self.tangent_edges {
+            let (clock, until) = tangent_edges.window();
             if time > clock + until {
                 continue;
             }
@@ -343,7 +348,7 @@ impl<'a> Graph<'a> {
                 time: (limits.time - clock).min(until),
                 ..limits
             };
-            aims.touched(chases, limits, &mut scratch, |aim| {
+            tangent_edges.touched(chases, limits, &mut scratch, |aim| {
                 if aim.kind == from.kind || aim.meeting.time < 0.0 {
                     return;
                 }
@@ -483,11 +488,11 @@ impl Space for Graph<'_> {
     fn admits(&mut self, state: &State) -> bool {
         if let (Some(until), NodeKind::End) = (self.stage, state.kind) {
             let soon = soon(&state.motion, until);
-            let met = first_met(self.hazards, &soon);
+            let met = first_met(self.proxies, &soon);
             state.met.set(met);
             return met.is_none() && !land::meets(self.problem.coast, &soon);
         }
-        let met = first_met(self.hazards, &state.motion).or_else(|| {
+        let met = first_met(self.proxies, &state.motion).or_else(|| {
             let ashore = land::meets(self.problem.coast, &state.motion);
             ashore.then_some(self.problem.obstacles.len())
         });

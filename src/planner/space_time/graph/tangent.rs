@@ -14,7 +14,7 @@ use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
 use crate::planner::space_time::graph::intercept::{Chase, Interception, Limits};
 use crate::planner::space_time::piece::Window;
-use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::proxy::Proxy;
 
 /// Metres. A distance this small has no sign.
 const NO_SIGN_M: f64 = 1e-6;
@@ -75,11 +75,11 @@ struct Pace {
 
 /// The corners of one body.
 #[derive(Debug)]
-pub(crate) struct Aims {
+pub(crate) struct TangentEdges {
     obstacle: usize,
     window: Option<Window>,
     corners: Vec<Corner>,
-    paces: Vec<Pace>,
+    speed_table: Vec<Pace>,
 }
 
 /// A [`Level`] from where own ship is.
@@ -94,26 +94,26 @@ pub(crate) struct Bearing {
 
 /// A way to a corner.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Aim {
+pub(crate) struct TangentEdge {
     pub kind: NodeKind,
     pub side: Side,
     pub speed: f64,
     pub meeting: Interception,
 }
 
-impl Aims {
-    /// `body` is that of the hazard, or stands for it.
+impl TangentEdges {
+    /// `body` is that of the proxy, or stands for it.
     pub(crate) fn new(
-        hazard: &Hazard,
+        proxy: &Proxy,
         body: &PolytopeObstacle,
         speeds: impl Iterator<Item = f64>,
     ) -> Self {
-        Self::past(hazard, body, speeds, |_| true)
+        Self::past(proxy, body, speeds, |_| true)
     }
 
     /// The same of those corners alone that are `open` where they are at t = 0.
     pub(crate) fn past(
-        hazard: &Hazard,
+        proxy: &Proxy,
         body: &PolytopeObstacle,
         speeds: impl Iterator<Item = f64>,
         open: impl Fn(Vector) -> bool,
@@ -138,12 +138,12 @@ impl Aims {
                 }
             })
             .collect();
-        let paces = speeds.map(|u| Pace::new(faces, &corners, u)).collect();
+        let speed_table = speeds.map(|u| Pace::new(faces, &corners, u)).collect();
         Self {
-            obstacle: hazard.obstacle,
-            window: hazard.window,
+            obstacle: proxy.obstacle,
+            window: proxy.window,
             corners,
-            paces,
+            speed_table,
         }
     }
 
@@ -169,9 +169,9 @@ impl Aims {
         chases: &[Chase; 2],
         limits: Limits,
         bearings: &mut Vec<Bearing>,
-        mut found: impl FnMut(Aim),
+        mut found: impl FnMut(TangentEdge),
     ) {
-        for pace in &self.paces {
+        for pace in &self.speed_table {
             let chases = chases.map(|c| c.at_speed(pace.speed));
             bearings.clear();
             bearings.extend(pace.levels.iter().map(|level| {
@@ -184,7 +184,7 @@ impl Aims {
                 }
             }));
             let mut offer = |corner: usize, side: Side, meeting: Interception| {
-                found(Aim {
+                found(TangentEdge {
                     kind: self.kind(corner),
                     side,
                     speed: pace.speed,
@@ -353,7 +353,7 @@ mod tests {
     use super::*;
     use crate::frame::Pose;
     use crate::geometry::{ConvexPolygon, outer_disc};
-    use crate::planner::space_time::piece::{Body, Part};
+    use crate::planner::space_time::piece::{Body, Piece};
     use rand::{Rng, SeedableRng};
 
     /// Every corner is sought one by one; what only just touches has to be among what is found.
@@ -376,12 +376,12 @@ mod tests {
                 outer_disc(rng.random_range(20.0..150.0), 0.3).translated(centre),
                 ConvexPolygon::hull(&spread).expect("a set"),
             );
-            let part = Part {
+            let piece = Piece {
                 obstacle: 0,
                 window: None,
                 body: Body::Polytope(body.clone()),
             };
-            let aims = Aims::new(&Hazard::new(&part), &body, speeds.into_iter());
+            let tangent_edges = TangentEdges::new(&Proxy::new(&piece), &body, speeds.into_iter());
             let pose = Pose::new(Vector::new(0.0, 0.0), rng.random_range(-3.1..3.1));
             let time = rng.random_range(0.0..60.0);
             if body.contains(pose.position, time) {
@@ -393,9 +393,9 @@ mod tests {
             };
             let chases = Side::BOTH.map(|side| Chase::new(&pose, time, 1.0, 100.0, side));
             let mut touched = Vec::new();
-            aims.touched(&chases, limits, &mut Vec::new(), |aim| touched.push(aim));
+            tangent_edges.touched(&chases, limits, &mut Vec::new(), |aim| touched.push(aim));
             for aim in &touched {
-                let corner = aims.corners.iter().position(|c| {
+                let corner = tangent_edges.corners.iter().position(|c| {
                     let (initial, velocity) = c.vertex.indices;
                     aim.kind
                         == NodeKind::Vertex {
@@ -404,7 +404,7 @@ mod tests {
                             velocity,
                         }
                 });
-                let vertex = &aims.corners[corner.expect("of this body")].vertex;
+                let vertex = &tangent_edges.corners[corner.expect("of this body")].vertex;
                 let chase = chases[usize::from(aim.side == Side::BOTH[1])].at_speed(aim.speed);
                 let ahead = chase.after(aim.meeting.turn);
                 let (from, _) = chase.turned(ahead, aim.meeting.turn);
@@ -412,13 +412,13 @@ mod tests {
                 let other = vertex.origin + vertex.velocity * aim.meeting.time;
                 assert!((own - other).norm() < 1e-7, "{aim:?}");
             }
-            for k in 0..aims.corners.len() {
+            for k in 0..tangent_edges.corners.len() {
                 for speed in speeds {
                     for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
                         let chase = chase.at_speed(speed);
-                        aims.seek(k, &chase, limits, |meeting| {
+                        tangent_edges.seek(k, &chase, limits, |meeting| {
                             let same = touched.iter().any(|a| {
-                                a.kind == aims.kind(k)
+                                a.kind == tangent_edges.kind(k)
                                     && a.side == side
                                     && a.speed == speed
                                     && (a.meeting.time - meeting.time).abs() < 1e-6

@@ -3,8 +3,8 @@
 use crate::frame::{Vector, to_port, to_starboard};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::planner::space_time::piece::Window;
-use crate::planner::space_time::proxy::Hazard;
-use crate::planner::space_time::refinement::rollout::{Leg, Sailed};
+use crate::planner::space_time::proxy::Proxy;
+use crate::planner::space_time::refinement::rollout::{Leg, Rollout};
 use crate::tolerance;
 
 /// Metres. Approaches closer than this become rows.
@@ -107,44 +107,44 @@ impl Shape for EllipsoidObstacle {
     }
 }
 
-/// Adds the local minima of a hazard's slack along a manoeuvre, below [`NEAR_M`], and joints below [`SLIDING_M`]; arcs
-/// are cut into chords of `chord` radians at most. `middles` are those of the legs, see [`Sailed::middles`].
+/// Adds the local minima of a proxy's slack along a manoeuvre, below [`NEAR_M`], and joints below [`SLIDING_M`]; arcs
+/// are cut into chords of `chord` radians at most. `middles` are those of the legs, see [`Rollout::middles`].
 pub(crate) fn add_approaches(
-    hazard: &Hazard,
-    sailed: &Sailed,
+    proxy: &Proxy,
+    rollout: &Rollout,
     middles: &[Vector],
     chord: f64,
     found: &mut Vec<Approach>,
 ) {
-    match hazard.round {
-        Some(ellipsoid) => add_of(ellipsoid, hazard, sailed, (middles, chord), found),
-        None => add_of(hazard.body, hazard, sailed, (middles, chord), found),
+    match proxy.round {
+        Some(ellipsoid) => add_of(ellipsoid, proxy, rollout, (middles, chord), found),
+        None => add_of(proxy.body, proxy, rollout, (middles, chord), found),
     }
 }
 
 fn add_of<S: Shape>(
     shape: &S,
-    hazard: &Hazard,
-    sailed: &Sailed,
+    proxy: &Proxy,
+    rollout: &Rollout,
     (middles, chord): (&[Vector], f64),
     found: &mut Vec<Approach>,
 ) {
     let already = found.len();
-    let mut minima = Minima::new(shape, hazard, sailed, found);
+    let mut minima = Minima::new(shape, proxy, rollout, found);
     let mut joints: Vec<Approach> = Vec::new();
-    let clock = hazard.start();
+    let clock = proxy.start();
     // where a leg begins the one before it ended
     let mut near = None;
-    for (leg, (l, middle)) in sailed.legs.iter().zip(middles).enumerate() {
+    for (leg, (l, middle)) in rollout.legs.iter().zip(middles).enumerate() {
         let segment = &l.segment;
         if segment.duration <= 0.0 {
             continue;
         }
-        if hazard.clearance_bound_about(segment, *middle) > NEAR_M {
+        if proxy.clearance_bound_about(segment, *middle) > NEAR_M {
             minima.end_run();
             continue;
         }
-        let Span { first, last } = Span::of(l, hazard.window);
+        let Span { first, last } = Span::of(l, proxy.window);
         let count = (segment.turn_rate.abs() * segment.duration * (last - first) / chord)
             .ceil()
             .max(1.0);
@@ -174,7 +174,7 @@ fn add_of<S: Shape>(
         if first == 0.0 && from.slack.value < SLIDING_M {
             joints.push(joint(shape, leg, &from));
         }
-        let closing = (segment.speed + hazard.speed()) * segment.duration * (last - first) / count;
+        let closing = (segment.speed + proxy.speed()) * segment.duration * (last - first) / count;
         let mut k = 0.0;
         loop {
             // what is far from near is so for as long as closing takes
@@ -218,7 +218,7 @@ fn add_of<S: Shape>(
     }
     minima.end_run();
     let time = |a: &Approach| {
-        let s = &sailed.legs[a.leg].segment;
+        let s = &rollout.legs[a.leg].segment;
         s.start_time + s.duration * a.fraction
     };
     let end = found.len();
@@ -268,9 +268,9 @@ impl Span {
 }
 
 /// Own ship's velocity at a minimum that is at the edge of a window: its instant is fixed, not its share of the leg.
-fn velocity_at_edge<F>(hazard: &Hazard, sailed: &Sailed, least: &Minimum<F>) -> Option<Vector> {
-    let window = hazard.window?;
-    let leg = &sailed.legs[least.leg];
+fn velocity_at_edge<F>(proxy: &Proxy, rollout: &Rollout, least: &Minimum<F>) -> Option<Vector> {
+    let window = proxy.window?;
+    let leg = &rollout.legs[least.leg];
     let time = leg.segment.start_time + leg.segment.duration * least.fraction;
     let near = |edge: f64| (time - edge).abs() <= tolerance::TIME_S;
     (near(window.start) || near(window.end))
@@ -280,8 +280,8 @@ fn velocity_at_edge<F>(hazard: &Hazard, sailed: &Sailed, least: &Minimum<F>) -> 
 /// The local minima of runs of chords, found as the chords come.
 struct Minima<'a, S: Shape> {
     shape: &'a S,
-    hazard: &'a Hazard<'a>,
-    sailed: &'a Sailed,
+    proxy: &'a Proxy<'a>,
+    rollout: &'a Rollout,
     /// The last chord of the run, and the least slack on the one before it.
     last: Option<Chord<S::Face>>,
     before: f64,
@@ -291,14 +291,14 @@ struct Minima<'a, S: Shape> {
 impl<'a, S: Shape> Minima<'a, S> {
     fn new(
         shape: &'a S,
-        hazard: &'a Hazard<'a>,
-        sailed: &'a Sailed,
+        proxy: &'a Proxy<'a>,
+        rollout: &'a Rollout,
         found: &'a mut Vec<Approach>,
     ) -> Self {
         Self {
             shape,
-            hazard,
-            sailed,
+            proxy,
+            rollout,
             last: None,
             before: f64::INFINITY,
             found,
@@ -345,7 +345,7 @@ impl<'a, S: Shape> Minima<'a, S> {
                 (next.least.faces[0].0, 1.0 - weight),
             ];
         }
-        let edge = velocity_at_edge(self.hazard, self.sailed, here);
+        let edge = velocity_at_edge(self.proxy, self.rollout, here);
         let mut rates = [0.0; 3];
         for (face, weight) in faces {
             let (normal, speed) = self.shape.plane(face);

@@ -1,18 +1,18 @@
 //! Gradient and Gauss-Newton Hessian of a manoeuvre's cost from moments of its points.
 //!
-//! Lengthening slot `i` moves a later point `p` as a rigid body: `dp/dl = b + c J(p)` with the slot's own
+//! Lengthening segment variable `i` moves a later point `p` as a rigid body: `dp/dl = b + c J(p)` with the segment variable's own
 //! `b` (east, north, clock) and curvature `c`, and `J(p) = (-p.y, p.x, 0)`. A residual with rates `r` in
 //! (east, north, clock) and weight `w` adds `w (r . m_i)(r . m_j)` to the Hessian, so all that the points
-//! after a slot contribute is one symmetric 4 x 4 matrix, summed once from the end: no sum over the points
-//! per pair of slots.
+//! after a segment variable contribute is one symmetric 4 x 4 matrix, summed once from the end: no sum over the points
+//! per pair of segment variables.
 
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 
 /// Columns of the upper triangle of a symmetric 3 x 3 matrix: ee, en, et, nn, nt, tt.
 type Weight = [f64; 6];
 
-/// How a slot moves what follows it: `b` (east, north, clock) about the origin, and `c`.
-pub(crate) type Motor = [f64; 4];
+/// How a segment variable moves what follows it: `b` (east, north, clock) about the origin, and `c`.
+pub(crate) type Twist = [f64; 4];
 
 /// The squared residuals of one point: the rates of each residual in (east, north, clock), summed.
 #[derive(Debug, Clone, Copy, Default)]
@@ -49,11 +49,11 @@ fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(crate) fn dot4(a: &Motor, b: &Motor) -> f64 {
+pub(crate) fn dot4(a: &Twist, b: &Twist) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// What the points of one slot, or of all slots after one, contribute.
+/// What the points of one segment variable, or of all segment variables after one, contribute.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Moment {
     weight: Weight,
@@ -77,17 +77,17 @@ impl Moment {
         }
     }
 
-    /// The gradient with a motor that moves all these points, as a linear form of it.
-    pub(crate) fn pull(&self) -> Motor {
+    /// The gradient with a twist that moves all these points, as a linear form of it.
+    pub(crate) fn pull(&self) -> Twist {
         self.pull
     }
 
-    /// The second rate with such a motor.
-    pub(crate) fn bend(&self, motor: &Motor) -> f64 {
-        dot4(motor, &self.times(motor))
+    /// The second rate with such a twist.
+    pub(crate) fn bend(&self, twist: &Twist) -> f64 {
+        dot4(twist, &self.times(twist))
     }
 
-    fn times(&self, v: &Motor) -> [f64; 4] {
+    fn times(&self, v: &Twist) -> [f64; 4] {
         let residuals = Residuals {
             weight: self.weight,
             pull: [0.0; 3],
@@ -103,7 +103,7 @@ impl Moment {
     }
 }
 
-/// What a slot's own points contribute with its own rate.
+/// What a segment variable's own points contribute with its own rate.
 #[derive(Debug, Clone, Copy, Default)]
 struct Own {
     cross: [f64; 4],
@@ -113,22 +113,22 @@ struct Own {
 
 /// The sums of one manoeuvre.
 #[derive(Debug)]
-pub(crate) struct Moments {
-    slots: Vec<Moment>,
+pub(crate) struct GaussNewton {
+    variables: Vec<Moment>,
     own: Vec<Own>,
 }
 
-impl Moments {
-    /// Of no points, for so many slots.
-    pub(crate) fn new(slots: usize) -> Self {
+impl GaussNewton {
+    /// Of no points, for so many segment variables.
+    pub(crate) fn new(variables: usize) -> Self {
         Self {
-            slots: vec![Moment::default(); slots],
-            own: vec![Own::default(); slots],
+            variables: vec![Moment::default(); variables],
+            own: vec![Own::default(); variables],
         }
     }
 
-    /// Adds a point of slot `index` at `place` (east, north from the origin of the motors), which moves with
-    /// its own slot at `own` (east, north, clock).
+    /// Adds a point of segment variable `index` at `place` (east, north from the origin of the twists), which moves with
+    /// its own segment variable at `own` (east, north, clock).
     pub(crate) fn add(
         &mut self,
         index: usize,
@@ -138,7 +138,7 @@ impl Moments {
     ) {
         let lever = [-place[1], place[0], 0.0];
         let mixed = residuals.weigh(lever);
-        let moment = &mut self.slots[index];
+        let moment = &mut self.variables[index];
         for (a, b) in moment.weight.iter_mut().zip(residuals.weight) {
             *a += b;
         }
@@ -160,7 +160,7 @@ impl Moments {
         mine.pull += dot3(own, residuals.pull);
     }
 
-    /// Adds a point that each of the first slots moves at `rates` of its own.
+    /// Adds a point that each of the first segment variables moves at `rates` of its own.
     pub(crate) fn add_directly(
         rates: &[[f64; 3]],
         residuals: &Residuals,
@@ -176,9 +176,9 @@ impl Moments {
         }
     }
 
-    /// For every slot, the sum over its own points and those of all later ones.
+    /// For every segment variable, the sum over its own points and those of all later ones.
     pub(crate) fn sums_from_each(&self) -> Vec<Moment> {
-        let mut sums = self.slots.clone();
+        let mut sums = self.variables.clone();
         for i in (1..sums.len()).rev() {
             let later = sums[i];
             sums[i - 1].add(&later);
@@ -187,25 +187,25 @@ impl Moments {
     }
 
     /// Adds everything to the gradient and to the lower triangle of the Hessian.
-    pub(crate) fn finish(&self, motors: &[Motor], gradient: &mut Row, lower: &mut [Row]) {
+    pub(crate) fn finish(&self, twists: &[Twist], gradient: &mut Row, lower: &mut [Row]) {
         let mut later = Moment::default();
-        for (j, motor) in motors.iter().enumerate().rev() {
+        for (j, twist) in twists.iter().enumerate().rev() {
             let own = &self.own[j];
-            let mut column = later.times(motor);
-            lower[j][j] += dot4(motor, &column) + own.square;
-            gradient[j] += dot4(motor, &later.pull) + own.pull;
+            let mut column = later.times(twist);
+            lower[j][j] += dot4(twist, &column) + own.square;
+            gradient[j] += dot4(twist, &later.pull) + own.pull;
             for (c, q) in column.iter_mut().zip(own.cross) {
                 *c += q;
             }
-            for (h, m) in lower[j][..j].iter_mut().zip(motors) {
+            for (h, m) in lower[j][..j].iter_mut().zip(twists) {
                 *h += dot4(m, &column);
             }
-            later.add(&self.slots[j]);
+            later.add(&self.variables[j]);
         }
     }
 }
 
-/// A row in all slots as a row in the free ones; `solved` are the rates of the slots after the free ones.
+/// A row in all segment variables as a row in the free ones; `solved` are the rates of the segment variables after the free ones.
 pub(crate) fn reduce(row: &Row, solved: &[Row], free: usize) -> Row {
     let mut reduced = [0.0; MAX_VARIABLES];
     reduced[..free].copy_from_slice(&row[..free]);
@@ -217,7 +217,7 @@ pub(crate) fn reduce(row: &Row, solved: &[Row], free: usize) -> Row {
     reduced
 }
 
-/// A lower triangle in all slots as a symmetric matrix in the free ones.
+/// A lower triangle in all segment variables as a symmetric matrix in the free ones.
 pub(crate) fn reduce_matrix(mut lower: Vec<Row>, solved: &[Row], free: usize) -> Vec<Row> {
     let dependent = lower.split_off(free);
     for (d, rates) in solved.iter().enumerate() {
@@ -250,19 +250,19 @@ mod tests {
     use super::*;
     use rand::{Rng, SeedableRng};
 
-    /// The sum over points and pairs of slots that the moments stand for.
+    /// The sum over points and pairs of segment variables that the moments stand for.
     #[test]
     fn moments_give_the_sum_over_all_points_and_pairs() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
         let n = 9;
-        let motors: Vec<Motor> = (0..n)
+        let twists: Vec<Twist> = (0..n)
             .map(|_| [(); 4].map(|()| rng.random_range(-1.0..1.0)))
             .collect();
-        let mut moments = Moments::new(n);
+        let mut moments = GaussNewton::new(n);
         let (mut gradient, mut lower) = ([0.0; MAX_VARIABLES], vec![[0.0; MAX_VARIABLES]; n]);
         let (mut slow_gradient, mut slow) = (gradient, lower.clone());
         for _ in 0..60 {
-            let slot = rng.random_range(0..n);
+            let variable = rng.random_range(0..n);
             let place = [(); 2].map(|()| rng.random_range(-3.0..3.0));
             let own = [(); 3].map(|()| rng.random_range(-1.0..1.0));
             let mut residuals = Residuals::default();
@@ -271,20 +271,20 @@ mod tests {
                 let rates: [f64; 3] = [(); 3].map(|()| rng.random_range(-1.0..1.0));
                 residuals.add(scale, value, rates);
                 let of = |i: usize| {
-                    let [e, n, t, c] = motors[i];
+                    let [e, n, t, c] = twists[i];
                     let moved = [e - c * place[1], n + c * place[0], t];
-                    dot3(rates, if i == slot { own } else { moved })
+                    dot3(rates, if i == variable { own } else { moved })
                 };
-                for (i, row) in slow.iter_mut().enumerate().take(slot + 1) {
+                for (i, row) in slow.iter_mut().enumerate().take(variable + 1) {
                     slow_gradient[i] += scale * value * of(i);
                     for (k, sum) in row.iter_mut().enumerate().take(i + 1) {
                         *sum += scale * of(i) * of(k);
                     }
                 }
             }
-            moments.add(slot, place, own, &residuals);
+            moments.add(variable, place, own, &residuals);
         }
-        moments.finish(&motors, &mut gradient, &mut lower);
+        moments.finish(&twists, &mut gradient, &mut lower);
         for i in 0..n {
             assert!((gradient[i] - slow_gradient[i]).abs() < 1e-9, "slot {i}");
             for k in 0..=i {
@@ -293,7 +293,7 @@ mod tests {
         }
     }
 
-    /// `T' H T` with the rates of the solved slots below the identity.
+    /// `T' H T` with the rates of the solved segment variables below the identity.
     #[test]
     fn a_reduced_matrix_is_the_product_with_the_rates() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(8);
@@ -311,11 +311,11 @@ mod tests {
                 .for_each(|r| *r = rng.random_range(-1.0..1.0));
         }
         let reduced = reduce_matrix(lower.clone(), &solved, free);
-        let rate = |slot: usize, i: usize| {
-            if slot < free {
-                f64::from(u8::from(slot == i))
+        let rate = |variable: usize, i: usize| {
+            if variable < free {
+                f64::from(u8::from(variable == i))
             } else {
-                solved[slot - free][i]
+                solved[variable - free][i]
             }
         };
         for (i, row) in reduced.iter().enumerate().take(free) {

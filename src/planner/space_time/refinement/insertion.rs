@@ -1,24 +1,24 @@
-//! What a manoeuvre lacks: slots whose first metre would lower the cost.
+//! What a manoeuvre lacks: segment variables whose first metre would lower the cost.
 //!
-//! A slot that is put in between two others moves all that follows as a rigid body, so the rate of the cost with
-//! its length, the price of the contacts included, is one linear form of its motor, the same for every kind of slot
+//! A segment variable that is put in between two others moves all that follows as a rigid body, so the rate of the cost with
+//! its length, the price of the contacts included, is one linear form of its twist, the same for every kind of segment variable
 //! at that place (column generation, with the multipliers of the last quadratic programme). Where no rate is
-//! negative, no template with more slots is cheaper, to first order.
+//! negative, no structure with more segment variables is cheaper, to first order.
 
 use crate::frame::{Side, Vector};
-use crate::planner::space_time::refinement::Seed;
-use crate::planner::space_time::refinement::gauss_newton::{Moment, Motor, dot4};
+use crate::planner::space_time::refinement::InitialGuess;
+use crate::planner::space_time::refinement::gauss_newton::{Moment, Twist, dot4};
 use crate::planner::space_time::refinement::model::Full;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Programme, Row};
 use crate::planner::space_time::refinement::rollout::Owner;
-use crate::planner::space_time::refinement::structure::{Ending, Slot, Template};
-use crate::planner::space_time::refinement::trial::Scene;
-use crate::planner::space_time::selection::initial_guess::Paces;
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::selection::initial_guess::SpeedTable;
 
-/// Metres. Shorter slots are left out before new ones are put in.
+/// Metres. Shorter segment variables are left out before new ones are put in.
 const EMPTY_M: f64 = 0.5;
 
-/// Radians of turn, and turning radii of line, below which a slot is of no use.
+/// Radians of turn, and turning radii of line, below which a segment variable is of no use.
 const LEAST_TURN: f64 = 0.03;
 const LEAST_LINE: f64 = 0.05;
 
@@ -34,162 +34,176 @@ const MOST_ADDED: usize = 8;
 /// Share of the cost that the additions have to promise.
 const WORTH_ADDING: f64 = 1e-3;
 
-/// A slot that could be put in before slot `gap`.
+/// A segment variable that could be put in before segment variable `gap`.
 #[derive(Debug, Clone, Copy)]
 struct Addition {
     gap: usize,
-    slot: Slot,
+    variable: SegmentVariable,
     /// m², to second order and alone.
     gain: f64,
 }
 
-/// The manoeuvre with lines cut in two where they are longer than `uncut` metres, and with the slots that promise most,
+/// The manoeuvre with lines cut in two where they are longer than `uncut` metres, and with the segment variables that promise most,
 /// still empty. `None` when nothing is promised, or it does not fit.
-pub(crate) fn enriched(scene: &Scene, seed: &Seed, uncut: f64) -> Option<Seed> {
-    let base = cut(scene, seed, uncut)?;
-    let found = additions(scene, &base)?;
-    let mut enriched = Seed {
-        template: Template {
-            slots: Vec::with_capacity(MAX_VARIABLES),
-            ending: base.template.ending,
+pub(crate) fn with_insertions(
+    context: &Context,
+    guess: &InitialGuess,
+    uncut: f64,
+) -> Option<InitialGuess> {
+    let base = cut(context, guess, uncut)?;
+    let found = additions(context, &base)?;
+    let mut with_insertions = InitialGuess {
+        structure: Structure {
+            variables: Vec::with_capacity(MAX_VARIABLES),
+            ending: base.structure.ending,
         },
         lengths: [0.0; MAX_VARIABLES],
     };
-    let slots = &mut enriched.template.slots;
-    for gap in 0..=base.template.slots.len() {
-        slots.extend(found.iter().filter(|a| a.gap == gap).map(|a| a.slot));
-        if let Some(slot) = base.template.slots.get(gap) {
-            enriched.lengths[slots.len()] = base.lengths[gap];
-            slots.push(*slot);
+    let variables = &mut with_insertions.structure.variables;
+    for gap in 0..=base.structure.variables.len() {
+        variables.extend(found.iter().filter(|a| a.gap == gap).map(|a| a.variable));
+        if let Some(variable) = base.structure.variables.get(gap) {
+            with_insertions.lengths[variables.len()] = base.lengths[gap];
+            variables.push(*variable);
         }
     }
-    Some(enriched)
+    Some(with_insertions)
 }
 
 /// The manoeuvre without turns and lines too short to be of use; `None` when it has none.
-pub(crate) fn tidied(scene: &Scene, seed: &Seed) -> Option<Seed> {
-    let radius = scene.problem.own.turning_radius;
-    let is_of_use = |(slot, length): &(&Slot, &f64)| match slot {
-        Slot::Run { .. } => true,
-        Slot::Arc { .. } => **length >= LEAST_TURN * radius,
-        Slot::Line { .. } => **length >= LEAST_LINE * radius,
+pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
+    let radius = context.problem.own.turning_radius;
+    let is_of_use = |(variable, length): &(&SegmentVariable, &f64)| match variable {
+        SegmentVariable::Run { .. } => true,
+        SegmentVariable::Arc { .. } => **length >= LEAST_TURN * radius,
+        SegmentVariable::Line { .. } => **length >= LEAST_LINE * radius,
     };
-    let all = seed.template.slots.iter().zip(&seed.lengths);
+    let all = guess.structure.variables.iter().zip(&guess.lengths);
     let kept: Vec<_> = all.filter(is_of_use).collect();
-    if kept.len() == seed.template.slots.len() {
+    if kept.len() == guess.structure.variables.len() {
         return None;
     }
     let mut lengths: Row = [0.0; MAX_VARIABLES];
     for (to, (_, length)) in lengths.iter_mut().zip(&kept) {
         *to = **length;
     }
-    Some(Seed {
-        template: Template {
-            slots: kept.iter().map(|k| *k.0).collect(),
-            ending: seed.template.ending,
+    Some(InitialGuess {
+        structure: Structure {
+            variables: kept.iter().map(|k| *k.0).collect(),
+            ending: guess.structure.ending,
         },
         lengths,
     })
 }
 
 /// Leaves out what is empty, and cuts long lines, the solved one of a return included.
-fn cut(scene: &Scene, seed: &Seed, uncut: f64) -> Option<Seed> {
-    let mut parts: Vec<(Slot, f64)> = Vec::with_capacity(MAX_VARIABLES);
-    let mut add = |slot: Slot, length: f64| {
-        let is_line = matches!(slot, Slot::Line { .. });
+fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
+    let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
+    let mut add = |variable: SegmentVariable, length: f64| {
+        let is_line = matches!(variable, SegmentVariable::Line { .. });
         let count = if is_line && length > uncut { 2 } else { 1 };
-        parts.extend(std::iter::repeat_n((slot, length / count as f64), count));
+        pieces.extend(std::iter::repeat_n(
+            (variable, length / count as f64),
+            count,
+        ));
     };
-    for (slot, length) in seed.template.slots.iter().zip(&seed.lengths) {
-        let is_run = matches!(slot, Slot::Run { .. });
+    for (variable, length) in guess.structure.variables.iter().zip(&guess.lengths) {
+        let is_run = matches!(variable, SegmentVariable::Run { .. });
         if *length >= EMPTY_M || is_run && *length > 0.0 {
-            add(*slot, *length);
+            add(*variable, *length);
         }
     }
-    if let Ending::Return { speed, .. } = seed.template.ending {
-        let sailed = seed
-            .template
-            .sail(scene.problem, scene.route, &seed.lengths)?;
-        if sailed.solved[0] > uncut {
-            add(Slot::Line { speed }, 2.0 / 3.0 * sailed.solved[0]);
+    if let Ending::Return { speed, .. } = guess.structure.ending {
+        let rollout = guess
+            .structure
+            .sail(context.problem, context.route, &guess.lengths)?;
+        if rollout.solved[0] > uncut {
+            add(
+                SegmentVariable::Line { speed },
+                2.0 / 3.0 * rollout.solved[0],
+            );
         }
     }
     let mut lengths: Row = [0.0; MAX_VARIABLES];
-    // one addition at least has to fit beside the two solved slots
-    if parts.len() + 3 > MAX_VARIABLES {
+    // one addition at least has to fit beside the two solved segment variables
+    if pieces.len() + 3 > MAX_VARIABLES {
         return None;
     }
-    for (to, part) in lengths.iter_mut().zip(&parts) {
+    for (to, part) in lengths.iter_mut().zip(&pieces) {
         *to = part.1;
     }
-    Some(Seed {
-        template: Template {
-            slots: parts.iter().map(|p| p.0).collect(),
-            ending: seed.template.ending,
+    Some(InitialGuess {
+        structure: Structure {
+            variables: pieces.iter().map(|p| p.0).collect(),
+            ending: guess.structure.ending,
         },
         lengths,
     })
 }
 
 /// The most promising additions, or `None` where all together promise next to nothing.
-fn additions(scene: &Scene, base: &Seed) -> Option<Vec<Addition>> {
-    let free = base.template.free();
-    let outline = scene.outline(&base.template, &base.lengths)?;
-    let full = scene.full(&base.template, outline);
-    let multipliers = multipliers(scene, base)?;
-    let prices = Prices::new(scene, &base.template, &full, &multipliers);
-    let first = full.outline.sailed.runs;
+fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
+    let free = base.structure.free();
+    let trial = context.trial(&base.structure, &base.lengths)?;
+    let full = context.full(&base.structure, trial);
+    let multipliers = multipliers(context, base)?;
+    let prices = Prices::new(context, &base.structure, &full, &multipliers);
+    let first = full.trial.rollout.runs;
     let mut found = Vec::new();
-    let turn = first_turn(&base.template);
-    let is_seen = !scene.problem.duty().is_none();
+    let turn = first_turn(&base.structure);
+    let is_seen = !context.problem.duty().is_none();
     for gap in first..=free {
         let beside = [gap.checked_sub(1), Some(gap)];
-        let beside = beside.map(|i| i.and_then(|i| base.template.slots.get(i)));
-        for slot in kinds(scene) {
+        let beside = beside.map(|i| i.and_then(|i| base.structure.variables.get(i)));
+        for variable in kinds(context) {
             let swings_out = turn.is_some_and(|(at, side)| {
                 gap <= at
-                    && matches!(slot, Slot::Arc { side: other, .. } if other != side || is_seen && gap < at)
+                    && matches!(variable, SegmentVariable::Arc { side: other, .. } if other != side || is_seen && gap < at)
             });
-            if swings_out || beside.contains(&Some(&slot)) {
+            if swings_out || beside.contains(&Some(&variable)) {
                 continue;
             }
-            let gain = prices.gain(scene, &full, gap, slot);
+            let gain = prices.gain(context, &full, gap, variable);
             if gain > 0.0 {
-                found.push(Addition { gap, slot, gain });
+                found.push(Addition {
+                    gap,
+                    variable,
+                    gain,
+                });
             }
         }
     }
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     found.truncate(MOST_ADDED.min(MAX_VARIABLES - 2 - free));
     let promised: f64 = found.iter().map(|a| a.gain).sum();
-    (promised > WORTH_ADDING * full.outline.cost).then_some(found)
+    (promised > WORTH_ADDING * full.trial.cost).then_some(found)
 }
 
 /// Where the first turn is, and to which side. Nothing turns to the other side before it: others have to see at once
 /// on which side own ship means to pass.
-fn first_turn(template: &Template) -> Option<(usize, Side)> {
-    let mut slots = template.slots.iter().enumerate();
-    slots.find_map(|(at, slot)| match slot {
-        Slot::Arc { side, .. } => Some((at, *side)),
+fn first_turn(structure: &Structure) -> Option<(usize, Side)> {
+    let mut variables = structure.variables.iter().enumerate();
+    variables.find_map(|(at, variable)| match variable {
+        SegmentVariable::Arc { side, .. } => Some((at, *side)),
         _ => None,
     })
 }
 
-/// Every kind of slot after the runs.
-fn kinds(scene: &Scene) -> impl Iterator<Item = Slot> + use<> {
-    let paces = Paces::of(scene.problem);
-    let mut speeds = vec![paces.slow, paces.normal, paces.fast];
+/// Every kind of segment variable after the runs.
+fn kinds(context: &Context) -> impl Iterator<Item = SegmentVariable> + use<> {
+    let speed_table = SpeedTable::of(context.problem);
+    let mut speeds = vec![speed_table.slow, speed_table.normal, speed_table.fast];
     speeds.dedup();
     speeds.into_iter().flat_map(|speed| {
-        let turns = Side::BOTH.map(|side| Slot::Arc { side, speed });
-        turns.into_iter().chain([Slot::Line { speed }])
+        let turns = Side::BOTH.map(|side| SegmentVariable::Arc { side, speed });
+        turns.into_iter().chain([SegmentVariable::Line { speed }])
     })
 }
 
 /// What a metre of slack is worth at each row, m²/m: the multipliers of one step.
-fn multipliers(scene: &Scene, base: &Seed) -> Option<Vec<f64>> {
-    let free = base.template.free();
-    let model = scene.model(&base.template, &base.lengths)?;
+fn multipliers(context: &Context, base: &InitialGuess) -> Option<Vec<f64>> {
+    let free = base.structure.free();
+    let model = context.model(&base.structure, &base.lengths)?;
     let programme = Programme {
         size: free,
         hessian: &model.hessian,
@@ -202,51 +216,56 @@ fn multipliers(scene: &Scene, base: &Seed) -> Option<Vec<f64>> {
     Some(programme.solve()?.multipliers)
 }
 
-/// What a change before each slot costs per metre, as a linear form of its motor about `origin`.
+/// What a change before each segment variable costs per metre, as a linear form of its twist about `origin`.
 struct Prices {
     origin: Vector,
-    forms: Vec<Motor>,
+    forms: Vec<Twist>,
     moments: Vec<Moment>,
 }
 
 impl Prices {
-    fn new(scene: &Scene, template: &Template, full: &Full, multipliers: &[f64]) -> Self {
-        let (free, all) = (template.free(), template.all());
-        let sailed = &full.outline.sailed;
-        let origin = scene.problem.own.pose.position;
+    fn new(context: &Context, structure: &Structure, full: &Full, multipliers: &[f64]) -> Self {
+        let (free, all) = (structure.free(), structure.all());
+        let rollout = &full.trial.rollout;
+        let origin = context.problem.own.pose.position;
         let moments = full.moments.sums_from_each();
-        let joined_by = sailed.joined_by(origin);
-        // what every later change has in common: the tail
+        let joined_by = rollout.joined_by(origin);
+        // what every later change has in common: the return segments
         let mut common = [0.0; 4];
-        let add_tail = |form: &mut Motor, by_distance: f64, by_time: f64| {
+        let add_tail = |form: &mut Twist, by_distance: f64, by_time: f64| {
             add(form, &joined_by, by_distance);
             add(form, &[0.0, 0.0, 1.0, 0.0], by_time);
         };
-        if let Some(tail) = &full.outline.tail {
-            add_tail(&mut common, tail.by_distance, tail.by_time);
+        if let Some(return_segments) = &full.trial.return_segments {
+            add_tail(
+                &mut common,
+                return_segments.by_distance,
+                return_segments.by_time,
+            );
         }
-        let mut forms: Vec<Motor> = moments.iter().map(Moment::pull).collect();
+        let mut forms: Vec<Twist> = moments.iter().map(Moment::pull).collect();
         let mut of_solved = [0.0; 2];
         for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
             *price = full.gradient[free + k];
         }
-        for (approach, multiplier) in full.outline.approaches.iter().zip(multipliers) {
+        for (approach, multiplier) in full.trial.approaches.iter().zip(multipliers) {
             if *multiplier <= 0.0 {
                 continue;
             }
             let [east, north, clock] = approach.rates;
-            let legs = &sailed.legs[approach.leg];
-            let last = match (sailed.place(approach.leg, approach.fraction), legs.owner) {
+            let legs = &rollout.legs[approach.leg];
+            let last = match (rollout.place(approach.leg, approach.fraction), legs.owner) {
                 (Some(place), _) => {
                     let at = place.position - origin;
                     let form = [east, north, clock, at.x * north - at.y * east];
-                    for form_of_gap in forms.iter_mut().take(place.slot + 1) {
+                    for form_of_gap in forms.iter_mut().take(place.variable + 1) {
                         add(form_of_gap, &form, -multiplier);
                     }
-                    place.slot
+                    place.variable
                 }
-                (None, Owner::Tail { index }) => {
-                    let (by_distance, by_time) = scene.tail_rates(sailed, index, approach);
+                (None, Owner::ReturnSegments { index }) => {
+                    let (by_distance, by_time) =
+                        context.return_segment_rates(rollout, index, approach);
                     add_tail(
                         &mut common,
                         -multiplier * by_distance,
@@ -254,23 +273,23 @@ impl Prices {
                     );
                     all
                 }
-                (None, Owner::Slot { .. }) => continue,
+                (None, Owner::SegmentVariable { .. }) => continue,
             };
             if last >= free {
-                let row = scene.approach_row(&full.outline, approach);
+                let row = context.approach_row(&full.trial, approach);
                 for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
                     *price -= multiplier * row[free + k];
                 }
             }
         }
-        // rows after those of the approaches keep the solved slots from running out
+        // rows after those of the approaches keep the solved segment variables from running out
         for (price, multiplier) in of_solved
             .iter_mut()
-            .zip(&multipliers[full.outline.approaches.len()..])
+            .zip(&multipliers[full.trial.approaches.len()..])
         {
             *price -= multiplier;
         }
-        let by = sailed.solved_by(template.ending, scene.problem, origin);
+        let by = rollout.solved_by(structure.ending, context.problem, origin);
         for (form, price) in by.iter().zip(of_solved) {
             add(&mut common, form, price);
         }
@@ -284,47 +303,55 @@ impl Prices {
         }
     }
 
-    /// The rate of the cost with the length of a slot put in before slot `gap`, m² per metre, and the second rate.
-    fn rate(&self, scene: &Scene, full: &Full, gap: usize, slot: Slot) -> Option<(f64, f64)> {
-        let leg = full.outline.sailed.legs.iter().find(
-            |l| matches!(l.owner, Owner::Slot { index, from, .. } if index == gap && from == 0.0),
+    /// The rate of the cost with the length of a segment variable put in before segment variable `gap`, m² per metre, and the second rate.
+    fn rate(
+        &self,
+        context: &Context,
+        full: &Full,
+        gap: usize,
+        variable: SegmentVariable,
+    ) -> Option<(f64, f64)> {
+        let leg = full.trial.rollout.legs.iter().find(
+            |l| matches!(l.owner, Owner::SegmentVariable { index, from, .. } if index == gap && from == 0.0),
         )?;
         let at = leg.segment.start.position - self.origin;
-        let slowness = 1.0 / slot.speed();
-        let curvature = match slot {
-            Slot::Arc { side, .. } => side.turn_sign() / scene.problem.own.turning_radius,
+        let slowness = 1.0 / variable.speed();
+        let curvature = match variable {
+            SegmentVariable::Arc { side, .. } => {
+                side.turn_sign() / context.problem.own.turning_radius
+            }
             _ => 0.0,
         };
-        let motor = [
+        let twist = [
             leg.ahead.x + curvature * at.y,
             leg.ahead.y - curvature * at.x,
             slowness,
             curvature,
         ];
-        let desired = scene.problem.desired;
+        let desired = context.problem.desired;
         let start = leg.segment.start.position;
-        let here = desired.nearest(start, leg.segment.start_time, scene.problem.time_weight);
+        let here = desired.nearest(start, leg.segment.start_time, context.problem.time_weight);
         let own = slowness / desired.duration() * here.error;
         Some((
-            dot4(&motor, &self.forms[gap]) + own,
-            self.moments[gap].bend(&motor),
+            dot4(&twist, &self.forms[gap]) + own,
+            self.moments[gap].bend(&twist),
         ))
     }
 
-    /// What the slot alone would gain, m², to second order; zero when its first metre costs.
-    fn gain(&self, scene: &Scene, full: &Full, gap: usize, slot: Slot) -> f64 {
-        let Some((rate, bend)) = self.rate(scene, full, gap, slot) else {
+    /// What the segment variable alone would gain, m², to second order; zero when its first metre costs.
+    fn gain(&self, context: &Context, full: &Full, gap: usize, variable: SegmentVariable) -> f64 {
+        let Some((rate, bend)) = self.rate(context, full, gap, variable) else {
             return 0.0;
         };
         if rate < 0.0 {
-            0.5 * rate * rate / bend.max(1e-9 * full.outline.cost.max(1.0))
+            0.5 * rate * rate / bend.max(1e-9 * full.trial.cost.max(1.0))
         } else {
             0.0
         }
     }
 }
 
-fn add(form: &mut Motor, other: &Motor, weight: f64) {
+fn add(form: &mut Twist, other: &Twist, weight: f64) {
     for (a, b) in form.iter_mut().zip(other) {
         *a += weight * b;
     }
@@ -335,23 +362,23 @@ mod tests {
     use super::*;
     use crate::planner::space_time::refinement::model::tests::at_manoeuvres;
 
-    /// Every price against the reduced gradient of the template that has the slot, empty.
+    /// Every price against the reduced gradient of the structure that has the segment variable, empty.
     #[test]
     fn prices_are_the_rates_of_the_larger_template() {
-        at_manoeuvres(|scene, seed| {
-            let outline = scene.outline(&seed.template, &seed.lengths);
-            let full = scene.full(&seed.template, outline.expect("fits"));
-            let multipliers = multipliers(scene, seed).expect("solvable");
-            let prices = Prices::new(scene, &seed.template, &full, &multipliers);
+        at_manoeuvres(|context, guess| {
+            let trial = context.trial(&guess.structure, &guess.lengths);
+            let full = context.full(&guess.structure, trial.expect("fits"));
+            let multipliers = multipliers(context, guess).expect("solvable");
+            let prices = Prices::new(context, &guess.structure, &full, &multipliers);
             assert!(multipliers.iter().any(|m| *m > 0.0));
-            for gap in full.outline.sailed.runs..=seed.template.free() {
-                for slot in kinds(scene) {
-                    let mut larger = seed.clone();
-                    larger.template.slots.insert(gap, slot);
+            for gap in full.trial.rollout.runs..=guess.structure.free() {
+                for variable in kinds(context) {
+                    let mut larger = guess.clone();
+                    larger.structure.variables.insert(gap, variable);
                     larger.lengths[gap..].rotate_right(1);
                     larger.lengths[gap] = 0.0;
-                    let model = scene.model(&larger.template, &larger.lengths);
-                    let model = model.expect("an empty slot changes nothing");
+                    let model = context.model(&larger.structure, &larger.lengths);
+                    let model = model.expect("an empty variable changes nothing");
                     let of_rows: f64 = model
                         .rows
                         .iter()
@@ -359,10 +386,11 @@ mod tests {
                         .map(|(row, multiplier)| row.coefficients[gap] * multiplier)
                         .sum();
                     let expected = model.gradient[gap] - of_rows;
-                    let (found, bend) = prices.rate(scene, &full, gap, slot).expect("a place");
+                    let (found, bend) =
+                        prices.rate(context, &full, gap, variable).expect("a place");
                     assert!(
                         (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
-                        "{slot:?} before {gap}: {found} {expected}"
+                        "{variable:?} before {gap}: {found} {expected}"
                     );
                     assert!(bend >= -1e-9 * (1.0 + found.abs()));
                 }
@@ -372,11 +400,15 @@ mod tests {
 
     #[test]
     fn a_cut_manoeuvre_is_the_same_manoeuvre() {
-        at_manoeuvres(|scene, seed| {
-            let whole = scene.model(&seed.template, &seed.lengths).expect("fits");
-            let parts = cut(scene, seed, 30.0).expect("room for parts");
-            assert!(parts.template.free() > 0);
-            let again = scene.model(&parts.template, &parts.lengths).expect("fits");
+        at_manoeuvres(|context, guess| {
+            let whole = context
+                .model(&guess.structure, &guess.lengths)
+                .expect("fits");
+            let pieces = cut(context, guess, 30.0).expect("room for pieces");
+            assert!(pieces.structure.free() > 0);
+            let again = context
+                .model(&pieces.structure, &pieces.lengths)
+                .expect("fits");
             assert!((whole.cost - again.cost).abs() < 1e-6 * whole.cost);
         });
     }

@@ -19,8 +19,8 @@ use crate::planner::space_time::refinement::model::Model;
 use crate::planner::space_time::refinement::quadratic::{
     Constraint, MAX_VARIABLES, Programme, Row,
 };
-use crate::planner::space_time::refinement::structure::{Ending, Slot, Template};
-use crate::planner::space_time::refinement::trial::{Outline, Scene};
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
+use crate::planner::space_time::refinement::trial::{Context, Trial};
 use crate::planner::space_time::rules::readily_apparent::Apparent;
 use crate::trajectory::Segment;
 
@@ -36,10 +36,10 @@ pub(crate) const MAX_STEPS: usize = 40;
 const RESTORATIONS: usize = 3;
 const RESTORABLE_M: f64 = 5.0;
 
-/// Radians. Longest turn of one slot.
+/// Radians. Longest turn of one segment variable.
 const LONGEST_ARC: f64 = 2.0;
 
-/// The merit's weight of a missing metre, m²/m: at first a multiple of the seed's cost, which a plan
+/// The merit's weight of a missing metre, m²/m: at first a multiple of the initial guess's cost, which a plan
 /// loses over some tens of metres; later at least the multipliers.
 const LEAST_PENALTY: f64 = 10.0;
 const PENALTY_PER_COST: f64 = 0.01;
@@ -67,16 +67,16 @@ const STALLED: f64 = 1e-3;
 
 /// A manoeuvre to begin from.
 #[derive(Debug, Clone)]
-pub(crate) struct Seed {
-    pub template: Template,
+pub(crate) struct InitialGuess {
+    pub structure: Structure,
     pub lengths: Row,
 }
 
 /// Side of the first turn of some length.
-fn first_turn(seed: &Seed) -> Option<Side> {
-    let mut slots = seed.template.slots.iter().zip(&seed.lengths);
-    slots.find_map(|(slot, length)| match slot {
-        Slot::Arc { side, .. } if *length > 0.0 => Some(*side),
+fn first_turn(guess: &InitialGuess) -> Option<Side> {
+    let mut variables = guess.structure.variables.iter().zip(&guess.lengths);
+    variables.find_map(|(variable, length)| match variable {
+        SegmentVariable::Arc { side, .. } if *length > 0.0 => Some(*side),
         _ => None,
     })
 }
@@ -85,14 +85,14 @@ fn first_turn(seed: &Seed) -> Option<Side> {
 #[derive(Debug, Clone, Copy)]
 struct Refined {
     cost: f64,
-    /// Of its slots.
+    /// Of its segment variables.
     lengths: Row,
 }
 
 /// A refinement under way.
 #[derive(Debug)]
 pub(crate) struct Refinement {
-    template: Template,
+    structure: Structure,
     lengths: Row,
     model: Model,
     /// Which turn others have to see; `None` where none.
@@ -112,33 +112,38 @@ pub(crate) struct Refinement {
 }
 
 impl Refinement {
-    /// Begins from the seed, or, where its return does not fit before the end of the leg, from one with
+    /// Begins from the initial guess, or, where its return does not fit before the end of the leg, from one with
     /// shorter lines or that steers for the last waypoint.
-    pub(crate) fn fitting(scene: &Scene, seed: Seed) -> Option<Self> {
-        let mut shorter = seed.clone();
+    pub(crate) fn fitting(context: &Context, guess: InitialGuess) -> Option<Self> {
+        let mut shorter = guess.clone();
         for _ in 0..4 {
-            if let Some(refinement) = Self::new(scene, shorter.clone()) {
+            if let Some(refinement) = Self::new(context, shorter.clone()) {
                 return Some(refinement);
             }
-            for (slot, length) in shorter.template.slots.iter().zip(&mut shorter.lengths) {
-                if matches!(slot, Slot::Line { .. }) {
+            for (variable, length) in shorter.structure.variables.iter().zip(&mut shorter.lengths) {
+                if matches!(variable, SegmentVariable::Line { .. }) {
                     *length *= 0.6;
                 }
             }
         }
-        let last = seed.template.slots.iter().rev().find_map(|s| match s {
-            Slot::Arc { side, speed } => Some((*side, *speed)),
-            _ => None,
-        });
-        let mut onward = seed;
+        let last = guess
+            .structure
+            .variables
+            .iter()
+            .rev()
+            .find_map(|s| match s {
+                SegmentVariable::Arc { side, speed } => Some((*side, *speed)),
+                _ => None,
+            });
+        let mut onward = guess;
         for _ in 0..4 {
             let (side, speed) = last?;
-            onward.template.ending = Ending::Goal { side, speed };
-            if let Some(refinement) = Self::new(scene, onward.clone()) {
+            onward.structure.ending = Ending::Goal { side, speed };
+            if let Some(refinement) = Self::new(context, onward.clone()) {
                 return Some(refinement);
             }
-            for (slot, length) in onward.template.slots.iter().zip(&mut onward.lengths) {
-                if matches!(slot, Slot::Line { .. }) {
+            for (variable, length) in onward.structure.variables.iter().zip(&mut onward.lengths) {
+                if matches!(variable, SegmentVariable::Line { .. }) {
                     *length *= 0.6;
                 }
             }
@@ -146,17 +151,17 @@ impl Refinement {
         None
     }
 
-    /// `None` when the seed's ending does not fit, or its first turn is not what the rules ask for.
-    fn new(scene: &Scene, mut seed: Seed) -> Option<Self> {
-        let apparent = if scene.problem.duty().is_none() {
+    /// `None` when the initial guess's ending does not fit, or its first turn is not what the rules ask for.
+    fn new(context: &Context, mut guess: InitialGuess) -> Option<Self> {
+        let apparent = if context.problem.duty().is_none() {
             None
         } else {
-            Some(Apparent::in_seed(&mut seed, scene.problem)?)
+            Some(Apparent::in_seed(&mut guess, context.problem)?)
         };
-        let model = scene.model(&seed.template, &seed.lengths)?;
+        let model = context.model(&guess.structure, &guess.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
-        let first = first_turn(&seed);
-        let wanted = scene.problem.first_turn;
+        let first = first_turn(&guess);
+        let wanted = context.problem.first_turn;
         let against = wanted.is_some_and(|side| first.is_some_and(|first| first != side));
         let mut refinement = Self {
             apparent,
@@ -165,8 +170,8 @@ impl Refinement {
             } else {
                 1.0
             },
-            template: seed.template,
-            lengths: seed.lengths,
+            structure: guess.structure,
+            lengths: guess.lengths,
             model,
             best: None,
             penalty,
@@ -178,7 +183,7 @@ impl Refinement {
             finished: false,
             overtaken: false,
         };
-        refinement.keep(scene);
+        refinement.keep(context);
         Some(refinement)
     }
 
@@ -187,18 +192,18 @@ impl Refinement {
     }
 
     /// The motion of the cheapest clear manoeuvre so far.
-    pub(crate) fn best_motion(&self, scene: &Scene) -> Option<Vec<Segment>> {
+    pub(crate) fn best_motion(&self, context: &Context) -> Option<Vec<Segment>> {
         let best = self.best?;
-        let sailed = self
-            .template
-            .sail(scene.problem, scene.route, &best.lengths)?;
-        Some(sailed.motion())
+        let rollout = self
+            .structure
+            .sail(context.problem, context.route, &best.lengths)?;
+        Some(rollout.motion())
     }
 
-    /// The cheapest clear manoeuvre so far, as a seed.
-    pub(crate) fn best(&self) -> Option<Seed> {
-        Some(Seed {
-            template: self.template.clone(),
+    /// The cheapest clear manoeuvre so far, as a initial guess.
+    pub(crate) fn best(&self) -> Option<InitialGuess> {
+        Some(InitialGuess {
+            structure: self.structure.clone(),
             lengths: self.best.as_ref()?.lengths,
         })
     }
@@ -244,8 +249,8 @@ impl Refinement {
     }
 
     /// Only what fine chords have seen is known to be clear.
-    fn keep(&mut self, scene: &Scene) {
-        let clear = self.model.least_slack >= 0.0 && scene.chord <= FINE_CHORD_RAD;
+    fn keep(&mut self, context: &Context) {
+        let clear = self.model.least_slack >= 0.0 && context.chord <= FINE_CHORD_RAD;
         let better = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
         if clear && better {
             self.best = Some(Refined {
@@ -257,8 +262,8 @@ impl Refinement {
 
     /// The nearest manoeuvre that is clear, from one that is nearly so: least change of lengths under the
     /// linearised rows, a few times.
-    fn restore(&mut self, scene: &Scene) {
-        let n = self.template.free();
+    fn restore(&mut self, context: &Context) {
+        let n = self.structure.free();
         let mut identity = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
         for (i, row) in identity.iter_mut().enumerate() {
             row[i] = 1.0;
@@ -284,34 +289,34 @@ impl Refinement {
             let Some(solution) = programme.solve() else {
                 return;
             };
-            let mut trial = self.lengths;
-            for (length, step) in trial.iter_mut().zip(&solution.x).take(n) {
+            let mut trial_lengths = self.lengths;
+            for (length, step) in trial_lengths.iter_mut().zip(&solution.x).take(n) {
                 *length = (*length + step).max(0.0);
             }
-            let Some(model) = scene.model(&self.template, &trial) else {
+            let Some(model) = context.model(&self.structure, &trial_lengths) else {
                 return;
             };
             if model.violation >= self.model.violation {
                 return;
             }
-            (self.lengths, self.model) = (trial, model);
-            self.keep(scene);
+            (self.lengths, self.model) = (trial_lengths, model);
+            self.keep(context);
         }
     }
 
     /// Looks at the manoeuvre at hand anew, with other chords.
-    pub(crate) fn look_again(&mut self, scene: &Scene) {
-        if let Some(model) = scene.model(&self.template, &self.lengths) {
+    pub(crate) fn look_again(&mut self, context: &Context) {
+        if let Some(model) = context.model(&self.structure, &self.lengths) {
             self.model = model;
             (self.finished, self.stalled) = (false, 0);
-            self.keep(scene);
+            self.keep(context);
         }
     }
 
     /// Ends here, clear if it is nearly so.
-    pub(crate) fn settle(&mut self, scene: &Scene) {
+    pub(crate) fn settle(&mut self, context: &Context) {
         self.finished = true;
-        self.restore(scene);
+        self.restore(context);
     }
 
     /// Narrows a box of steps so that what others have to see stays so.
@@ -322,9 +327,9 @@ impl Refinement {
     }
 
     /// One step.
-    pub(crate) fn step(&mut self, scene: &Scene) {
+    pub(crate) fn step(&mut self, context: &Context) {
         self.steps += 1;
-        let advanced = self.advance(scene);
+        let advanced = self.advance(context);
         if !advanced && self.model.least_slack < 0.0 && self.raised < MAX_RAISES {
             // at rest in a set: what is missing is worth more
             self.raised += 1;
@@ -334,45 +339,50 @@ impl Refinement {
             return;
         }
         if self.steps >= MAX_STEPS || !advanced {
-            self.settle(scene);
+            self.settle(context);
         }
     }
 
     /// A second-order correction: the least change, by the Hessian, that brings a full step back outside the sets
     /// that it curves into. Without it steps along a face are cut to nothing.
-    fn corrected(&self, scene: &Scene, trial: &Row, outline: &Outline) -> Option<(Row, Outline)> {
-        if outline.violation <= CLEAR_ENOUGH_M {
+    fn corrected(
+        &self,
+        context: &Context,
+        trial_lengths: &Row,
+        trial: &Trial,
+    ) -> Option<(Row, Trial)> {
+        if trial.violation <= CLEAR_ENOUGH_M {
             return None;
         }
-        let mut low = trial.map(|l| (-self.radius).max(-l));
+        let mut low = trial_lengths.map(|l| (-self.radius).max(-l));
         let mut high = [self.radius; MAX_VARIABLES];
-        self.keep_apparent(trial, &mut low, &mut high);
+        self.keep_apparent(trial_lengths, &mut low, &mut high);
         let programme = Programme {
-            size: self.template.free(),
+            size: self.structure.free(),
             hessian: &self.model.hessian,
             gradient: &[0.0; MAX_VARIABLES],
             low: &low,
             high: &high,
-            rows: &scene.rows(&self.template, outline),
+            rows: &context.rows(&self.structure, trial),
             price: None,
         };
         let solution = programme.solve()?;
-        let mut corrected = *trial;
+        let mut corrected = *trial_lengths;
         for (length, step) in corrected.iter_mut().zip(&solution.x) {
             *length = (*length + step).max(0.0);
         }
-        let outline = scene.outline(&self.template, &corrected)?;
-        Some((corrected, outline))
+        let trial = context.trial(&self.structure, &corrected)?;
+        Some((corrected, trial))
     }
 
-    fn advance(&mut self, scene: &Scene) -> bool {
-        let n = self.template.free();
+    fn advance(&mut self, context: &Context) -> bool {
+        let n = self.structure.free();
         let (mut low, mut high) = ([0.0; MAX_VARIABLES], [0.0; MAX_VARIABLES]);
-        let longest = LONGEST_ARC * scene.problem.own.turning_radius;
+        let longest = LONGEST_ARC * context.problem.own.turning_radius;
         for i in 0..n {
             low[i] = (-self.radius).max(-self.lengths[i]);
             high[i] = self.radius;
-            if matches!(self.template.slots[i], Slot::Arc { .. }) {
+            if matches!(self.structure.variables[i], SegmentVariable::Arc { .. }) {
                 high[i] = high[i].min((longest - self.lengths[i]).max(0.0));
             }
         }
@@ -424,32 +434,32 @@ impl Refinement {
         let mut share = 1.0;
         for _ in 0..=MAX_BACKTRACKS {
             let predicted = share * (self.penalty * met - linear) - 0.5 * share * share * bent;
-            let mut trial = self.lengths;
+            let mut trial_lengths = self.lengths;
             for i in 0..n {
-                trial[i] = (trial[i] + share * step[i]).max(0.0);
+                trial_lengths[i] = (trial_lengths[i] + share * step[i]).max(0.0);
             }
-            let mut found = scene.outline(&self.template, &trial);
-            let gain = |o: &Outline| merit - o.cost - self.penalty * o.violation;
+            let mut found = context.trial(&self.structure, &trial_lengths);
+            let gain = |o: &Trial| merit - o.cost - self.penalty * o.violation;
             let enough = |gained: f64| gained > 0.0 && gained >= LEAST_GAIN * predicted;
             if share == 1.0
-                && let Some(outline) = &found
-                && !enough(gain(outline))
-                && let Some(corrected) = self.corrected(scene, &trial, outline)
+                && let Some(trial) = &found
+                && !enough(gain(trial))
+                && let Some(corrected) = self.corrected(context, &trial_lengths, trial)
                 && enough(gain(&corrected.1))
             {
-                trial = corrected.0;
+                trial_lengths = corrected.0;
                 found = Some(corrected.1);
             }
-            let found = found.map(|outline| (gain(&outline), outline));
-            if let Some((gained, outline)) = found
+            let found = found.map(|trial| (gain(&trial), trial));
+            if let Some((gained, trial)) = found
                 && enough(gained)
             {
-                let model = scene.completed(&self.template, outline);
+                let model = context.completed(&self.structure, trial);
                 let settled =
                     gained < STALLED * model.cost.max(1.0) && model.violation < CLEAR_ENOUGH_M;
                 self.stalled = if settled { self.stalled + 1 } else { 0 };
-                (self.lengths, self.model) = (trial, model);
-                self.keep(scene);
+                (self.lengths, self.model) = (trial_lengths, model);
+                self.keep(context);
                 if share < 1.0 {
                     self.radius = (2.0 * share * largest)
                         .min(self.radius)

@@ -4,14 +4,14 @@
 use crate::frame::to_port;
 use crate::planner::space_time::refinement::approach::Approach;
 use crate::planner::space_time::refinement::gauss_newton::{
-    Moments, Residuals, reduce, reduce_matrix,
+    GaussNewton, Residuals, reduce, reduce_matrix,
 };
 use crate::planner::space_time::refinement::quadratic::{Constraint, MAX_VARIABLES, Row};
 use crate::planner::space_time::refinement::rollout::{Owner, Place};
-use crate::planner::space_time::refinement::structure::Template;
-use crate::planner::space_time::refinement::trial::{Outline, Scene, Weighed};
+use crate::planner::space_time::refinement::structure::Structure;
+use crate::planner::space_time::refinement::trial::{Context, Trial, WeightedPoint};
 
-/// Metres that solved slots and the leg after the return keep, so that a step does not run out of them.
+/// Metres that solved segment variables and the leg after the return keep, so that a step does not run out of them.
 const ROOM_M: f64 = 1.0;
 
 /// Metres kept from every set while refining, so that the exact test afterwards passes.
@@ -24,7 +24,7 @@ pub(crate) struct Model {
     pub gradient: Row,
     /// Positive definite, a row per variable.
     pub hessian: Vec<Row>,
-    /// Contact rows and the signs of the solved slots, linearised: `row . step >= bound`.
+    /// Contact rows and the signs of the solved segment variables, linearised: `row . step >= bound`.
     pub rows: Vec<Constraint>,
     /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
     /// splits in two must not make the merit jump.
@@ -38,65 +38,65 @@ pub(crate) struct Model {
 const REGULARISATION: f64 = 1e-5;
 const LEAST_REGULARISED: f64 = 20.0;
 
-/// One manoeuvre with its rates in all its slots, the solved ones included.
+/// One manoeuvre with its rates in all its segment variables, the solved ones included.
 #[derive(Debug)]
 pub(crate) struct Full {
-    pub outline: Outline,
+    pub trial: Trial,
     pub gradient: Row,
     /// The lower triangle.
     hessian: Vec<Row>,
-    pub moments: Moments,
+    pub moments: GaussNewton,
 }
 
-impl Scene<'_> {
+impl Context<'_> {
     /// Sails and evaluates; `None` when the manoeuvre's ending does not fit.
-    pub(crate) fn model(&self, template: &Template, lengths: &Row) -> Option<Model> {
-        Some(self.completed(template, self.outline(template, lengths)?))
+    pub(crate) fn model(&self, structure: &Structure, lengths: &Row) -> Option<Model> {
+        Some(self.completed(structure, self.trial(structure, lengths)?))
     }
 
     /// The rates of a manoeuvre that has been outlined.
-    pub(crate) fn completed(&self, template: &Template, outline: Outline) -> Model {
-        let full = self.full(template, outline);
-        let outline = &full.outline;
-        let (all, free) = (template.all(), template.free());
-        let solved = &outline.sailed.solved_rates[..all - free];
+    pub(crate) fn completed(&self, structure: &Structure, trial: Trial) -> Model {
+        let full = self.full(structure, trial);
+        let trial = &full.trial;
+        let (all, free) = (structure.all(), structure.free());
+        let solved = &trial.rollout.solved_rates[..all - free];
         let gradient = reduce(&full.gradient, solved, free);
         let mut hessian = reduce_matrix(full.hessian, solved, free);
         for (i, row) in hessian.iter_mut().enumerate() {
-            row[i] += REGULARISATION * outline.cost.max(LEAST_REGULARISED);
+            row[i] += REGULARISATION * trial.cost.max(LEAST_REGULARISED);
         }
         Model {
-            cost: outline.cost,
+            cost: trial.cost,
             gradient,
             hessian,
-            rows: self.rows(template, outline),
-            violation: outline.violation,
-            least_slack: outline.least_slack,
+            rows: self.rows(structure, trial),
+            violation: trial.violation,
+            least_slack: trial.least_slack,
         }
     }
 
-    /// Contact rows and the signs of the solved slots, linearised.
-    pub(crate) fn rows(&self, template: &Template, outline: &Outline) -> Vec<Constraint> {
-        let (all, free) = (template.all(), template.free());
-        let sailed = &outline.sailed;
-        let solved = &sailed.solved_rates[..all - free];
-        let mut rows = Vec::with_capacity(outline.approaches.len() + 3);
-        for approach in &outline.approaches {
-            let coefficients = self.approach_row(outline, approach);
+    /// Contact rows and the signs of the solved segment variables, linearised.
+    pub(crate) fn rows(&self, structure: &Structure, trial: &Trial) -> Vec<Constraint> {
+        let (all, free) = (structure.all(), structure.free());
+        let rollout = &trial.rollout;
+        let solved = &rollout.solved_rates[..all - free];
+        let mut rows = Vec::with_capacity(trial.approaches.len() + 3);
+        for approach in &trial.approaches {
+            let coefficients = self.approach_row(trial, approach);
             rows.push(Constraint {
                 coefficients: reduce(&coefficients, solved, free),
                 bound: MARGIN_M - approach.slack,
             });
         }
         for k in 0..all - free {
-            let bound = ROOM_M.min(sailed.solved[k]) - sailed.solved[k];
+            let bound = ROOM_M.min(rollout.solved[k]) - rollout.solved[k];
             rows.push(Constraint {
-                coefficients: sailed.solved_rates[k],
+                coefficients: rollout.solved_rates[k],
                 bound,
             });
         }
-        if let Some(room) = sailed.room {
-            let coefficients = reduce(&outline.joining.0, solved, free).map(|c| -c);
+        if let Some(room) = rollout.room {
+            let coefficients = reduce(&trial.joining.0, solved, free).map(|c| -c);
             rows.push(Constraint {
                 coefficients,
                 bound: ROOM_M.min(room) - room,
@@ -105,59 +105,61 @@ impl Scene<'_> {
         rows
     }
 
-    /// The rates before the solved slots are eliminated.
-    pub(crate) fn full(&self, template: &Template, outline: Outline) -> Full {
-        let all = template.all();
+    /// The rates before the solved segment variables are eliminated.
+    pub(crate) fn full(&self, structure: &Structure, trial: Trial) -> Full {
+        let all = structure.all();
         let mut full = Full {
             gradient: [0.0; MAX_VARIABLES],
             hessian: vec![[0.0; MAX_VARIABLES]; all],
-            moments: Moments::new(all),
-            outline,
+            moments: GaussNewton::new(all),
+            trial,
         };
-        let outline = &full.outline;
-        let sailed = &outline.sailed;
+        let trial = &full.trial;
+        let rollout = &trial.rollout;
         let origin = self.problem.own.pose.position;
-        for point in &outline.points {
-            full.gradient[point.slot] += point.growth;
+        for point in &trial.points {
+            full.gradient[point.variable] += point.growth;
             let Some(weighed) = &point.weighed else {
                 continue;
             };
-            let Weighed {
+            let WeightedPoint {
                 place,
                 nearest,
                 weight,
             } = weighed;
             let residuals = self.residuals(place, nearest.leg, nearest.distance, *weight);
-            if point.slot < sailed.runs {
+            if point.variable < rollout.runs {
                 let mut rates = [[0.0; 3]; MAX_VARIABLES];
-                for (i, rate) in rates.iter_mut().enumerate().take(point.slot + 1) {
-                    *rate = sailed.own_rate(place, i);
+                for (i, rate) in rates.iter_mut().enumerate().take(point.variable + 1) {
+                    *rate = rollout.own_rate(place, i);
                 }
-                Moments::add_directly(
-                    &rates[..=point.slot],
+                GaussNewton::add_directly(
+                    &rates[..=point.variable],
                     &residuals,
                     &mut full.gradient,
                     &mut full.hessian,
                 );
             } else {
                 let at = place.position - origin;
-                let own = sailed.own_rate(place, point.slot);
-                full.moments.add(point.slot, [at.x, at.y], own, &residuals);
+                let own = rollout.own_rate(place, point.variable);
+                full.moments
+                    .add(point.variable, [at.x, at.y], own, &residuals);
             }
         }
-        let motors = sailed.motors(origin);
+        let twists = rollout.twists(origin);
         full.moments
-            .finish(&motors, &mut full.gradient, &mut full.hessian);
-        if let Some(tail) = &outline.tail {
-            let (distance, clock) = &outline.joining;
+            .finish(&twists, &mut full.gradient, &mut full.hessian);
+        if let Some(return_segments) = &trial.return_segments {
+            let (distance, clock) = &trial.joining;
             let mut lateness = [0.0; MAX_VARIABLES];
             for i in 0..all {
-                full.gradient[i] += tail.by_time * clock[i] + tail.by_distance * distance[i];
-                lateness[i] = clock[i] - tail.slowness * distance[i];
+                full.gradient[i] +=
+                    return_segments.by_time * clock[i] + return_segments.by_distance * distance[i];
+                lateness[i] = clock[i] - return_segments.slowness * distance[i];
             }
             for i in 0..all {
                 for k in 0..=i {
-                    full.hessian[i][k] += tail.bend * lateness[i] * lateness[k];
+                    full.hessian[i][k] += return_segments.bend * lateness[i] * lateness[k];
                 }
             }
         }
@@ -190,24 +192,24 @@ impl Scene<'_> {
     }
 
     /// Rates of the slack at an approach.
-    pub(crate) fn approach_row(&self, outline: &Outline, approach: &Approach) -> Row {
+    pub(crate) fn approach_row(&self, trial: &Trial, approach: &Approach) -> Row {
         let of = approach.rates;
-        let sailed = &outline.sailed;
+        let rollout = &trial.rollout;
         match (
-            sailed.place(approach.leg, approach.fraction),
-            sailed.legs[approach.leg].owner,
+            rollout.place(approach.leg, approach.fraction),
+            rollout.legs[approach.leg].owner,
         ) {
-            (Some(place), _) => sailed.rates(&place, of),
-            (None, Owner::Tail { index }) => {
-                let (by_distance, by_time) = self.tail_rates(sailed, index, approach);
+            (Some(place), _) => rollout.rates(&place, of),
+            (None, Owner::ReturnSegments { index }) => {
+                let (by_distance, by_time) = self.return_segment_rates(rollout, index, approach);
                 let mut row = [0.0; MAX_VARIABLES];
-                let (distances, clocks) = &outline.joining;
+                let (distances, clocks) = &trial.joining;
                 for (to, (distance, clock)) in row.iter_mut().zip(distances.iter().zip(clocks)) {
                     *to = by_distance * distance + by_time * clock;
                 }
                 row
             }
-            (None, Owner::Slot { .. }) => [0.0; MAX_VARIABLES],
+            (None, Owner::SegmentVariable { .. }) => [0.0; MAX_VARIABLES],
         }
     }
 }
@@ -219,20 +221,20 @@ pub(crate) mod tests {
     use crate::geometry::outer_disc;
     use crate::obstacle::{Coast, PolytopeObstacle};
     use crate::planner::clock::Clock;
-    use crate::planner::space_time::piece::parts;
-    use crate::planner::space_time::proxy::Hazard;
-    use crate::planner::space_time::refinement::Seed;
+    use crate::planner::space_time::piece::pieces;
+    use crate::planner::space_time::proxy::Proxy;
+    use crate::planner::space_time::refinement::InitialGuess;
     use crate::planner::space_time::refinement::approach::FINE_CHORD_RAD;
     use crate::planner::space_time::refinement::structure::Ending;
-    use crate::planner::space_time::refinement::structure::Slot;
+    use crate::planner::space_time::refinement::structure::SegmentVariable;
     use crate::planner::space_time::route::Route;
     use crate::planner::space_time::selection::initial_guess::{Canonical, Conflict};
     use crate::planner::{Problem, SearchKind};
     use crate::trajectory::DesiredTrajectory;
     use crate::vessel::{Hull, OwnShip};
 
-    /// Checks three manoeuvres with all slots open, two that return and one that steers for the goal, near a target.
-    pub(crate) fn at_manoeuvres(check: impl Fn(&Scene, &Seed)) {
+    /// Checks three manoeuvres with all segment variables open, two that return and one that steers for the goal, near a target.
+    pub(crate) fn at_manoeuvres(check: impl Fn(&Context, &InitialGuess)) {
         let own = OwnShip {
             pose: Pose::new(Vector::new(0.0, 0.0), 0.0),
             speed: 5.0,
@@ -271,12 +273,12 @@ pub(crate) mod tests {
             encountered: &[],
         };
         let route = Route::new(&problem, Clock::new(problem.deadline)).expect("a route");
-        let parts = parts(&obstacles, problem.horizon);
-        let hazards = [Hazard::new(&parts[0])];
-        let scene = Scene {
+        let pieces = pieces(&obstacles, problem.horizon);
+        let proxies = [Proxy::new(&pieces[0])];
+        let context = Context {
             problem: &problem,
             route: &route,
-            hazards: &hazards,
+            proxies: &proxies,
             blocks: &[],
             chord: FINE_CHORD_RAD,
         };
@@ -300,37 +302,39 @@ pub(crate) mod tests {
             (Side::Port, false),
             (Side::Port, true),
         ] {
-            let mut seed = canonical
-                .seed(&problem, &route, side, &conflict, 0)
-                .expect("a seed");
+            let mut guess = canonical
+                .guess(&problem, &route, side, &conflict, 0)
+                .expect("a guess");
             if goal {
-                seed.template.ending = Ending::Goal { side, speed: 6.0 };
+                guess.structure.ending = Ending::Goal { side, speed: 6.0 };
             }
-            for (i, slot) in seed.template.slots.iter().enumerate() {
-                seed.lengths[i] += if matches!(slot, Slot::Arc { .. }) {
+            for (i, variable) in guess.structure.variables.iter().enumerate() {
+                guess.lengths[i] += if matches!(variable, SegmentVariable::Arc { .. }) {
                     7.0
                 } else {
                     11.0
                 } + i as f64;
             }
-            check(&scene, &seed);
+            check(&context, &guess);
         }
     }
 
     /// Every rate against central differences.
     #[test]
     fn rates_match_differences() {
-        at_manoeuvres(|scene, seed| {
-            let goal = matches!(seed.template.ending, Ending::Goal { .. });
-            let here = scene.model(&seed.template, &seed.lengths).expect("fits");
+        at_manoeuvres(|context, guess| {
+            let goal = matches!(guess.structure.ending, Ending::Goal { .. });
+            let here = context
+                .model(&guess.structure, &guess.lengths)
+                .expect("fits");
             let contact_rows = here.rows.len() - if goal { 2 } else { 3 };
             assert!(contact_rows > 0);
             let step = 1e-4;
-            for i in 0..seed.template.free() {
+            for i in 0..guess.structure.free() {
                 let at = |d: f64| {
-                    let mut lengths = seed.lengths;
+                    let mut lengths = guess.lengths;
                     lengths[i] += d;
-                    scene.model(&seed.template, &lengths).expect("fits")
+                    context.model(&guess.structure, &lengths).expect("fits")
                 };
                 let (less, more) = (at(-step), at(step));
                 let rate = (more.cost - less.cost) / (2.0 * step);
@@ -345,7 +349,7 @@ pub(crate) mod tests {
                     let found = here.rows[k].coefficients[i];
                     assert!(
                         (found - rate).abs() < 2e-3 * (1.0 + rate.abs()),
-                        "row {k} slot {i}: {found} {rate}"
+                        "row {k} variable {i}: {found} {rate}"
                     );
                 }
             }

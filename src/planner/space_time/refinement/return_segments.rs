@@ -2,14 +2,14 @@
 
 use crate::planner::cost::space_time_error;
 use crate::planner::space_time::refinement::approach::Approach;
-use crate::planner::space_time::refinement::rollout::Sailed;
-use crate::planner::space_time::refinement::trial::Scene;
+use crate::planner::space_time::refinement::rollout::Rollout;
+use crate::planner::space_time::refinement::trial::Context;
 use crate::trajectory::Segment;
 
 /// Cost of the route followed from a place at a time, with its rates per second and per metre, its
 /// second rate per second, and the timetable's seconds per metre there.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Tail {
+pub(crate) struct ReturnSegments {
     pub cost: f64,
     pub by_time: f64,
     pub by_distance: f64,
@@ -17,11 +17,11 @@ pub(crate) struct Tail {
     pub slowness: f64,
 }
 
-impl Scene<'_> {
+impl Context<'_> {
     /// In closed form where there is one.
-    pub(crate) fn tail(&self, distance: f64, time: f64) -> Tail {
-        self.straight_tail(distance, time)
-            .unwrap_or_else(|| self.any_tail(distance, time))
+    pub(crate) fn return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
+        self.straight_return_segments(distance, time)
+            .unwrap_or_else(|| self.bent_return_segments(distance, time))
     }
 
     /// Cost of following the route from a place at a time, m².
@@ -36,7 +36,7 @@ impl Scene<'_> {
 
     /// On the last leg, recovering in time at the greatest or the least speed, then on schedule: the lag
     /// shrinks at a constant rate `r`, so the cost is `kappa lag³ / (3 r T_d)`. `None` in any other case.
-    fn straight_tail(&self, distance: f64, time: f64) -> Option<Tail> {
+    fn straight_return_segments(&self, distance: f64, time: f64) -> Option<ReturnSegments> {
         let desired = self.problem.desired;
         let last = desired.legs().len() - 1;
         let leg = &desired.legs()[last];
@@ -65,7 +65,7 @@ impl Scene<'_> {
         let q = self.problem.time_weight;
         let kappa = q / (q + leg.speed * leg.speed) / (rate * desired.duration());
         let by_lag = kappa * lag * lag.abs();
-        Some(Tail {
+        Some(ReturnSegments {
             cost: kappa * lag.abs().powi(3) / 3.0,
             by_time: by_lag * leg.speed,
             by_distance: -by_lag,
@@ -74,8 +74,8 @@ impl Scene<'_> {
         })
     }
 
-    /// Any tail, by differences in the place and time at which it begins.
-    fn any_tail(&self, distance: f64, time: f64) -> Tail {
+    /// Any return segments, by differences in the place and time at which it begins.
+    fn bent_return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
         let (ds, dt) = (0.05, 0.01);
         let cost = self.tail_cost(distance, time);
         let (earlier, later) = (
@@ -86,7 +86,7 @@ impl Scene<'_> {
             self.tail_cost(distance - ds, time),
             self.tail_cost(distance + ds, time),
         );
-        Tail {
+        ReturnSegments {
             cost,
             by_time: (later - earlier) / (2.0 * dt),
             by_distance: (on - back) / (2.0 * ds),
@@ -95,15 +95,15 @@ impl Scene<'_> {
         }
     }
 
-    /// Rates of the slack at an approach on the tail with the place and time of joining, by differences.
-    pub(crate) fn tail_rates(
+    /// Rates of the slack at an approach on the return segments with the place and time of joining, by differences.
+    pub(crate) fn return_segment_rates(
         &self,
-        sailed: &Sailed,
+        rollout: &Rollout,
         index: usize,
         approach: &Approach,
     ) -> (f64, f64) {
         let of = approach.rates;
-        let (s, t) = sailed.joined;
+        let (s, t) = rollout.joined;
         let (ds, dt) = (0.05, 0.01);
         let at = |distance: f64, time: f64| -> Option<f64> {
             let mut segments = Vec::with_capacity(4);

@@ -2,7 +2,7 @@
 
 use crate::frame::{Vector, cross, to_port};
 use crate::planner::Problem;
-use crate::planner::space_time::refinement::gauss_newton::Motor;
+use crate::planner::space_time::refinement::gauss_newton::Twist;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 use crate::planner::space_time::refinement::structure::Ending;
 use crate::trajectory::Segment;
@@ -10,10 +10,10 @@ use crate::trajectory::Segment;
 /// Which variable a motion's length belongs to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Owner {
-    /// Part `[from, to]` of slot `index`.
-    Slot { index: usize, from: f64, to: f64 },
+    /// Part `[from, to]` of segment variable `index`.
+    SegmentVariable { index: usize, from: f64, to: f64 },
     /// The route followed after the manoeuvre.
-    Tail { index: usize },
+    ReturnSegments { index: usize },
 }
 
 /// A motion and whose it is.
@@ -51,10 +51,10 @@ pub(crate) fn turned(from: Vector, ahead: Vector, length: f64, curvature: f64) -
     (end, ahead * cos + port * sin)
 }
 
-/// How everything after a slot moves per metre of it.
+/// How everything after a segment variable moves per metre of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rigid {
-    /// Where the slot ends, its direction there, its curvature.
+    /// Where the segment variable ends, its direction there, its curvature.
     pub end: Vector,
     pub ahead: Vector,
     pub curvature: f64,
@@ -69,36 +69,36 @@ impl Rigid {
 
 /// A manoeuvre with its lengths.
 #[derive(Debug, Clone)]
-pub(crate) struct Sailed {
-    /// In order of time; slots of no length are there too.
+pub(crate) struct Rollout {
+    /// In order of time; segment variables of no length are there too.
     pub legs: Vec<Leg>,
-    /// Index in `legs` of the first of the tail.
-    pub tail: usize,
-    /// Distance along the route and time at which the tail begins.
+    /// Index in `legs` of the first of the return segments.
+    pub return_segments: usize,
+    /// Distance along the route and time at which the return segments begins.
     pub joined: (f64, f64),
     /// Metres left of the leg after a return.
     pub room: Option<f64>,
-    /// Lengths of the solved slots.
+    /// Lengths of the solved segment variables.
     pub solved: [f64; 2],
-    /// Rates of the solved slots with each free one.
+    /// Rates of the solved segment variables with each free one.
     pub solved_rates: [Row; 2],
     /// Slots at the beginning that run along the route.
     pub runs: usize,
     pub rigid: Vec<Rigid>,
 }
 
-/// A point of a manoeuvre that belongs to a slot.
+/// A point of a manoeuvre that belongs to a segment variable.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
     pub position: Vector,
     pub ahead: Vector,
     pub time: f64,
-    /// The slot, and the share of it that lies before the point.
-    pub slot: usize,
+    /// The segment variable, and the share of it that lies before the point.
+    pub variable: usize,
     pub share: f64,
 }
 
-impl Sailed {
+impl Rollout {
     /// Of each leg the place halfway between its ends: no place on it is farther from there than half its length.
     pub(crate) fn middles(&self) -> Vec<Vector> {
         let ends = self.legs.iter().skip(1).map(|l| l.segment.start.position);
@@ -109,10 +109,10 @@ impl Sailed {
             .collect()
     }
 
-    /// The point at `fraction` of a leg; `None` on the tail.
+    /// The point at `fraction` of a leg; `None` on the return segments.
     pub(crate) fn place(&self, leg: usize, fraction: f64) -> Option<Place> {
         let l = &self.legs[leg];
-        let Owner::Slot { index, from, to } = l.owner else {
+        let Owner::SegmentVariable { index, from, to } = l.owner else {
             return None;
         };
         let (position, ahead) = l.along(fraction);
@@ -120,14 +120,14 @@ impl Sailed {
             position,
             ahead,
             time: l.segment.start_time + l.segment.duration * fraction,
-            slot: index,
+            variable: index,
             share: from + (to - from) * fraction,
         })
     }
 
-    /// How slot `index` moves a point of its own: (east, north, clock) per metre.
+    /// How segment variable `index` moves a point of its own: (east, north, clock) per metre.
     pub(crate) fn own_rate(&self, place: &Place, index: usize) -> [f64; 3] {
-        let share = if index == place.slot {
+        let share = if index == place.variable {
             place.share
         } else {
             1.0
@@ -139,13 +139,13 @@ impl Sailed {
         ]
     }
 
-    /// `of . (east, north, clock)` per metre of each slot up to the point's own.
+    /// `of . (east, north, clock)` per metre of each segment variable up to the point's own.
     pub(crate) fn rates(&self, place: &Place, of: [f64; 3]) -> Row {
         let mut row = [0.0; MAX_VARIABLES];
-        let on_route = place.slot < self.runs;
+        let on_route = place.variable < self.runs;
         let all = row.iter_mut().zip(&self.rigid).enumerate();
-        for (i, (rate, rigid)) in all.take(place.slot + 1) {
-            *rate = if on_route || i == place.slot {
+        for (i, (rate, rigid)) in all.take(place.variable + 1) {
+            *rate = if on_route || i == place.variable {
                 let own = self.own_rate(place, i);
                 of[0] * own[0] + of[1] * own[1] + of[2] * own[2]
             } else {
@@ -156,9 +156,9 @@ impl Sailed {
         row
     }
 
-    /// How each slot moves what follows it, about `origin`.
-    pub(crate) fn motors(&self, origin: Vector) -> Vec<Motor> {
-        let motor = |r: &Rigid| {
+    /// How each segment variable moves what follows it, about `origin`.
+    pub(crate) fn twists(&self, origin: Vector) -> Vec<Twist> {
+        let twist = |r: &Rigid| {
             let end = r.end - origin;
             [
                 r.ahead.x + r.curvature * end.y,
@@ -167,16 +167,16 @@ impl Sailed {
                 r.curvature,
             ]
         };
-        self.rigid.iter().map(motor).collect()
+        self.rigid.iter().map(twist).collect()
     }
 
-    /// The rates of the solved slots with any change given as a motor about `origin`: linear forms.
+    /// The rates of the solved segment variables with any change given as a twist about `origin`: linear forms.
     pub(crate) fn solved_by(
         &self,
         ending: Ending,
         problem: &Problem,
         origin: Vector,
-    ) -> [Motor; 2] {
+    ) -> [Twist; 2] {
         let [.., line_or_arc, last] = &self.rigid[..] else {
             return [[0.0; 4]; 2];
         };
@@ -201,15 +201,15 @@ impl Sailed {
         }
     }
 
-    /// The rate of the place at which the tail begins, along the route, as a linear form of a motor about `origin`.
-    pub(crate) fn joined_by(&self, origin: Vector) -> Motor {
+    /// The rate of the place at which the return segments begins, along the route, as a linear form of a twist about `origin`.
+    pub(crate) fn joined_by(&self, origin: Vector) -> Twist {
         self.rigid
             .last()
             .map_or([0.0; 4], |last| along(last.ahead, last.end - origin))
     }
 
-    /// The rates of the place and time at which the tail begins: metres along the route and seconds per
-    /// metre of each slot.
+    /// The rates of the place and time at which the return segments begins: metres along the route and seconds per
+    /// metre of each segment variable.
     pub(crate) fn joining_rates(&self) -> (Row, Row) {
         let mut distance = [0.0; MAX_VARIABLES];
         let mut clock = [0.0; MAX_VARIABLES];
@@ -249,7 +249,7 @@ impl Sailed {
     }
 }
 
-/// `direction . (where a motor moves the point)`, as a linear form of the motor.
-fn along(direction: Vector, point: Vector) -> Motor {
+/// `direction . (where a twist moves the point)`, as a linear form of the twist.
+fn along(direction: Vector, point: Vector) -> Twist {
     [direction.x, direction.y, 0.0, cross(point, direction)]
 }

@@ -1,15 +1,15 @@
-//! A manoeuvre as a chain of slots with free lengths, and how it changes with them.
+//! A manoeuvre as a chain of segment variables with free lengths, and how it changes with them.
 //!
-//! The slots' kinds, sides and speeds are fixed; their lengths in metres are the variables of the
-//! refinement. Lengthening a slot moves everything after it as a rigid body: along a line, or about the
-//! centre of its circle. That gives every derivative in closed form. Two last slots, where there are
+//! The segment variables' kinds, sides and speeds are fixed; their lengths in metres are the variables of the
+//! refinement. Lengthening a segment variable moves everything after it as a rigid body: along a line, or about the
+//! centre of its circle. That gives every derivative in closed form. Two last segment variables, where there are
 //! any, are not free: they are solved so that the chain ends on the desired path or at its end.
 
 use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::intercept::Chase;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
-use crate::planner::space_time::refinement::rollout::{Leg, Owner, Rigid, Sailed, turned};
+use crate::planner::space_time::refinement::rollout::{Leg, Owner, Rigid, Rollout, turned};
 use crate::planner::space_time::route::{Route, Stretch};
 use crate::trajectory::Segment;
 
@@ -18,7 +18,7 @@ pub(crate) const FLATTEST_RETURN: f64 = 0.01;
 
 /// A part of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Slot {
+pub(crate) enum SegmentVariable {
     /// Along the route.
     Run { speed: f64 },
     /// A turn with the turning radius.
@@ -27,7 +27,7 @@ pub(crate) enum Slot {
     Line { speed: f64 },
 }
 
-impl Slot {
+impl SegmentVariable {
     pub(crate) fn speed(&self) -> f64 {
         match *self {
             Self::Run { speed } | Self::Arc { speed, .. } | Self::Line { speed } => speed,
@@ -55,28 +55,28 @@ impl Ending {
 
 /// Slots with an ending: what is fixed of a manoeuvre.
 #[derive(Debug, Clone)]
-pub(crate) struct Template {
-    pub slots: Vec<Slot>,
+pub(crate) struct Structure {
+    pub variables: Vec<SegmentVariable>,
     pub ending: Ending,
 }
 
-impl Template {
+impl Structure {
     /// Free variables.
     pub(crate) fn free(&self) -> usize {
-        self.slots.len()
+        self.variables.len()
     }
 
-    /// All slots, the solved ones included.
+    /// All segment variables, the solved ones included.
     pub(crate) fn all(&self) -> usize {
-        self.slots.len() + self.ending.dependents()
+        self.variables.len() + self.ending.dependents()
     }
 
     /// Sails the manoeuvre with the given lengths; `None` when its ending does not fit.
-    pub(crate) fn sail(&self, problem: &Problem, route: &Route, lengths: &Row) -> Option<Sailed> {
+    pub(crate) fn sail(&self, problem: &Problem, route: &Route, lengths: &Row) -> Option<Rollout> {
         let radius = problem.own.turning_radius;
-        let mut sailed = Sailed {
+        let mut rollout = Rollout {
             legs: Vec::with_capacity(2 * self.all() + 8),
-            tail: 0,
+            return_segments: 0,
             joined: (0.0, 0.0),
             room: None,
             solved: [0.0; 2],
@@ -92,52 +92,55 @@ impl Template {
             radius,
         };
         let mut runs = 0;
-        for (index, slot) in self.slots.iter().enumerate() {
-            if let Slot::Run { speed } = *slot {
-                at.run(route, index, lengths[index], speed, &mut sailed);
+        for (index, variable) in self.variables.iter().enumerate() {
+            if let SegmentVariable::Run { speed } = *variable {
+                at.run(route, index, lengths[index], speed, &mut rollout);
                 runs = index + 1;
             } else {
-                at.sail(*slot, index, lengths[index], &mut sailed);
+                at.sail(*variable, index, lengths[index], &mut rollout);
             }
         }
         // runs move what follows them along the route where the last of them ends
-        sailed.runs = runs;
+        rollout.runs = runs;
         if runs > 0 {
             let (pose, curvature) = route.pose_at(lengths[..runs].iter().sum());
-            for r in &mut sailed.rigid[..runs] {
+            for r in &mut rollout.rigid[..runs] {
                 (r.end, r.ahead, r.curvature) = (pose.position, pose.ahead(), curvature);
             }
         }
         match self.ending {
-            Ending::Follow => sailed.joined = (at.route, at.time),
+            Ending::Follow => rollout.joined = (at.route, at.time),
             Ending::Return { leg, speed } => {
                 let stretch = route.stretch(leg, problem.desired)?;
-                self.return_to(problem, leg, stretch, speed, &mut at, &mut sailed)?;
+                self.return_to(problem, leg, stretch, speed, &mut at, &mut rollout)?;
             }
             Ending::Goal { side, speed } => {
-                self.approach(problem, side, speed, &mut at, &mut sailed)?
+                self.approach(problem, side, speed, &mut at, &mut rollout)?
             }
         }
-        sailed.tail = sailed.legs.len();
+        rollout.return_segments = rollout.legs.len();
         if !matches!(self.ending, Ending::Goal { .. }) {
-            let mut tail = Vec::with_capacity(4);
-            route.follow(sailed.joined.0, sailed.joined.1, &mut tail);
-            for (index, segment) in tail.into_iter().enumerate() {
+            let mut return_segments = Vec::with_capacity(4);
+            route.follow(rollout.joined.0, rollout.joined.1, &mut return_segments);
+            for (index, segment) in return_segments.into_iter().enumerate() {
                 let ahead = at.ahead_of(&segment);
-                sailed.legs.push(Leg {
+                rollout.legs.push(Leg {
                     segment,
                     ahead,
-                    owner: Owner::Tail { index },
+                    owner: Owner::ReturnSegments { index },
                 });
                 at.pass(&segment, ahead);
             }
         }
-        let end = sailed.legs.last().map_or(at.time, |l| l.segment.end_time());
+        let end = rollout
+            .legs
+            .last()
+            .map_or(at.time, |l| l.segment.end_time());
         // negated on purpose: a NaN does not fit
         if !(end <= problem.horizon) {
             return None;
         }
-        Some(sailed)
+        Some(rollout)
     }
 
     /// Solves line and arc back onto a leg.
@@ -148,7 +151,7 @@ impl Template {
         stretch: Stretch,
         speed: f64,
         at: &mut Cursor,
-        sailed: &mut Sailed,
+        rollout: &mut Rollout,
     ) -> Option<()> {
         let l = &problem.desired.legs()[leg];
         let radius = at.radius;
@@ -167,24 +170,34 @@ impl Template {
         if !(line >= 0.0) {
             return None;
         }
-        sailed.solved = [line, radius * relative.abs()];
-        let n = self.slots.len();
-        at.sail(Slot::Line { speed }, n, sailed.solved[0], sailed);
-        at.sail(Slot::Arc { side, speed }, n + 1, sailed.solved[1], sailed);
+        rollout.solved = [line, radius * relative.abs()];
+        let n = self.variables.len();
+        at.sail(
+            SegmentVariable::Line { speed },
+            n,
+            rollout.solved[0],
+            rollout,
+        );
+        at.sail(
+            SegmentVariable::Arc { side, speed },
+            n + 1,
+            rollout.solved[1],
+            rollout,
+        );
         let along = l.direction.dot(&(at.pose.position - l.start));
         if !(along >= stretch.from && along <= stretch.to) {
             return None;
         }
-        sailed.joined = (stretch.distance + along - stretch.from, at.time);
-        sailed.room = Some(stretch.to - along);
+        rollout.joined = (stretch.distance + along - stretch.from, at.time);
+        rollout.room = Some(stretch.to - along);
         let normal = to_port(l.direction);
         let end = at.pose.position;
-        let across = normal.dot(&sailed.rigid[n].ahead);
-        let curvature = sailed.rigid[n + 1].curvature;
+        let across = normal.dot(&rollout.rigid[n].ahead);
+        let curvature = rollout.rigid[n + 1].curvature;
         for i in 0..n {
-            let r = &sailed.rigid[i];
-            sailed.solved_rates[0][i] = -normal.dot(&r.moves(end)) / across;
-            sailed.solved_rates[1][i] = -r.curvature / curvature;
+            let r = &rollout.rigid[i];
+            rollout.solved_rates[0][i] = -normal.dot(&r.moves(end)) / across;
+            rollout.solved_rates[1][i] = -r.curvature / curvature;
         }
         Some(())
     }
@@ -196,7 +209,7 @@ impl Template {
         side: Side,
         speed: f64,
         at: &mut Cursor,
-        sailed: &mut Sailed,
+        rollout: &mut Rollout,
     ) -> Option<()> {
         let radius = at.radius;
         let goal = problem.desired.end();
@@ -205,25 +218,35 @@ impl Template {
         if !(turn < 2.5) {
             return None;
         }
-        sailed.solved = [turn * radius, line];
-        let n = self.slots.len();
-        at.sail(Slot::Arc { side, speed }, n, sailed.solved[0], sailed);
-        at.sail(Slot::Line { speed }, n + 1, sailed.solved[1], sailed);
-        let (by_arc, by_line) = (sailed.rigid[n].moves(goal), sailed.rigid[n + 1].ahead);
+        rollout.solved = [turn * radius, line];
+        let n = self.variables.len();
+        at.sail(
+            SegmentVariable::Arc { side, speed },
+            n,
+            rollout.solved[0],
+            rollout,
+        );
+        at.sail(
+            SegmentVariable::Line { speed },
+            n + 1,
+            rollout.solved[1],
+            rollout,
+        );
+        let (by_arc, by_line) = (rollout.rigid[n].moves(goal), rollout.rigid[n + 1].ahead);
         let determinant = cross(by_arc, by_line);
         if determinant.abs() < 1e-9 {
             return None;
         }
         for i in 0..n {
-            let moved = sailed.rigid[i].moves(goal);
-            sailed.solved_rates[0][i] = -cross(moved, by_line) / determinant;
-            sailed.solved_rates[1][i] = -cross(by_arc, moved) / determinant;
+            let moved = rollout.rigid[i].moves(goal);
+            rollout.solved_rates[0][i] = -cross(moved, by_line) / determinant;
+            rollout.solved_rates[1][i] = -cross(by_arc, moved) / determinant;
         }
         Some(())
     }
 }
 
-/// Where own ship is while a template is sailed.
+/// Where own ship is while a structure is sailed.
 struct Cursor {
     pose: Pose,
     ahead: Vector,
@@ -252,7 +275,7 @@ impl Cursor {
         };
     }
 
-    fn run(&mut self, route: &Route, index: usize, length: f64, speed: f64, sailed: &mut Sailed) {
+    fn run(&mut self, route: &Route, index: usize, length: f64, speed: f64, rollout: &mut Rollout) {
         let mut motions = Vec::new();
         let before = self.route;
         self.route = route.run(self.route, self.time, length, speed, &mut motions);
@@ -261,10 +284,10 @@ impl Cursor {
         for segment in motions {
             let to = from + segment.length() / total;
             let ahead = self.ahead_of(&segment);
-            sailed.legs.push(Leg {
+            rollout.legs.push(Leg {
                 segment,
                 ahead,
-                owner: Owner::Slot { index, from, to },
+                owner: Owner::SegmentVariable { index, from, to },
             });
             self.pass(&segment, ahead);
             from = to;
@@ -277,17 +300,17 @@ impl Cursor {
                 speed,
                 turn_rate: 0.0,
             };
-            sailed.legs.push(Leg {
+            rollout.legs.push(Leg {
                 segment,
                 ahead: self.ahead,
-                owner: Owner::Slot {
+                owner: Owner::SegmentVariable {
                     index,
                     from: 0.0,
                     to: 1.0,
                 },
             });
         }
-        sailed.rigid.push(Rigid {
+        rollout.rigid.push(Rigid {
             end: self.pose.position,
             ahead: self.ahead,
             curvature: 0.0,
@@ -295,12 +318,18 @@ impl Cursor {
         });
     }
 
-    fn sail(&mut self, slot: Slot, index: usize, length: f64, sailed: &mut Sailed) {
-        let curvature = match slot {
-            Slot::Arc { side, .. } => side.turn_sign() / self.radius,
+    fn sail(
+        &mut self,
+        variable: SegmentVariable,
+        index: usize,
+        length: f64,
+        rollout: &mut Rollout,
+    ) {
+        let curvature = match variable {
+            SegmentVariable::Arc { side, .. } => side.turn_sign() / self.radius,
             _ => 0.0,
         };
-        let speed = slot.speed();
+        let speed = variable.speed();
         let segment = Segment {
             start: self.pose,
             start_time: self.time,
@@ -308,10 +337,10 @@ impl Cursor {
             speed,
             turn_rate: curvature * speed,
         };
-        sailed.legs.push(Leg {
+        rollout.legs.push(Leg {
             segment,
             ahead: self.ahead,
-            owner: Owner::Slot {
+            owner: Owner::SegmentVariable {
                 index,
                 from: 0.0,
                 to: 1.0,
@@ -326,7 +355,7 @@ impl Cursor {
             self.pose = Pose::new(position, self.pose.heading + curvature * length);
             (self.ahead, self.time) = (ahead, segment.end_time());
         }
-        sailed.rigid.push(Rigid {
+        rollout.rigid.push(Rigid {
             end: self.pose.position,
             ahead: self.ahead,
             curvature,

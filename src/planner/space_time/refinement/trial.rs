@@ -4,13 +4,13 @@
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4};
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::Hazard;
+use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::refinement::approach::{Approach, NEAR_M, add_approaches};
 use crate::planner::space_time::refinement::model::MARGIN_M;
 use crate::planner::space_time::refinement::quadratic::Row;
-use crate::planner::space_time::refinement::return_segments::Tail;
-use crate::planner::space_time::refinement::rollout::{Owner, Place, Sailed};
-use crate::planner::space_time::refinement::structure::{Ending, Template};
+use crate::planner::space_time::refinement::return_segments::ReturnSegments;
+use crate::planner::space_time::refinement::rollout::{Owner, Place, Rollout};
+use crate::planner::space_time::refinement::structure::{Ending, Structure};
 use crate::planner::space_time::route::Route;
 use crate::trajectory::Nearest;
 
@@ -23,20 +23,20 @@ const GAUSS_3: [(f64, f64); 3] = [
 
 /// What stays the same for every manoeuvre of a problem.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Scene<'a> {
+pub(crate) struct Context<'a> {
     pub problem: &'a Problem<'a>,
     pub route: &'a Route,
-    pub hazards: &'a [Hazard<'a>],
+    pub proxies: &'a [Proxy<'a>],
     /// The land, block by block.
-    pub blocks: &'a [Hazard<'a>],
+    pub blocks: &'a [Proxy<'a>],
     /// Radians, of an approach.
     pub chord: f64,
 }
 
 /// A manoeuvre, outlined.
 #[derive(Debug)]
-pub(crate) struct Outline {
-    pub sailed: Sailed,
+pub(crate) struct Trial {
+    pub rollout: Rollout,
     /// m².
     pub cost: f64,
     /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
@@ -46,74 +46,74 @@ pub(crate) struct Outline {
     pub least_slack: f64,
     pub approaches: Vec<Approach>,
     /// Where there is one.
-    pub tail: Option<Tail>,
-    /// Rates of the place and time at which the tail begins.
+    pub return_segments: Option<ReturnSegments>,
+    /// Rates of the place and time at which the return segments begins.
     pub joining: (Row, Row),
-    /// What the cost before the tail is the sum of.
+    /// What the cost before the return segments is the sum of.
     pub points: Vec<Point>,
 }
 
-/// A Gauss point of a slot's cost.
+/// A Gauss point of a segment variable's cost.
 #[derive(Debug)]
 pub(crate) struct Point {
-    pub slot: usize,
-    /// m² per metre of the slot: what it costs to stay longer.
+    pub variable: usize,
+    /// m² per metre of the segment variable: what it costs to stay longer.
     pub growth: f64,
-    /// `None` where the slot is empty.
-    pub weighed: Option<Weighed>,
+    /// `None` where the segment variable is empty.
+    pub weighed: Option<WeightedPoint>,
 }
 
 /// Where a Gauss point is, the desired place nearest to it, and its weight.
 #[derive(Debug)]
-pub(crate) struct Weighed {
+pub(crate) struct WeightedPoint {
     pub place: Place,
     pub nearest: Nearest,
     pub weight: f64,
 }
 
-impl Scene<'_> {
+impl Context<'_> {
     /// Sails and prices; `None` when the manoeuvre's ending does not fit.
-    pub(crate) fn outline(&self, template: &Template, lengths: &Row) -> Option<Outline> {
-        let sailed = template.sail(self.problem, self.route, lengths)?;
-        let mut points = Vec::with_capacity(GAUSS_4.len() * sailed.tail);
-        for leg in 0..sailed.tail {
-            self.add_points(&sailed, leg, &mut points);
+    pub(crate) fn trial(&self, structure: &Structure, lengths: &Row) -> Option<Trial> {
+        let rollout = structure.sail(self.problem, self.route, lengths)?;
+        let mut points = Vec::with_capacity(GAUSS_4.len() * rollout.return_segments);
+        for leg in 0..rollout.return_segments {
+            self.add_points(&rollout, leg, &mut points);
         }
         let weighed = points.iter().filter_map(|p| p.weighed.as_ref());
         let mut cost: f64 = weighed.map(|w| w.weight * w.nearest.error).sum();
-        let tail = (!matches!(template.ending, Ending::Goal { .. }))
-            .then(|| self.tail(sailed.joined.0, sailed.joined.1));
-        cost += tail.as_ref().map_or(0.0, |t| t.cost);
-        let sails = sailed.legs.iter().map(|l| &l.segment);
+        let return_segments = (!matches!(structure.ending, Ending::Goal { .. }))
+            .then(|| self.return_segments(rollout.joined.0, rollout.joined.1));
+        cost += return_segments.as_ref().map_or(0.0, |t| t.cost);
+        let sails = rollout.legs.iter().map(|l| &l.segment);
         let land = land::near(self.problem.coast, sails, NEAR_M);
-        let middles = sailed.middles();
+        let middles = rollout.middles();
         let mut approaches = Vec::new();
         let near_land = land.into_iter().map(|b| &self.blocks[b]);
-        for hazard in self.hazards.iter().chain(near_land) {
-            add_approaches(hazard, &sailed, &middles, self.chord, &mut approaches);
+        for proxy in self.proxies.iter().chain(near_land) {
+            add_approaches(proxy, &rollout, &middles, self.chord, &mut approaches);
         }
         let least_slack = approaches
             .iter()
             .fold(f64::INFINITY, |least, a| least.min(a.slack));
-        let joining = sailed.joining_rates();
-        Some(Outline {
-            sailed,
+        let joining = rollout.joining_rates();
+        Some(Trial {
+            rollout,
             cost,
             violation: (MARGIN_M - least_slack).max(0.0),
             least_slack,
             approaches,
-            tail,
+            return_segments,
             joining,
             points,
         })
     }
 
     /// The Gauss points of a leg.
-    fn add_points(&self, sailed: &Sailed, leg: usize, points: &mut Vec<Point>) {
-        let Owner::Slot { index, from, to } = sailed.legs[leg].owner else {
+    fn add_points(&self, rollout: &Rollout, leg: usize, points: &mut Vec<Point>) {
+        let Owner::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
             return;
         };
-        let segment = sailed.legs[leg].segment;
+        let segment = rollout.legs[leg].segment;
         let desired = self.problem.desired;
         let q = self.problem.time_weight;
         let per_time = 1.0 / desired.duration();
@@ -121,7 +121,7 @@ impl Scene<'_> {
         if segment.duration <= 0.0 {
             let nearest = desired.nearest(segment.start.position, segment.start_time, q);
             points.push(Point {
-                slot: index,
+                variable: index,
                 growth: growth * nearest.error,
                 weighed: None,
             });
@@ -133,14 +133,14 @@ impl Scene<'_> {
             _ => &GAUSS_4,
         };
         for (fraction, share) in nodes {
-            let Some(place) = sailed.place(leg, *fraction) else {
+            let Some(place) = rollout.place(leg, *fraction) else {
                 continue;
             };
             let nearest = desired.nearest(place.position, place.time, q);
             points.push(Point {
-                slot: index,
+                variable: index,
                 growth: growth * share * nearest.error,
-                weighed: Some(Weighed {
+                weighed: Some(WeightedPoint {
                     place,
                     nearest,
                     weight: segment.duration * per_time * share,

@@ -6,8 +6,8 @@ use crate::colregs::{
 };
 use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
-use crate::planner::space_time::refinement::trial::Scene;
-use crate::planner::space_time::selection::initial_guess::Paces;
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::selection::initial_guess::SpeedTable;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -22,7 +22,7 @@ const NO_RELATIVE_SPEED: f64 = 1e-9;
 
 /// m/s: at this speed or less own ship has visibly slowed down.
 pub(crate) fn slow(problem: &Problem) -> f64 {
-    APPARENT_SPEED * Paces::of(problem).normal * (1.0 + 1e-9)
+    APPARENT_SPEED * SpeedTable::of(problem).normal * (1.0 + 1e-9)
 }
 
 /// Metres at the end of a motion along the route that are sailed at less speed, for the other to see.
@@ -36,14 +36,14 @@ pub(crate) fn visibly_slow(problem: &Problem, motion: &[Segment]) -> f64 {
         .sum()
 }
 
-/// True when a motion complies with own ship's duty. `undisturbed` is the route on schedule: who need not alter does not.
-pub(crate) fn complies(scene: &Scene, undisturbed: &[Segment], motion: &[Segment]) -> bool {
-    let problem = scene.problem;
+/// True when a motion complies with own ship's duty. `nominal_motion` is the route on schedule: who need not alter does not.
+pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[Segment]) -> bool {
+    let problem = context.problem;
     let duty = problem.duty();
-    if duty.is_none() || motion == undisturbed {
+    if duty.is_none() || motion == nominal_motion {
         return true;
     }
-    let departure = Departure::of(scene, motion);
+    let departure = Departure::of(context, motion);
     departure.is_apparent(duty)
         && problem.encountered.iter().all(|encountered| {
             let role = encountered.role;
@@ -116,8 +116,8 @@ struct Departure {
 }
 
 impl Departure {
-    fn of(scene: &Scene, motion: &[Segment]) -> Self {
-        let slow = slow(scene.problem);
+    fn of(context: &Context, motion: &[Segment]) -> Self {
+        let slow = slow(context.problem);
         let (mut slow_for, mut slowed) = (0.0, false);
         let mut sees = |s: &Segment| {
             // negated on purpose: a NaN is fast
@@ -133,7 +133,7 @@ impl Departure {
         let mut index = 0;
         for s in motion {
             along += s.length();
-            let (due, _) = scene.route.pose_at(along);
+            let (due, _) = context.route.pose_at(along);
             let end = s.end();
             let near = (end.position - due.position).norm() <= tolerance::JOINT_M;
             if !(near && wrap(end.heading - due.heading).abs() <= tolerance::JOINT_RAD) {

@@ -1,6 +1,6 @@
 //! The stand-on policy (Rule 17): hold course and speed until the latest time at which a certified escape exists.
 //!
-//! `E(t)` holds the undisturbed motion until `t`, then turns to starboard by 30° or more, or slows down to half the speed or less, and
+//! `E(t)` holds the nominal motion until `t`, then turns to starboard by 30° or more, or slows down to half the speed or less, and
 //! comes back to the route. The plan is the `E(t)` of the latest `t` that is clear of every set up to its arrival, by the
 //! exact contact test: at every instant before `t` own ship has a way out that is known to be clear, whatever the other does.
 
@@ -12,7 +12,7 @@ use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::departure::until;
 use crate::planner::space_time::graph::return_to_line::return_to_line;
 use crate::planner::space_time::proxy::{TOUCH_M, first_met};
-use crate::planner::space_time::refinement::trial::Scene;
+use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::rules::compliance::{complies, slow};
 use crate::planner::{Escape, NoPlan, Outcome, Plan, Planned, Problem};
 use crate::trajectory::Segment;
@@ -53,17 +53,17 @@ impl Held {
     }
 }
 
-/// The motion that holds longest, where the undisturbed one meets something after `contact` seconds; `None` without any escape to
+/// The motion that holds longest, where the nominal one meets something after `contact` seconds; `None` without any escape to
 /// starboard or by less speed, or when the time is up.
 pub(crate) fn hold(
-    scene: &Scene,
-    undisturbed: &[Segment],
+    context: &Context,
+    nominal_motion: &[Segment],
     contact: f64,
     clock: Clock,
 ) -> Option<Held> {
     let search = Escapes {
-        scene,
-        undisturbed,
+        context,
+        nominal_motion,
         sides: &[Side::Starboard],
     };
     let step = contact / SCAN as f64;
@@ -89,15 +89,15 @@ pub(crate) fn hold(
 /// The cheapest of such motions from a few times on, to any side that complies with the rules: where the graph and its refinement
 /// find none.
 pub(crate) fn cheapest(
-    scene: &Scene,
-    undisturbed: &[Segment],
+    context: &Context,
+    nominal_motion: &[Segment],
     contact: f64,
     clock: Clock,
 ) -> Option<Vec<Segment>> {
     let search = Escapes {
-        scene,
-        undisturbed,
-        sides: scene.problem.duty().sides(),
+        context,
+        nominal_motion,
+        sides: context.problem.duty().sides(),
     };
     let step = contact / FEW as f64;
     let times = (0..=FEW).map(|k| step * k as f64);
@@ -110,8 +110,8 @@ pub(crate) fn cheapest(
 
 /// All escapes from a time on.
 struct Escapes<'s, 'a> {
-    scene: &'s Scene<'a>,
-    undisturbed: &'s [Segment],
+    context: &'s Context<'a>,
+    nominal_motion: &'s [Segment],
     /// Of the first turn.
     sides: &'static [Side],
 }
@@ -124,13 +124,13 @@ struct Start {
 
 impl<'s> Escapes<'s, '_> {
     fn problem(&self) -> &'s Problem<'s> {
-        self.scene.problem
+        self.context.problem
     }
 
     /// Those that are clear up to the arrival.
     fn from(&self, time: f64) -> impl Iterator<Item = Held> + '_ {
         let start = std::rc::Rc::new(Start {
-            before: until(self.undisturbed, time),
+            before: until(self.nominal_motion, time),
             time,
         });
         let again = std::rc::Rc::clone(&start);
@@ -175,7 +175,7 @@ impl<'s> Escapes<'s, '_> {
 
     /// Ways back onto the legs ahead, at the greatest speed.
     fn returns(&self, start: &Start, out: &Chain, turn: f64) -> Vec<Held> {
-        let (problem, route) = (self.problem(), self.scene.route);
+        let (problem, route) = (self.problem(), self.context.route);
         let (desired, own) = (problem.desired, problem.own);
         let near = desired.nearest(out.pose.position, out.time, 0.0).leg;
         let legs = near..desired.legs().len().min(near + 2);
@@ -204,7 +204,7 @@ impl<'s> Escapes<'s, '_> {
     }
 
     fn by_speed(&self, start: &Start, speed: f64) -> Vec<Held> {
-        let route = self.scene.route;
+        let route = self.context.route;
         let along: f64 = start.before.iter().map(Segment::length).sum();
         let spells = HOLDS_S.into_iter().filter(|s| *s >= APPARENT_TIME);
         let held = spells.filter_map(|spell| {
@@ -228,7 +228,7 @@ impl<'s> Escapes<'s, '_> {
         }
         let mut motion = start.before.clone();
         motion.extend(escape);
-        if !complies(self.scene, self.undisturbed, &motion) {
+        if !complies(self.context, self.nominal_motion, &motion) {
             return None;
         }
         let errors = motion
@@ -246,9 +246,9 @@ impl<'s> Escapes<'s, '_> {
     }
 
     fn is_clear(&self, motion: &[Segment]) -> bool {
-        first_met(self.scene.hazards, motion).is_none()
+        first_met(self.context.proxies, motion).is_none()
             && !motion
                 .iter()
-                .any(|s| self.scene.problem.coast.meets(s, TOUCH_M))
+                .any(|s| self.context.problem.coast.meets(s, TOUCH_M))
     }
 }

@@ -4,7 +4,7 @@ use crate::planner::space_time::refinement::MAX_STEPS;
 
 /// What a search and a refinement may spend.
 #[derive(Debug)]
-pub(crate) struct Effort {
+pub(crate) struct SearchBudget {
     /// Up to so many expansions in all, which bounds memory and time, the bounds of what is to come are multiplied by so much.
     /// Each stage begins where those before have no plan.
     pub stages: &'static [(usize, f64)],
@@ -15,7 +15,7 @@ pub(crate) struct Effort {
     pub places: &'static [(usize, usize)],
     /// Steps of the race at most.
     pub steps: usize,
-    /// Steps of the race once a manoeuvre is clear: what the winner still lacks are slots, not steps.
+    /// Steps of the race once a manoeuvre is clear: what the winner still lacks are segment variables, not steps.
     pub rounds: usize,
     /// Manoeuvres that are enriched at most.
     pub leaders: usize,
@@ -23,7 +23,7 @@ pub(crate) struct Effort {
     pub twice: bool,
 }
 
-impl Effort {
+impl SearchBudget {
     /// For one target: the graph's best plan, and the cheapest manoeuvre that is known how to find.
     pub(crate) const ALONE: Self = Self {
         stages: &[(2_000, 1.0)],

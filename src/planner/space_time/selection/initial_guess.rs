@@ -4,23 +4,23 @@ use crate::colregs::APPARENT_TIME;
 use crate::frame::{Side, to_port};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::node::State;
-use crate::planner::space_time::proxy::Hazard;
-use crate::planner::space_time::refinement::Seed;
+use crate::planner::space_time::proxy::Proxy;
+use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
-use crate::planner::space_time::refinement::structure::{Ending, Slot, Template};
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::rules::compliance::{slow, visibly_slow};
 use crate::trajectory::Segment;
 
-/// Speeds of the templates: the finite set's extremes, and the desired one.
+/// Speeds of the structures: the finite set's extremes, and the desired one.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Paces {
+pub(crate) struct SpeedTable {
     pub slow: f64,
     pub normal: f64,
     pub fast: f64,
 }
 
-impl Paces {
+impl SpeedTable {
     /// The least and the greatest moving speed, and the one nearest to the desired.
     pub(crate) fn of(problem: &Problem) -> Self {
         let moving: Vec<f64> = problem
@@ -44,7 +44,7 @@ impl Paces {
     }
 }
 
-/// A stretch of the undisturbed motion inside a set, and what it takes to pass beside it.
+/// A stretch of the nominal motion inside a set, and what it takes to pass beside it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Conflict {
     /// Seconds at which the contact begins and ends.
@@ -76,13 +76,13 @@ impl Conflict {
         self.offsets[0].min(self.offsets[1])
     }
 
-    /// The contact of one obstacle, given by its hazards, with the undisturbed motion, from first to last instant.
-    pub(crate) fn of(hazards: &[Hazard], undisturbed: &[Segment]) -> Option<Self> {
-        let from = hazards
+    /// The contact of one obstacle, given by its proxies, with the nominal motion, from first to last instant.
+    pub(crate) fn of(proxies: &[Proxy], nominal_motion: &[Segment]) -> Option<Self> {
+        let from = proxies
             .iter()
-            .filter_map(|h| undisturbed.iter().find_map(|s| h.first_contact(s)))
+            .filter_map(|h| nominal_motion.iter().find_map(|s| h.first_contact(s)))
             .min_by(f64::total_cmp)?;
-        let end = undisturbed.last()?.end_time();
+        let end = nominal_motion.last()?.end_time();
         let mut conflict = Self {
             from,
             to: from,
@@ -93,33 +93,33 @@ impl Conflict {
         };
         for k in 0..=CONFLICT_SAMPLES {
             let time = from + (end - from) * k as f64 / CONFLICT_SAMPLES as f64;
-            let segment = undisturbed
+            let segment = nominal_motion
                 .iter()
                 .find(|s| s.end_time() >= time)
-                .or(undisturbed.last())?;
+                .or(nominal_motion.last())?;
             let pose = segment.pose_at(time);
-            let inside = |h: &&Hazard| {
+            let inside = |h: &&Proxy| {
                 h.slack(pose.position, time)
                     .is_some_and(|slack| !(slack > 0.0))
             };
-            let Some(hazard) = hazards.iter().find(inside) else {
+            let Some(proxy) = proxies.iter().find(inside) else {
                 continue;
             };
             conflict.to = time;
-            let behind = hazard.way_out(pose.position, time, -pose.ahead());
+            let behind = proxy.way_out(pose.position, time, -pose.ahead());
             if behind > conflict.astern.0 {
                 conflict.astern = (behind, time);
             }
-            let before = hazard.way_out(pose.position, time, pose.ahead());
+            let before = proxy.way_out(pose.position, time, pose.ahead());
             if before > conflict.ahead.0 {
                 conflict.ahead = (before, time);
             }
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
-                *offset = offset.max(hazard.way_out(pose.position, time, beam));
+                *offset = offset.max(proxy.way_out(pose.position, time, beam));
             }
         }
-        conflict.through = undisturbed
+        conflict.through = nominal_motion
             .iter()
             .map(|s| s.between(conflict.from, conflict.to).length())
             .sum();
@@ -171,20 +171,20 @@ pub(crate) struct Canonical {
 /// Slots and lengths while they are put together.
 #[derive(Debug, Default)]
 pub(crate) struct Draft {
-    slots: Vec<Slot>,
+    variables: Vec<SegmentVariable>,
     lengths: Vec<f64>,
 }
 
 impl Draft {
-    pub(crate) fn push(&mut self, slot: Slot, length: f64) {
-        self.slots.push(slot);
+    pub(crate) fn push(&mut self, variable: SegmentVariable, length: f64) {
+        self.variables.push(variable);
         self.lengths.push(length);
     }
 
     fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
         for (speed, length) in lengths {
             self.push(
-                Slot::Arc {
+                SegmentVariable::Arc {
                     side,
                     speed: *speed,
                 },
@@ -195,30 +195,40 @@ impl Draft {
 
     fn line(&mut self, lengths: &[(f64, f64)]) {
         for (speed, length) in lengths {
-            self.push(Slot::Line { speed: *speed }, *length);
+            self.push(SegmentVariable::Line { speed: *speed }, *length);
         }
     }
 
-    pub(crate) fn runs(&mut self, paces: &Paces, normal: f64, fast: f64, slow: f64) {
+    pub(crate) fn runs(&mut self, speed_table: &SpeedTable, normal: f64, fast: f64, slow: f64) {
         self.push(
-            Slot::Run {
-                speed: paces.normal,
+            SegmentVariable::Run {
+                speed: speed_table.normal,
             },
             normal,
         );
-        self.push(Slot::Run { speed: paces.fast }, fast);
-        self.push(Slot::Run { speed: paces.slow }, slow);
+        self.push(
+            SegmentVariable::Run {
+                speed: speed_table.fast,
+            },
+            fast,
+        );
+        self.push(
+            SegmentVariable::Run {
+                speed: speed_table.slow,
+            },
+            slow,
+        );
     }
 
-    pub(crate) fn seed(self, ending: Ending) -> Option<Seed> {
-        if self.slots.len() + 2 > MAX_VARIABLES {
+    pub(crate) fn guess(self, ending: Ending) -> Option<InitialGuess> {
+        if self.variables.len() + 2 > MAX_VARIABLES {
             return None;
         }
         let mut lengths: Row = [0.0; MAX_VARIABLES];
         lengths[..self.lengths.len()].copy_from_slice(&self.lengths);
-        Some(Seed {
-            template: Template {
-                slots: self.slots,
+        Some(InitialGuess {
+            structure: Structure {
+                variables: self.variables,
                 ending,
             },
             lengths,
@@ -227,18 +237,18 @@ impl Draft {
 }
 
 impl Canonical {
-    /// The seed on one side of the route.
-    pub(crate) fn seed(
+    /// The initial guess on one side of the route.
+    pub(crate) fn guess(
         &self,
         problem: &Problem,
         route: &Route,
         side: Side,
         conflict: &Conflict,
         leg: usize,
-    ) -> Option<Seed> {
-        let paces = Paces::of(problem);
+    ) -> Option<InitialGuess> {
+        let speed_table = SpeedTable::of(problem);
         let radius = problem.own.turning_radius;
-        let (slow, fast) = (paces.slow, paces.fast);
+        let (slow, fast) = (speed_table.slow, speed_table.fast);
         let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
         // two arcs alone reach twice the versine
         let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
@@ -248,9 +258,9 @@ impl Canonical {
             .max(problem.duty().least_turn());
         let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
         let arc = turn * radius;
-        let way_out = (2.0 * arc + out) / if self.slow { paces.normal } else { fast };
+        let way_out = (2.0 * arc + out) / if self.slow { speed_table.normal } else { fast };
         let departure = (conflict.from - self.lead * way_out).max(0.0);
-        let lead = (departure * paces.normal).min(route.length());
+        let lead = (departure * speed_table.normal).min(route.length());
         // made good along the route on the way out, and on the way back at the flattest angle that fits
         let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
         let room = route.length() - made_good;
@@ -265,7 +275,7 @@ impl Canonical {
             .max(0.0);
         let mut draft = Draft::default();
         draft.runs(
-            &paces,
+            &speed_table,
             (1.0 - self.rush) * lead,
             self.rush * departure * fast,
             0.0,
@@ -280,19 +290,19 @@ impl Canonical {
         draft.turn(back, &[(fast, 0.0)]);
         draft.line(&[(fast, 0.5 * along)]);
         let Some(angle) = angle else {
-            return draft.seed(Ending::Goal {
+            return draft.guess(Ending::Goal {
                 side: back,
                 speed: fast,
             });
         };
         draft.push(
-            Slot::Arc {
+            SegmentVariable::Arc {
                 side: back,
                 speed: fast,
             },
             angle.min(needed.max(0.1)) * radius,
         );
-        draft.seed(Ending::Return { leg, speed: fast })
+        draft.guess(Ending::Return { leg, speed: fast })
     }
 }
 
@@ -304,21 +314,21 @@ pub(crate) fn waiting(
     across: bool,
     conflict: &Conflict,
     leg: usize,
-) -> Option<Seed> {
-    let paces = Paces::of(problem);
-    let (slow, normal, fast) = (paces.slow, paces.normal, paces.fast);
+) -> Option<InitialGuess> {
+    let speed_table = SpeedTable::of(problem);
+    let (slow, normal, fast) = (speed_table.slow, speed_table.normal, speed_table.fast);
     let (lag, due) = conflict.astern;
     let needed = lag / (normal - slow * WAITING_TURN.cos());
     let begin = (due - needed).max(0.0);
     let arc = WAITING_TURN * problem.own.turning_radius;
     let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
-    // negated on purpose: a NaN is no seed
+    // negated on purpose: a NaN is no initial guess
     if !(normal > slow && needed < 1.3 * due && lines.is_finite()) {
         return None;
     }
     let back = side.opposite();
     let mut draft = Draft::default();
-    draft.runs(&paces, begin * normal, 0.0, 0.0);
+    draft.runs(&speed_table, begin * normal, 0.0, 0.0);
     draft.turn(side, &[(fast, 0.0), (slow, arc)]);
     draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
     draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
@@ -333,13 +343,13 @@ pub(crate) fn waiting(
             &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
         );
         draft.line(&[(fast, 0.0)]);
-        return draft.seed(Ending::Return { leg, speed: fast });
+        return draft.guess(Ending::Return { leg, speed: fast });
     }
     draft.line(&[(fast, 0.0)]);
     draft.turn(back, &[(fast, 0.0)]);
     draft.line(&[(fast, 0.0)]);
     draft.turn(back, &[(fast, 0.0)]);
-    draft.seed(Ending::Return { leg, speed: fast })
+    draft.guess(Ending::Return { leg, speed: fast })
 }
 
 /// A manoeuvre that slows down on the route until the target is past, then goes a little to the side and back, or not at all.
@@ -348,28 +358,33 @@ pub(crate) fn slowing(
     side: Side,
     conflict: &Conflict,
     leg: usize,
-) -> Option<Seed> {
-    let paces = Paces::of(problem);
+) -> Option<InitialGuess> {
+    let speed_table = SpeedTable::of(problem);
     let (lag, due) = conflict.astern;
-    let spell = (lag / (paces.normal - paces.slow)).max(APPARENT_TIME);
+    let spell = (lag / (speed_table.normal - speed_table.slow)).max(APPARENT_TIME);
     let begin = (due - spell).max(0.0);
-    // negated on purpose: a NaN is no seed
-    if !(problem.duty().may_slow && paces.slow <= slow(problem) && spell < 2.0 * due) {
+    // negated on purpose: a NaN is no initial guess
+    if !(problem.duty().may_slow && speed_table.slow <= slow(problem) && spell < 2.0 * due) {
         return None;
     }
     let radius = problem.own.turning_radius;
     let arc = SLOWING_TURN * radius;
     let back = side.opposite();
     let mut draft = Draft::default();
-    draft.runs(&paces, begin * paces.normal, 0.0, spell * paces.slow);
-    draft.turn(side, &[(paces.slow, arc), (paces.fast, 0.0)]);
-    draft.line(&[(paces.slow, 0.0), (paces.fast, SLOWING_OUT_M)]);
-    draft.turn(back, &[(paces.fast, arc)]);
-    draft.line(&[(paces.slow, 0.0), (paces.fast, 0.0)]);
-    draft.turn(back, &[(paces.fast, arc)]);
-    draft.seed(Ending::Return {
+    draft.runs(
+        &speed_table,
+        begin * speed_table.normal,
+        0.0,
+        spell * speed_table.slow,
+    );
+    draft.turn(side, &[(speed_table.slow, arc), (speed_table.fast, 0.0)]);
+    draft.line(&[(speed_table.slow, 0.0), (speed_table.fast, SLOWING_OUT_M)]);
+    draft.turn(back, &[(speed_table.fast, arc)]);
+    draft.line(&[(speed_table.slow, 0.0), (speed_table.fast, 0.0)]);
+    draft.turn(back, &[(speed_table.fast, arc)]);
+    draft.guess(Ending::Return {
         leg,
-        speed: paces.fast,
+        speed: speed_table.fast,
     })
 }
 
@@ -380,14 +395,14 @@ pub(crate) fn ahead(
     side: Side,
     conflict: &Conflict,
     leg: usize,
-) -> Option<Seed> {
-    let paces = Paces::of(problem);
-    let (slow, normal, fast) = (paces.slow, paces.normal, paces.fast);
+) -> Option<InitialGuess> {
+    let speed_table = SpeedTable::of(problem);
+    let (slow, normal, fast) = (speed_table.slow, speed_table.normal, speed_table.fast);
     let (lead, due) = conflict.ahead;
     let needed = lead / (fast - normal);
     let begin = (due - needed).max(0.0);
     let turn = 0.5 * (conflict.from + due);
-    // negated on purpose: a NaN is no seed
+    // negated on purpose: a NaN is no initial guess
     if !(fast > normal && needed < MOST_RUSHING * due && turn > begin) {
         return None;
     }
@@ -395,20 +410,20 @@ pub(crate) fn ahead(
     let arc = AHEAD_TURN * radius;
     let back = side.opposite();
     let mut draft = Draft::default();
-    draft.runs(&paces, begin * normal, (turn - begin) * fast, 0.0);
+    draft.runs(&speed_table, begin * normal, (turn - begin) * fast, 0.0);
     draft.turn(side, &[(fast, arc)]);
     draft.line(&[(fast, AHEAD_OUT_M)]);
     draft.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
     draft.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
     draft.turn(side, &[(slow, 0.0), (fast, 0.0)]);
     draft.line(&[(slow, 0.0), (fast, 0.0)]);
-    draft.seed(Ending::Return { leg, speed: normal })
+    draft.guess(Ending::Return { leg, speed: normal })
 }
 
-/// A plan of the graph as a seed: its arcs and lines in its own order, each with the other speeds beside
+/// A plan of the graph as a initial guess: its arcs and lines in its own order, each with the other speeds beside
 /// it, and an empty turn back where it has one turn only. `way` are the states after the root.
-pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
-    let paces = Paces::of(problem);
+pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGuess> {
+    let speed_table = SpeedTable::of(problem);
     let (last, before) = way.split_last()?;
     let (departure, vertices) = before.split_first()?;
     if vertices.is_empty() {
@@ -417,7 +432,7 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
     let mut draft = Draft::default();
     let along: f64 = departure.motion.iter().map(Segment::length).sum();
     let slow = visibly_slow(problem, &departure.motion);
-    draft.runs(&paces, along - slow, 0.0, slow);
+    draft.runs(&speed_table, along - slow, 0.0, slow);
     let mut side = None;
     let mut turns = 0;
     for vertex in vertices {
@@ -427,15 +442,15 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
         side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
         let side = side.unwrap_or(Side::Starboard);
         turns += usize::from(before != Some(side));
-        group(&mut draft, &paces, side, turn, line, vertices.len());
+        group(&mut draft, &speed_table, side, turn, line, vertices.len());
         if vertices.len() == 1 {
-            draft.turn(side, &[(paces.fast, 0.0)]);
-            draft.line(&[(paces.fast, 0.0)]);
+            draft.turn(side, &[(speed_table.fast, 0.0)]);
+            draft.line(&[(speed_table.fast, 0.0)]);
         }
     }
     let back = side.unwrap_or(Side::Starboard).opposite();
     if turns < 2 && vertices.len() < 3 {
-        group(&mut draft, &paces, back, None, None, vertices.len());
+        group(&mut draft, &speed_table, back, None, None, vertices.len());
     }
     match last.ending {
         Ending::Return { leg, .. } => {
@@ -445,18 +460,18 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
                 .unwrap_or(back);
             let length = first.map_or(0.0, Segment::length);
             draft.push(
-                Slot::Arc {
+                SegmentVariable::Arc {
                     side,
-                    speed: paces.fast,
+                    speed: speed_table.fast,
                 },
                 length,
             );
-            draft.seed(Ending::Return {
+            draft.guess(Ending::Return {
                 leg,
-                speed: paces.fast,
+                speed: speed_table.fast,
             })
         }
-        Ending::Goal { side, speed } => draft.seed(Ending::Goal { side, speed }),
+        Ending::Goal { side, speed } => draft.guess(Ending::Goal { side, speed }),
         Ending::Follow => None,
     }
 }
@@ -464,13 +479,13 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<Seed> {
 /// A turn and a line, with fewer speeds where there are many such groups.
 fn group(
     draft: &mut Draft,
-    paces: &Paces,
+    speed_table: &SpeedTable,
     side: Side,
     turn: Option<&Segment>,
     line: Option<&Segment>,
     groups: usize,
 ) {
-    let Paces { slow, normal, fast } = *paces;
+    let SpeedTable { slow, normal, fast } = *speed_table;
     let own = turn.or(line).map_or(fast, |s| s.speed);
     let (turns, lines): (&[f64], &[f64]) = match groups {
         0..=3 => (&[slow, fast], &[slow, normal, fast]),

@@ -10,13 +10,13 @@ use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::{Hazard, by_obstacle, first_met};
+use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
 use crate::planner::space_time::refinement::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
-use crate::planner::space_time::refinement::insertion::{enriched, tidied};
-use crate::planner::space_time::refinement::trial::Scene;
-use crate::planner::space_time::refinement::{Refinement, Seed};
+use crate::planner::space_time::refinement::insertion::{pruned, with_insertions};
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::rules::compliance::complies;
-use crate::planner::space_time::selection::budget::Effort;
+use crate::planner::space_time::selection::budget::SearchBudget;
 use crate::planner::space_time::selection::initial_guess::{
     Canonical, Conflict, ahead, from_graph, slowing, waiting,
 };
@@ -137,24 +137,28 @@ struct Candidate {
 /// What is known so far.
 #[derive(Debug)]
 pub(crate) struct Selection<'a> {
-    scene: Scene<'a>,
+    context: Context<'a>,
     /// The route on schedule.
-    undisturbed: &'a [Segment],
-    effort: &'a Effort,
+    nominal_motion: &'a [Segment],
+    search_budget: &'a SearchBudget,
     signatures: Vec<Vec<bool>>,
-    seeds: Vec<Seed>,
+    guesses: Vec<InitialGuess>,
     best: Option<Candidate>,
     graph_cost: Option<f64>,
 }
 
 impl<'a> Selection<'a> {
-    pub(crate) fn new(scene: Scene<'a>, undisturbed: &'a [Segment], effort: &'a Effort) -> Self {
+    pub(crate) fn new(
+        context: Context<'a>,
+        nominal_motion: &'a [Segment],
+        search_budget: &'a SearchBudget,
+    ) -> Self {
         Self {
-            scene,
-            undisturbed,
-            effort,
+            context,
+            nominal_motion,
+            search_budget,
             signatures: Vec::new(),
-            seeds: Vec::new(),
+            guesses: Vec::new(),
             best: None,
             graph_cost: None,
         }
@@ -166,14 +170,14 @@ impl<'a> Selection<'a> {
     }
 
     /// Takes a manoeuvre to refine.
-    pub(crate) fn begin_from(&mut self, seed: Seed) {
-        self.seeds.push(seed);
+    pub(crate) fn begin_from(&mut self, guess: InitialGuess) {
+        self.guesses.push(guess);
     }
 
     /// Takes a plan of the graph, the states after the root, already tested; false where it does not comply with the rules.
     pub(crate) fn offer(&mut self, cost: f64, way: &[&State]) -> bool {
         let motion: Vec<Segment> = way.iter().flat_map(|s| s.motion.iter().copied()).collect();
-        if !complies(&self.scene, self.undisturbed, &motion) {
+        if !complies(&self.context, self.nominal_motion, &motion) {
             return false;
         }
         let signature = self.signature(&motion);
@@ -182,7 +186,7 @@ impl<'a> Selection<'a> {
             return true;
         }
         self.signatures.push(signature);
-        self.seeds.extend(from_graph(self.scene.problem, way));
+        self.guesses.extend(from_graph(self.context.problem, way));
         self.consider(motion);
         true
     }
@@ -190,15 +194,15 @@ impl<'a> Selection<'a> {
     /// On which side each target is passed: the sign of its relative bearing rate at the least distance
     /// of the middles.
     fn signature(&self, motion: &[Segment]) -> Vec<bool> {
-        by_obstacle(self.scene.hazards)
-            .map(|hazards| {
+        by_obstacle(self.context.proxies)
+            .map(|proxies| {
                 let mut nearest = (f64::INFINITY, false);
                 for s in motion {
                     for k in 0..=4 {
                         let t = s.start_time + s.duration * f64::from(k) / 4.0;
                         let (position, velocity) = (s.pose_at(t).position, s.velocity_at(t));
-                        let relative = |h: &Hazard| h.relative(position, velocity, t);
-                        if let Some((r, w)) = hazards.iter().find_map(relative)
+                        let relative = |h: &Proxy| h.relative(position, velocity, t);
+                        if let Some((r, w)) = proxies.iter().find_map(relative)
                             && r.norm() < nearest.0
                         {
                             nearest = (r.norm(), cross(w, r) > 0.0);
@@ -212,17 +216,17 @@ impl<'a> Selection<'a> {
 
     /// Refines the graph's plans and the canonical ones; true when the time ran out.
     pub(crate) fn refine(&mut self, conflicts: &[Conflict], clock: Clock) -> bool {
-        let mut scene = self.scene;
-        scene.chord = COARSE_CHORD_RAD;
-        let (problem, route) = (scene.problem, scene.route);
-        let mut seeds = std::mem::take(&mut self.seeds);
+        let mut context = self.context;
+        context.chord = COARSE_CHORD_RAD;
+        let (problem, route) = (context.problem, context.route);
+        let mut guesses = std::mem::take(&mut self.guesses);
         let leg = problem.desired.legs().len() - 1;
         let duty = problem.duty();
         let sides = duty.sides();
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
             if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
                 for across in [false, true] {
-                    seeds.extend(
+                    guesses.extend(
                         sides
                             .iter()
                             .filter_map(|side| waiting(problem, *side, across, conflict, leg)),
@@ -231,15 +235,15 @@ impl<'a> Selection<'a> {
             }
             if !duty.is_none() {
                 let slower = sides.iter();
-                seeds.extend(slower.filter_map(|side| slowing(problem, *side, conflict, leg)));
+                guesses.extend(slower.filter_map(|side| slowing(problem, *side, conflict, leg)));
             }
             if duty.is_none() && conflict.ahead.0 < WORTH_RUSHING * conflict.nearest_offset() {
                 let both = Side::BOTH.into_iter();
-                seeds.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
+                guesses.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
             }
             let slender = conflict.slenderness() > SLENDER_FROM;
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
-            let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.effort.manoeuvres)];
+            let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
             for &side in sides {
                 let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
                 let tried = if far && sides.len() > 1 {
@@ -247,31 +251,31 @@ impl<'a> Selection<'a> {
                 } else {
                     manoeuvres
                 };
-                seeds.extend(
+                guesses.extend(
                     tried
                         .iter()
-                        .filter_map(|c| c.seed(problem, route, side, conflict, leg)),
+                        .filter_map(|c| c.guess(problem, route, side, conflict, leg)),
                 );
             }
         }
-        let mut running: Vec<Refinement> = seeds
+        let mut running: Vec<Refinement> = guesses
             .into_iter()
             .take_while(|_| !clock.is_up())
-            .filter_map(|s| Refinement::fitting(&scene, s))
+            .filter_map(|s| Refinement::fitting(&context, s))
             .collect();
-        for round in 0..self.effort.steps {
-            let decided =
-                round >= self.effort.rounds && running.iter().any(|r| r.best_cost().is_finite());
+        for round in 0..self.search_budget.steps {
+            let decided = round >= self.search_budget.rounds
+                && running.iter().any(|r| r.best_cost().is_finite());
             // nothing counts as clear before fine chords have seen it
             if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
-            race(&mut running, round, self.effort.places);
+            race(&mut running, round, self.search_budget.places);
             if round == FINE_FROM {
-                scene.chord = FINE_CHORD_RAD;
+                context.chord = FINE_CHORD_RAD;
                 for refinement in running.iter_mut().filter(|r| !r.is_overtaken()) {
                     if !clock.is_up() {
-                        refinement.look_again(&scene);
+                        refinement.look_again(&context);
                     }
                 }
             }
@@ -280,12 +284,12 @@ impl<'a> Selection<'a> {
                     self.collect(ranked(&running));
                     return true;
                 }
-                refinement.step(&scene);
+                refinement.step(&context);
             }
         }
         for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
             if !clock.is_up() {
-                refinement.settle(&scene);
+                refinement.settle(&context);
             }
         }
         let tidy = self.polish(&mut running, clock);
@@ -296,60 +300,64 @@ impl<'a> Selection<'a> {
     /// Adds what the leaders lack and refines them anew, and again what the best of them lacks; in the end without scraps,
     /// where that costs next to nothing.
     fn polish(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
-        let leaders = leaders(running, self.effort.leaders);
+        let leaders = leaders(running, self.search_budget.leaders);
         let mut least = leaders.first()?.1;
         let [first, then] = UNCUT_M;
         let mut best = None;
         let mut gained = 0.0;
-        for (seed, rank) in leaders {
-            let again = self.richer(&seed, first, clock);
+        for (guess, rank) in leaders {
+            let again = self.richer(&guess, first, clock);
             let after = again
                 .as_ref()
                 .map_or(f64::INFINITY, Refinement::rank)
                 .min(rank);
             if best.is_none() || after < least {
                 gained = 1.0 - after / rank;
-                best = again.as_ref().and_then(Refinement::best).or(Some(seed));
+                best = again.as_ref().and_then(Refinement::best).or(Some(guess));
                 least = after;
             }
             running.extend(again);
         }
-        if self.effort.twice && gained > WORTH_ANOTHER {
+        if self.search_budget.twice && gained > WORTH_ANOTHER {
             let again = best.as_ref().and_then(|s| self.richer(s, then, clock));
             best = again.as_ref().and_then(Refinement::best).or(best);
             running.extend(again);
         }
         let least = best_of(running)?.rank();
-        let seed = best.and_then(|s| tidied(&self.scene, &s));
-        let tidy = seed.and_then(|s| self.refined(s, STEPS_TIDY, clock))?;
+        let guess = best.and_then(|s| pruned(&self.context, &s));
+        let tidy = guess.and_then(|s| self.refined(s, STEPS_TIDY, clock))?;
         (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
     }
 
     /// With what a manoeuvre lacks, refined anew; `None` where it lacks nothing or the time is up.
-    fn richer(&self, seed: &Seed, uncut: f64, clock: Clock) -> Option<Refinement> {
+    fn richer(&self, guess: &InitialGuess, uncut: f64, clock: Clock) -> Option<Refinement> {
         if clock.is_up() {
             return None;
         }
-        self.refined(enriched(&self.scene, seed, uncut)?, STEPS_ENRICHED, clock)
+        self.refined(
+            with_insertions(&self.context, guess, uncut)?,
+            STEPS_ENRICHED,
+            clock,
+        )
     }
 
     /// A refinement from beginning to end, of so many steps at most, and fewer where the time is up.
-    fn refined(&self, seed: Seed, most: usize, clock: Clock) -> Option<Refinement> {
-        let mut refinement = Refinement::fitting(&self.scene, seed)?;
+    fn refined(&self, guess: InitialGuess, most: usize, clock: Clock) -> Option<Refinement> {
+        let mut refinement = Refinement::fitting(&self.context, guess)?;
         for _ in 0..most {
             if refinement.is_finished() || clock.is_up() {
                 return Some(refinement);
             }
-            refinement.step(&self.scene);
+            refinement.step(&self.context);
         }
-        refinement.settle(&self.scene);
+        refinement.settle(&self.context);
         Some(refinement)
     }
 
     /// Tests what the refinements found, in this order, until one passes.
     fn collect<'r>(&mut self, found: impl Iterator<Item = &'r Refinement>) {
         for refinement in found {
-            let Some(motion) = refinement.best_motion(&self.scene) else {
+            let Some(motion) = refinement.best_motion(&self.context) else {
                 return;
             };
             if self.consider(motion) {
@@ -365,7 +373,7 @@ impl<'a> Selection<'a> {
 
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
     pub(crate) fn consider(&mut self, motion: Vec<Segment>) -> bool {
-        let problem = self.scene.problem;
+        let problem = self.context.problem;
         let cost: f64 = motion
             .iter()
             .map(|s| space_time_error(problem.desired, s, problem.time_weight))
@@ -375,8 +383,8 @@ impl<'a> Selection<'a> {
             .is_some_and(|s| s.end_time() <= problem.horizon);
         let clear = in_time
             && cost.is_finite()
-            && complies(&self.scene, self.undisturbed, &motion)
-            && first_met(self.scene.hazards, &motion).is_none()
+            && complies(&self.context, self.nominal_motion, &motion)
+            && first_met(self.context.proxies, &motion).is_none()
             && !land::meets(problem.coast, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
@@ -387,7 +395,7 @@ impl<'a> Selection<'a> {
     /// The cheapest clear motion.
     pub(crate) fn plan(self) -> Option<Plan> {
         let best = self.best?;
-        Plan::measured(self.scene.problem, best.motion, self.graph_cost)
+        Plan::measured(self.context.problem, best.motion, self.graph_cost)
     }
 }
 
@@ -398,8 +406,8 @@ fn best_of(running: &[Refinement]) -> Option<&Refinement> {
 
 /// The cheapest of all and the next that is another, with their ranks: what a manoeuvre lacks can be worth more than the
 /// lead of one that lacks nothing. So many at most.
-fn leaders(running: &[Refinement], most: usize) -> Vec<(Seed, f64)> {
-    let mut found: Vec<(Seed, f64)> = Vec::with_capacity(most);
+fn leaders(running: &[Refinement], most: usize) -> Vec<(InitialGuess, f64)> {
+    let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most);
     for refinement in ranked(running) {
         let rank = refinement.rank();
         let least = found.first().map_or(rank, |f| f.1);
@@ -409,7 +417,7 @@ fn leaders(running: &[Refinement], most: usize) -> Vec<(Seed, f64)> {
             break;
         }
         if !alike {
-            found.extend(refinement.best().map(|seed| (seed, rank)));
+            found.extend(refinement.best().map(|guess| (guess, rank)));
         }
     }
     found

@@ -3,16 +3,16 @@
 use crate::frame::{Pose, Side, wrap};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::Hazard;
-use crate::planner::space_time::refinement::Seed;
+use crate::planner::space_time::proxy::Proxy;
+use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::approach::FINE_CHORD_RAD;
 use crate::planner::space_time::refinement::quadratic::MAX_VARIABLES;
-use crate::planner::space_time::refinement::structure::{Ending, Slot};
-use crate::planner::space_time::refinement::trial::Scene;
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
+use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::selection::Selection;
-use crate::planner::space_time::selection::budget::Effort;
-use crate::planner::space_time::selection::initial_guess::{Draft, Paces};
+use crate::planner::space_time::selection::budget::SearchBudget;
+use crate::planner::space_time::selection::initial_guess::{Draft, SpeedTable};
 use crate::planner::{NoPlan, Outcome, Planned, Problem};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
@@ -28,29 +28,29 @@ const BESIDE: usize = 5;
 ///
 /// What [`crate::planner::space_time::plan`] says of its plans holds of this one, but that there may be none where `plan` has one, and the reverse. Some
 /// milliseconds: nothing is searched. Waits and motions of very many turns are no beginning: there is no plan then.
-pub fn continued(problem: &Problem, from: &Trajectory) -> Planned {
+pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
     let clock = Clock::new(problem.deadline);
-    crate::planner::space_time::as_usual(problem, |problem, hazards, usual| match usual {
-        Some(usual) => refined(problem, hazards, &usual.motion(from.segments()), clock),
-        None => refined(problem, hazards, from.segments(), clock),
+    crate::planner::space_time::as_usual(problem, |problem, proxies, usual| match usual {
+        Some(usual) => refined(problem, proxies, &usual.motion(from.segments()), clock),
+        None => refined(problem, proxies, from.segments(), clock),
     })
 }
 
-fn refined(problem: &Problem, hazards: &[Hazard], motion: &[Segment], clock: Clock) -> Planned {
+fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Clock) -> Planned {
     let found = Route::new(problem, clock).and_then(|route| {
-        let seed = seed_of(problem, &route, motion)?;
-        let mut undisturbed = Vec::new();
-        route.follow(0.0, 0.0, &mut undisturbed);
-        let blocks = land::hazards(problem);
-        let scene = Scene {
+        let guess = seed_of(problem, &route, motion)?;
+        let mut nominal_motion = Vec::new();
+        route.follow(0.0, 0.0, &mut nominal_motion);
+        let blocks = land::proxies(problem);
+        let context = Context {
             problem,
             route: &route,
-            hazards,
+            proxies,
             blocks: &blocks,
             chord: FINE_CHORD_RAD,
         };
-        let mut selection = Selection::new(scene, &undisturbed, &Effort::CONTINUED);
-        selection.begin_from(seed);
+        let mut selection = Selection::new(context, &nominal_motion, &SearchBudget::CONTINUED);
+        selection.begin_from(guess);
         let timed_out = selection.refine(&[], clock);
         Some((selection.plan(), timed_out))
     });
@@ -62,14 +62,14 @@ fn refined(problem: &Problem, hazards: &[Hazard], motion: &[Segment], clock: Clo
     Planned::of(outcome)
 }
 
-/// A motion that runs along the route, leaves it, and comes back to it or to its end, as slots and lengths: sailed, it is the
+/// A motion that runs along the route, leaves it, and comes back to it or to its end, as segment variables and lengths: sailed, it is the
 /// motion again. Lines get the other speeds beside theirs, empty, while there is room. `None` of any other motion.
-fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Seed> {
+fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<InitialGuess> {
     let motion = merged(motion);
     if motion.iter().any(|s| s.speed <= 0.0) {
         return None;
     }
-    let paces = Paces::of(problem);
+    let speed_table = SpeedTable::of(problem);
     let mut run = [0.0; 3];
     let (mut left_at, mut first) = (0.0, 0);
     for s in &motion {
@@ -78,7 +78,10 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Seed>
         if !(is_at(route, to, s.end()) && is_at(route, halfway, s.middle())) {
             break;
         }
-        run[nearest(s.speed, [paces.normal, paces.fast, paces.slow])] += s.length();
+        run[nearest(
+            s.speed,
+            [speed_table.normal, speed_table.fast, speed_table.slow],
+        )] += s.length();
         (left_at, first) = (to, first + 1);
     }
     let (mut back_at, mut join) = (route.length(), motion.len());
@@ -115,22 +118,24 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Seed>
     };
     let mut room = MAX_VARIABLES.checked_sub(free.len() + BESIDE)?;
     let mut draft = Draft::default();
-    draft.runs(&paces, run[0], run[1], run[2]);
+    draft.runs(&speed_table, run[0], run[1], run[2]);
     for lines in free.chunk_by(|a, b| !a.is_arc() && !b.is_arc()) {
         for s in lines {
             let speed = s.speed;
-            let slot = Side::of_turn(s.turn_rate)
-                .map_or(Slot::Line { speed }, |side| Slot::Arc { side, speed });
-            draft.push(slot, s.length());
+            let variable = Side::of_turn(s.turn_rate)
+                .map_or(SegmentVariable::Line { speed }, |side| {
+                    SegmentVariable::Arc { side, speed }
+                });
+            draft.push(variable, s.length());
         }
-        let others = [paces.slow, paces.normal, paces.fast].into_iter();
+        let others = [speed_table.slow, speed_table.normal, speed_table.fast].into_iter();
         let others = others.filter(|u| lines.iter().all(|s| !s.is_arc() && s.speed != *u));
         for speed in others.take(room) {
-            draft.push(Slot::Line { speed }, 0.0);
+            draft.push(SegmentVariable::Line { speed }, 0.0);
             room -= 1;
         }
     }
-    draft.seed(ending)
+    draft.guess(ending)
 }
 
 /// Without what has no length; what goes on as it did before is one segment with it.
@@ -177,9 +182,9 @@ mod tests {
     /// The problems of random encounters and traffic with the plans for them.
     fn at_plans(check: impl Fn(&Problem, &Trajectory, f64)) {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
-            (0..6).map(move |seed| random_encounter(kind, seed, Placement::Random))
+            (0..6).map(move |guess| random_encounter(kind, guess, Placement::Random))
         });
-        let traffic = (0..6).map(|seed| random_traffic(3, seed, Placement::Random));
+        let traffic = (0..6).map(|guess| random_traffic(3, guess, Placement::Random));
         for drawn in encounters.chain(traffic) {
             let scenario = drawn.expect("drawn").scenario;
             let sets = pipeline::sets(&scenario);
@@ -199,20 +204,20 @@ mod tests {
     fn the_slots_of_a_plan_sail_it_again() {
         at_plans(|problem, trajectory, _| {
             let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
-            let Some(seed) = seed_of(problem, &route, trajectory.segments()) else {
+            let Some(guess) = seed_of(problem, &route, trajectory.segments()) else {
                 // it only runs along the route
                 assert!(!trajectory.segments().iter().any(Segment::is_arc));
                 return;
             };
-            let sailed = seed.template.sail(problem, &route, &seed.lengths);
-            let Some(sailed) = sailed else {
+            let rollout = guess.structure.sail(problem, &route, &guess.lengths);
+            let Some(rollout) = rollout else {
                 // the return is the flattest there may be, and a rounding flatter
                 let back = trajectory.segments().iter().rev().find(|s| s.is_arc());
                 let turn = back.map_or(0.0, |s| (s.turn_rate * s.duration).abs());
                 assert!((turn - FLATTEST_RETURN).abs() < 1e-9, "{turn} rad");
                 return;
             };
-            let again = Trajectory::new(sailed.motion()).expect("valid");
+            let again = Trajectory::new(rollout.motion()).expect("valid");
             assert!((again.end_time() - trajectory.end_time()).abs() < 1e-5);
             // before that its runs along the route may be in another order
             let turn = trajectory.segments().iter().find(|s| s.is_arc());
@@ -230,7 +235,7 @@ mod tests {
     fn what_is_drawn_out_of_a_plan_is_clear_and_for_its_own_sets_no_dearer() {
         let (drawn, larger) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
         at_plans(|problem, trajectory, cost| {
-            if let Some(again) = continued(problem, trajectory).outcome.plan() {
+            if let Some(again) = warm_started(problem, trajectory).outcome.plan() {
                 assert!(again.cost <= 1.01 * cost, "{} {cost}", again.cost);
                 drawn.set(drawn.get() + 1);
             }
@@ -252,7 +257,7 @@ mod tests {
                 obstacles: &grown,
                 ..problem.clone()
             };
-            let planned = continued(&problem, trajectory);
+            let planned = warm_started(&problem, trajectory);
             if let Some(plan) = planned.outcome.plan() {
                 larger.set(larger.get() + 1);
                 let end = plan.trajectory.end_time();
