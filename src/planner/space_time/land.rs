@@ -6,7 +6,7 @@ use crate::obstacle::{Coast, LAND, PolytopeObstacle, window_of};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::tangent::TangentEdges;
 use crate::planner::space_time::proxy::{Proxy, TOUCH_M};
-use crate::planner::space_time::selection::initial_guess::{Conflict, SpeedTable};
+use crate::planner::space_time::selection::initial_guess::{Conflict, ManoeuvreSpeeds};
 use crate::trajectory::Segment;
 
 /// Metres. Blocks farther than this from the nominal motion get no tangent edges.
@@ -150,7 +150,7 @@ pub(crate) fn tangent_edges(
     } else {
         Vec::new()
     };
-    let speed_table = SpeedTable::of(problem);
+    let speed_table = ManoeuvreSpeeds::of(problem);
     blocks.into_iter().filter_map(move |b| {
         let block = &coast.blocks()[b];
         let around = outer_simplified(block.initial(), BLOCK_VERTICES);

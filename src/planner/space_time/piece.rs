@@ -34,12 +34,12 @@ pub(crate) struct Window {
 #[derive(Debug)]
 pub(crate) enum Body {
     Polytope(PolytopeObstacle),
-    Ellipsoid(Box<Rounded>),
+    Ellipsoid(Box<BoundedEllipsoid>),
 }
 
 /// Ellipsoid between two polytopes.
 #[derive(Debug)]
-pub(crate) struct Rounded {
+pub(crate) struct BoundedEllipsoid {
     pub exact: EllipsoidObstacle,
     /// Outer polytope: two 16-gons around its sets, enlarged by the excess of the ellipsoid over
     /// their sum.
@@ -90,7 +90,7 @@ fn rounded(exact: EllipsoidObstacle, horizon: f64) -> Body {
     let polytope = |set: &dyn Fn(&Ellipse) -> ConvexPolygon| {
         PolytopeObstacle::new("", set(exact.initial()), set(exact.velocity()))
     };
-    Body::Ellipsoid(Box::new(Rounded {
+    Body::Ellipsoid(Box::new(BoundedEllipsoid {
         around: polytope(&around),
         within: polytope(&within),
         exact,

@@ -63,7 +63,7 @@ pub(crate) fn motion_to(search: &Search<State>, node: usize) -> impl Iterator<It
 
 /// Path to a goal for the refinement: the departure, the vertices with the whole lines to and
 /// beyond them, and the end.
-pub(crate) fn way_to(search: &Search<State>, goal: usize) -> Vec<State> {
+pub(crate) fn path_to(search: &Search<State>, goal: usize) -> Vec<State> {
     let mut way: Vec<State> = Vec::new();
     for index in &search.way_to(goal)[1..] {
         let mut state = search.nodes()[*index].state.clone();

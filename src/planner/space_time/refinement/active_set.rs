@@ -191,7 +191,7 @@ impl<const N: usize> Point<N> {
     }
 
     /// Recomputes `x` and the multipliers from the factors, without accumulated rounding.
-    fn settle(&mut self, of: &Compact<N>) {
+    fn finish(&mut self, of: &Compact<N>) {
         let mut bounds = [0.0; N];
         for (bound, kind) in bounds.iter_mut().zip(self.active()) {
             *bound = match *kind {
@@ -203,9 +203,13 @@ impl<const N: usize> Point<N> {
         let along = self.r.solve_transposed(&bounds, self.count);
         let (mut x, mut sums) = ([0.0; N], [0.0; N]);
         for (k, column) in self.j.iter().enumerate().take(of.size) {
-            let pull = dot(column, &of.gradient);
-            let share = if k < self.count { along[k] } else { -pull };
-            sums[k] = along[k] + pull;
+            let gradient_form = dot(column, &of.gradient);
+            let share = if k < self.count {
+                along[k]
+            } else {
+                -gradient_form
+            };
+            sums[k] = along[k] + gradient_form;
             add_scaled(&mut x, share, column);
         }
         self.x = x;
@@ -326,7 +330,7 @@ impl<const N: usize> Compact<N> {
                 Entered::Stopped => return Err(Unsolved::Stopped),
             }
         }
-        at.settle(&self);
+        at.finish(&self);
         if !at.is_finite() {
             return Err(Unsolved::Stopped);
         }

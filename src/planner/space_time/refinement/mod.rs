@@ -56,7 +56,7 @@ const REACHABLE: f64 = 0.8;
 
 /// Penalty increase for a refinement that has converged inside a set, and the largest number of
 /// increases.
-const DEARER: f64 = 6.0;
+const PENALTY_FACTOR: f64 = 6.0;
 const MAX_RAISES: usize = 3;
 
 /// Least ratio of actual to predicted gain of a step.
@@ -111,7 +111,7 @@ pub(crate) struct Refinement {
     raised: usize,
     steps: usize,
     finished: bool,
-    overtaken: bool,
+    stopped: bool,
 }
 
 impl Refinement {
@@ -159,7 +159,7 @@ impl Refinement {
         let apparent = if context.problem.duty().is_none() {
             None
         } else {
-            Some(Apparent::in_seed(&mut guess, context.problem)?)
+            Some(Apparent::of_guess(&mut guess, context.problem)?)
         };
         let model = context.model(&guess.structure, &guess.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
@@ -184,7 +184,7 @@ impl Refinement {
             raised: 0,
             steps: 0,
             finished: false,
-            overtaken: false,
+            stopped: false,
         };
         refinement.keep(context);
         Some(refinement)
@@ -199,7 +199,7 @@ impl Refinement {
         let best = self.best?;
         let rollout = self
             .structure
-            .sail(context.problem, context.route, &best.lengths)?;
+            .roll_out(context.problem, context.route, &best.lengths)?;
         Some(rollout.motion())
     }
 
@@ -244,11 +244,11 @@ impl Refinement {
 
     /// Stops: another refinement is ahead.
     pub(crate) fn stop(&mut self) {
-        (self.finished, self.overtaken) = (true, true);
+        (self.finished, self.stopped) = (true, true);
     }
 
-    pub(crate) fn is_overtaken(&self) -> bool {
-        self.overtaken
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped
     }
 
     /// Only manoeuvres checked with fine chords count as clear.
@@ -308,7 +308,7 @@ impl Refinement {
     }
 
     /// Evaluates the current manoeuvre again with another chord length.
-    pub(crate) fn look_again(&mut self, context: &Context) {
+    pub(crate) fn reevaluate(&mut self, context: &Context) {
         if let Some(model) = context.model(&self.structure, &self.lengths) {
             self.model = model;
             (self.finished, self.stalled) = (false, 0);
@@ -317,7 +317,7 @@ impl Refinement {
     }
 
     /// Ends the refinement; the result counts as clear if it is nearly so.
-    pub(crate) fn settle(&mut self, context: &Context) {
+    pub(crate) fn finish(&mut self, context: &Context) {
         self.finished = true;
         self.restore(context);
     }
@@ -336,13 +336,13 @@ impl Refinement {
         if !advanced && self.model.least_slack < 0.0 && self.raised < MAX_RAISES {
             // converged inside a set: raise the penalty
             self.raised += 1;
-            self.penalty *= DEARER;
+            self.penalty *= PENALTY_FACTOR;
             self.radius = FIRST_RADIUS_M;
             self.stalled = 0;
             return;
         }
         if self.steps >= MAX_STEPS || !advanced {
-            self.settle(context);
+            self.finish(context);
         }
     }
 

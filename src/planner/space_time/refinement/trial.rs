@@ -9,7 +9,7 @@ use crate::planner::space_time::refinement::approach::{Approach, NEAR_M, add_app
 use crate::planner::space_time::refinement::model::MARGIN_M;
 use crate::planner::space_time::refinement::quadratic::Row;
 use crate::planner::space_time::refinement::return_segments::ReturnSegments;
-use crate::planner::space_time::refinement::rollout::{Owner, Place, Rollout};
+use crate::planner::space_time::refinement::rollout::{Place, Rollout, SegmentOrigin};
 use crate::planner::space_time::refinement::structure::{Ending, Structure};
 use crate::planner::space_time::route::Route;
 use crate::trajectory::Nearest;
@@ -74,7 +74,7 @@ pub(crate) struct WeightedPoint {
 impl Context<'_> {
     /// Rolls out and computes the cost; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn trial(&self, structure: &Structure, lengths: &Row) -> Option<Trial> {
-        let rollout = structure.sail(self.problem, self.route, lengths)?;
+        let rollout = structure.roll_out(self.problem, self.route, lengths)?;
         let mut points = Vec::with_capacity(GAUSS_4.len() * rollout.return_segments);
         for leg in 0..rollout.return_segments {
             self.add_points(&rollout, leg, &mut points);
@@ -110,7 +110,7 @@ impl Context<'_> {
 
     /// Quadrature points of a segment.
     fn add_points(&self, rollout: &Rollout, leg: usize, points: &mut Vec<Point>) {
-        let Owner::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
+        let SegmentOrigin::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
             return;
         };
         let segment = rollout.legs[leg].segment;

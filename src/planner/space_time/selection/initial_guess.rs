@@ -9,18 +9,18 @@ use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::rules::compliance::{slow, visibly_slow};
+use crate::planner::space_time::rules::compliance::{apparent_slow_distance, apparent_slow_speed};
 use crate::trajectory::Segment;
 
 /// Speeds of the manoeuvres: least and greatest speed, and the desired one.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SpeedTable {
+pub(crate) struct ManoeuvreSpeeds {
     pub slow: f64,
     pub normal: f64,
     pub fast: f64,
 }
 
-impl SpeedTable {
+impl ManoeuvreSpeeds {
     /// Least and greatest moving speed, and the one nearest to the desired speed.
     pub(crate) fn of(problem: &Problem) -> Self {
         let moving: Vec<f64> = problem
@@ -107,17 +107,17 @@ impl Conflict {
                 continue;
             };
             conflict.to = time;
-            let behind = proxy.way_out(pose.position, time, -pose.ahead());
+            let behind = proxy.exit_distance(pose.position, time, -pose.ahead());
             if behind > conflict.astern.0 {
                 conflict.astern = (behind, time);
             }
-            let before = proxy.way_out(pose.position, time, pose.ahead());
+            let before = proxy.exit_distance(pose.position, time, pose.ahead());
             if before > conflict.ahead.0 {
                 conflict.ahead = (before, time);
             }
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
-                *offset = offset.max(proxy.way_out(pose.position, time, beam));
+                *offset = offset.max(proxy.exit_distance(pose.position, time, beam));
             }
         }
         conflict.through = nominal_motion
@@ -155,7 +155,7 @@ const CONFLICT_SAMPLES: usize = 24;
 /// Predefined evasive manoeuvre: turn, a line out to the offset that clears the set, turn back, a
 /// line until the set is passed, return.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Canonical {
+pub(crate) struct EvasiveManoeuvre {
     /// Turn, radians.
     pub turn: f64,
     /// Fraction of the outbound part that precedes the contact.
@@ -165,17 +165,17 @@ pub(crate) struct Canonical {
     /// True where the outbound part uses the least speed, not the greatest.
     pub slow: bool,
     /// Fraction of the time before it that is sailed at the greatest speed.
-    pub rush: f64,
+    pub fast_share: f64,
 }
 
 /// Initial guess under construction.
 #[derive(Debug, Default)]
-pub(crate) struct Draft {
+pub(crate) struct InitialGuessBuilder {
     variables: Vec<SegmentVariable>,
     lengths: Vec<f64>,
 }
 
-impl Draft {
+impl InitialGuessBuilder {
     pub(crate) fn push(&mut self, variable: SegmentVariable, length: f64) {
         self.variables.push(variable);
         self.lengths.push(length);
@@ -199,25 +199,15 @@ impl Draft {
         }
     }
 
-    pub(crate) fn runs(&mut self, speed_table: &SpeedTable, normal: f64, fast: f64, slow: f64) {
+    pub(crate) fn runs(&mut self, speeds: &ManoeuvreSpeeds, normal: f64, fast: f64, slow: f64) {
         self.push(
             SegmentVariable::Run {
-                speed: speed_table.normal,
+                speed: speeds.normal,
             },
             normal,
         );
-        self.push(
-            SegmentVariable::Run {
-                speed: speed_table.fast,
-            },
-            fast,
-        );
-        self.push(
-            SegmentVariable::Run {
-                speed: speed_table.slow,
-            },
-            slow,
-        );
+        self.push(SegmentVariable::Run { speed: speeds.fast }, fast);
+        self.push(SegmentVariable::Run { speed: speeds.slow }, slow);
     }
 
     pub(crate) fn guess(self, ending: Ending) -> Option<InitialGuess> {
@@ -236,7 +226,7 @@ impl Draft {
     }
 }
 
-impl Canonical {
+impl EvasiveManoeuvre {
     /// Initial guess on one side of the route.
     pub(crate) fn guess(
         &self,
@@ -246,9 +236,9 @@ impl Canonical {
         conflict: &Conflict,
         leg: usize,
     ) -> Option<InitialGuess> {
-        let speed_table = SpeedTable::of(problem);
+        let speeds = ManoeuvreSpeeds::of(problem);
         let radius = problem.own.turning_radius;
-        let (slow, fast) = (speed_table.slow, speed_table.fast);
+        let (slow, fast) = (speeds.slow, speeds.fast);
         let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
         // two arcs alone reach an offset of twice the versine
         let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
@@ -258,9 +248,9 @@ impl Canonical {
             .max(problem.duty().least_turn());
         let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
         let arc = turn * radius;
-        let way_out = (2.0 * arc + out) / if self.slow { speed_table.normal } else { fast };
-        let departure = (conflict.from - self.lead * way_out).max(0.0);
-        let lead = (departure * speed_table.normal).min(route.length());
+        let exit_distance = (2.0 * arc + out) / if self.slow { speeds.normal } else { fast };
+        let departure = (conflict.from - self.lead * exit_distance).max(0.0);
+        let lead = (departure * speeds.normal).min(route.length());
         // progress along the route outbound, and on the return at the smallest angle that fits
         let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
         let room = route.length() - made_good;
@@ -269,15 +259,15 @@ impl Canonical {
             2.0 * radius * angle.sin() + line / angle.tan()
         };
         let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
-        let along = ((conflict.to - departure - way_out) * fast).max(0.0);
+        let along = ((conflict.to - departure - exit_distance) * fast).max(0.0);
         let along = along
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
             .max(0.0);
-        let mut draft = Draft::default();
+        let mut draft = InitialGuessBuilder::default();
         draft.runs(
-            &speed_table,
-            (1.0 - self.rush) * lead,
-            self.rush * departure * fast,
+            &speeds,
+            (1.0 - self.fast_share) * lead,
+            self.fast_share * departure * fast,
             0.0,
         );
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
@@ -316,8 +306,8 @@ pub(crate) fn waiting(
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
-    let (slow, normal, fast) = (speed_table.slow, speed_table.normal, speed_table.fast);
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
     let (lag, due) = conflict.astern;
     let needed = lag / (normal - slow * WAITING_TURN.cos());
     let begin = (due - needed).max(0.0);
@@ -328,8 +318,8 @@ pub(crate) fn waiting(
         return None;
     }
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(&speed_table, begin * normal, 0.0, 0.0);
+    let mut draft = InitialGuessBuilder::default();
+    draft.runs(&speeds, begin * normal, 0.0, 0.0);
     draft.turn(side, &[(fast, 0.0), (slow, arc)]);
     draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
     draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
@@ -361,32 +351,30 @@ pub(crate) fn slowing(
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
+    let speeds = ManoeuvreSpeeds::of(problem);
     let (lag, due) = conflict.astern;
-    let spell = (lag / (speed_table.normal - speed_table.slow)).max(APPARENT_TIME);
+    let spell = (lag / (speeds.normal - speeds.slow)).max(APPARENT_TIME);
     let begin = (due - spell).max(0.0);
     // negated on purpose: a NaN gives no initial guess
-    if !(problem.duty().may_slow && speed_table.slow <= slow(problem) && spell < 2.0 * due) {
+    if !(problem.duty().may_slow
+        && speeds.slow <= apparent_slow_speed(problem)
+        && spell < 2.0 * due)
+    {
         return None;
     }
     let radius = problem.own.turning_radius;
     let arc = SLOWING_TURN * radius;
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(
-        &speed_table,
-        begin * speed_table.normal,
-        0.0,
-        spell * speed_table.slow,
-    );
-    draft.turn(side, &[(speed_table.slow, arc), (speed_table.fast, 0.0)]);
-    draft.line(&[(speed_table.slow, 0.0), (speed_table.fast, SLOWING_OUT_M)]);
-    draft.turn(back, &[(speed_table.fast, arc)]);
-    draft.line(&[(speed_table.slow, 0.0), (speed_table.fast, 0.0)]);
-    draft.turn(back, &[(speed_table.fast, arc)]);
+    let mut draft = InitialGuessBuilder::default();
+    draft.runs(&speeds, begin * speeds.normal, 0.0, spell * speeds.slow);
+    draft.turn(side, &[(speeds.slow, arc), (speeds.fast, 0.0)]);
+    draft.line(&[(speeds.slow, 0.0), (speeds.fast, SLOWING_OUT_M)]);
+    draft.turn(back, &[(speeds.fast, arc)]);
+    draft.line(&[(speeds.slow, 0.0), (speeds.fast, 0.0)]);
+    draft.turn(back, &[(speeds.fast, arc)]);
     draft.guess(Ending::Return {
         leg,
-        speed: speed_table.fast,
+        speed: speeds.fast,
     })
 }
 
@@ -398,8 +386,8 @@ pub(crate) fn ahead(
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
-    let (slow, normal, fast) = (speed_table.slow, speed_table.normal, speed_table.fast);
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
     let (lead, due) = conflict.ahead;
     let needed = lead / (fast - normal);
     let begin = (due - needed).max(0.0);
@@ -411,8 +399,8 @@ pub(crate) fn ahead(
     let radius = problem.own.turning_radius;
     let arc = AHEAD_TURN * radius;
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(&speed_table, begin * normal, (turn - begin) * fast, 0.0);
+    let mut draft = InitialGuessBuilder::default();
+    draft.runs(&speeds, begin * normal, (turn - begin) * fast, 0.0);
     draft.turn(side, &[(fast, arc)]);
     draft.line(&[(fast, AHEAD_OUT_M)]);
     draft.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
@@ -426,16 +414,16 @@ pub(crate) fn ahead(
 /// beside each, and an empty turn back where it has only one turn. `way` holds the states after the
 /// root.
 pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
+    let speeds = ManoeuvreSpeeds::of(problem);
     let (last, before) = way.split_last()?;
     let (departure, vertices) = before.split_first()?;
     if vertices.is_empty() {
         return None;
     }
-    let mut draft = Draft::default();
+    let mut draft = InitialGuessBuilder::default();
     let along: f64 = departure.motion.iter().map(Segment::length).sum();
-    let slow = visibly_slow(problem, &departure.motion);
-    draft.runs(&speed_table, along - slow, 0.0, slow);
+    let slow = apparent_slow_distance(problem, &departure.motion);
+    draft.runs(&speeds, along - slow, 0.0, slow);
     let mut side = None;
     let mut turns = 0;
     for vertex in vertices {
@@ -445,15 +433,15 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
         side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
         let side = side.unwrap_or(Side::Starboard);
         turns += usize::from(before != Some(side));
-        group(&mut draft, &speed_table, side, turn, line, vertices.len());
+        group(&mut draft, &speeds, side, turn, line, vertices.len());
         if vertices.len() == 1 {
-            draft.turn(side, &[(speed_table.fast, 0.0)]);
-            draft.line(&[(speed_table.fast, 0.0)]);
+            draft.turn(side, &[(speeds.fast, 0.0)]);
+            draft.line(&[(speeds.fast, 0.0)]);
         }
     }
     let back = side.unwrap_or(Side::Starboard).opposite();
     if turns < 2 && vertices.len() < 3 {
-        group(&mut draft, &speed_table, back, None, None, vertices.len());
+        group(&mut draft, &speeds, back, None, None, vertices.len());
     }
     match last.ending {
         Ending::Return { leg, .. } => {
@@ -465,13 +453,13 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
             draft.push(
                 SegmentVariable::Arc {
                     side,
-                    speed: speed_table.fast,
+                    speed: speeds.fast,
                 },
                 length,
             );
             draft.guess(Ending::Return {
                 leg,
-                speed: speed_table.fast,
+                speed: speeds.fast,
             })
         }
         Ending::Goal { side, speed } => draft.guess(Ending::Goal { side, speed }),
@@ -481,14 +469,14 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
 
 /// Turn and line, with fewer speeds where there are many such groups.
 fn group(
-    draft: &mut Draft,
-    speed_table: &SpeedTable,
+    draft: &mut InitialGuessBuilder,
+    speeds: &ManoeuvreSpeeds,
     side: Side,
     turn: Option<&Segment>,
     line: Option<&Segment>,
     groups: usize,
 ) {
-    let SpeedTable { slow, normal, fast } = *speed_table;
+    let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
     let own = turn.or(line).map_or(fast, |s| s.speed);
     let (turns, lines): (&[f64], &[f64]) = match groups {
         0..=3 => (&[slow, fast], &[slow, normal, fast]),
