@@ -63,7 +63,7 @@ const STEP: f64 = std::f64::consts::SQRT_2;
 const LONGEST_M: f64 = 5e5;
 
 /// Largest scale factor in either direction.
-const MOST: f64 = 1e12;
+const MAX_SCALE: f64 = 1e12;
 
 /// Metres. A desired path within this distance of own ship's pose is moved to lead through it, so
 /// that rounding adds no joining manoeuvre.
@@ -440,7 +440,7 @@ fn size(problem: &Problem, proxies: &[Proxy]) -> (f64, f64) {
     let larger = radius.map_or(1.0, |r| r / NORMAL_SET_M).max(longer);
     let length = by_turn * STEP.powf(larger.log(STEP).round());
     let time = length * NORMAL_MPS / desired.legs()[0].speed;
-    let sound = |x: f64| x > 1.0 / MOST && x < MOST;
+    let sound = |x: f64| x > 1.0 / MAX_SCALE && x < MAX_SCALE;
     if sound(length) && sound(time) {
         (length, time)
     } else {

@@ -32,7 +32,7 @@ fn once_the_time_is_up_a_dearer_plan_whose_grid_is_fine_enough_is_the_answer() {
     assert!(!is_fine(ordered[0]));
     let fine = ordered.iter().find(|a| is_fine(a)).expect("one of many");
     let mut report = planner.plan().report;
-    let Outcome::Solved(plan) = planner.finest(&attempts, &mut report) else {
+    let Outcome::Solved(plan) = planner.cheapest_on_fine_grid(&attempts, &mut report) else {
         panic!("no plan");
     };
     assert_eq!(plan.cost, fine.objective);
@@ -40,7 +40,7 @@ fn once_the_time_is_up_a_dearer_plan_whose_grid_is_fine_enough_is_the_answer() {
     // this one needs a finer grid, and there is no time
     let coarse: Vec<Attempt> = ordered.into_iter().take(1).cloned().collect();
     assert!(matches!(
-        planner.finest(&coarse, &mut report),
+        planner.cheapest_on_fine_grid(&coarse, &mut report),
         Outcome::Infeasible(NoPlan::Coarse { .. })
     ));
 }

@@ -96,7 +96,7 @@ impl SideGeometry {
 /// Constraints on own ship in one interval.
 pub(crate) struct HalfPlaneBound<'a> {
     pub obstacle_bound: &'a ObstacleBound,
-    pub view: &'a SideGeometry,
+    pub geometry: &'a SideGeometry,
     pub reach_times: &'a [f64],
     /// Least distance of the scheduled point beyond each half-plane, metres.
     pub half_planes: [f64; OBLIQUE],
@@ -151,7 +151,7 @@ impl HalfPlaneBound<'_> {
 
     /// Least squared error of a point beyond a face and within the half-planes.
     fn beyond_face(&self, depth: f64, face: usize) -> f64 {
-        let pairs = self.view.pairs[face].iter();
+        let pairs = self.geometry.pairs[face].iter();
         pairs
             .zip(&self.half_planes)
             .map(|(pair, beyond)| pair.least_square(depth, *beyond))

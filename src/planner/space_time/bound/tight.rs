@@ -69,12 +69,12 @@ struct HeadingOffsets {
 
 impl HeadingOffsets {
     /// `ahead` is the unit vector of `heading`.
-    fn new(heading: f64, ahead: Vector, view: &SideGeometry, radius: f64) -> Self {
-        let angles = view.headings.map(|h| between(heading, h));
+    fn new(heading: f64, ahead: Vector, geometry: &SideGeometry, radius: f64) -> Self {
+        let angles = geometry.headings.map(|h| between(heading, h));
         Self {
             angles,
-            cosines: view.directions.map(|d| ahead.dot(&d)),
-            sines: view.directions.map(|d| cross(ahead, d).abs()),
+            cosines: geometry.directions.map(|d| ahead.dot(&d)),
+            sines: geometry.directions.map(|d| cross(ahead, d).abs()),
             greatest: angles.into_iter().fold(0.0, f64::max),
             radius,
         }
@@ -143,11 +143,12 @@ impl<'a> TightBound<'a> {
         let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
         // relative to own ship, the scheduled point is at `(lag + u_d tau, -across)` along and
         // across the leg
-        let view = &self.sides[usize::from(across.is_sign_positive())];
+        let geometry = &self.sides[usize::from(across.is_sign_positive())];
         let heading = wrap(pose.heading - self.course);
         let ahead = pose.ahead();
         let (along, aside) = (leg.direction.dot(&ahead), cross(leg.direction, ahead));
-        let offsets = HeadingOffsets::new(heading, Vector::new(along, aside), view, self.radius);
+        let offsets =
+            HeadingOffsets::new(heading, Vector::new(along, aside), geometry, self.radius);
         let slope = if lag >= 0.0 {
             leg.speed - u
         } else {
@@ -164,7 +165,7 @@ impl<'a> TightBound<'a> {
             };
             let due = Vector::new(self.root * (lag + leg.speed * tau), -across);
             let beyond: [f64; OBLIQUE] = std::array::from_fn(|k| {
-                let limit = &view.half_planes[k];
+                let limit = &geometry.half_planes[k];
                 limit.metric.dot(&due) - made_good[k + 2] / limit.scale
             });
             ((across.abs() - made_good[0], late), beyond)
@@ -187,7 +188,7 @@ impl<'a> TightBound<'a> {
             }
             let outside = HalfPlaneBound {
                 obstacle_bound,
-                view,
+                geometry,
                 reach_times: &reach_times,
                 half_planes,
             };
@@ -309,8 +310,8 @@ mod tests {
             let Stop::Goal(goal) = search.next_goal(&mut Uninformed(&mut graph), 1500) else {
                 break;
             };
-            let progress = search.way_to(goal);
-            let nodes = progress.iter().map(|i| &search.nodes()[*i]);
+            let path = search.way_to(goal);
+            let nodes = path.iter().map(|i| &search.nodes()[*i]);
             let cost = search.nodes()[goal].cost;
             cheapest.get_or_insert(cost);
             joints.extend(nodes.map(|n| (n.state.clone(), cost - n.cost)));

@@ -102,11 +102,11 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
     }
     let (sought, ways) = sought;
     let mut exit_motions = exit_motions(&ways);
-    for away in &exit_motions {
+    for beginning in &exit_motions {
         if clock.is_up() {
             break;
         }
-        if let Some(motion) = append(sought, away, |rest| planned(rest, clock)) {
+        if let Some(motion) = append(sought, beginning, |rest| planned(rest, clock)) {
             return Plan::measured(problem, motion, None);
         }
     }
@@ -135,12 +135,14 @@ fn continue_to_end(
     let mut best: Option<(f64, Vec<Segment>)> = None;
     let ends = exit_motions
         .iter()
-        .flat_map(|away| [(away, false), (away, true)]);
-    for (compared, (away, straight)) in ends.enumerate() {
+        .flat_map(|beginning| [(beginning, false), (beginning, true)]);
+    for (compared, (beginning, straight)) in ends.enumerate() {
         if clock.is_up() && compared >= MIN_COMPARED && best.is_some() {
             break;
         }
-        let Some(found) = append(problem, away, |rest| path_motion(rest, straight, clock)) else {
+        let Some(found) = append(problem, beginning, |rest| {
+            path_motion(rest, straight, clock)
+        }) else {
             continue;
         };
         let deep = nominal_hulls.depth(problem.own, &found, f64::INFINITY);
@@ -416,15 +418,15 @@ fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
 /// Appends to a motion another one, whose clock starts at the first one's end.
 fn append(
     problem: &Problem,
-    away: &[Segment],
+    beginning: &[Segment],
     follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
 ) -> Option<Vec<Segment>> {
-    if crate::planner::space_time::land::meets(problem.coast, away) {
+    if crate::planner::space_time::land::meets(problem.coast, beginning) {
         return None;
     }
-    let begun = away.last().map_or(0.0, Segment::end_time);
+    let begun = beginning.last().map_or(0.0, Segment::end_time);
     let own = OwnShip {
-        pose: away.last().map_or(problem.own.pose, Segment::end),
+        pose: beginning.last().map_or(problem.own.pose, Segment::end),
         ..problem.own.clone()
     };
     let desired = problem.desired.remaining(begun);
@@ -438,7 +440,7 @@ fn append(
         horizon: problem.horizon - begun,
         ..problem.clone()
     };
-    let mut motion = away.to_vec();
+    let mut motion = beginning.to_vec();
     motion.extend(follow(&rest)?.into_iter().map(|s| Segment {
         start_time: s.start_time + begun,
         ..s

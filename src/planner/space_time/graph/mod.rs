@@ -354,21 +354,21 @@ impl<'a> Graph<'a> {
                 time: (limits.time - clock).min(until),
                 ..limits
             };
-            tangent_edges.enumerate(interceptors, limits, &mut scratch, |aim| {
-                if aim.kind == from.kind || aim.meeting.time < 0.0 {
+            tangent_edges.for_each_edge(interceptors, limits, &mut scratch, |edge| {
+                if edge.kind == from.kind || edge.meeting.time < 0.0 {
                     return;
                 }
-                let apparent = duty.sides().contains(&aim.side) && aim.meeting.turn >= least_turn;
+                let apparent = duty.sides().contains(&edge.side) && edge.meeting.turn >= least_turn;
                 if from.kind == NodeKind::Start && !apparent {
                     return;
                 }
-                let mut chain = Chain::new(pose, time, aim.speed, radius);
+                let mut chain = Chain::new(pose, time, edge.speed, radius);
                 chain.segments.extend_from_slice(before);
-                chain.arc(aim.meeting.turn * radius * aim.side.turn_sign());
-                chain.line(aim.meeting.line);
+                chain.arc(edge.meeting.turn * radius * edge.side.turn_sign());
+                chain.line(edge.meeting.line);
                 // a turn of zero length is found on both sides
                 let known = out[first..].iter().any(|(s, _)| {
-                    s.kind == aim.kind
+                    s.kind == edge.kind
                         && (s.time - chain.time).abs() < 1e-6
                         && (s.pose.heading - chain.pose.heading).abs() < 1e-6
                 });
@@ -377,7 +377,7 @@ impl<'a> Graph<'a> {
                 }
                 self.push(
                     out,
-                    aim.kind,
+                    edge.kind,
                     Ending::Follow,
                     chain.segments,
                     before.len(),

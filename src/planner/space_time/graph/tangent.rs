@@ -168,7 +168,7 @@ impl TangentEdges {
 
     /// Finds every turn and line at one of the speeds that is tangent to a corner. `interceptors`
     /// turn to the sides of [`Side::BOTH`]; their speed is ignored.
-    pub(crate) fn enumerate(
+    pub(crate) fn for_each_edge(
         &self,
         interceptors: &[Interceptor; 2],
         limits: Limits,
@@ -275,7 +275,7 @@ impl SpeedSectors {
                 let sine = (1.0 - cosine * cosine).sqrt();
                 for sign in [1.0, -1.0] {
                     let ahead = f.normal * cosine + to_port(f.normal) * (sign * sine);
-                    speed_sectors.tangent_direction(ahead, *f);
+                    speed_sectors.add_direction(ahead, *f);
                 }
             }
         }
@@ -292,8 +292,8 @@ impl SpeedSectors {
                 _ if all(1.0) || all(-1.0) => {}
                 [a, b] => match (first[a], first[b]) {
                     (Some(a), Some(b)) => {
-                        speed_sectors.sector(index, corner, [a, b]);
-                        speed_sectors.sector(index, corner, [a + 1, b + 1]);
+                        speed_sectors.add_sector(index, corner, [a, b]);
+                        speed_sectors.add_sector(index, corner, [a + 1, b + 1]);
                     }
                     (Some(first), None) => speed_sectors.subdivide(index, corner, first, &faces[b]),
                     (None, Some(first)) => speed_sectors.subdivide(index, corner, first, &faces[a]),
@@ -305,7 +305,7 @@ impl SpeedSectors {
         speed_sectors
     }
 
-    fn tangent_direction(&mut self, ahead: Vector, plane: HalfSpace) {
+    fn add_direction(&mut self, ahead: Vector, plane: HalfSpace) {
         self.directions.push(TangentDirection {
             ahead,
             heading: heading_of(ahead),
@@ -314,7 +314,7 @@ impl SpeedSectors {
         });
     }
 
-    fn sector(&mut self, index: usize, corner: &Corner, directions: [usize; 2]) {
+    fn add_sector(&mut self, index: usize, corner: &Corner, directions: [usize; 2]) {
         let moments = directions.map(|l| {
             let tangent_direction = &self.directions[l];
             let velocity = tangent_direction.ahead * self.speed - corner.vertex.velocity;
@@ -350,11 +350,11 @@ impl SpeedSectors {
                 initial_support: normal.dot(&corner.vertex.origin),
             };
             let next = self.directions.len();
-            self.tangent_direction(ahead, plane);
-            self.sector(index, corner, [before, next]);
+            self.add_direction(ahead, plane);
+            self.add_sector(index, corner, [before, next]);
             before = next;
         }
-        self.sector(index, corner, [before, first + 1]);
+        self.add_sector(index, corner, [before, first + 1]);
     }
 }
 
@@ -411,11 +411,11 @@ mod tests {
             };
             let interceptors =
                 Side::BOTH.map(|side| Interceptor::new(&pose, time, 1.0, 100.0, side));
-            let mut enumerate = Vec::new();
-            tangent_edges.enumerate(&interceptors, limits, &mut Vec::new(), |edge| {
-                enumerate.push(edge)
+            let mut edges = Vec::new();
+            tangent_edges.for_each_edge(&interceptors, limits, &mut Vec::new(), |edge| {
+                edges.push(edge)
             });
-            for edge in &enumerate {
+            for edge in &edges {
                 let corner = tangent_edges.corners.iter().position(|c| {
                     let (initial, velocity) = c.vertex.indices;
                     edge.kind
@@ -439,7 +439,7 @@ mod tests {
                     for (side, interceptor) in Side::BOTH.into_iter().zip(&interceptors) {
                         let interceptor = interceptor.at_speed(speed);
                         tangent_edges.intercept_corner(k, &interceptor, limits, |meeting| {
-                            let same = enumerate.iter().any(|a| {
+                            let same = edges.iter().any(|a| {
                                 a.kind == tangent_edges.kind(k)
                                     && a.side == side
                                     && a.speed == speed

@@ -52,7 +52,7 @@ const BACKTRACK: f64 = 0.4;
 const MAX_BACKTRACKS: usize = 2;
 
 /// Fraction of the attainable change that an unsatisfiable row requires.
-const REACHABLE: f64 = 0.8;
+const ATTAINABLE: f64 = 0.8;
 
 /// Penalty increase for a refinement that has converged inside a set, and the largest number of
 /// increases.
@@ -63,7 +63,7 @@ const MAX_RAISES: usize = 3;
 const LEAST_GAIN: f64 = 0.05;
 
 /// Depth in metres that needs no correction.
-const CLEAR_ENOUGH_M: f64 = 1e-3;
+const CORRECTION_M: f64 = 1e-3;
 
 /// Relative decrease that counts as no progress.
 const STALLED: f64 = 1e-3;
@@ -186,7 +186,7 @@ impl Refinement {
             finished: false,
             stopped: false,
         };
-        refinement.keep(context);
+        refinement.keep_if_best(context);
         Some(refinement)
     }
 
@@ -252,7 +252,7 @@ impl Refinement {
     }
 
     /// Only manoeuvres checked with fine chords count as clear.
-    fn keep(&mut self, context: &Context) {
+    fn keep_if_best(&mut self, context: &Context) {
         let clear = self.model.least_slack >= 0.0 && context.chord <= FINE_CHORD_RAD;
         let better = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
         if clear && better {
@@ -303,7 +303,7 @@ impl Refinement {
                 return;
             }
             (self.lengths, self.model) = (trial_lengths, model);
-            self.keep(context);
+            self.keep_if_best(context);
         }
     }
 
@@ -312,7 +312,7 @@ impl Refinement {
         if let Some(model) = context.model(&self.structure, &self.lengths) {
             self.model = model;
             (self.finished, self.stalled) = (false, 0);
-            self.keep(context);
+            self.keep_if_best(context);
         }
     }
 
@@ -354,7 +354,7 @@ impl Refinement {
         trial_lengths: &Row,
         trial: &Trial,
     ) -> Option<(Row, Trial)> {
-        if trial.violation <= CLEAR_ENOUGH_M {
+        if trial.violation <= CORRECTION_M {
             return None;
         }
         let mut low = trial_lengths.map(|l| (-self.radius).max(-l));
@@ -402,7 +402,7 @@ impl Refinement {
             if !(least >= row.bound) {
                 // a row that the box cannot satisfy requires only what is attainable
                 rows.push(Constraint {
-                    bound: row.bound.min(REACHABLE * reach),
+                    bound: row.bound.min(ATTAINABLE * reach),
                     ..*row
                 });
             }
@@ -459,10 +459,10 @@ impl Refinement {
             {
                 let model = context.completed(&self.structure, trial);
                 let settled =
-                    gained < STALLED * model.cost.max(1.0) && model.violation < CLEAR_ENOUGH_M;
+                    gained < STALLED * model.cost.max(1.0) && model.violation < CORRECTION_M;
                 self.stalled = if settled { self.stalled + 1 } else { 0 };
                 (self.lengths, self.model) = (trial_lengths, model);
-                self.keep(context);
+                self.keep_if_best(context);
                 if share < 1.0 {
                     self.radius = (2.0 * share * largest)
                         .min(self.radius)

@@ -63,7 +63,7 @@ pub(crate) struct RigidMotion {
 }
 
 impl RigidMotion {
-    pub(crate) fn moves(&self, point: Vector) -> Vector {
+    pub(crate) fn velocity_of(&self, point: Vector) -> Vector {
         self.ahead + to_port(point - self.end) * self.curvature
     }
 }
@@ -152,7 +152,7 @@ impl Rollout {
                 let own = self.own_rate(place, i);
                 of[0] * own[0] + of[1] * own[1] + of[2] * own[2]
             } else {
-                let moved = rigid_motions.moves(place.position);
+                let moved = rigid_motions.velocity_of(place.position);
                 of[0] * moved.x + of[1] * moved.y + of[2] * rigid_motions.slowness
             };
         }
@@ -194,7 +194,7 @@ impl Rollout {
             }
             Ending::Goal { .. } => {
                 let goal = problem.desired.end();
-                let (by_arc, by_line) = (line_or_arc.moves(goal), last.ahead);
+                let (by_arc, by_line) = (line_or_arc.velocity_of(goal), last.ahead);
                 let determinant = cross(by_arc, by_line);
                 let at = goal - origin;
                 [
@@ -225,7 +225,7 @@ impl Rollout {
             distance[i] = if runs_only {
                 1.0
             } else {
-                last.ahead.dot(&r.moves(last.end))
+                last.ahead.dot(&r.velocity_of(last.end))
             };
             clock[i] = r.slowness;
         }

@@ -204,7 +204,7 @@ impl Structure {
         let curvature = rollout.rigid_motions[n + 1].curvature;
         for i in 0..n {
             let r = &rollout.rigid_motions[i];
-            rollout.solved_rates[0][i] = -normal.dot(&r.moves(end)) / across;
+            rollout.solved_rates[0][i] = -normal.dot(&r.velocity_of(end)) / across;
             rollout.solved_rates[1][i] = -r.curvature / curvature;
         }
         Some(())
@@ -241,7 +241,7 @@ impl Structure {
             rollout,
         );
         let (by_arc, by_line) = (
-            rollout.rigid_motions[n].moves(goal),
+            rollout.rigid_motions[n].velocity_of(goal),
             rollout.rigid_motions[n + 1].ahead,
         );
         let determinant = cross(by_arc, by_line);
@@ -249,7 +249,7 @@ impl Structure {
             return None;
         }
         for i in 0..n {
-            let moved = rollout.rigid_motions[i].moves(goal);
+            let moved = rollout.rigid_motions[i].velocity_of(goal);
             rollout.solved_rates[0][i] = -cross(moved, by_line) / determinant;
             rollout.solved_rates[1][i] = -cross(by_arc, moved) / determinant;
         }

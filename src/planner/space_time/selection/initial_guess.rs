@@ -144,7 +144,7 @@ const OVERSHOOT_RETURN: f64 = 0.08;
 
 /// Manoeuvre that passes ahead: largest ratio of the fast time to the available time; outbound turn
 /// and return turn, radians; lines, metres.
-const MOST_RUSHING: f64 = 1.6;
+const MAX_FAST_RATIO: f64 = 1.6;
 const AHEAD_TURN: f64 = 0.5;
 const AHEAD_RETURN: f64 = 0.3;
 const AHEAD_OUT_M: f64 = 40.0;
@@ -353,12 +353,12 @@ pub(crate) fn slowing(
 ) -> Option<InitialGuess> {
     let speeds = ManoeuvreSpeeds::of(problem);
     let (lag, due) = conflict.astern;
-    let spell = (lag / (speeds.normal - speeds.slow)).max(APPARENT_TIME);
-    let begin = (due - spell).max(0.0);
+    let duration = (lag / (speeds.normal - speeds.slow)).max(APPARENT_TIME);
+    let begin = (due - duration).max(0.0);
     // negated on purpose: a NaN gives no initial guess
     if !(problem.duty().may_slow
         && speeds.slow <= apparent_slow_speed(problem)
-        && spell < 2.0 * due)
+        && duration < 2.0 * due)
     {
         return None;
     }
@@ -366,7 +366,7 @@ pub(crate) fn slowing(
     let arc = SLOWING_TURN * radius;
     let back = side.opposite();
     let mut draft = InitialGuessBuilder::default();
-    draft.runs(&speeds, begin * speeds.normal, 0.0, spell * speeds.slow);
+    draft.runs(&speeds, begin * speeds.normal, 0.0, duration * speeds.slow);
     draft.turn(side, &[(speeds.slow, arc), (speeds.fast, 0.0)]);
     draft.line(&[(speeds.slow, 0.0), (speeds.fast, SLOWING_OUT_M)]);
     draft.turn(back, &[(speeds.fast, arc)]);
@@ -393,7 +393,7 @@ pub(crate) fn ahead(
     let begin = (due - needed).max(0.0);
     let turn = 0.5 * (conflict.from + due);
     // negated on purpose: a NaN gives no initial guess
-    if !(fast > normal && needed < MOST_RUSHING * due && turn > begin) {
+    if !(fast > normal && needed < MAX_FAST_RATIO * due && turn > begin) {
         return None;
     }
     let radius = problem.own.turning_radius;

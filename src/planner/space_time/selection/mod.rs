@@ -97,13 +97,13 @@ const SLENDER: [EvasiveManoeuvre; 5] = [
 const SLENDER_FROM: f64 = 2.5;
 
 /// Ratio of the offsets of the two sides above which the farther side gets one manoeuvre only.
-const FAR_SIDE: f64 = 1.8;
+const FAR_SIDE_RATIO: f64 = 1.8;
 
 /// Ratio of the offset astern to the lateral one below which waiting is tried as well.
-const WORTH_WAITING: f64 = 1.2;
+const WAITING_RATIO: f64 = 1.2;
 
 /// Ratio of the offset ahead to the lateral one below which passing ahead is tried as well.
-const WORTH_RUSHING: f64 = 1.2;
+const PASS_AHEAD_RATIO: f64 = 1.2;
 
 /// Largest number of conflicts with manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
@@ -227,7 +227,7 @@ impl<'a> Selection<'a> {
         let duty = problem.duty();
         let sides = duty.sides();
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
-            if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
+            if conflict.astern.0 < WAITING_RATIO * conflict.nearest_offset() {
                 for across in [false, true] {
                     guesses.extend(
                         sides
@@ -240,7 +240,7 @@ impl<'a> Selection<'a> {
                 let slower = sides.iter();
                 guesses.extend(slower.filter_map(|side| slowing(problem, *side, conflict, leg)));
             }
-            if duty.is_none() && conflict.ahead.0 < WORTH_RUSHING * conflict.nearest_offset() {
+            if duty.is_none() && conflict.ahead.0 < PASS_AHEAD_RATIO * conflict.nearest_offset() {
                 let both = Side::BOTH.into_iter();
                 guesses.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
             }
@@ -248,7 +248,7 @@ impl<'a> Selection<'a> {
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
             for &side in sides {
-                let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
+                let far = conflict.offset(side) > FAR_SIDE_RATIO * conflict.offset(side.opposite());
                 let tried = if far && sides.len() > 1 {
                     &manoeuvres[..1]
                 } else {
