@@ -3,22 +3,6 @@
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 /// Ship, grid and weights of the stage cost `(x - r)' Q (x - r) + tau' R tau`.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::ControlSettings;
-/// use searoom::vessel::VesselKind;
-///
-/// let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// let finer = ControlSettings { intervals: 100, ..usual.clone() };
-/// assert_eq!(usual.intervals, 50);
-/// assert_eq!((usual.length, usual.force_limits.x), (1.255, 2.0));
-/// // 24 times as long: 24³ times the force
-/// let ship = ControlSettings::at_length(VesselKind::CyberShip2, 24.0 * 1.255);
-/// assert!((ship.force_limits.x / (2.0 * 24.0_f64.powi(3)) - 1.0).abs() < 1e-12);
-/// assert_eq!(finer.force_limits, usual.force_limits);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlSettings {
     /// Whose forces.

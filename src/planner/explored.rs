@@ -6,21 +6,6 @@ use crate::frame::Pose;
 use crate::trajectory::Segment;
 
 /// What a node of a graph is.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::planner::NodeKind;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let graph = &run.planned.explored;
-/// let starts = graph.node_weights().filter(|node| node.kind == NodeKind::Start).count();
-/// assert_eq!(starts, 1);
-/// assert!(graph.node_weights().any(|node| matches!(node.kind, NodeKind::Vertex { obstacle: 0, .. })));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum NodeKind {
     /// Own ship at t = 0.
@@ -48,19 +33,6 @@ pub enum NodeKind {
 }
 
 /// A node that the search made.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::planner::ExploredNode;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let expanded: Vec<&ExploredNode> = run.planned.explored.node_weights().filter(|node| node.expanded).collect();
-/// assert!(!expanded.is_empty() && expanded.iter().all(|node| node.time <= run.scenario.horizon));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExploredNode {
     /// What it is.
@@ -76,20 +48,6 @@ pub struct ExploredNode {
 }
 
 /// What is known of an edge.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::planner::EdgeVerdict;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let graph = &run.planned.explored;
-/// let blocked = graph.edge_weights().filter(|edge| edge.verdict == EdgeVerdict::Blocked { obstacle: 0 }).count();
-/// assert!(blocked > 0, "some ways lead through the ferry's set");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum EdgeVerdict {
     /// Clear of every set.
@@ -105,21 +63,6 @@ pub enum EdgeVerdict {
 }
 
 /// A motion between two nodes.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::planner::ExploredEdge;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let graph = &run.planned.explored;
-/// let cheapest = |a: &&ExploredEdge, b: &&ExploredEdge| a.cost.total_cmp(&b.cost);
-/// let edge: &ExploredEdge = graph.edge_weights().min_by(cheapest).expect("an edge");
-/// assert!(edge.cost >= 0.0 && !edge.segments.is_empty());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExploredEdge {
     /// Lines and arcs, in order.

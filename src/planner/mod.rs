@@ -23,23 +23,6 @@ use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::OwnShip;
 
 /// Which search runs over the graph.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::pipeline;
-/// use searoom::planner::SearchKind;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let mut all = scenario.clone();
-/// all.search = SearchKind::Dijkstra;
-/// let [a_star, dijkstra] = [scenario, all].map(|s| pipeline::run(s).planned);
-/// // the same plan, found with fewer nodes
-/// assert_eq!(a_star.outcome.plan().map(|p| p.cost), dijkstra.outcome.plan().map(|p| p.cost));
-/// assert!(a_star.stats.expanded < dijkstra.stats.expanded);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchKind {
     /// Best first by cost plus an admissible bound of the cost to go.
@@ -49,15 +32,6 @@ pub enum SearchKind {
 }
 
 /// Which planner.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::PlannerKind;
-///
-/// let words = [PlannerKind::SpaceTime, PlannerKind::PathTime, PlannerKind::OptimalControl].map(PlannerKind::word);
-/// assert_eq!(words, ["space-time", "path-time", "optimal-control"]);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlannerKind {
     /// Chooses her way and her speed: [`space_time`].
@@ -80,17 +54,6 @@ impl PlannerKind {
 }
 
 /// What a planner minimises.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::Objective;
-///
-/// // a metre longer, or one per cent more risk: the same
-/// let careful = Objective::LengthRisk { weight: 100.0 };
-/// assert_eq!((Objective::Time.word(), careful.word()), ("time", "length-risk"));
-/// assert_eq!((Objective::Time.unit(), careful.unit()), ("s", "m"));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
     /// The space-time error, docs/theory.md section 7, m².
@@ -188,19 +151,6 @@ impl Problem<'_> {
 pub const AGAINST_THE_RULES: f64 = 0.05;
 
 /// What the search did to find the cheapest plan on the graph.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::planner::SearchStats;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let SearchStats { expanded, generated, edges_checked, .. } = run.planned.stats;
-/// assert!(0 < expanded && expanded < edges_checked && edges_checked < generated);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct SearchStats {
     /// Nodes whose successors were made.
@@ -214,21 +164,6 @@ pub struct SearchStats {
 }
 
 /// A collision-free trajectory to the end of the desired path.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::planner::Plan;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let plan: &Plan = run.planned.outcome.plan().expect("there is room");
-/// // it ends at the last waypoint, ten seconds late
-/// assert!((plan.trajectory.end().position - run.scenario.desired.end()).norm() < 1e-5);
-/// assert!((plan.trajectory.end_time() - 310.0).abs() < 1.0 && plan.cost > 0.0);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// From own ship's pose at t = 0 to the last waypoint, or to the horizon.
@@ -261,21 +196,6 @@ impl Plan {
 }
 
 /// What ends the hold of a ship that stands on: the plan is to hold course and speed until then, and this escape after it.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::pipeline;
-/// use searoom::planner::Escape;
-/// use searoom::scenario::{Compliance, Scenario};
-///
-/// let mut scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
-/// scenario.compliance = Compliance::Rules;
-/// let Escape { latest, turn, .. } = pipeline::run(scenario).planned.escape.expect("she stands on");
-/// // course and speed are held for nearly two minutes; then she would turn to starboard
-/// assert!((90.0..150.0).contains(&latest) && turn < 0.0);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Escape {
     /// Seconds: the latest time at which an escape is known to be clear.
@@ -287,22 +207,6 @@ pub struct Escape {
 }
 
 /// What a planner answers. None of these is an error.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::planner::Outcome;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// match &run.planned.outcome {
-///     Outcome::Solved(plan) => assert!(plan.trajectory.length() > 1500.0),
-///     Outcome::Infeasible(reason) => panic!("{reason}"),
-///     Outcome::Deadline(best) => panic!("out of time; a plan so far: {}", best.is_some()),
-/// }
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub enum Outcome {
     /// A plan, clear of every set.
@@ -343,31 +247,6 @@ impl Outcome {
 }
 
 /// The answer of a planner with what led to it.
-///
-/// ```
-/// use searoom::evaluation::{Evaluation, Passage};
-/// use searoom::obstacle::SpaceTimeObstacle;
-/// use searoom::pipeline::{self, Run, TargetSets};
-/// use searoom::planner::{Outcome, Plan, Planned, SearchStats};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run: Run = pipeline::run(scenario);
-/// let sets: &TargetSets = &run.sets[0];
-/// assert_eq!(sets.hard.name(), "target");
-/// let planned: &Planned = &run.planned;
-/// let Outcome::Solved(Plan { trajectory, cost, .. }) = &planned.outcome else {
-///     panic!("there is room");
-/// };
-/// assert!(trajectory.end_time() > 300.0 && *cost > 0.0);
-/// let SearchStats { expanded, generated, .. } = planned.stats;
-/// assert!(expanded <= generated);
-/// let judged: &Evaluation = run.evaluation.as_ref().expect("every plan is judged");
-/// assert!(judged.verified() && judged.violations.is_empty());
-/// let passage: &Passage = &judged.passages[0];
-/// assert!(passage.dcpa >= passage.min_clearance);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Planned {
     /// The verdict.

@@ -3,23 +3,6 @@
 use crate::trajectory::NetworkError;
 
 /// Why there is no plan.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::pipeline;
-/// use searoom::planner::{NoPlan, Outcome};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let hurried = Scenario { horizon: 100.0, ..scenario };
-/// let Outcome::Infeasible(reason) = pipeline::run(hurried).planned.outcome else {
-///     panic!("1500 m in 100 s");
-/// };
-/// assert!(matches!(reason, NoPlan::HorizonTooShort { horizon: 100.0, .. }));
-/// assert!(!reason.is_for_the_sets(), "no smaller set would help");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoPlan {
     /// Own ship starts inside an obstacle.

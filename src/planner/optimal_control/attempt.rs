@@ -27,16 +27,6 @@ const DEARER: f64 = 10.0;
 const SAME: f64 = 1e-4;
 
 /// A place where a motion is in a set.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::optimal_control::Inside;
-///
-/// // half-way between the middle of the second set and its edge, where the level is one
-/// let deepest = Inside { obstacle: 1, time: 42.0, level: 0.25 };
-/// assert!(deepest.level < 1.0);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inside {
     /// Index of the set.
@@ -48,37 +38,6 @@ pub struct Inside {
 }
 
 /// What came of one guess.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Attempt, Controls, Settings, Task, Weights, attempt, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let (_, guess) = family(&task).swap_remove(0);
-/// let found: Attempt = attempt(&task, &guess, &Settings::default(), &|| true);
-/// assert!(found.is_feasible() && found.inside.is_none());
-/// assert_eq!(found.profile.states[0], task.first);
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Attempt {
     /// The motion.

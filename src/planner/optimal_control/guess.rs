@@ -15,35 +15,6 @@ const SIDED: usize = 4;
 const CLEAR: f64 = 0.3;
 
 /// Which guess a solve started from.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Controls, Start, Task, Weights, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let starts: Vec<Start> = family(&task).into_iter().map(|(start, _)| start).collect();
-/// assert_eq!((starts[0], starts[0].to_string().as_str()), (Start::Lateral(0), "lateral 1"));
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Start {
     /// The space-time planner's trajectory.

@@ -11,24 +11,6 @@ use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeOb
 const LEAST_SEMI_AXIS: f64 = 1e-3;
 
 /// An ellipsoid with interior at every time, and what it stands for.
-///
-/// # Examples
-///
-/// ```
-/// # use nalgebra::Matrix2;
-/// # use searoom::frame::Vector;
-/// # use searoom::geometry::Ellipse;
-/// use searoom::obstacle::EllipsoidObstacle;
-/// use searoom::planner::optimal_control::{KeepOut};
-///
-/// let circle = |x: f64, radius: f64| Ellipse::new(Vector::new(x, 0.0), Matrix2::identity() * radius * radius);
-/// // 2 m about (10, 0), on her way west at 0.1 m/s
-/// let target = EllipsoidObstacle::new("target", circle(10.0, 2.0)?, circle(-0.1, 0.0)?);
-/// let keep_out = KeepOut::outer_of(&target.into());
-/// assert!(!keep_out.encloses(), "an ellipsoid is taken as it is");
-/// assert!((keep_out.narrowest() - 2.0).abs() < 1e-9);
-/// # Ok::<(), searoom::geometry::ShapeError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeepOut {
     set: EllipsoidObstacle,
@@ -36,25 +18,6 @@ pub struct KeepOut {
 }
 
 /// A section as the constraint sees it: `(x - center)' inverse (x - center) >= 1`.
-///
-/// # Examples
-///
-/// ```
-/// # use nalgebra::Matrix2;
-/// # use searoom::frame::Vector;
-/// # use searoom::geometry::Ellipse;
-/// use searoom::obstacle::EllipsoidObstacle;
-/// use searoom::planner::optimal_control::{Keep, KeepOut};
-///
-/// let circle = |x: f64, radius: f64| Ellipse::new(Vector::new(x, 0.0), Matrix2::identity() * radius * radius);
-/// // 2 m about (10, 0), on her way west at 0.1 m/s
-/// let target = EllipsoidObstacle::new("target", circle(10.0, 2.0)?, circle(-0.1, 0.0)?);
-/// let keep_out = KeepOut::outer_of(&target.into());
-/// let after_20_s: Keep = keep_out.at(20.0);
-/// assert!((after_20_s.level(Vector::new(8.0, 2.0)) - 1.0).abs() < 1e-9, "on the edge");
-/// assert!(after_20_s.level(Vector::new(8.0, 1.0)) < 1.0);
-/// # Ok::<(), searoom::geometry::ShapeError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keep {
     /// Metres.

@@ -11,40 +11,6 @@ const BARRIER: f64 = 1e-4;
 
 /// A plan that moves on with the ship: each step drops the first interval, adds one at the end and solves again from the
 /// states, forces and multipliers at hand.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Controls, Measured, RecedingHorizon, Settings, Task, Weights, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let (_, guess) = family(&task).swap_remove(0);
-/// let mut horizon = RecedingHorizon::new(&task, &guess, Settings::default(), &|| true);
-/// // an interval later she is a little beside her plan
-/// let state = horizon.plan().profile.states[1].add_scalar(0.001);
-/// let next = horizon.step(&task, Measured { state, keep_outs: &[] }, &|| true);
-/// assert_eq!((next.start_time, next.first), (5.0, state));
-/// assert!(horizon.plan().is_feasible());
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct RecedingHorizon {
     attempt: Attempt,
@@ -52,17 +18,6 @@ pub struct RecedingHorizon {
 }
 
 /// What is new after an interval.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::optimal_control::Measured;
-/// use searoom::vessel::StateVector;
-///
-/// let under_way = StateVector::new(1.0, 0.0, 0.0, 0.2, 0.0, 0.0);
-/// let measured = Measured { state: under_way, keep_outs: &[] };
-/// assert!(measured.keep_outs.is_empty() && measured.state[3] == 0.2);
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Measured<'a> {
     /// Where the ship is.

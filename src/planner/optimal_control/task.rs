@@ -12,20 +12,6 @@ use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 const BASE_FRACTIONS: [f64; 2] = [0.5, 1.0];
 
 /// How the cost weighs and what the forces may be.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::ControlSettings;
-/// use searoom::planner::optimal_control::{Controls, Weights};
-/// use searoom::vessel::VesselKind;
-///
-/// let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// // half of the power
-/// let controls = Controls { force_limits: usual.force_limits / 2.0, weights };
-/// assert!(controls.force_limits.x < usual.force_limits.x);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Controls {
     /// To either side of zero: newtons, newtons, newton metres.
@@ -35,32 +21,6 @@ pub struct Controls {
 }
 
 /// From a state at a time on: stay near the desired trajectory, out of every set, at least cost.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::planner::ControlSettings;
-/// use searoom::planner::optimal_control::{Controls, Task, Weights};
-/// use searoom::trajectory::DesiredTrajectory;
-/// use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-///
-/// let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// let task = Task {
-///     vessel: &CyberShip2::SMOOTH,
-///     controls: Controls { force_limits: usual.force_limits, weights },
-///     desired: &desired,
-///     keep_outs: &[],
-///     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-///     start_time: 0.0,
-///     duration: 100.0,
-///     intervals: 20,
-/// };
-/// assert_eq!((task.step(), task.time(3)), (5.0, 15.0));
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Task<'a, V> {
     /// The ship, smooth.
@@ -82,35 +42,6 @@ pub struct Task<'a, V> {
 }
 
 /// States at the nodes and forces between them, SI.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Controls, Profile, Task, Weights, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let (_, guess): (_, Profile) = family(&task).swap_remove(0);
-/// assert_eq!((guess.states.len(), guess.forces.len()), (21, 20));
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// One more than intervals.

@@ -23,36 +23,6 @@ pub use stage::{Blocks, Derivatives, Multipliers, Point, StageProblem, Triple, V
 pub use workspace::Workspace;
 
 /// How to solve.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Controls, Settings, Task, Weights, attempt, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let (_, guess) = family(&task).swap_remove(0);
-/// let hurried = Settings { max_iterations: 1, ..Settings::default() };
-/// assert!(!attempt(&task, &guess, &hurried, &|| true).is_feasible(), "one step is not enough");
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Largest scaled error of the optimality conditions at the end.
@@ -80,36 +50,6 @@ impl Default for Settings {
 }
 
 /// Why the solver stopped. Only [`Status::Solved`] is a solution.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Controls, Settings, Status, Task, Weights, attempt, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let (_, guess) = family(&task).swap_remove(0);
-/// let stopped = attempt(&task, &guess, &Settings::default(), &|| false);
-/// assert_eq!(stopped.report.status, Status::OutOfTime);
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
     /// The optimality conditions hold to the tolerance; rows may still fall short, see [`Report::shortfall`].
@@ -148,37 +88,6 @@ impl std::fmt::Display for Status {
 }
 
 /// What a solve came to; the point itself is in the iterate.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Controls, Report, Settings, Status, Task, Weights, attempt, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let (_, guess) = family(&task).swap_remove(0);
-/// let Report { status, iterations, error, .. } = attempt(&task, &guess, &Settings::default(), &|| true).report;
-/// assert_eq!(status, Status::Solved);
-/// assert!(iterations > 1 && error <= Settings::default().tolerance);
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
     /// Why it stopped.

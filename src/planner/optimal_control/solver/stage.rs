@@ -166,7 +166,6 @@ pub struct Multipliers<'a, const N: usize> {
 /// s.t. defect_k(x_k, u_k, x_k+1) = 0                 N equations that determine x_k+1
 ///      rows_k(x_k, u_k, x_k+1) >= 0                  as many as the stage says, at an exact penalty
 ///      low <= u_k <= high                            strictly within; infinite where there is none
-/// ```
 ///
 /// with `N` states and `M` controls. Every function is twice differentiable.
 pub trait StageProblem<const N: usize, const M: usize> {

@@ -60,19 +60,6 @@ pub struct Span {
 }
 
 /// Weights of the stage cost, diagonal.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::ControlSettings;
-/// use searoom::planner::optimal_control::Weights;
-/// use searoom::vessel::VesselKind;
-///
-/// let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// // forces at no price
-/// let weights = Weights { state: usual.state_weights, force: usual.force_weights * 0.0 };
-/// assert_eq!(weights.force.norm(), 0.0);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     /// Per squared unit of [`StateVector`] and second.
