@@ -12,29 +12,6 @@ use crate::frame::{Vector, heading_of, to_port};
 use crate::trajectory::Segment;
 
 /// A time interval, seconds.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::frame::Pose;
-/// use searoom::obstacle::PolytopeObstacle;
-/// use searoom::obstacle::contact::{Interval, line_contact};
-/// use searoom::trajectory::Segment;
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// // own ship waits 100 m ahead of her
-/// let start = Pose::new(Vector::new(100.0, 0.0), 0.0);
-/// let wait = Segment { start, start_time: 0.0, duration: 60.0, speed: 0.0, turn_rate: 0.0 };
-/// let Interval { start, end } = line_contact(&target, &wait, 0.0).expect("she gets there");
-/// assert!((start - 15.0).abs() < 1e-9 && (end - 27.5).abs() < 1e-9);
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// First instant.

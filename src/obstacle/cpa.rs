@@ -12,25 +12,6 @@ const MAX_LOOKS: usize = 200;
 const SLOPE: f64 = 1e-13;
 
 /// The least distance to an obstacle and when it is reached.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{ClosestApproach, PolytopeObstacle, SpaceTimeObstacle};
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// // own ship comes the other way, 50 m to the north
-/// let (position, velocity) = (Vector::new(300.0, 50.0), Vector::new(-5.0, 0.0));
-/// let ClosestApproach { distance, time, .. } = target.closest_approach(position, velocity, 100.0);
-/// assert!(distance < 20.0 && (20.0..40.0).contains(&time), "{distance} m after {time} s");
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosestApproach {
     /// dCPA, metres; 0 in contact.

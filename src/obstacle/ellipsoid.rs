@@ -27,25 +27,6 @@ pub(super) const MAX_STEPS: usize = 100;
 /// for the difference.
 ///
 /// Where both sets lie on parallel segments or are points, so does the sum: it is kept as the polytope, exact.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
-///
-/// let corners = [(190.0, -10.0), (210.0, -10.0), (210.0, 10.0), (190.0, 10.0)];
-/// let initial = ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))?;
-/// let velocity = ConvexPolygon::hull(&[Vector::new(-3.0, 0.0), Vector::new(-2.0, 0.0)])?;
-/// let polytope = PolytopeObstacle::new("ferry", initial, velocity);
-/// let ellipsoid = EllipsoidObstacle::outer_of(&polytope);
-/// // what is in the polytope is in the ellipsoid around it
-/// for corner in polytope.section(30.0).vertices() {
-///     assert!(ellipsoid.signed_distance(*corner, 30.0).distance < 1e-6);
-/// }
-/// let region = ellipsoid.velocity_obstacle(Vector::zeros(), 60.0);
-/// assert!(region.contains(Vector::new(2.0, 0.0)));
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct EllipsoidObstacle {
     name: String,

@@ -27,23 +27,6 @@ const MAX_CUTS_AT_SIDES: u32 = 48;
 /// to the widened `O_0`, each moved outward by what `V` adds, and the boundary between them is
 /// [`Self::boundary_point`]. Exact, for a finite horizon as for none (then it is the closure); the obstacle's
 /// sections are outer sets of the sum, and so is this region of the velocities that lead into that.
-///
-/// # Examples
-///
-/// ```
-/// use nalgebra::Matrix2;
-/// use searoom::frame::Vector;
-/// use searoom::geometry::Ellipse;
-/// use searoom::obstacle::{EllipsoidObstacle, EllipsoidVelocityObstacle};
-///
-/// let circle = |x: f64, radius: f64| Ellipse::new(Vector::new(x, 0.0), Matrix2::identity() * radius * radius);
-/// // 50 m about (1000, 0), on her way west at 5 m/s, half a metre per second more or less
-/// let target = EllipsoidObstacle::new("ferry", circle(1000.0, 50.0)?, circle(-5.0, 0.5)?);
-/// let region: EllipsoidVelocityObstacle = target.velocity_obstacle(Vector::zeros(), 600.0);
-/// assert!(region.contains(Vector::new(5.0, 0.0)), "straight on, she is met");
-/// assert!(!region.contains(Vector::new(3.5, -3.5)), "45 degrees to starboard, she is not");
-/// # Ok::<(), searoom::geometry::ShapeError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct EllipsoidVelocityObstacle<'a> {
     obstacle: &'a EllipsoidObstacle,

@@ -17,25 +17,6 @@ const MANY: usize = 64;
 
 /// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a unit
 /// normal in the plane. Formulas section 1; the corrected eq. (9) is a positive multiple of it.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{HalfSpace, PolytopeObstacle};
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// let east = |face: &&HalfSpace| face.normal.x > 0.99;
-/// let bow: &HalfSpace = target.faces().iter().find(east).expect("a face to the east");
-/// // after 10 s she is at most at 70 m east, and 30 m from 100 m
-/// assert!((bow.slack(Vector::new(100.0, 0.0), 10.0) - 30.0).abs() < 1e-9);
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace {
     /// Outward unit normal `n`.
@@ -54,24 +35,6 @@ impl HalfSpace {
 }
 
 /// How far a point is outside, and by which face.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{PolytopeObstacle, Slack};
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// let Slack { value, face } = target.slack(Vector::new(50.0, 50.0), 10.0);
-/// // after 10 s she reaches 20 m to the north
-/// assert!((value - 30.0).abs() < 1e-9 && target.faces()[face].normal.y > 0.99);
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slack {
     /// `g(x, t)`, metres: inside is `g <= 0`, and then `-g` is the depth; outside `g` is a lower bound
@@ -83,25 +46,6 @@ pub struct Slack {
 
 /// A vertex of the sections `O_t`: it moves in a straight line, and its path is an edge of the
 /// space-time body.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{MovingVertex, PolytopeObstacle};
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// let vertices: Vec<MovingVertex> = target.moving_vertices();
-/// assert_eq!(vertices.len(), 4);
-/// let east = vertices.iter().map(|v| v.origin.x + 10.0 * v.velocity.x).fold(f64::MIN, f64::max);
-/// assert!((east - 70.0).abs() < 1e-9, "after 10 s");
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingVertex {
     /// Index of the vertex of `O_0`, and of `V`.

@@ -10,26 +10,6 @@ pub const OUTER_EXCESS_M: f64 = 0.05;
 const MAX_CUTS: usize = 200;
 
 /// A point of the path-time diagram.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{PathTime, PolytopeObstacle, along_path};
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// // a path to the north that crosses her track 100 m east of her
-/// let (start, north) = (Vector::new(100.0, -200.0), Vector::new(0.0, 1.0));
-/// let corners: Vec<PathTime> = along_path(&target, start, north, 400.0, 60.0);
-/// let first = corners.iter().map(|c| c.time).fold(f64::INFINITY, f64::min);
-/// assert!((first - 15.0).abs() < 1e-9, "she reaches the path after {first} s");
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathTime {
     /// Metres along the path.
@@ -39,16 +19,6 @@ pub struct PathTime {
 }
 
 /// A straight piece of a path: `x(s) = start + s direction`, `0 <= s <= length`, paper eq. (28).
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::obstacle::Track;
-///
-/// let track = Track { start: Vector::new(0.0, 10.0), direction: Vector::new(1.0, 0.0), length: 500.0 };
-/// assert_eq!(track.at(200.0), Vector::new(200.0, 10.0));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Track {
     /// Metres.
@@ -385,24 +355,6 @@ pub fn along_track_from(
 
 /// [`along_track_from`] of an ellipsoid, whose projection is convex with a curved edge: a polygon around it. At no time is a point
 /// of it farther than [`OUTER_EXCESS_M`] from the ellipse at that time.
-///
-/// ```
-/// use nalgebra::Matrix2;
-/// use searoom::frame::Vector;
-/// use searoom::geometry::Ellipse;
-/// use searoom::obstacle::{EllipsoidObstacle, Track, ellipsoid_along_track_from};
-///
-/// // eqs. (20) and (21)
-/// let initial = Ellipse::new(Vector::zeros(), Matrix2::new(100.0, 0.0, 0.0, 25.0))?;
-/// let velocity = Ellipse::new(Vector::new(1.0, 0.0), Matrix2::new(0.04, 0.0, 0.0, 0.0625))?;
-/// let target = EllipsoidObstacle::new("figure 2", initial, velocity);
-/// // along its own way it is ahead of its centre by 10 m and 0.2 m/s
-/// let track = Track { start: Vector::zeros(), direction: Vector::new(1.0, 0.0), length: 300.0 };
-/// let corners = ellipsoid_along_track_from(&target, &track, 40.0, 60.0);
-/// let farthest = corners.iter().map(|c| c.distance).fold(0.0, f64::max);
-/// assert!(farthest > 130.0 && farthest < 132.0, "{farthest} m at 100 s");
-/// # Ok::<(), searoom::geometry::ShapeError>(())
-/// ```
 pub fn ellipsoid_along_track_from(
     obstacle: &EllipsoidObstacle,
     track: &Track,

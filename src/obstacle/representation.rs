@@ -17,26 +17,6 @@ const SECTION_SIDES: usize = 64;
 
 /// One of the representations. An enum and not a trait object: the set is closed, a planner takes each apart in
 /// its own way, a document writes each with its own keys, and a level set is of its obstacle's own kind.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{Obstacle, PathTime, PolytopeObstacle, SpaceTimeObstacle, along_path};
-///
-/// let corners = [(90.0, 40.0), (110.0, 40.0), (110.0, 60.0), (90.0, 60.0)];
-/// let initial = ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))?;
-/// let south = ConvexPolygon::point(Vector::new(0.0, -2.0));
-/// let crossing = PolytopeObstacle::new("crossing", initial, south);
-/// // on the path to the east from 90 m to 110 m, between 20 s and 30 s
-/// let seen: Vec<PathTime> = along_path(&crossing, Vector::zeros(), Vector::new(1.0, 0.0), 200.0, 100.0);
-/// assert_eq!(seen.len(), 4);
-/// assert!(seen.iter().all(|c| (20.0 - 1e-9..30.0 + 1e-9).contains(&c.time)));
-/// assert!(seen.iter().all(|c| (90.0 - 1e-9..110.0 + 1e-9).contains(&c.distance)));
-/// // whatever its representation, it is asked the same
-/// let any = Obstacle::Polytope(crossing);
-/// assert!(any.contains(Vector::new(100.0, 0.0), 25.0));
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Obstacle {
     /// Paper eqs. (2)-(9).

@@ -13,26 +13,6 @@ use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
 /// Why velocity sets do not follow one another.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{SlabError, SlabObstacle};
-/// use searoom::target::VelocitySpell;
-///
-/// let heading_north = |spread: f64| ConvexPolygon::hull(&[(-spread, 4.0), (spread, 4.0), (0.0, 6.0)].map(|(x, y)| Vector::new(x, y)));
-/// // little is unknown of her for a minute, more from then on
-/// let spells = vec![
-///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
-///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
-/// ];
-/// let backwards = spells.into_iter().rev().collect();
-/// let refused = SlabObstacle::new("ferry", ConvexPolygon::point(Vector::zeros()), backwards);
-/// assert!(matches!(refused, Err(SlabError::NotIncreasing { .. })));
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SlabError {
     /// No velocity set at all.
@@ -53,28 +33,6 @@ pub enum SlabError {
 }
 
 /// One stretch of time with one set of velocities.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{Slab, SlabObstacle};
-/// use searoom::target::VelocitySpell;
-///
-/// let heading_north = |spread: f64| ConvexPolygon::hull(&[(-spread, 4.0), (spread, 4.0), (0.0, 6.0)].map(|(x, y)| Vector::new(x, y)));
-/// // little is unknown of her for a minute, more from then on
-/// let spells = vec![
-///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
-///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
-/// ];
-/// let target = SlabObstacle::new("ferry", ConvexPolygon::point(Vector::zeros()), spells).expect("in order");
-/// let second: &Slab = &target.slabs()[1];
-/// assert_eq!((second.start(), second.end()), (60.0, f64::INFINITY));
-/// // it begins with all the places that she may have reached
-/// assert!(second.obstacle().initial().contains(Vector::new(0.0, 300.0)));
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Slab {
     start: f64,

@@ -38,21 +38,6 @@ use crate::planner::{NoPlan, Outcome, Planned, PlannerKind, Problem};
 use crate::scenario::{Compliance, Scenario};
 
 /// One scenario, planned and judged.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::pipeline::Run;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let run: Run = run;
-/// assert!(run.relaxations.is_empty() && run.reason().is_none());
-/// let evaluation = run.evaluation.as_ref().expect("every plan is judged");
-/// assert!(evaluation.verified() && evaluation.min_clearance >= run.scenario.own_ship.safety_margin);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Run {
     /// What was asked.

@@ -9,20 +9,6 @@ use crate::planner::{PlannerKind, space_time};
 pub const NO_RETURN_STEP_S: f64 = 1.0;
 
 /// How long own ship may hold on.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::pipeline::NoReturn;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// // how long she may go on as if nobody were there
-/// let NoReturn::At(time) = run.no_return().expect("a space-time plan") else { panic!("the ferry is in the way") };
-/// assert!((60.0..150.0).contains(&time), "{time} s");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoReturn {
     /// On the desired trajectory she meets no hard set.

@@ -5,26 +5,6 @@ use crate::colregs::Role;
 use crate::obstacle::{PeakRisk, SpaceTimeObstacle};
 
 /// What a plan gave up.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::pipeline::{self, Relaxation};
-/// use searoom::scenario::Scenario;
-/// use searoom::target::Motion;
-///
-/// // own ship begins within the ferry's shape
-/// let mut scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
-/// let Motion::Ship(ferry) = &mut scenario.targets[0].motion else { panic!("a ship") };
-/// ferry.pose.position = Vector::new(180.0, 40.0);
-/// let run = pipeline::run(scenario);
-/// let Some(Relaxation::Domain { target, amount }) = run.relaxations.first() else {
-///     panic!("{:?}", run.relaxations);
-/// };
-/// assert!(target == "target" && *amount > 0.0, "metres that the shape is drawn back");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Relaxation {
     /// A shape was drawn back toward its hard set.

@@ -10,22 +10,6 @@ use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 
 /// The sets of one target, own ship's footprint folded in.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::obstacle::SpaceTimeObstacle;
-/// use searoom::pipeline::{TargetSets, sets};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let ferry: &TargetSets = &sets(&scenario)[0];
-/// assert_eq!((ferry.hard.name(), ferry.encounter.role.name()), ("target", "give-way"));
-/// // the shape asks for more room than safety does
-/// let there = scenario.targets[0].position_at(60.0) + searoom::frame::Vector::new(0.0, 150.0);
-/// assert!(ferry.either(true).contains(there, 60.0) && !ferry.either(false).contains(there, 60.0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct TargetSets {
     /// Hulls, margin and position uncertainty: safety is claimed on this one.

@@ -5,18 +5,6 @@ use crate::evaluation::{Safety, facts, outcome_word};
 use crate::planner::Outcome;
 
 /// How a run ended.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::pipeline::Verdict;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// assert_eq!((Verdict::of(&run), Verdict::of(&run).word()), (Verdict::Solved, "solved"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// A plan that gives up nothing.
@@ -74,13 +62,6 @@ impl Run {
     }
 
     /// The title, how it ended, and of a plan whether it is verified and whether it is safe.
-    ///
-    /// ```
-    /// # use searoom::{pipeline, scenario::Scenario};
-    /// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
-    /// assert_eq!(pipeline::run(scenario).headline(), "Head-on: solved (verified, safe)");
-    /// # Ok::<(), searoom::scenario::ScenarioError>(())
-    /// ```
     pub fn headline(&self) -> String {
         let word = self.word();
         let facts = self.evaluation.as_ref().map_or_else(String::new, |found| {
