@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::frame::{Vector, deg_from_radians};
-use crate::obstacle::Section;
+use crate::geometry::ConvexSet;
 use crate::study::assess::{Approach, Assessment};
 
 /// What `assess` answers.
@@ -190,14 +190,14 @@ fn approach(name: String, nearest: &Approach) -> ApproachDocument {
     }
 }
 
-fn section((time, section): &(f64, Section)) -> SectionDocument {
+fn section((time, section): &(f64, ConvexSet)) -> SectionDocument {
     let pair = |p: &Vector| [p.x, p.y];
     match section {
-        Section::Polygon(polygon) => SectionDocument::Polygon {
+        ConvexSet::Polygon(polygon) => SectionDocument::Polygon {
             t_s: *time,
             vertices_m: polygon.vertices().iter().map(pair).collect(),
         },
-        Section::Ellipse(ellipse) => {
+        ConvexSet::Ellipse(ellipse) => {
             let q = ellipse.shape();
             SectionDocument::Ellipse {
                 t_s: *time,

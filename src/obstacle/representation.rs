@@ -1,14 +1,13 @@
 //! An obstacle in any of the representations.
 
-use super::cpa::ClosestApproach;
+use super::closest_approach::ClosestApproach;
+use super::polytope::slabs::Slab;
 use super::risk::PeakRisk;
-use super::slabs::Slab;
 use super::{
-    EllipsoidObstacle, PolytopeObstacle, Section, SlabObstacle, SpaceTimeObstacle, Support,
-    VelocityObstacle,
+    EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle, Support, VelocityObstacle,
 };
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::geometry::{ConvexPolygon, ConvexSet, SignedDistance};
 use crate::target::VelocitySpell;
 use crate::trajectory::{Segment, Trajectory};
 
@@ -53,21 +52,18 @@ impl Obstacle {
     }
 
     /// The section `O_t`, `time >= 0`.
-    pub fn section(&self, time: f64) -> Section {
+    pub fn section(&self, time: f64) -> ConvexSet {
         match self {
-            Self::Polytope(o) => Section::Polygon(o.section(time)),
-            Self::Ellipsoid(o) => Section::Ellipse(o.outer_section(time)),
-            Self::Slabs(o) => Section::Polygon(o.section(time)),
+            Self::Polytope(o) => ConvexSet::Polygon(o.section(time)),
+            Self::Ellipsoid(o) => ConvexSet::Ellipse(o.outer_section(time)),
+            Self::Slabs(o) => ConvexSet::Polygon(o.section(time)),
         }
     }
 
     /// The section as a polygon, metres: exact for polytopes and slabs, the circumscribed 64-gon for an
     /// ellipse.
     pub fn outer_section(&self, time: f64) -> ConvexPolygon {
-        match self.section(time) {
-            Section::Polygon(polygon) => polygon,
-            Section::Ellipse(ellipse) => ellipse.outer_polygon(SECTION_SIDES),
-        }
+        self.section(time).outer_polygon(SECTION_SIDES)
     }
 
     /// The same set from a time in seconds on, by a clock that starts then: exact for polytopes and slabs; the ellipses

@@ -1,6 +1,6 @@
 //! What every obstacle answers, whatever its sets are made of.
 
-use super::cpa::ClosestApproach;
+use super::closest_approach::ClosestApproach;
 use super::risk::{PeakRisk, risk_of};
 use crate::frame::Vector;
 use crate::geometry::SignedDistance;

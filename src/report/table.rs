@@ -9,7 +9,7 @@ pub(super) use crate::evaluation::Tone;
 use crate::evaluation::{Counted, outcome, risk_figure};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
-use crate::pipeline::{Relaxation, Run, Rung};
+use crate::pipeline::{Relaxation, RelaxationLevel, Run};
 use crate::planner::optimal_control::ControlReport;
 use crate::text::printable_lines;
 
@@ -263,7 +263,7 @@ fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
     let feasible = report.starts.iter().filter(|start| start.feasible).count();
     let steps: usize = report.starts.iter().map(|start| start.iterations).sum();
     // of two passes, with the domains and without, one is told of
-    let pass = if run.rung == Rung::Domains {
+    let pass = if run.level == RelaxationLevel::ReducedDomains {
         "without the domains, "
     } else {
         ""

@@ -2,7 +2,8 @@
 
 use super::{Alteration, Situation, least_alteration};
 use crate::frame::Vector;
-use crate::obstacle::{Obstacle, Section, SpaceTimeObstacle};
+use crate::geometry::ConvexSet;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
 /// A position at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +33,7 @@ pub struct TargetSections {
     /// `"polytope"` or `"ellipsoid"`.
     pub representation: &'static str,
     /// Times, seconds, and sections, in the order asked.
-    pub sections: Vec<(f64, Section)>,
+    pub sections: Vec<(f64, ConvexSet)>,
 }
 
 /// Risk at a point.

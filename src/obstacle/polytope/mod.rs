@@ -1,15 +1,17 @@
 //! The polytope obstacle `O = {(x, t) : t >= 0, x in O_0 + t V}`, paper eqs. (2)-(9), in support form.
 
+pub(in crate::obstacle) mod slabs;
+
 use std::sync::{Arc, OnceLock};
 
-use super::cpa::{ClosestApproach, from_edge, polytope_approach};
-use super::risk::{
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::obstacle::closest_approach::{ClosestApproach, from_edge, polytope_approach};
+use crate::obstacle::risk::{
     FaceSpread, Line, PeakRisk, level_of, peak_by_bisection, polytope_alpha, polytope_peak,
     scaled_velocities,
 };
-use super::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
-use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::obstacle::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
 use crate::trajectory::Segment;
 
 /// Vertices from which on they are not all looked at.
@@ -169,7 +171,7 @@ impl PolytopeObstacle {
         self.moving().to_vec()
     }
 
-    pub(super) fn moving(&self) -> &[MovingVertex] {
+    pub(in crate::obstacle) fn moving(&self) -> &[MovingVertex] {
         self.shared.moving.get_or_init(|| {
             moving_vertices(
                 &self.shared.initial,
@@ -354,9 +356,9 @@ impl SpaceTimeObstacle for PolytopeObstacle {
 
     /// By the faces, O(n + m); [`PolytopeObstacle::velocity_obstacle`] is the region.
     fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool {
-        super::cpa::usable_horizon(position, velocity, horizon).is_none_or(|horizon| {
-            contact::clip(self, position, velocity, 0.0, horizon, 0.0).is_some()
-        })
+        crate::obstacle::closest_approach::usable_horizon(position, velocity, horizon).is_none_or(
+            |horizon| contact::clip(self, position, velocity, 0.0, horizon, 0.0).is_some(),
+        )
     }
 }
 

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::{EllipsoidObstacle, HalfPlane, SpaceTimeObstacle, VelocityObstacle};
 use crate::frame::{Vector, cross, direction, heading_of, to_port, to_starboard};
+use crate::obstacle::{EllipsoidObstacle, HalfPlane, SpaceTimeObstacle, VelocityObstacle};
 
 /// Halvings to the last digit of an angle.
 const HALVINGS: usize = 64;

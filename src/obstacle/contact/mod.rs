@@ -6,9 +6,13 @@
 
 use std::f64::consts::{PI, TAU};
 
-pub use super::meeting::meets;
-use super::{HalfSpace, PolytopeObstacle};
+pub(in crate::obstacle) mod advancement;
+mod decision;
+
+pub use decision::meets;
+
 use crate::frame::{Vector, heading_of, to_port};
+use crate::obstacle::{HalfSpace, PolytopeObstacle};
 use crate::trajectory::Segment;
 
 /// A time interval, seconds.
@@ -21,7 +25,7 @@ pub struct Interval {
 }
 
 /// Longest arc, radians, that one chord stands for in the quick test.
-pub(super) const CHORD_RAD: f64 = 0.4;
+pub(in crate::obstacle) const CHORD_RAD: f64 = 0.4;
 
 /// The first instant at which the segment is at least `depth` metres inside the obstacle, or `None`.
 /// A segment or depth that is not finite is in contact at once. Obstacles exist from t = 0 on.
@@ -60,7 +64,7 @@ pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> 
 }
 
 /// The same for a motion from `position` at `start_time` with `velocity`; `duration` may be infinite.
-pub(super) fn clip(
+pub(in crate::obstacle) fn clip(
     obstacle: &PolytopeObstacle,
     position: Vector,
     velocity: Vector,
@@ -209,7 +213,11 @@ impl Circle {
 
 /// Root of a monotone function between a point where it is `<= 0` and one where it is positive, as
 /// the pair (last point `<= 0`, first point `> 0`), adjacent to rounding.
-pub(super) fn bisect(value: impl Fn(f64) -> f64, mut inside: f64, mut outside: f64) -> (f64, f64) {
+pub(in crate::obstacle) fn bisect(
+    value: impl Fn(f64) -> f64,
+    mut inside: f64,
+    mut outside: f64,
+) -> (f64, f64) {
     let (mut fi, mut fo) = (value(inside), value(outside));
     for step in 0..100 {
         let width = outside - inside;

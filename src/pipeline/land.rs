@@ -1,11 +1,13 @@
-//! The land of a scenario as a planner meets it.
+//! Land of a scenario as an obstacle of the planners.
 
 use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::Coast;
 use crate::scenario::Scenario;
 
-/// The convex pieces of land that own ship could reach before the horizon, whatever she does: she is at most half of
-/// the way that she can sail from the middle between her start and the end.
+/// The convex pieces of land that own ship could reach before the horizon.
+///
+/// Own ship is never farther than half its greatest sailing distance from the midpoint between its
+/// start and its end.
 pub fn land_within_reach(scenario: &Scenario) -> Vec<ConvexPolygon> {
     let Some(land) = &scenario.land else {
         return Vec::new();
@@ -18,13 +20,13 @@ pub fn land_within_reach(scenario: &Scenario) -> Vec<ConvexPolygon> {
     pieces.into_iter().cloned().collect()
 }
 
-/// Metres from own ship's centre that have to be water on every heading, where there is land.
+/// Radius of water that own ship's centre needs on every heading, metres.
 fn footprint(scenario: &Scenario) -> f64 {
     let margin = scenario.land.as_ref().map_or(0.0, |land| land.margin);
     scenario.own_ship.hull.half_diagonal() + margin
 }
 
-/// The land as own ship's centre sees it, from [`land_within_reach`].
+/// The pieces from [`land_within_reach`], grown by own ship's footprint.
 pub fn coast(scenario: &Scenario, land: &[ConvexPolygon]) -> Coast {
     Coast::around(land, footprint(scenario))
 }

@@ -1,10 +1,10 @@
 //! First contact of a straight motion with an ellipsoid obstacle, by a cubic; docs/theory.md sections 3 and 10.
 
-use super::EllipsoidObstacle;
-use super::contact::{self, Interval};
-use super::ellipsoid::MAX_STEPS;
-use super::risk::Line;
 use crate::frame::{Vector, cross};
+use crate::obstacle::EllipsoidObstacle;
+use crate::obstacle::contact::{self, Interval};
+use crate::obstacle::ellipsoid::MAX_STEPS;
+use crate::obstacle::risk::Line;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -52,7 +52,7 @@ impl EllipsoidObstacle {
 
     /// The first instant at which a straight motion is inside: the sign of a cubic in t, whose turning points
     /// part its roots; docs/theory.md section 3. O(1).
-    pub(super) fn line_start(&self, line: &Line) -> Option<f64> {
+    pub(in crate::obstacle) fn line_start(&self, line: &Line) -> Option<f64> {
         if let Some(flat) = &self.flat {
             let at = line.origin + line.velocity * line.start;
             let duration = line.end - line.start;
@@ -116,7 +116,7 @@ impl EllipsoidObstacle {
         [line.start, a.min(b), a.max(b), end]
     }
 
-    pub(super) fn relative(&self, line: &Line) -> Vector {
+    pub(in crate::obstacle) fn relative(&self, line: &Line) -> Vector {
         line.velocity - self.velocity.center()
     }
 

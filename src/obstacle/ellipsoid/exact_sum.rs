@@ -1,7 +1,7 @@
 //! The Minkowski sum of two ellipses itself, which no ellipse is; docs/theory.md section 3.
 
-use super::{EllipsoidObstacle, SpaceTimeObstacle};
 use crate::frame::{Vector, cross, to_starboard};
+use crate::obstacle::{EllipsoidObstacle, SpaceTimeObstacle};
 
 /// Sections of the unit interval: the maximum is found to a millionth of a millionth of it.
 const GOLDEN_STEPS: usize = 60;

@@ -1,7 +1,7 @@
 //! A space-time obstacle seen along a straight path: paper eqs. (27)-(29), docs/theory.md section 6.
 
-use super::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
+use crate::obstacle::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle};
 
 /// Metres. No point of the polygon that stands for an ellipsoid is farther than this from the ellipse at its time.
 pub const OUTER_EXCESS_M: f64 = 0.05;

@@ -3,7 +3,7 @@
 //! The signed distance is convex in space and time together, since supports are concave in time. So along
 //! a chord its tangent is a lower bound, and along an arc it is within the sagitta of its chord.
 
-use super::SpaceTimeObstacle;
+use crate::obstacle::SpaceTimeObstacle;
 use crate::tolerance;
 use crate::trajectory::{Mover, Segment};
 
@@ -17,7 +17,7 @@ const MAX_TANGENTS: usize = 200;
 /// 1996). Early only while less than [`tolerance::GRAZE_M`] away from that depth; late never, but for a
 /// nanosecond where a set without interior starts to grow. A segment or depth that is not finite is in contact
 /// at once. Some ten distances on a line, some tens on an arc that comes near.
-pub(super) fn advanced_contact<O: SpaceTimeObstacle>(
+pub(in crate::obstacle) fn advanced_contact<O: SpaceTimeObstacle>(
     obstacle: &O,
     segment: &Segment,
     depth: f64,

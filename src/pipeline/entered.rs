@@ -1,6 +1,6 @@
-//! Sets that a motion enters: until when.
+//! Motions that enter hard sets, and when they have left them.
 
-use super::ladder::TOUCH_M;
+use super::relaxation::TOUCH_M;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::planner::space_time::{self, NominalTarget};
@@ -10,15 +10,17 @@ use crate::target::Motion;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
-/// Seconds between two looks at whether a set has been left, at least, and halvings of that within which the instant is found.
-const LOOK_S: f64 = 1.0;
+/// Shortest step in time between two samples of the depth, seconds.
+const SAMPLE_S: f64 = 1.0;
+
+/// Bisection steps within one sample step.
 const HALVINGS: usize = 30;
 
-/// The clock is read after so many looks.
-const MANY_LOOKS: u32 = 1000;
+/// Samples between two readings of the clock.
+const SAMPLES_PER_CLOCK_READING: u32 = 1000;
 
-/// A motion that need not be clear of anything: off the path to its end, with the least harm; along paths the one that does least
-/// harm. `None` where there is none within the horizon.
+/// The motion with the least harm, which may enter sets; along paths the one that does least harm.
+/// `None` where there is none within the horizon.
 pub(super) fn motion(scenario: &Scenario, problem: &Problem) -> Option<Planned> {
     match scenario.planner {
         PlannerKind::SpaceTime => {
@@ -31,7 +33,7 @@ pub(super) fn motion(scenario: &Scenario, problem: &Problem) -> Option<Planned> 
     }
 }
 
-/// A target as if nothing of its motion were unknown.
+/// A target without uncertainty: hull and set at its nominal velocity.
 fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> NominalTarget {
     let (target, hard) = (&scenario.targets[index], &problem.obstacles[index]);
     let Motion::Ship(ship) = &target.motion else {
@@ -61,15 +63,17 @@ fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> NominalTarge
     }
 }
 
-/// Seconds from which on a motion is clear of a set; `None` where it is so all along, its end where it never is, or where the
-/// time is up before that is known. Errs to the late side, by some nanoseconds.
+/// Time from which a motion is clear of a set, seconds; `None` where it is always clear.
+///
+/// The motion's end where it never is clear, or where the time runs out before that is known. Errs
+/// to the late side, by some nanoseconds. Steps by the depth over the closing speed, then bisects.
 pub(super) fn left_for_good(
     set: &Obstacle,
     trajectory: &Trajectory,
     is_up: impl Fn() -> bool,
 ) -> Option<f64> {
     let end = trajectory.end_time();
-    // what has no interior is not to be touched, not even crossed
+    // a set without an interior must not be touched, not even crossed
     let set = set.outer_where_flat();
     let contact = |from: f64| {
         let later = trajectory.segments().iter().filter(|s| s.end_time() > from);
@@ -80,12 +84,12 @@ pub(super) fn left_for_good(
         let at = trajectory.pose_at(time).position;
         -set.signed_distance(at, time).distance
     };
-    // negated on purpose: a NaN is inside
+    // negated so that a NaN is inside
     let inside = |time: f64| !(depth(time) <= 0.0);
     let own = trajectory.segments().iter().map(|s| s.speed);
     let closing = own.fold(0.0, f64::max) + greatest_speed(&set);
-    let (mut from, mut looks) = (trajectory.start_time(), 0_u32);
-    // a ship that has arrived has no way to look along
+    let (mut from, mut samples) = (trajectory.start_time(), 0_u32);
+    // a ship that has arrived has no motion to test
     let mut met = if end > from {
         contact(from)?
     } else {
@@ -93,13 +97,13 @@ pub(super) fn left_for_good(
     };
     loop {
         let mut last = met.max(from);
-        // so deep inside, it is not left before
-        let after = |time: f64| time + (depth(time) / closing).max(LOOK_S);
+        // at this depth the set is not left earlier
+        let after = |time: f64| time + (depth(time) / closing).max(SAMPLE_S);
         let mut next = after(last);
         while next < end && inside(next) {
             (last, next) = (next, after(next));
-            looks += 1;
-            if looks.is_multiple_of(MANY_LOOKS) && is_up() {
+            samples += 1;
+            if samples.is_multiple_of(SAMPLES_PER_CLOCK_READING) && is_up() {
                 return Some(end);
             }
         }
@@ -122,7 +126,7 @@ pub(super) fn left_for_good(
     }
 }
 
-/// No point of a set moves faster, m/s; infinite where that is not known.
+/// Upper bound of the speed of any point of a set, m/s; infinite where unknown.
 fn greatest_speed(set: &Obstacle) -> f64 {
     match set {
         Obstacle::Polytope(o) => o.velocity().reach(),
@@ -141,7 +145,7 @@ mod tests {
     use crate::geometry::Ellipse;
     use crate::obstacle::EllipsoidObstacle;
 
-    /// Half an hour to sail out of a great set: found, or out of time, and then nothing is claimed.
+    /// Leaving a large set takes half an hour: found, or nothing is claimed when the time is up.
     #[test]
     fn out_of_time_nothing_is_claimed_of_a_set() {
         let around = |size: f64| {

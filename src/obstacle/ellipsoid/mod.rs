@@ -1,19 +1,23 @@
 //! The ellipsoid obstacle, paper eqs. (12)-(19): `O_0` and `V` are ellipses, and every section is the ellipse
 //! of least trace that contains their sum in a known family. An outer set.
 
-use super::conservative_advancement::advanced_contact;
-use super::cpa::{ClosestApproach, searched_approach, usable_horizon};
-use super::risk::{Line, PeakRisk, level_of, peak_by_bisection};
-use super::{PolytopeObstacle, SpaceTimeObstacle, Support};
+mod contact;
+mod exact_sum;
+pub(in crate::obstacle) mod velocity_obstacle;
+
 use crate::frame::{Vector, cross};
 use crate::geometry::{
     DISC_SIDES, Ellipse, SignedDistance, distance_in_frame, outer_enclosing_ellipse,
 };
+use crate::obstacle::closest_approach::{ClosestApproach, searched_approach, usable_horizon};
+use crate::obstacle::contact::advancement::advanced_contact;
+use crate::obstacle::risk::{Line, PeakRisk, level_of, peak_by_bisection};
+use crate::obstacle::{PolytopeObstacle, SpaceTimeObstacle, Support};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
 /// Most steps to a root; six are usual.
-pub(super) const MAX_STEPS: usize = 100;
+pub(in crate::obstacle) const MAX_STEPS: usize = 100;
 
 /// Every position that a target may reach, from outside: `O_t = E(p_o + p_v t, Q_t)` for `t >= 0` with
 ///
@@ -30,15 +34,15 @@ pub(super) const MAX_STEPS: usize = 100;
 #[derive(Debug, Clone, PartialEq)]
 pub struct EllipsoidObstacle {
     name: String,
-    pub(super) initial: Ellipse,
-    pub(super) velocity: Ellipse,
+    pub(in crate::obstacle) initial: Ellipse,
+    pub(in crate::obstacle) velocity: Ellipse,
     /// `r_o`, metres, and `r_v`, m/s.
-    pub(super) roots: [f64; 2],
+    pub(in crate::obstacle) roots: [f64; 2],
     /// Semi-axes of `Q_o / r_o` and of `Q_v / r_v`.
-    pub(super) axes: [[Vector; 2]; 2],
+    pub(in crate::obstacle) axes: [[Vector; 2]; 2],
     /// `det (Q_o / r_o + t Q_v / r_v)` as coefficients of 1, t, t²; none is negative.
-    pub(super) determinant: [f64; 3],
-    pub(super) flat: Option<PolytopeObstacle>,
+    pub(in crate::obstacle) determinant: [f64; 3],
+    pub(in crate::obstacle) flat: Option<PolytopeObstacle>,
 }
 
 /// A section in its own frame, about its centre.
@@ -178,7 +182,7 @@ impl EllipsoidObstacle {
     }
 
     /// `r_o + r_v t`, the root of the trace of `Q_t`: no point of the section is farther from its centre.
-    pub(super) fn reach(&self, time: f64) -> f64 {
+    pub(in crate::obstacle) fn reach(&self, time: f64) -> f64 {
         self.roots[0] + self.roots[1] * time
     }
 
@@ -195,13 +199,13 @@ impl EllipsoidObstacle {
 
     /// For `time > 0` of the sign of `y' Q_t^-1 y - 1`. At t = 0 it is zero all along the line of an `O_0` that is
     /// a segment, and everywhere around a point: [`Self::is_beyond`] tells these apart.
-    pub(super) fn excess(&self, y: Vector, time: f64) -> f64 {
+    pub(in crate::obstacle) fn excess(&self, y: Vector, time: f64) -> f64 {
         let [still, growing] = self.adjugates(y);
         still + time * growing - self.reach(time) * self.determinant_at(time)
     }
 
     /// Beyond the circle that contains the section: decides where the section is a segment or a point.
-    pub(super) fn is_beyond(&self, y: Vector, time: f64) -> bool {
+    pub(in crate::obstacle) fn is_beyond(&self, y: Vector, time: f64) -> bool {
         let reach = self.reach(time);
         y.norm_squared() > reach * reach
     }

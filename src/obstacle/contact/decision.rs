@@ -1,8 +1,8 @@
 //! Whether a line or an arc in time meets a space-time polytope: the decision alone.
 
-use super::PolytopeObstacle;
-use super::contact::{CHORD_RAD, line_contact};
 use crate::frame::{Vector, to_port};
+use crate::obstacle::PolytopeObstacle;
+use crate::obstacle::contact::{CHORD_RAD, line_contact};
 use crate::trajectory::{Mover, Segment};
 
 /// True when the segment is at least `depth` metres inside the obstacle at some time: the decision alone,

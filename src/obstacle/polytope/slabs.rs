@@ -2,12 +2,12 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::cpa::{ClosestApproach, usable_horizon};
-use super::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
-use super::space_time_obstacle::largest_risk_of_parts;
-use super::{HalfSpace, PolytopeObstacle, SpaceTimeObstacle, Support};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::obstacle::closest_approach::{ClosestApproach, usable_horizon};
+use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
+use crate::obstacle::space_time_obstacle::largest_risk_of_parts;
+use crate::obstacle::{HalfSpace, PolytopeObstacle, SpaceTimeObstacle, Support};
 use crate::target::VelocitySpell;
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
