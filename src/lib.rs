@@ -127,6 +127,7 @@ pub mod evaluation;
 pub mod frame;
 pub mod geometry;
 pub mod map;
+mod numerics;
 pub mod obstacle;
 mod output;
 pub mod pipeline;

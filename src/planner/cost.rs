@@ -4,22 +4,8 @@ use std::f64::consts::PI;
 
 use super::line_error;
 use crate::frame::cross;
+use crate::numerics::{GAUSS_2, GAUSS_4};
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Mover, Nearest, Segment};
-
-/// Nodes and weights of the 4-point Gauss-Legendre rule on [0, 1].
-pub(crate) const GAUSS_4: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
-
-/// Nodes and weights of the 2-point rule on [0, 1]. It is exact for cubics, and the squared error
-/// along a line is quadratic.
-pub(crate) const GAUSS_2: [(f64, f64); 2] = [
-    (0.211_324_865_405_187_13, 0.5),
-    (0.788_675_134_594_812_9, 0.5),
-];
 
 /// Largest radius (metres) and smallest turn (radians) of the closed form. It loses digits on
 /// flatter or shorter arcs.

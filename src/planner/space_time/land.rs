@@ -5,8 +5,9 @@ use crate::geometry::{ConvexPolygon, outer_simplified};
 use crate::obstacle::{Coast, LAND, PolytopeObstacle, window_of};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::tangent::TangentEdges;
-use crate::planner::space_time::proxy::{Proxy, TOUCH_M};
+use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::selection::initial_guess::{Conflict, ManoeuvreSpeeds};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 
 /// Metres. Blocks farther than this from the nominal motion get no tangent edges.

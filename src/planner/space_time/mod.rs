@@ -20,6 +20,7 @@ mod refinement;
 mod route;
 mod rules;
 mod selection;
+mod settings;
 mod similarity;
 
 pub(crate) use fallback::escape::{NominalTarget, escape};
@@ -35,7 +36,7 @@ use crate::trajectory::Segment;
 use fallback::{hybrid_a_star, sequential};
 use graph::{Graph, node};
 use piece::pieces;
-use proxy::{Proxy, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
+use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
 use refinement::approach::FINE_CHORD_RAD;
 use refinement::trial::Context;
 use route::Route;
@@ -144,7 +145,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     for proxy in proxies {
         if let Some(slack) = proxy.slack(own.pose.position, 0.0)
             // negated on purpose: a NaN is inside
-            && !(slack >= -TOUCH_M)
+            && !(slack >= -tolerance::TOUCH_M)
         {
             return refuse(NoPlan::StartInside {
                 target: problem.obstacles[proxy.obstacle].name().to_owned(),
@@ -154,7 +155,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     }
     if let Some(depth) = problem.coast.depth(own.pose.position)
         // negated on purpose: a NaN is on land
-        && !(depth <= TOUCH_M)
+        && !(depth <= tolerance::TOUCH_M)
     {
         return refuse(NoPlan::StartAshore { depth });
     }

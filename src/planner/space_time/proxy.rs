@@ -4,12 +4,9 @@ use crate::frame::{Pose, Vector, cross, to_port};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
 use crate::planner::Problem;
 use crate::planner::space_time::piece::{Body, Piece, Window};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
-
-/// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of the depth
-/// that the checker rejects.
-pub(crate) const TOUCH_M: f64 = 1e-7;
 
 /// Metres by which a disc must stay out of own ship's reach to be ignored: much larger than
 /// rounding errors.

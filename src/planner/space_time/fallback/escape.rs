@@ -13,9 +13,11 @@ use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
 use crate::planner::space_time::piece::pieces as parts_of;
-use crate::planner::space_time::proxy::{Proxy, TOUCH_M, within_reach};
+use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
+use crate::planner::space_time::settings::{EVASIVE_HOLDS_S, EXIT_HOLDS_S};
 use crate::planner::{Plan, Problem};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::{Hull, OwnShip};
 
@@ -37,13 +39,6 @@ const HALVINGS: usize = 20;
 
 /// Exits from which plans are sought, least harm first.
 const MAX_EXITS: usize = 4;
-
-/// Seconds for which an exit is held before the planner takes over. At the very edge of a growing
-/// set every turn leads back into it.
-const HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
-
-/// Seconds for which a turn is held where own ship is in no set and there is no plan.
-const EVASIVE_HOLDS_S: [f64; 3] = [30.0, 60.0, 120.0];
 
 /// Motions that are compared even after the deadline.
 const MIN_COMPARED: usize = 12;
@@ -322,7 +317,9 @@ fn exit_motions(ways: &[Exit]) -> Vec<Vec<Segment>> {
     if ways.is_empty() {
         return vec![Vec::new()];
     }
-    let held = ways.iter().flat_map(|way| HOLDS_S.map(|hold| (way, hold)));
+    let held = ways
+        .iter()
+        .flat_map(|way| EXIT_HOLDS_S.map(|hold| (way, hold)));
     held.map(|(way, hold)| cut(&way.motion, way.out + hold))
         .collect()
 }

@@ -54,7 +54,7 @@ const RESOLUTIONS: [Resolution; 2] = [
 const WEIGHT: f64 = 1.1;
 
 /// Metres. A turn whose circle passes this near to a point has no tangent to it.
-const NEAR_M: f64 = 1e-6;
+const CIRCLE_M: f64 = 1e-6;
 
 /// Motion primitive: a turn and a line, or a wait.
 #[derive(Debug, Clone, Copy)]
@@ -322,7 +322,7 @@ fn turn_to_point(pose: &Pose, radius: f64, side: Side, point: Vector) -> Option<
     let away = point - center;
     let far = away.norm();
     // negated on purpose: a NaN is within
-    if !(far > radius + NEAR_M) {
+    if !(far > radius + CIRCLE_M) {
         return None;
     }
     let line = (far * far - radius * radius).sqrt();

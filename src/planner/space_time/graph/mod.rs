@@ -31,6 +31,7 @@ use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
 use crate::planner::space_time::refinement::structure::Ending;
 use crate::planner::space_time::route::Route;
+use crate::planner::space_time::settings::{GRAPH_HOLDS_S, GRAPH_RETURN_ANGLES};
 use crate::planner::{NodeKind, Problem, SearchKind};
 use crate::search::Space;
 use crate::trajectory::Segment;
@@ -38,10 +39,6 @@ use crate::vessel::OwnShip;
 
 /// Times before the first contact at which a manoeuvre may begin, besides t = 0, seconds.
 const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
-/// Angles between a return line and the route, radians.
-const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
-/// Times for which a course is held beyond a vertex, one after another, seconds.
-const HOLDS_S: [f64; 3] = [20.0, 40.0, 80.0];
 /// Largest turn toward a vertex, radians.
 const MAX_TURN: f64 = 2.0;
 /// Largest duration of an interception, seconds.
@@ -242,7 +239,7 @@ impl<'a> Graph<'a> {
             for (motion, least_turn) in departure_motions(self.problem, self.route, &before) {
                 self.interceptions(from, &motion, least_turn, out);
             }
-            for motion in apparent_turns(self.problem, from, &before, HOLDS_S[0]) {
+            for motion in apparent_turns(self.problem, from, &before, GRAPH_HOLDS_S[0]) {
                 self.push(out, NodeKind::Held, Ending::Follow, motion, along, from);
             }
         }
@@ -399,7 +396,7 @@ impl<'a> Graph<'a> {
             };
             let l = &desired.legs()[leg];
             let heading = heading_of(l.direction);
-            for angle in RETURN_ANGLES {
+            for angle in GRAPH_RETURN_ANGLES {
                 let Some(back) = return_to_line(&from.pose, l.start, heading, radius, angle) else {
                     continue;
                 };
@@ -436,7 +433,7 @@ impl<'a> Graph<'a> {
 
     /// Edges straight on from a vertex: the tangent line stays clear of that obstacle.
     fn hold_course(&self, from: &State, out: &mut Vec<(State, f64)>) {
-        let hold = HOLDS_S.get(usize::from(from.held));
+        let hold = GRAPH_HOLDS_S.get(usize::from(from.held));
         if let (Some(last), Some(hold)) = (from.motion.last(), hold) {
             let mut chain = Chain::new(
                 from.pose,

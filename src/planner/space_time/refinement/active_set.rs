@@ -9,7 +9,7 @@ use crate::planner::space_time::refinement::quadratic::{
 };
 
 /// Largest number of steps; a programme of this size needs about as many as it has constraints.
-const MAX_STEPS: usize = 1000;
+const MAX_ITERATIONS: usize = 1000;
 
 /// Rates of a multiplier below this count as zero.
 const MIN_RATE: f64 = 1e-14;
@@ -321,7 +321,7 @@ impl<const N: usize> Compact<N> {
         let Some(mut at) = Point::free(&self) else {
             return Err(Unsolved::Stopped);
         };
-        let mut steps = MAX_STEPS;
+        let mut steps = MAX_ITERATIONS;
         let boxes = [self.low, self.high].map(|bounds| bounds.map(|b| 1.0 / (1.0 + b.abs())));
         while let Some(entering) = self.violated(&at, &boxes) {
             match at.add_constraint(&self, entering, &mut steps) {

@@ -15,7 +15,7 @@ use crate::planner::space_time::refinement::trial::{Context, Trial, WeightedPoin
 const ROOM_M: f64 = 1.0;
 
 /// Metres kept from every set during the refinement, so that the exact test afterwards passes.
-pub(crate) const MARGIN_M: f64 = 0.02;
+pub(crate) const REFINEMENT_MARGIN_M: f64 = 0.02;
 
 /// Local model of one manoeuvre.
 #[derive(Debug)]
@@ -85,7 +85,7 @@ impl Context<'_> {
             let coefficients = self.approach_row(trial, approach);
             rows.push(Constraint {
                 coefficients: reduce(&coefficients, solved, free),
-                bound: MARGIN_M - approach.slack,
+                bound: REFINEMENT_MARGIN_M - approach.slack,
             });
         }
         for k in 0..all - free {

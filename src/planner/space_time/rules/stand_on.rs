@@ -13,20 +13,16 @@ use crate::planner::cost::space_time_error;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::departure::until;
 use crate::planner::space_time::graph::return_to_line::return_to_line;
-use crate::planner::space_time::proxy::{TOUCH_M, first_met};
+use crate::planner::space_time::proxy::first_met;
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::rules::compliance::{apparent_slow_speed, complies};
+use crate::planner::space_time::settings::{ESCAPE_HOLDS_S, ESCAPE_RETURN_ANGLES};
 use crate::planner::{Escape, NoPlan, Outcome, Plan, Planned, Problem};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 
 /// Turns of an escape, as multiples of the least readily apparent turn.
 const TURNS: [f64; 6] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0];
-
-/// Seconds for which the course, or the reduced speed, of an escape is held.
-const HOLDS_S: [f64; 7] = [10.0, 20.0, 40.0, 60.0, 90.0, 140.0, 220.0];
-
-/// Angles between a return line and the route, radians.
-const RETURN_ANGLES: [f64; 3] = [0.3, 0.6, 1.0];
 
 /// Sampled instants before the first contact, latest first, and bisection steps after that.
 const SAMPLES: usize = 40;
@@ -164,7 +160,7 @@ impl<'s> Escapes<'s, '_> {
         out.arc(turn * radius);
         let mut found = Vec::new();
         let mut held = 0.0;
-        for hold in HOLDS_S {
+        for hold in ESCAPE_HOLDS_S {
             out.line(speed * (hold - held));
             held = hold;
             if !self.is_clear(&out.segments) {
@@ -181,7 +177,7 @@ impl<'s> Escapes<'s, '_> {
         let (desired, own) = (problem.desired, problem.own);
         let near = desired.nearest(out.pose.position, out.time, 0.0).leg;
         let legs = near..desired.legs().len().min(near + 2);
-        let ways = legs.flat_map(|leg| RETURN_ANGLES.map(|angle| (leg, angle)));
+        let ways = legs.flat_map(|leg| ESCAPE_RETURN_ANGLES.map(|angle| (leg, angle)));
         let held = ways.filter_map(|(leg, angle)| {
             let stretch = route.stretch(leg, desired)?;
             let l = &desired.legs()[leg];
@@ -208,8 +204,8 @@ impl<'s> Escapes<'s, '_> {
     fn by_speed(&self, start: &Start, speed: f64) -> Vec<StandOnPlan> {
         let route = self.context.route;
         let along: f64 = start.before.iter().map(Segment::length).sum();
-        let spells = HOLDS_S.into_iter().filter(|s| *s >= APPARENT_TIME);
-        let held = spells.filter_map(|spell| {
+        let durations = ESCAPE_HOLDS_S.into_iter().filter(|s| *s >= APPARENT_TIME);
+        let held = durations.filter_map(|spell| {
             let mut escape = Vec::new();
             let at = route.run(along, start.time, speed * spell, speed, &mut escape);
             let time = escape.last().map_or(start.time, Segment::end_time);

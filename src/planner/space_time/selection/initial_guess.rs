@@ -10,6 +10,7 @@ use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::rules::compliance::{apparent_slow_distance, apparent_slow_speed};
+use crate::planner::space_time::settings::MANOEUVRE_RETURN_ANGLES;
 use crate::trajectory::Segment;
 
 /// Speeds of the manoeuvres: least and greatest speed, and the desired one.
@@ -127,9 +128,6 @@ impl Conflict {
         Some(conflict)
     }
 }
-
-/// Return angles of predefined manoeuvres, radians; the smallest that fits is used.
-const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 
 /// Turn of a waiting manoeuvre, radians.
 const WAITING_TURN: f64 = 0.6;
@@ -258,7 +256,9 @@ impl EvasiveManoeuvre {
             let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
             2.0 * radius * angle.sin() + line / angle.tan()
         };
-        let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
+        let angle = MANOEUVRE_RETURN_ANGLES
+            .into_iter()
+            .find(|a| way_back(*a) < room);
         let along = ((conflict.to - departure - exit_distance) * fast).max(0.0);
         let along = along
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
