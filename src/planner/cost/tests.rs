@@ -45,7 +45,7 @@ fn matches_a_dense_sum_on_lines_arcs_corners_and_clamped_ends() {
 /// Arcs over corners and beyond both ends. Of many arcs, the test takes the one whose cost in the
 /// search is most underestimated.
 #[test]
-fn what_is_told_of_a_plan_is_a_dense_sum_where_that_of_a_search_is_not() {
+fn reported_costs_equal_a_dense_sum() {
     let points = [(0.0, 0.0), (500.0, 0.0), (700.0, 400.0), (660.0, 500.0)];
     let desired = DesiredTrajectory::new(&points.map(|(x, y)| Vector::new(x, y)), &[5.0, 4.0, 2.0])
         .expect("valid");
@@ -192,7 +192,7 @@ fn the_desired_motion_costs_nothing_and_a_constant_lag_its_square() {
 
 /// Along a winding path, the legs that are left out are never nearest.
 #[test]
-fn of_many_legs_those_left_out_are_not_the_nearest() {
+fn legs_left_out_are_never_nearest() {
     let place = |k: usize| {
         let k = k as f64;
         Vector::new(60.0 * (0.7 * k).sin() + 9.0 * k, 60.0 * (1.1 * k).cos())

@@ -206,10 +206,10 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         match search.next_goal(&mut graph, budget) {
             Stop::Goal(goal) => {
                 optimum.get_or_insert(search.counts());
-                let way = node::path_to(&search, goal);
+                let path = node::path_to(&search, goal);
                 let is_plan = selection
-                    .add_graph_plan(search.nodes()[goal].cost, &way.iter().collect::<Vec<_>>());
-                if is_plan && way.len() == 1 {
+                    .add_graph_plan(search.nodes()[goal].cost, &path.iter().collect::<Vec<_>>());
+                if is_plan && path.len() == 1 {
                     break;
                 }
                 if is_plan {

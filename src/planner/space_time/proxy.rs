@@ -338,7 +338,7 @@ mod tests {
     /// Compares with sampling, for sets that move, rest, approach and recede, and for pieces with
     /// time windows.
     #[test]
-    fn what_is_out_of_reach_is_never_in_it() {
+    fn proxies_out_of_reach_are_never_met() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
         let (mut within, mut beyond) = (0, 0);
         for case in 0..4000 {

@@ -11,7 +11,7 @@ use crate::scenario::Scenario;
 const FIGURE_9: &str = include_str!("../../../../scenarios/paper/figure_9.toml");
 
 #[test]
-fn once_the_time_is_up_a_dearer_plan_whose_grid_is_fine_enough_is_the_answer() {
+fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
     let scenario = Scenario::parse(FIGURE_9).expect("valid");
     let sets = pipeline::sets(&scenario);
     let obstacles: Vec<Obstacle> = sets.into_iter().map(|s| s.hard).collect();

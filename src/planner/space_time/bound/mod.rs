@@ -239,7 +239,7 @@ mod tests {
     /// Random lines and arcs, then a path to the end: compares the bound at every joint with the
     /// cost that follows.
     #[test]
-    fn the_bound_never_exceeds_the_cost_of_random_ways_to_the_end() {
+    fn the_bound_never_exceeds_the_cost_of_random_paths_to_the_end() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(31);
         let straight = [(0.0, 0.0), (1500.0, 0.0)]
             .map(|(x, y)| Vector::new(x, y))

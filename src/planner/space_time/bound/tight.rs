@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn no_way_costs_less_than_its_bounds() {
+    fn no_path_costs_less_than_its_bounds() {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
             (0..12).map(move |guess| random_encounter(kind, guess, Placement::Random))
         });

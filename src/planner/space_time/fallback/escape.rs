@@ -12,6 +12,7 @@ use crate::frame::{Pose, Side};
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
+use crate::planner::space_time::graph::departure::until;
 use crate::planner::space_time::piece::pieces as parts_of;
 use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
@@ -82,30 +83,30 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
         obstacles: &sets,
         ..problem.clone()
     };
-    let mut sought = (problem, exits(problem, &proxies, &nominal_hulls, clock));
-    if !sought.1.first().is_some_and(|way| way.harm.is_clear()) {
+    let mut leaving = (problem, exits(problem, &proxies, &nominal_hulls, clock));
+    if !leaving.1.first().is_some_and(|exit| exit.harm.is_clear()) {
         let pieces = parts_of(&sets, problem.horizon);
-        let ways = exits(
+        let exits = exits(
             &nominal,
             &pieces.iter().map(Proxy::new).collect::<Vec<_>>(),
             &nominal_hulls,
             clock,
         );
-        if sought.1.is_empty() || ways.first().is_some_and(|way| way.harm.is_clear()) {
-            sought = (&nominal, ways);
+        if leaving.1.is_empty() || exits.first().is_some_and(|exit| exit.harm.is_clear()) {
+            leaving = (&nominal, exits);
         }
     }
-    let (sought, ways) = sought;
-    let mut exit_motions = exit_motions(&ways);
+    let (leaving, exits) = leaving;
+    let mut exit_motions = exit_motions(&exits);
     for beginning in &exit_motions {
         if clock.is_up() {
             break;
         }
-        if let Some(motion) = append(sought, beginning, |rest| planned(rest, clock)) {
+        if let Some(motion) = append(leaving, beginning, |rest| planned(rest, clock)) {
             return Plan::measured(problem, motion, None);
         }
     }
-    if ways.is_empty() {
+    if exits.is_empty() {
         exit_motions.extend(evasive_turns(problem.own, problem.horizon));
     } else {
         // used where every exit is too long for the horizon
@@ -191,9 +192,9 @@ pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
 }
 
 /// Plan that holds a motion until a time and is clear of every set from then on.
-pub fn after_holding(problem: &Problem, motion: &[Segment], until: f64) -> Option<Plan> {
+pub fn after_holding(problem: &Problem, motion: &[Segment], time: f64) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
-    let motion = append(problem, &cut(motion, until), |rest| planned(rest, clock))?;
+    let motion = append(problem, &until(motion, time), |rest| planned(rest, clock))?;
     Plan::measured(problem, motion, None)
 }
 
@@ -243,7 +244,7 @@ fn exits(
         let mut pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
         pairs.any(|(h, s)| h.first_contact(s).is_some())
     };
-    let mut ways = Vec::new();
+    let mut exits = Vec::new();
     for (turn, is_coarse) in turns() {
         for speed in speeds(own) {
             if clock.is_up() && !is_coarse || speed == 0.0 && turn != 0.0 {
@@ -253,7 +254,7 @@ fn exits(
             let Some(out) = exit_time(&motion, problem.horizon, speed + fastest, depth) else {
                 continue;
             };
-            let before = cut(&motion, out);
+            let before = until(&motion, out);
             // own ship may enter a growing set again: then it has not left for good
             if meets(&others, &before)
                 || meets(&held, &after(&motion, out))
@@ -262,12 +263,13 @@ fn exits(
                 continue;
             }
             let harm = Harm::of(own, nominal_hulls, &motion, out, depth);
-            ways.push((harm, out, turn, speed));
+            exits.push((harm, out, turn, speed));
         }
     }
-    ways.sort_by(|a, b| a.0.total_cmp(&b.0));
-    ways.truncate(MAX_EXITS);
-    ways.into_iter()
+    exits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    exits.truncate(MAX_EXITS);
+    exits
+        .into_iter()
         .map(|(harm, out, turn, speed)| Exit {
             motion: turned(own, speed, turn, problem.horizon),
             out,
@@ -313,14 +315,14 @@ fn speeds(own: &OwnShip) -> Vec<f64> {
 }
 
 /// Initial motions: every exit held for a while; none where own ship is in no set.
-fn exit_motions(ways: &[Exit]) -> Vec<Vec<Segment>> {
-    if ways.is_empty() {
+fn exit_motions(exits: &[Exit]) -> Vec<Vec<Segment>> {
+    if exits.is_empty() {
         return vec![Vec::new()];
     }
-    let held = ways
+    let held = exits
         .iter()
-        .flat_map(|way| EXIT_HOLDS_S.map(|hold| (way, hold)));
-    held.map(|(way, hold)| cut(&way.motion, way.out + hold))
+        .flat_map(|exit| EXIT_HOLDS_S.map(|hold| (exit, hold)));
+    held.map(|(exit, hold)| until(&exit.motion, exit.out + hold))
         .collect()
 }
 
@@ -331,7 +333,7 @@ fn evasive_turns(own: &OwnShip, horizon: f64) -> Vec<Vec<Segment>> {
     for hold in EVASIVE_HOLDS_S {
         for turn in [-6.0, 6.0, -12.0, 12.0, -18.0, 18.0].map(|steps| steps * TURN_RAD) {
             for speed in low.into_iter().chain([own.max_speed()]) {
-                evasive_turns.push(cut(&turned(own, speed, turn, horizon), hold));
+                evasive_turns.push(until(&turned(own, speed, turn, horizon), hold));
             }
         }
     }
@@ -400,12 +402,6 @@ fn exit_time(
     Some(high)
 }
 
-/// Motion until a time.
-fn cut(motion: &[Segment], until: f64) -> Vec<Segment> {
-    let rollout = motion.iter().filter(|s| s.start_time < until);
-    rollout.map(|s| s.between(s.start_time, until)).collect()
-}
-
 /// Motion from a time on.
 fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
     let later = motion.iter().filter(|s| s.end_time() > from);
@@ -421,25 +417,25 @@ fn append(
     if crate::planner::space_time::land::meets(problem.coast, beginning) {
         return None;
     }
-    let begun = beginning.last().map_or(0.0, Segment::end_time);
+    let start = beginning.last().map_or(0.0, Segment::end_time);
     let own = OwnShip {
         pose: beginning.last().map_or(problem.own.pose, Segment::end),
         ..problem.own.clone()
     };
-    let desired = problem.desired.remaining(begun);
+    let desired = problem.desired.remaining(start);
     let later: Vec<Obstacle> = (problem.obstacles.iter())
-        .map(|set| set.remainder(begun))
+        .map(|set| set.remainder(start))
         .collect();
     let rest = Problem {
         own: &own,
         desired: &desired,
         obstacles: &later,
-        horizon: problem.horizon - begun,
+        horizon: problem.horizon - start,
         ..problem.clone()
     };
     let mut motion = beginning.to_vec();
     motion.extend(follow(&rest)?.into_iter().map(|s| Segment {
-        start_time: s.start_time + begun,
+        start_time: s.start_time + start,
         ..s
     }));
     Some(motion)
@@ -466,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn every_turn_is_tried_once_and_few_when_the_time_is_up() {
+    fn every_turn_is_tried_once_and_few_after_the_deadline() {
         let mut all: Vec<(f64, bool)> = turns().collect();
         assert_eq!(all.len(), 73);
         assert_eq!(all.iter().filter(|(_, is_coarse)| *is_coarse).count(), 5);
@@ -484,7 +480,7 @@ mod tests {
     /// A horizon of a day in a set that grows faster than own ship sails costs as many samples as
     /// an hour.
     #[test]
-    fn a_set_that_is_never_left_costs_few_looks() {
+    fn a_set_that_is_never_left_costs_few_samples() {
         let own = own_ship(vec![5.0]);
         let (growing, looks) = (8.0, Cell::new(0));
         let depth = |pose: &Pose, time: f64| {

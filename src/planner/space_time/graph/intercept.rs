@@ -355,7 +355,7 @@ mod tests {
     use rand::{Rng, SeedableRng};
 
     #[test]
-    fn meetings_are_meetings_and_the_earliest_of_a_dense_scan() {
+    fn interceptions_are_the_earliest_of_a_dense_scan() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(21);
         let mut met = 0;
         for _ in 0..3000 {

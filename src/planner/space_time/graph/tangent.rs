@@ -376,7 +376,7 @@ mod tests {
 
     /// Compares with the interceptions of every corner one by one.
     #[test]
-    fn every_line_that_only_just_touches_is_found() {
+    fn every_tangent_line_is_found() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
         let speeds = [2.5, 5.0, 6.0];
         let (mut found, mut missed) = (0, 0);

@@ -255,7 +255,7 @@ mod tests {
 
     /// Compares with the explicit sum over points and pairs of segment variables.
     #[test]
-    fn moments_give_the_sum_over_all_points_and_pairs() {
+    fn accumulation_equals_the_sum_over_all_points_and_pairs() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
         let n = 9;
         let twists: Vec<Twist> = (0..n)

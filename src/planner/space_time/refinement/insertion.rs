@@ -51,7 +51,7 @@ pub(crate) fn with_insertions(
     guess: &InitialGuess,
     uncut: f64,
 ) -> Option<InitialGuess> {
-    let base = cut(context, guess, uncut)?;
+    let base = split(context, guess, uncut)?;
     let found = insertions(context, &base)?;
     let mut with_insertions = InitialGuess {
         structure: Structure {
@@ -99,7 +99,7 @@ pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialG
 
 /// Removes empty segment variables and divides long lines, including the dependent line of a
 /// return.
-fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
+fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     let mut add = |variable: SegmentVariable, length: f64| {
         let is_line = matches!(variable, SegmentVariable::Line { .. });
@@ -380,7 +380,7 @@ mod tests {
     /// Compares every price with the reduced gradient of the structure with the inserted, empty
     /// segment variable.
     #[test]
-    fn prices_are_the_rates_of_the_larger_template() {
+    fn prices_are_the_rates_of_the_larger_structure() {
         at_manoeuvres(|context, guess| {
             let trial = context.trial(&guess.structure, &guess.lengths);
             let unreduced = context.unreduced(&guess.structure, trial.expect("fits"));
@@ -416,12 +416,12 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_manoeuvre_is_the_same_manoeuvre() {
+    fn a_split_manoeuvre_has_the_same_rollout() {
         at_manoeuvres(|context, guess| {
             let whole = context
                 .model(&guess.structure, &guess.lengths)
                 .expect("fits");
-            let pieces = cut(context, guess, 30.0).expect("room for pieces");
+            let pieces = split(context, guess, 30.0).expect("room for pieces");
             assert!(pieces.structure.free() > 0);
             let again = context
                 .model(&pieces.structure, &pieces.lengths)

@@ -22,7 +22,7 @@ impl Context<'_> {
     /// Return segments, in closed form where there is one.
     pub(crate) fn return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
         self.straight_return_segments(distance, time)
-            .unwrap_or_else(|| self.bent_return_segments(distance, time))
+            .unwrap_or_else(|| self.general_return_segments(distance, time))
     }
 
     /// Cost of following the route from a position at a time, m².
@@ -77,7 +77,7 @@ impl Context<'_> {
     }
 
     /// General return segments, by differences in the position and time of joining.
-    fn bent_return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
+    fn general_return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
         let (ds, dt) = (0.05, 0.01);
         let cost = self.return_cost(distance, time);
         let (earlier, later) = (

@@ -5,7 +5,7 @@ use crate::frame::Vector;
 
 /// A ship that may stop, on a line whose end is due before its start, or at zero speed.
 #[test]
-fn what_is_due_before_it_can_be_reached_is_not_waited_for() {
+fn stretches_due_before_they_can_be_reached_are_not_waited_for() {
     for (slowness, fastest) in [(-0.1, true), (0.0, true), (f64::INFINITY, false)] {
         let piece = RoutePiece {
             start: Pose::new(Vector::zeros(), 0.0),

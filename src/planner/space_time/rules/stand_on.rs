@@ -177,8 +177,8 @@ impl<'s> Escapes<'s, '_> {
         let (desired, own) = (problem.desired, problem.own);
         let near = desired.nearest(out.pose.position, out.time, 0.0).leg;
         let legs = near..desired.legs().len().min(near + 2);
-        let ways = legs.flat_map(|leg| ESCAPE_RETURN_ANGLES.map(|angle| (leg, angle)));
-        let held = ways.filter_map(|(leg, angle)| {
+        let returns = legs.flat_map(|leg| ESCAPE_RETURN_ANGLES.map(|angle| (leg, angle)));
+        let held = returns.filter_map(|(leg, angle)| {
             let stretch = route.stretch(leg, desired)?;
             let l = &desired.legs()[leg];
             let heading = heading_of(l.direction);

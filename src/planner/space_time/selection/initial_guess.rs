@@ -208,7 +208,7 @@ impl InitialGuessBuilder {
         self.push(SegmentVariable::Run { speed: speeds.slow }, slow);
     }
 
-    pub(crate) fn guess(self, ending: Ending) -> Option<InitialGuess> {
+    pub(crate) fn build(self, ending: Ending) -> Option<InitialGuess> {
         if self.variables.len() + 2 > MAX_VARIABLES {
             return None;
         }
@@ -263,8 +263,8 @@ impl EvasiveManoeuvre {
         let along = along
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
             .max(0.0);
-        let mut draft = InitialGuessBuilder::default();
-        draft.runs(
+        let mut builder = InitialGuessBuilder::default();
+        builder.runs(
             &speeds,
             (1.0 - self.fast_share) * lead,
             self.fast_share * departure * fast,
@@ -273,26 +273,26 @@ impl EvasiveManoeuvre {
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();
-        draft.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
-        draft.line(&[(slow, slow_line), (fast, fast_line)]);
-        draft.turn(back, &[(fast, arc)]);
-        draft.line(&[(fast, 0.5 * along)]);
-        draft.turn(back, &[(fast, 0.0)]);
-        draft.line(&[(fast, 0.5 * along)]);
+        builder.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
+        builder.line(&[(slow, slow_line), (fast, fast_line)]);
+        builder.turn(back, &[(fast, arc)]);
+        builder.line(&[(fast, 0.5 * along)]);
+        builder.turn(back, &[(fast, 0.0)]);
+        builder.line(&[(fast, 0.5 * along)]);
         let Some(angle) = angle else {
-            return draft.guess(Ending::Goal {
+            return builder.build(Ending::Goal {
                 side: back,
                 speed: fast,
             });
         };
-        draft.push(
+        builder.push(
             SegmentVariable::Arc {
                 side: back,
                 speed: fast,
             },
             angle.min(needed.max(0.1)) * radius,
         );
-        draft.guess(Ending::Return { leg, speed: fast })
+        builder.build(Ending::Return { leg, speed: fast })
     }
 }
 
@@ -318,29 +318,29 @@ pub(crate) fn waiting(
         return None;
     }
     let back = side.opposite();
-    let mut draft = InitialGuessBuilder::default();
-    draft.runs(&speeds, begin * normal, 0.0, 0.0);
-    draft.turn(side, &[(fast, 0.0), (slow, arc)]);
-    draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
-    draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
-    draft.line(&[(slow, 0.4 * lines)]);
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * normal, 0.0, 0.0);
+    builder.turn(side, &[(fast, 0.0), (slow, arc)]);
+    builder.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
+    builder.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
+    builder.line(&[(slow, 0.4 * lines)]);
     if across {
         let (sine, cosine) = WAITING_TURN.sin_cos();
         let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
-        draft.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
-        draft.turn(back, &[(fast, 0.0)]);
-        draft.turn(
+        builder.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
+        builder.turn(back, &[(fast, 0.0)]);
+        builder.turn(
             side,
             &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
         );
-        draft.line(&[(fast, 0.0)]);
-        return draft.guess(Ending::Return { leg, speed: fast });
+        builder.line(&[(fast, 0.0)]);
+        return builder.build(Ending::Return { leg, speed: fast });
     }
-    draft.line(&[(fast, 0.0)]);
-    draft.turn(back, &[(fast, 0.0)]);
-    draft.line(&[(fast, 0.0)]);
-    draft.turn(back, &[(fast, 0.0)]);
-    draft.guess(Ending::Return { leg, speed: fast })
+    builder.line(&[(fast, 0.0)]);
+    builder.turn(back, &[(fast, 0.0)]);
+    builder.line(&[(fast, 0.0)]);
+    builder.turn(back, &[(fast, 0.0)]);
+    builder.build(Ending::Return { leg, speed: fast })
 }
 
 /// Manoeuvre that slows down on the route until the target has passed, then moves slightly to the
@@ -365,14 +365,14 @@ pub(crate) fn slowing(
     let radius = problem.own.turning_radius;
     let arc = SLOWING_TURN * radius;
     let back = side.opposite();
-    let mut draft = InitialGuessBuilder::default();
-    draft.runs(&speeds, begin * speeds.normal, 0.0, duration * speeds.slow);
-    draft.turn(side, &[(speeds.slow, arc), (speeds.fast, 0.0)]);
-    draft.line(&[(speeds.slow, 0.0), (speeds.fast, SLOWING_OUT_M)]);
-    draft.turn(back, &[(speeds.fast, arc)]);
-    draft.line(&[(speeds.slow, 0.0), (speeds.fast, 0.0)]);
-    draft.turn(back, &[(speeds.fast, arc)]);
-    draft.guess(Ending::Return {
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * speeds.normal, 0.0, duration * speeds.slow);
+    builder.turn(side, &[(speeds.slow, arc), (speeds.fast, 0.0)]);
+    builder.line(&[(speeds.slow, 0.0), (speeds.fast, SLOWING_OUT_M)]);
+    builder.turn(back, &[(speeds.fast, arc)]);
+    builder.line(&[(speeds.slow, 0.0), (speeds.fast, 0.0)]);
+    builder.turn(back, &[(speeds.fast, arc)]);
+    builder.build(Ending::Return {
         leg,
         speed: speeds.fast,
     })
@@ -399,31 +399,31 @@ pub(crate) fn ahead(
     let radius = problem.own.turning_radius;
     let arc = AHEAD_TURN * radius;
     let back = side.opposite();
-    let mut draft = InitialGuessBuilder::default();
-    draft.runs(&speeds, begin * normal, (turn - begin) * fast, 0.0);
-    draft.turn(side, &[(fast, arc)]);
-    draft.line(&[(fast, AHEAD_OUT_M)]);
-    draft.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
-    draft.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
-    draft.turn(side, &[(slow, 0.0), (fast, 0.0)]);
-    draft.line(&[(slow, 0.0), (fast, 0.0)]);
-    draft.guess(Ending::Return { leg, speed: normal })
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * normal, (turn - begin) * fast, 0.0);
+    builder.turn(side, &[(fast, arc)]);
+    builder.line(&[(fast, AHEAD_OUT_M)]);
+    builder.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
+    builder.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
+    builder.turn(side, &[(slow, 0.0), (fast, 0.0)]);
+    builder.line(&[(slow, 0.0), (fast, 0.0)]);
+    builder.build(Ending::Return { leg, speed: normal })
 }
 
 /// Graph plan as an initial guess. It keeps the order of arcs and lines, adds the other speeds
-/// beside each, and an empty turn back where it has only one turn. `way` holds the states after the
+/// beside each, and an empty turn back where it has only one turn. `path` holds the states after the
 /// root.
-pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGuess> {
+pub(crate) fn from_graph(problem: &Problem, path: &[&State]) -> Option<InitialGuess> {
     let speeds = ManoeuvreSpeeds::of(problem);
-    let (last, before) = way.split_last()?;
+    let (last, before) = path.split_last()?;
     let (departure, vertices) = before.split_first()?;
     if vertices.is_empty() {
         return None;
     }
-    let mut draft = InitialGuessBuilder::default();
+    let mut builder = InitialGuessBuilder::default();
     let along: f64 = departure.motion.iter().map(Segment::length).sum();
     let slow = apparent_slow_distance(problem, &departure.motion);
-    draft.runs(&speeds, along - slow, 0.0, slow);
+    builder.runs(&speeds, along - slow, 0.0, slow);
     let mut side = None;
     let mut turns = 0;
     for vertex in vertices {
@@ -433,15 +433,15 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
         side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
         let side = side.unwrap_or(Side::Starboard);
         turns += usize::from(before != Some(side));
-        group(&mut draft, &speeds, side, turn, line, vertices.len());
+        group(&mut builder, &speeds, side, turn, line, vertices.len());
         if vertices.len() == 1 {
-            draft.turn(side, &[(speeds.fast, 0.0)]);
-            draft.line(&[(speeds.fast, 0.0)]);
+            builder.turn(side, &[(speeds.fast, 0.0)]);
+            builder.line(&[(speeds.fast, 0.0)]);
         }
     }
     let back = side.unwrap_or(Side::Starboard).opposite();
     if turns < 2 && vertices.len() < 3 {
-        group(&mut draft, &speeds, back, None, None, vertices.len());
+        group(&mut builder, &speeds, back, None, None, vertices.len());
     }
     match last.ending {
         Ending::Return { leg, .. } => {
@@ -450,26 +450,26 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
                 .and_then(|s| Side::of_turn(s.turn_rate))
                 .unwrap_or(back);
             let length = first.map_or(0.0, Segment::length);
-            draft.push(
+            builder.push(
                 SegmentVariable::Arc {
                     side,
                     speed: speeds.fast,
                 },
                 length,
             );
-            draft.guess(Ending::Return {
+            builder.build(Ending::Return {
                 leg,
                 speed: speeds.fast,
             })
         }
-        Ending::Goal { side, speed } => draft.guess(Ending::Goal { side, speed }),
+        Ending::Goal { side, speed } => builder.build(Ending::Goal { side, speed }),
         Ending::Follow => None,
     }
 }
 
 /// Turn and line, with fewer speeds where there are many such groups.
 fn group(
-    draft: &mut InitialGuessBuilder,
+    builder: &mut InitialGuessBuilder,
     speeds: &ManoeuvreSpeeds,
     side: Side,
     turn: Option<&Segment>,
@@ -485,9 +485,9 @@ fn group(
         _ => (&[own], &[slow, fast]),
     };
     let turns = shared(turn, turns);
-    draft.turn(side, &turns);
+    builder.turn(side, &turns);
     let lines = shared(line, lines);
-    draft.line(&lines);
+    builder.line(&lines);
 }
 
 /// Speeds without repetition; the one nearest to the segment's speed gets its length.

@@ -178,8 +178,8 @@ impl<'a> Selection<'a> {
 
     /// Adds a tested plan of the graph, given by the states after the root; false where it violates
     /// the rules.
-    pub(crate) fn add_graph_plan(&mut self, cost: f64, way: &[&State]) -> bool {
-        let motion: Vec<Segment> = way.iter().flat_map(|s| s.motion.iter().copied()).collect();
+    pub(crate) fn add_graph_plan(&mut self, cost: f64, path: &[&State]) -> bool {
+        let motion: Vec<Segment> = path.iter().flat_map(|s| s.motion.iter().copied()).collect();
         if !complies(&self.context, self.nominal_motion, &motion) {
             return false;
         }
@@ -189,7 +189,7 @@ impl<'a> Selection<'a> {
             return true;
         }
         self.signatures.push(signature);
-        self.guesses.extend(from_graph(self.context.problem, way));
+        self.guesses.extend(from_graph(self.context.problem, path));
         self.add_candidate(motion);
         true
     }

@@ -125,8 +125,8 @@ fn initial_guess_from(
         (ends.then_some(free)?, Ending::Goal { side, speed })
     };
     let mut room = MAX_VARIABLES.checked_sub(free.len() + RUNS_AND_DEPENDENTS)?;
-    let mut draft = InitialGuessBuilder::default();
-    draft.runs(&speeds, run[0], run[1], run[2]);
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, run[0], run[1], run[2]);
     for lines in free.chunk_by(|a, b| !a.is_arc() && !b.is_arc()) {
         for s in lines {
             let speed = s.speed;
@@ -134,16 +134,16 @@ fn initial_guess_from(
                 .map_or(SegmentVariable::Line { speed }, |side| {
                     SegmentVariable::Arc { side, speed }
                 });
-            draft.push(variable, s.length());
+            builder.push(variable, s.length());
         }
         let others = [speeds.slow, speeds.normal, speeds.fast].into_iter();
         let others = others.filter(|u| lines.iter().all(|s| !s.is_arc() && s.speed != *u));
         for speed in others.take(room) {
-            draft.push(SegmentVariable::Line { speed }, 0.0);
+            builder.push(SegmentVariable::Line { speed }, 0.0);
             room -= 1;
         }
     }
-    draft.guess(ending)
+    builder.build(ending)
 }
 
 /// Motion without segments of zero length and with equal neighbours merged.
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_slots_of_a_plan_sail_it_again() {
+    fn the_initial_guess_of_a_plan_rolls_out_to_it() {
         at_plans(|problem, trajectory, _| {
             let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
             let Some(guess) = initial_guess_from(problem, &route, trajectory.segments()) else {
@@ -241,7 +241,7 @@ mod tests {
     /// Warm starts for the same sets and for larger ones, checked independently of the planner's
     /// contact test.
     #[test]
-    fn what_is_drawn_out_of_a_plan_is_clear_and_for_its_own_sets_no_dearer() {
+    fn warm_starts_are_clear_and_for_the_same_sets_no_costlier() {
         let (drawn, larger) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
         at_plans(|problem, trajectory, cost| {
             if let Some(again) = warm_started(problem, trajectory).outcome.plan() {
