@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use searoom::colregs::conduct::{Conduct, Thresholds};
 use searoom::pipeline::{self, Run};
 use searoom::planner::Outcome;
-use searoom::scenario::formats::{Assumed, Assumption, Contents};
+use searoom::scenario::import::{Assumed, Assumption, Contents};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
 
@@ -36,7 +36,7 @@ const QUICK: (u64, usize) = (4, 1);
 const DEADLINE: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let thresholds = Thresholds::standard().ok_or("no thresholds")?;
+    let thresholds = Thresholds::standard();
     let (random, runs) = match std::env::args().nth(1).as_deref() {
         None => (RANDOM, RUNS),
         Some("--quick") => QUICK,

@@ -65,7 +65,8 @@
 //! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
 //! | [`evaluation`] | judges any trajectory, without the sets and contact tests of the planner |
 //! | [`verification`] | checks a plan document alone, without scenario and planner |
-//! | [`scenario`] | scenario files: every fault of a file at once; [`scenario::formats`]: files of other programs |
+//! | [`input`] | reading of files: bounded text, values with their places, every fault at once |
+//! | [`scenario`] | scenario files; [`scenario::import`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
 //! | [`comparison`] | every planner that applies and two baselines, on the same scenario |
 //! | [`lint`] | what is odd about a scenario, without planning |
@@ -128,6 +129,7 @@ pub mod comparison;
 pub mod evaluation;
 pub mod frame;
 pub mod geometry;
+pub mod input;
 pub mod lint;
 pub mod map;
 pub mod obstacle;

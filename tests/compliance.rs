@@ -133,7 +133,7 @@ fn seen(run: &Run) -> Seen {
     let ship = run.scenario.targets[0].ship().expect("a ship");
     let evaluation = run.evaluation.as_ref().expect("judged");
     let meeting = Meeting::along(&plan.trajectory, run.scenario.own_ship.hull, ship);
-    let thresholds = Thresholds::standard().expect("the file is read");
+    let thresholds = Thresholds::standard();
     let turn = first_turn(&plan.trajectory);
     let given_up = |r: &Relaxation| matches!(r, Relaxation::Compliance { .. });
     let breaches = Conduct::judge(&meeting, thresholds).breaches;

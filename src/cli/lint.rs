@@ -4,7 +4,7 @@ use searoom::lint::{Likeness, Lint, likenesses, lint};
 use searoom::report::document::{LintDocument, LintScenarioDocument};
 use searoom::report::lint_text;
 use searoom::scenario::Scenario;
-use searoom::scenario::formats::Assumed;
+use searoom::scenario::import::Assumed;
 
 use super::args::SuiteArgs;
 use super::output::Output;

@@ -210,9 +210,10 @@ impl Entry {
     /// What two judges say of own ship toward each target that is a ship, by the thresholds that the scenario asks for; empty
     /// without a motion. They see the motion and the target's nominal track alone. O(targets x seconds).
     pub fn conduct(&self, scenario: &Scenario) -> Vec<Conduct> {
-        let (Some(trajectory), Some(thresholds)) = (self.trajectory(), scenario.judged_by()) else {
+        let Some(trajectory) = self.trajectory() else {
             return Vec::new();
         };
+        let thresholds = scenario.judged_by();
         let ships = scenario.targets.iter().filter_map(|target| target.ship());
         let meetings = ships.map(|ship| Meeting::along(trajectory, scenario.own_ship.hull, ship));
         meetings

@@ -11,7 +11,7 @@ use crate::geometry::DISC_SIDES;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::sets;
 use crate::scenario::Scenario;
-use crate::scenario::formats::Declared;
+use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
 
 /// Instants at which sets and own ship are compared.
@@ -26,7 +26,7 @@ const ON_NO_SIDE: f64 = std::f64::consts::PI / 90.0;
 ///
 /// ```
 /// use searoom::lint::{Weight, lint};
-/// use searoom::scenario::formats::Declared;
+/// use searoom::scenario::import::Declared;
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
@@ -62,7 +62,7 @@ impl Weight {
 ///
 /// ```
 /// use searoom::lint::{TargetLint, lint};
-/// use searoom::scenario::formats::Declared;
+/// use searoom::scenario::import::Declared;
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
@@ -93,7 +93,7 @@ pub struct TargetLint {
 ///
 /// ```
 /// use searoom::lint::{Lint, lint};
-/// use searoom::scenario::formats::Declared;
+/// use searoom::scenario::import::Declared;
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;

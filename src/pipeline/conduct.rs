@@ -17,9 +17,8 @@ impl Run {
         self.scenario.targets.iter().map(judge).collect()
     }
 
-    /// [`Run::conduct`] by the thresholds that the scenario asks for; empty where there are none.
+    /// [`Run::conduct`] by the thresholds of the scenario.
     pub fn judged_conduct(&self) -> Vec<Option<Conduct>> {
-        let thresholds = self.scenario.judged_by();
-        thresholds.map_or_else(Vec::new, |t| self.conduct(t))
+        self.conduct(self.scenario.judged_by())
     }
 }

@@ -14,7 +14,7 @@ use super::thresholds::Thresholds;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
 /// let run = pipeline::run(scenario);
-/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let thresholds = Thresholds::standard();
 /// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
 /// let first: &RoleSpell = &toward_the_ferry.roles[0];
 /// assert_eq!((first.role.name(), first.from), ("stand-on", 0.0));

@@ -10,7 +10,6 @@ mod meeting;
 mod monitor;
 mod score;
 mod thresholds;
-mod thresholds_file;
 
 pub use latch::{RoleSpell, roles};
 pub use meeting::Meeting;
@@ -18,7 +17,6 @@ pub(crate) use meeting::OwnTrack;
 pub use monitor::{Finding, Measure, Verdict, monitors};
 pub use score::{Scores, scores};
 pub use thresholds::{MonitorLimits, RiskLimits, ScoreLimits, Thresholds};
-pub use thresholds_file::{ThresholdsError, ThresholdsFault};
 
 use crate::target::ShipTrack;
 
@@ -32,7 +30,7 @@ use crate::target::ShipTrack;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
 /// let run = pipeline::run(scenario);
-/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let thresholds = Thresholds::standard();
 /// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
 /// let breach: &Breach = &toward_the_ferry.breaches[0];
 /// assert_eq!(breach.rule, "17(c)");
@@ -59,7 +57,7 @@ pub struct Breach {
 /// use searoom::{comparison, pipeline};
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let thresholds = Thresholds::standard();
 /// let ferry = scenario.targets[0].ship().expect("a ship");
 /// // whoever holds course and speed does not keep clear
 /// let held = comparison::hold_course(&scenario).trajectory;

@@ -16,7 +16,7 @@ use crate::frame::{Pose, wrap};
 ///
 /// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
 /// let run = pipeline::run(scenario);
-/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let thresholds = Thresholds::standard();
 /// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
 /// let verdicts = toward_the_ferry.findings.each_ref().map(|finding| finding.verdict);
 /// assert!(verdicts.contains(&Verdict::Satisfied) && verdicts.contains(&Verdict::Idle));
@@ -57,7 +57,7 @@ impl Verdict {
 ///
 /// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
 /// let run = pipeline::run(scenario);
-/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let thresholds = Thresholds::standard();
 /// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
 /// let safety = &toward_the_ferry.findings[0];
 /// assert_eq!((safety.monitor, safety.measure), ("S", Measure::Distance));
@@ -83,7 +83,7 @@ pub enum Measure {
 ///
 /// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
 /// let run = pipeline::run(scenario);
-/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let thresholds = Thresholds::standard();
 /// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
 /// let safety: &Finding = &toward_the_ferry.findings[0];
 /// assert_eq!(safety.verdict, Verdict::Satisfied);
@@ -223,7 +223,7 @@ impl Trace<'_> {
             let first = self.sights[stretch.from].own.pose.heading;
             for sight in &self.sights[stretch.from..stretch.until] {
                 let turn = wrap(sight.own.pose.heading - first).abs();
-                let robustness = self.t.monitor.hold - turn;
+                let robustness = self.t.score.hold - turn;
                 if worst.is_none_or(|w| robustness < w.0) {
                     worst = Some((robustness, sight.time));
                 }

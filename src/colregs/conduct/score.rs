@@ -20,7 +20,7 @@ use crate::frame::{deg_from_radians, wrap};
 ///
 /// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
 /// let run = pipeline::run(scenario);
-/// let thresholds = Thresholds::standard().expect("the profile of the program");
+/// let thresholds = Thresholds::standard();
 /// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
 /// let scores: &Scores = &toward_the_ferry.scores;
 /// assert!(scores.safety > 0.9 && scores.rule_15.is_none(), "Rule 15 asks nothing of a stand-on ship");

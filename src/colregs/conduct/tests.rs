@@ -44,7 +44,7 @@ const HULL: Hull = Hull {
 };
 
 pub fn standard() -> &'static Thresholds {
-    Thresholds::standard().expect("the file is read")
+    Thresholds::standard()
 }
 
 fn track(pose: Pose, speed: f64) -> ShipTrack {

@@ -12,7 +12,7 @@ use crate::lint::Lint;
 /// ```
 /// use searoom::lint::lint;
 /// use searoom::report::document::{LintDocument, LintScenarioDocument};
-/// use searoom::scenario::formats::Declared;
+/// use searoom::scenario::import::Declared;
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;

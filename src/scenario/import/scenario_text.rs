@@ -3,34 +3,16 @@
 
 use std::fmt::{Display, Write};
 
-use super::super::{Fault, Scenario, limits};
 use super::assumed::{Assumed, HORIZON_ROUTES, TURNING_LENGTHS};
-use super::situation::{HullSaid, Other, Own, Situation};
+use super::situation::{GivenHull, Other, Own, Situation};
 use super::track::{Spread, Track};
 use crate::frame::{Vector, course_deg_from_heading, deg_from_radians};
 use crate::geometry::{ConvexPolygon, outer_disc};
+use crate::input::Fault;
+use crate::scenario::{Scenario, limits};
 use crate::vessel::Hull;
 
 /// A scenario made of a foreign situation.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::scenario::Scenario;
-/// use searoom::scenario::formats::{Assumed, Contents, Imported};
-///
-/// let assumed = Assumed::default();
-/// let file = "scenarios/dnv/traffic_situation_01.json";
-/// let Contents::Situations { mut situations, .. } = Contents::read(file.as_ref(), &assumed)? else {
-///     panic!("situations");
-/// };
-/// let situation = situations.remove(0).expect("no faults");
-/// let Imported { scenario, text, notes } = situation.scenario(&assumed).expect("no faults");
-/// // the text is the scenario, and what was assumed is said
-/// assert_eq!(Scenario::parse(&text).expect("no faults"), scenario);
-/// assert!(!notes.is_empty());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// The scenario.
@@ -195,26 +177,24 @@ impl<'a> Writing<'a> {
     }
 
     /// The hull said or assumed; a fault, and nothing, where there is none.
-    fn hull(&mut self, whose: &str, said: &HullSaid) -> Option<Hull> {
+    fn hull(&mut self, whose: &str, said: &GivenHull) -> Option<Hull> {
         match said {
-            HullSaid::Is(hull) => Some(*hull),
-            HullSaid::Unsaid => {
+            GivenHull::Known(hull) => Some(*hull),
+            GivenHull::NotInFormat => {
                 let hull = self.assumed.usual_hull();
                 self.assume(whose, hull);
                 Some(hull)
             }
-            HullSaid::Missing(path) => match self.assumed.asked_hull() {
+            GivenHull::Missing(path) => match self.assumed.asked_hull() {
                 Some(hull) => {
                     self.assume(whose, hull);
                     Some(hull)
                 }
                 None => {
-                    self.faults.push(Fault {
-                        path: path.clone(),
-                        found: "nothing".to_owned(),
-                        allowed: "the length and the breadth of the ship; or --length-m and --beam-m for those without".to_owned(),
-                        line: None,
-                    });
+                    let allowed = "the length and the breadth of the ship; or --length-m and \
+                                   --beam-m for those without";
+                    self.faults
+                        .push(Fault::new(path.as_str(), "nothing", allowed));
                     None
                 }
             },
@@ -284,8 +264,8 @@ impl<'a> Writing<'a> {
 
 fn hull_of(own: &Own, assumed: &Assumed) -> Hull {
     match own.hull {
-        HullSaid::Is(hull) => hull,
-        HullSaid::Unsaid | HullSaid::Missing(_) => assumed.usual_hull(),
+        GivenHull::Known(hull) => hull,
+        GivenHull::NotInFormat | GivenHull::Missing(_) => assumed.usual_hull(),
     }
 }
 

@@ -1,23 +1,22 @@
-//! An XML element with its place, so that every fault says where.
+//! An XML element with its place: the cursor with which XML is read.
 
-use std::cell::RefCell;
 use std::fmt::Display;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::super::fault::Fault;
-use super::super::file::Range;
+use crate::input::{Fault, Faults, Range, abbreviated};
 
-/// Nodes of a file, text and white space counted: what 16 MiB of a recorded scenario hold, and 200 MB of memory at most.
+/// Most nodes of a file, text and white space included: 16 MiB of a recorded scenario, 200 MB of
+/// memory.
 const NODES: u32 = 2_000_000;
 
-/// Attributes of one element at most: the parser compares each with all others.
+/// Most attributes of one element: the parser compares each with all others.
 const ATTRIBUTES: usize = 1_000;
 
-/// The line of the first element of more attributes than there may be, before anything is parsed.
+/// The line of the first element with too many attributes, found before parsing.
 fn crowded(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
-    // where what begins at `from` and ends so is over
+    // the offset behind `end`, searched from `from`
     let after =
         |from: usize, end: &str| text.get(from..)?.find(end).map(|at| from + at + end.len());
     let mut at = 0;
@@ -48,14 +47,13 @@ fn crowded(text: &str) -> Option<usize> {
     None
 }
 
-/// Reads a text. A document type, in which entities would be declared, is refused: nothing expands.
+/// Parses a text. A document type, which could declare entities, is refused: nothing expands.
 pub(super) fn parse(text: &str) -> Result<Document<'_>, Fault> {
     if let Some(line) = crowded(text) {
+        let found = format_args!("an element of more than {ATTRIBUTES} attributes");
         return Err(Fault {
-            path: String::new(),
-            found: format!("an element of more than {ATTRIBUTES} attributes"),
-            allowed: format!("at most {ATTRIBUTES}"),
             line: Some(line),
+            ..Fault::new("", found, format_args!("at most {ATTRIBUTES}"))
         });
     }
     let options = ParsingOptions {
@@ -63,25 +61,25 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Fault> {
         nodes_limit: NODES,
         ..ParsingOptions::default()
     };
+    let allowed =
+        format_args!("XML without errors, without a document type, of at most {NODES} nodes");
     Document::parse_with_options(text, options).map_err(|error| Fault {
-        path: String::new(),
-        found: error.to_string(),
-        allowed: format!("XML without errors, without a document type, of at most {NODES} nodes"),
         line: Some(error.pos().row as usize),
+        ..Fault::new("", &error, allowed)
     })
 }
 
-/// An element, where it stands, and the faults so far.
+/// An element, its place, and the faults found so far.
 #[derive(Debug, Clone)]
 pub(super) struct Xml<'a> {
     node: Node<'a, 'a>,
     path: String,
-    faults: &'a RefCell<Vec<Fault>>,
+    faults: &'a Faults,
 }
 
 impl<'a> Xml<'a> {
     /// The outermost element of a file.
-    pub(super) fn root(document: &'a Document<'a>, faults: &'a RefCell<Vec<Fault>>) -> Self {
+    pub(super) fn root(document: &'a Document<'a>, faults: &'a Faults) -> Self {
         let node = document.root_element();
         Self {
             path: node.tag_name().name().to_owned(),
@@ -95,7 +93,7 @@ impl<'a> Xml<'a> {
         self.node.tag_name().name()
     }
 
-    /// Where it stands, as in `commonOcean/dynamicObstacle[11]/type`.
+    /// Where it is, as in `commonOcean/dynamicObstacle[11]/type`.
     pub(super) fn path(&self) -> &str {
         &self.path
     }
@@ -103,11 +101,9 @@ impl<'a> Xml<'a> {
     /// Notes a fault at this place.
     pub(super) fn fault(&self, found: impl Display, allowed: impl Display) {
         let at = self.node.document().text_pos_at(self.node.range().start);
-        self.faults.borrow_mut().push(Fault {
-            path: self.path.clone(),
-            found: found.to_string(),
-            allowed: allowed.to_string(),
+        self.faults.note(Fault {
             line: Some(at.row as usize),
+            ..Fault::new(self.path.as_str(), found, allowed)
         });
     }
 
@@ -161,61 +157,45 @@ impl<'a> Xml<'a> {
     }
 
     /// The number in it.
-    pub(super) fn number(&self, range: Range, unit: &str) -> Option<f64> {
-        self.parsed(self.text(), range, unit)
+    pub(super) fn number(&self, range: Range) -> Option<f64> {
+        self.parsed(self.text(), range)
     }
 
     /// The number of an attribute that must be there.
-    pub(super) fn attribute_number(&self, name: &str, range: Range, unit: &str) -> Option<f64> {
+    pub(super) fn attribute_number(&self, name: &str, range: Range) -> Option<f64> {
         match self.attribute(name) {
-            Some(text) => self.parsed(text, range, unit),
+            Some(text) => self.parsed(text, range),
             None => {
                 self.fault(
                     format_args!("no attribute {name}"),
-                    format_args!("{name}: {range} {unit}"),
+                    format_args!("{name}: {range}"),
                 );
                 None
             }
         }
     }
 
-    fn parsed(&self, text: &str, range: Range, unit: &str) -> Option<f64> {
-        match text.parse::<f64>() {
-            Ok(number) if range.contains(number) => Some(number + 0.0),
-            _ => {
-                self.fault(shown(text), format_args!("{range} {unit}"));
-                None
-            }
+    fn parsed(&self, text: &str, range: Range) -> Option<f64> {
+        let number = range.parse(text);
+        if number.is_none() {
+            self.fault(abbreviated(text), range);
         }
+        number
     }
 
     /// The number of an element that must be there.
-    pub(super) fn required_number(&self, name: &str, range: Range, unit: &str) -> Option<f64> {
-        self.require(name, format_args!("{range} {unit}"))?
-            .number(range, unit)
+    pub(super) fn required_number(&self, name: &str, range: Range) -> Option<f64> {
+        self.require(name, range)?.number(range)
     }
 
     /// The number in `exact` of an element that must be there.
-    pub(super) fn required_exact(&self, name: &str, range: Range, unit: &str) -> Option<f64> {
-        self.require(name, format_args!("{range} {unit}"))?
-            .exact(range, unit)
+    pub(super) fn required_exact(&self, name: &str, range: Range) -> Option<f64> {
+        self.require(name, range)?.exact(range)
     }
 
-    /// The number in `exact`; an interval is none.
-    pub(super) fn exact(&self, range: Range, unit: &str) -> Option<f64> {
-        self.require("exact", format_args!("{range} {unit}"))?
-            .number(range, unit)
-    }
-}
-
-/// A text as a message shows it.
-pub(super) fn shown(text: &str) -> String {
-    /// Characters of a long text.
-    const SHOWN: usize = 40;
-    if text.chars().count() > SHOWN {
-        format!("{:?}…", text.chars().take(SHOWN).collect::<String>())
-    } else {
-        format!("{text:?}")
+    /// The number in the element `exact`; an interval is not a number.
+    pub(super) fn exact(&self, range: Range) -> Option<f64> {
+        self.require("exact", range)?.number(range)
     }
 }
 

@@ -1,24 +1,19 @@
 //! DNV traffic situations (maritime-schema 0.1 and 0.2, JSON): degrees of WGS84, knots, degrees clockwise from true north,
 //! metres; turn radii in nautical miles; the leg that ends at a waypoint is described there.
 
-mod route;
 mod ship;
 
-use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use super::super::fault::Fault;
-use super::super::file::Range;
-use super::super::limits;
 use super::assumed::{TURNING_LENGTHS, USUAL_HULL};
-use super::json::Json;
-use super::situation::{Declared, HullSaid, Other, Own, Situation};
-use super::track::{RouteLeg, Track, TrackError};
+use super::situation::{Declared, GivenHull, Other, Own, Situation};
+use super::track::{RouteLeg, RoutePoint, Track, TrackError};
 use crate::frame::{
-    GEOREFERENCE_REACH_M, Geographic, Georeference, Pose, Side, Vector, heading_of, mps_from_knots,
+    Geographic, Georeference, NAUTICAL_MILE_M, Pose, Side, Vector, heading_of, mps_from_knots,
     radians_from_deg, wrap,
 };
-use route::{Route, route};
+use crate::input::{Fault, Faults, Field, Range};
+use crate::scenario::{limits, plane};
 use ship::{Initial, fixed, initial};
 
 /// Degrees. A heading nearer to the first leg's course than this is that course, rounded.
@@ -38,24 +33,21 @@ const ROOT_KEYS: [&str; 8] = [
 const SHIP_KEYS: [&str; 3] = ["waypoints", "static", "initial"];
 
 /// The situation of a file; an error with every fault.
-pub(super) fn situation(
-    root: &Json,
-    faults: &RefCell<Vec<Fault>>,
-) -> Result<Situation, Vec<Fault>> {
+pub(super) fn situation(root: &Field, faults: &Faults) -> Result<Situation, Vec<Fault>> {
     let mut notes = Vec::new();
     unused(root, &ROOT_KEYS, &mut notes);
-    let name = match root.take("title") {
-        Some(title) => title.text(),
+    let name = match root.get("title") {
+        Some(title) => title.line_of_text().map(str::trim),
         None => Some("Traffic situation"),
     };
-    let entry = root.require("ownShip", "an object: own ship");
-    let earth = entry.as_ref().and_then(origin);
-    let own = entry
+    let field = root.require("ownShip", "an object: own ship");
+    let earth = field.as_ref().and_then(origin);
+    let own = field
         .zip(earth)
-        .and_then(|(entry, earth)| own(&entry, &earth, &mut notes));
-    let ships = match (root.take("targetShips"), earth) {
+        .and_then(|(field, earth)| own(&field, &earth, &mut notes));
+    let ships = match (root.get("targetShips"), earth) {
         (Some(list), Some(earth)) => list
-            .list(0, limits::SHIPS, "ships")
+            .list(0..=limits::SHIPS, "ships")
             .and_then(|list| others(&list, &earth, &mut notes)),
         (Some(_), None) => None,
         (None, _) => {
@@ -105,42 +97,42 @@ fn declared(title: &str) -> Declared {
 }
 
 /// Notes every key that is not read and may mean something.
-fn unused(entry: &Json, known: &[&str], notes: &mut Vec<String>) {
-    for key in entry.keys().filter(|key| !known.contains(key)) {
-        let dot = if entry.path().is_empty() { "" } else { "." };
-        notes.push(format!("{}{dot}{key}: not used", entry.path()));
+fn unused(field: &Field, known: &[&str], notes: &mut Vec<String>) {
+    for key in field.keys().filter(|key| !known.contains(key)) {
+        let dot = if field.path().is_empty() { "" } else { "." };
+        notes.push(format!("{}{dot}{key}: not used", field.path()));
     }
 }
 
-fn place(entry: &Json) -> Option<Geographic> {
-    let lat_deg = entry.required_number("lat", limits::LATITUDE, "degrees north");
-    let lon_deg = entry.required_number("lon", limits::LONGITUDE, "degrees east");
+fn place(field: &Field) -> Option<Geographic> {
+    let lat_deg = field.required_number("lat", limits::LATITUDE.in_unit("degrees north"));
+    let lon_deg = field.required_number("lon", limits::LONGITUDE.in_unit("degrees east"));
     Some(Geographic {
         lat_deg: lat_deg?,
         lon_deg: lon_deg?,
     })
 }
 
-fn waypoints<'a>(ship: &Json<'a>, least: usize) -> Option<Vec<Json<'a>>> {
+fn waypoints<'a>(ship: &Field<'a>, least: usize) -> Option<Vec<Field<'a>>> {
     ship.require("waypoints", "a list of waypoints")?
-        .list(least, limits::ROUTE_POINTS, "waypoints")
+        .list(least..=limits::ROUTE_POINTS, "waypoints")
 }
 
 /// The plane about own ship's first place.
-fn origin(own: &Json) -> Option<Georeference> {
+fn origin(own: &Field) -> Option<Georeference> {
     let start = own
-        .take("initial")
-        .and_then(|initial| initial.take("position"));
-    let entry = match start {
+        .get("initial")
+        .and_then(|initial| initial.get("position"));
+    let field = match start {
         Some(start) => start,
         None => waypoints(own, 1)?
             .first()?
             .require("position", "an object { lat, lon }")?,
     };
-    let place = place(&entry)?;
+    let place = place(&field)?;
     let earth = Georeference::new(place);
     if earth.is_none() {
-        entry.fault(
+        field.fault(
             place,
             format_args!("a latitude of {} degrees", limits::ORIGIN_LATITUDE),
         );
@@ -148,37 +140,27 @@ fn origin(own: &Json) -> Option<Georeference> {
     earth
 }
 
-fn near(entry: &Json, earth: &Georeference) -> Option<Vector> {
-    let place = place(entry)?;
-    let point = earth.to_near_plane(place);
-    if point.is_none() {
-        let far = earth.to_plane(place).norm() / 1000.0;
-        let reach = GEOREFERENCE_REACH_M / 1000.0;
-        entry.fault(
-            format_args!("{place}, {far:.0} km from own ship's start"),
-            format_args!("a place within {reach:.0} km of it"),
-        );
-    }
-    point
+fn near(field: &Field, earth: &Georeference) -> Option<Vector> {
+    plane::near(field, place(field)?, earth)
 }
 
 /// A speed in m/s from one in knots.
-fn knots(entry: &Json, range: Range) -> Option<f64> {
-    entry
-        .number(limits::in_knots(range), "knots")
+fn knots(field: &Field, range: Range) -> Option<f64> {
+    field
+        .number(range.in_knots().in_unit("knots"))
         .map(mps_from_knots)
 }
 
-fn own(entry: &Json, earth: &Georeference, notes: &mut Vec<String>) -> Option<Own> {
-    unused(entry, &SHIP_KEYS, notes);
-    let initial = initial(entry, earth, notes);
-    let fixed = fixed(entry, notes);
-    let entries = waypoints(entry, 2);
+fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<Own> {
+    unused(field, &SHIP_KEYS, notes);
+    let initial = initial(field, earth, notes);
+    let fixed = fixed(field, notes);
+    let fields = waypoints(field, 2);
     let known = initial.unwrap_or_default();
-    let route = entries.and_then(|entries| route(&entries, &known, earth, notes));
+    let route = fields.and_then(|fields| route(&fields, &known, earth, notes));
     let (initial, fixed, route) = (initial?, fixed?, route?);
     if fixed.delay > 0.0 {
-        entry.fault(
+        field.fault(
             format_args!("own ship {} s late (static.initDelay)", fixed.delay),
             "own ship from the start",
         );
@@ -187,7 +169,7 @@ fn own(entry: &Json, earth: &Georeference, notes: &mut Vec<String>) -> Option<Ow
     if route.points.iter().any(|p| p.turn_radius.is_some()) {
         notes.push(format!(
             "{}: turn radii of own ship's waypoints not used; hers is {TURNING_LENGTHS} lengths",
-            entry.path()
+            field.path()
         ));
     }
     let points: Vec<Vector> = route.points.iter().map(|p| p.position).collect();
@@ -202,11 +184,11 @@ fn own(entry: &Json, earth: &Georeference, notes: &mut Vec<String>) -> Option<Ow
     })
 }
 
-fn others(list: &[Json], earth: &Georeference, notes: &mut Vec<String>) -> Option<Vec<Other>> {
+fn others(list: &[Field], earth: &Georeference, notes: &mut Vec<String>) -> Option<Vec<Other>> {
     let mut names = BTreeSet::new();
     let mut others = Vec::with_capacity(list.len());
-    for (index, entry) in list.iter().enumerate() {
-        let ship = other(entry, earth, notes);
+    for (index, field) in list.iter().enumerate() {
+        let ship = other(field, earth, notes);
         others.push(ship.map(|(name, hull, track)| {
             let wanted = name.unwrap_or_else(|| format!("target {}", index + 1));
             let mut name = wanted.clone();
@@ -222,27 +204,27 @@ fn others(list: &[Json], earth: &Georeference, notes: &mut Vec<String>) -> Optio
 }
 
 fn other(
-    entry: &Json,
+    field: &Field,
     earth: &Georeference,
     notes: &mut Vec<String>,
-) -> Option<(Option<String>, HullSaid, Track)> {
-    unused(entry, &SHIP_KEYS, notes);
-    let initial = initial(entry, earth, notes);
-    let fixed = fixed(entry, notes);
-    let entries = waypoints(entry, 1);
+) -> Option<(Option<String>, GivenHull, Track)> {
+    unused(field, &SHIP_KEYS, notes);
+    let initial = initial(field, earth, notes);
+    let fixed = fixed(field, notes);
+    let fields = waypoints(field, 1);
     let known = initial.unwrap_or_default();
-    let route = entries
+    let route = fields
         .as_ref()
-        .and_then(|entries| route(entries, &known, earth, notes));
-    let (initial, fixed, entries, route) = (initial?, fixed?, entries?, route?);
+        .and_then(|fields| route(fields, &known, earth, notes));
+    let (initial, fixed, fields, route) = (initial?, fixed?, fields?, route?);
     let track = match route.points.as_slice() {
-        [only] => steady(entry, only.position, &initial)?,
-        _ => along(entry, &entries, &route, &initial, &fixed.hull)?,
+        [only] => steady(field, only.position, &initial)?,
+        _ => along(field, &fields, &route, &initial, &fixed.hull)?,
     };
     let track = if fixed.delay > 0.0 {
         notes.push(format!(
             "{}: appears after {} s; taken to stand at her start until then",
-            entry.path(),
+            field.path(),
             fixed.delay
         ));
         track.appearing(fixed.delay)
@@ -253,14 +235,14 @@ fn other(
 }
 
 /// One place, and on from there.
-fn steady(entry: &Json, start: Vector, initial: &Initial) -> Option<Track> {
+fn steady(field: &Field, start: Vector, initial: &Initial) -> Option<Track> {
     match (initial.speed, initial.course) {
         (Some(speed), course) if speed == 0.0 => {
             Some(Track::straight(start, course.unwrap_or(0.0), speed))
         }
         (Some(speed), Some(course)) => Some(Track::straight(start, course, speed)),
         _ => {
-            entry.fault(
+            field.fault(
                 "one waypoint, and no speed and course at the start",
                 "two waypoints, or initial.sog and initial.cog",
             );
@@ -270,11 +252,11 @@ fn steady(entry: &Json, start: Vector, initial: &Initial) -> Option<Track> {
 }
 
 fn along(
-    entry: &Json,
-    entries: &[Json],
+    field: &Field,
+    fields: &[Field],
     route: &Route,
     initial: &Initial,
-    hull: &HullSaid,
+    hull: &GivenHull,
 ) -> Option<Track> {
     let first = heading_of(route.points[1].position - route.points[0].position);
     let turned = |heading: &f64| wrap(first - heading).abs() > radians_from_deg(ROUNDED_DEG);
@@ -295,7 +277,7 @@ fn along(
         for ((side, speed), metres) in sides.into_iter().zip(blend) {
             let length = (route.points[side + 1].position - route.points[side].position).norm();
             if !(*metres <= length) {
-                entries[leg + 1].fault(
+                fields[leg + 1].fault(
                     format_args!("a change of speed over {metres:.0} m of a leg of {length:.0} m"),
                     "changes within the legs beside the waypoint",
                 );
@@ -307,14 +289,14 @@ fn along(
         }
     }
     let length = match hull {
-        HullSaid::Is(hull) => hull.length,
-        HullSaid::Unsaid | HullSaid::Missing(_) => USUAL_HULL.length,
+        GivenHull::Known(hull) => hull.length,
+        GivenHull::NotInFormat | GivenHull::Missing(_) => USUAL_HULL.length,
     };
     let start = initial.heading.filter(turned);
     match Track::along(&route.points, &legs, TURNING_LENGTHS * length, start) {
         Ok(track) => Some(track),
         Err(TrackError::Turn { point, begins }) => {
-            let place = entries.get(point).unwrap_or(entry);
+            let place = fields.get(point).unwrap_or(field);
             place.fault(
                 format_args!("a turnRadius whose turn begins {begins:.0} m before the waypoint"),
                 "a turn that fits into the legs beside it",
@@ -322,4 +304,101 @@ fn along(
             None
         }
     }
+}
+
+/// Nautical miles: radii of turns, stretches of changing speed.
+const MILES: Range = Range::between(0.0, 100.0);
+
+/// Points of a route and the speeds between them.
+#[derive(Debug, Default)]
+struct Route {
+    points: Vec<RoutePoint>,
+    /// m/s, one per leg.
+    speeds: Vec<f64>,
+    /// Metres before and after the waypoint at the end of each leg over which the speed changes.
+    blends: Vec<[f64; 2]>,
+}
+
+fn route(
+    fields: &[Field],
+    start: &Initial,
+    earth: &Georeference,
+    notes: &mut Vec<String>,
+) -> Option<Route> {
+    let mut route = Route::default();
+    let mut sound = true;
+    for (index, field) in fields.iter().enumerate() {
+        unused(field, &["position", "turnRadius", "leg"], notes);
+        let position = field
+            .require("position", "an object { lat, lon }")
+            .and_then(|place| near(&place, earth));
+        let position = if index == 0 {
+            start.position.or(position)
+        } else {
+            position
+        };
+        let radius = field.optional_number("turnRadius", MILES.in_unit("nautical miles"));
+        let leg = if index == 0 {
+            None
+        } else {
+            Some(leg(field, start.speed, notes))
+        };
+        let (Some(position), Some(radius)) = (position, radius) else {
+            sound = false;
+            continue;
+        };
+        let before = route.points.last().map(|p: &RoutePoint| p.position);
+        if before.is_some_and(|before| !((position - before).norm() >= limits::LENGTH.low)) {
+            field.fault("the waypoint before it again", "a place of its own");
+            sound = false;
+        }
+        match leg {
+            None => {}
+            Some(None) => sound = false,
+            Some(Some((speed, blend))) => {
+                route.speeds.push(speed);
+                route.blends.push(blend);
+            }
+        }
+        route.points.push(RoutePoint {
+            position,
+            turn_radius: radius.map(|miles| miles * NAUTICAL_MILE_M),
+        });
+    }
+    sound.then_some(route)
+}
+
+/// Speed of the leg that ends at a waypoint, m/s, and the metres before and after the waypoint over which it changes.
+fn leg(
+    waypoint: &Field,
+    initial_speed: Option<f64>,
+    notes: &mut Vec<String>,
+) -> Option<(f64, [f64; 2])> {
+    let leg = waypoint.get("leg");
+    if let Some(leg) = &leg {
+        unused(leg, &["sog", "data"], notes);
+    }
+    let data = leg.as_ref().and_then(|leg| leg.get("data"));
+    if let Some(data) = &data {
+        unused(data, &["sog"], notes);
+    }
+    if let Some(point) = data.and_then(|data| data.get("sog")) {
+        let speed = point
+            .require("value", "a speed in knots")
+            .and_then(|value| knots(&value, limits::SHIP_WAY));
+        let blend = ["interpStart", "interpEnd"].map(|key| {
+            let miles = point.optional_number(key, MILES.in_unit("nautical miles"))?;
+            Some(miles.unwrap_or(0.0) * NAUTICAL_MILE_M)
+        });
+        return Some((speed?, [blend[0]?, blend[1]?]));
+    }
+    let speed = match (leg.as_ref().and_then(|leg| leg.get("sog")), initial_speed) {
+        (Some(speed), _) => knots(&speed, limits::SHIP_WAY)?,
+        (None, Some(speed)) if limits::SHIP_WAY.contains(speed) => speed,
+        (None, _) => {
+            waypoint.fault("no speed of the leg that ends here", "leg.sog in knots");
+            return None;
+        }
+    };
+    Some((speed, [0.0; 2]))
 }

@@ -1,12 +1,11 @@
 //! A planning problem: own ship, where she is to go, and by when.
 
-use super::super::super::file::Range;
-use super::super::super::limits;
-use super::super::situation::{HullSaid, Own};
+use super::super::situation::{GivenHull, Own};
 use super::super::xml::Xml;
-use super::shape::{point, shapes};
-use super::state::state;
+use super::geometry::{point, shapes, state};
 use crate::frame::{Pose, Vector, wrap};
+use crate::input::Range;
+use crate::scenario::limits;
 
 /// Steps of a goal; it may begin before the scenario.
 const STEPS: Range = Range::within(1e9);
@@ -87,7 +86,7 @@ pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own
     Some(Own {
         pose: Pose::new(initial.position, wrap(initial.orientation)),
         speed,
-        hull: HullSaid::Unsaid,
+        hull: GivenHull::NotInFormat,
         leg_speeds: vec![desired; route.len() - 1],
         route,
         horizon: latest.is_finite().then_some(latest),
@@ -115,11 +114,11 @@ fn times(goal: &Xml, step: f64) -> Option<[f64; 2]> {
         return Some([0.0, f64::INFINITY]);
     };
     if entry.take("exact").is_some() {
-        let time = entry.exact(STEPS, "steps")? * step;
+        let time = entry.exact(STEPS.in_unit("steps"))? * step;
         return Some([time; 2]);
     }
-    let start = entry.required_number("intervalStart", STEPS, "steps");
-    let end = entry.required_number("intervalEnd", STEPS, "steps");
+    let start = entry.required_number("intervalStart", STEPS.in_unit("steps"));
+    let end = entry.required_number("intervalEnd", STEPS.in_unit("steps"));
     let [start, end] = [start?, end?];
     if !(end > 0.0 && end >= start) {
         entry.fault(

@@ -1,43 +1,30 @@
-//! What is assumed where a foreign file says nothing.
+//! Assumptions for values that imported files do not have.
 
-use super::super::file::Range;
-use super::super::limits;
 use crate::frame::radians_from_deg;
+use crate::input::Range;
+use crate::scenario::limits;
 use crate::vessel::Hull;
 
-/// Half-width of a target's speed where nobody says otherwise, m/s.
+/// Default half-width of a target's speed, m/s.
 const SPEED_SPREAD: f64 = 0.5;
 
-/// Half-width of a target's course where nobody says otherwise, degrees.
+/// Default half-width of a target's course, degrees.
 const COURSE_SPREAD_DEG: f64 = 5.0;
 
-/// Hull of a ship for which its format has no place: 100 × 20 m, the size that published runs of Imazu's cases assume.
+/// Hull of a ship whose format has no size: 100 × 20 m, as published runs of Imazu's cases assume.
 pub(super) const USUAL_HULL: Hull = Hull {
     length: 100.0,
     beam: 20.0,
 };
 
-/// Own ship's least turning radius, in own lengths: a tactical diameter of five lengths, the most that IMO
-/// resolution MSC.137(76) allows.
+/// Own ship's turning radius in own lengths: a tactical diameter of five lengths, the largest that
+/// IMO resolution MSC.137(76) allows.
 pub(super) const TURNING_LENGTHS: f64 = 2.5;
 
-/// The horizon, in durations of own ship's route: room to let a slower ship go ahead all the way.
+/// Horizon in durations of own ship's route: time to stay behind a slower ship all the way.
 pub(super) const HORIZON_ROUTES: f64 = 2.0;
 
-/// What foreign files do not say and a scenario needs. The default is that of `docs/formats.md`.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::scenario::formats::{Assumed, Assumption, Contents};
-///
-/// let assumed = Assumed::default().with(Assumption::SafetyMargin, 500.0).with_variants(true);
-/// let Contents::Situations { situations, .. } = Contents::read("scenarios/imazu/imazu.json".as_ref(), &assumed)? else {
-///     panic!("situations");
-/// };
-/// assert_eq!((assumed.variants(), situations.len()), (true, 25));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Values that a scenario needs and imported files do not have. Defaults as in `docs/formats.md`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
     speed_spread: f64,
@@ -62,16 +49,6 @@ impl Default for Assumed {
 }
 
 /// One of the numbers of [`Assumed`], as a user gives it.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::scenario::formats::Assumption;
-///
-/// assert!(Assumption::CourseSpread.allows(5.0) && !Assumption::CourseSpread.allows(f64::NAN));
-/// assert!(!Assumption::SpeedSpread.allows(-1.0));
-/// assert_eq!(Assumption::SpeedSpread.allowed(), "a number from 0 to 100");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Assumption {
     /// Half-width of every target's speed, m/s.
@@ -96,19 +73,19 @@ impl Assumption {
         }
     }
 
-    /// What it may be, in words.
+    /// The allowed values in words.
     pub fn allowed(self) -> String {
         self.range().to_string()
     }
 
-    /// True for what it may be. A NaN never is.
+    /// True for an allowed value. A NaN never is.
     pub fn allows(self, value: f64) -> bool {
         self.range().contains(value)
     }
 }
 
 impl Assumed {
-    /// The same with another value; unchanged where [`Assumption::allows`] says no.
+    /// These assumptions with another value; unchanged if [`Assumption::allows`] refuses it.
     #[must_use]
     pub fn with(mut self, what: Assumption, value: f64) -> Self {
         if !what.allows(value) {
@@ -124,14 +101,14 @@ impl Assumed {
         self
     }
 
-    /// The same with the variants of cases that are coded in more than one way, or without.
+    /// These assumptions with or without the variants of cases that are coded in several ways.
     #[must_use]
     pub fn with_variants(mut self, variants: bool) -> Self {
         self.variants = variants;
         self
     }
 
-    /// True when variants are to be read too.
+    /// True if variants are read too.
     pub fn variants(&self) -> bool {
         self.variants
     }
@@ -151,7 +128,7 @@ impl Assumed {
         self.safety_margin.unwrap_or(own_length)
     }
 
-    /// The hull of a ship for which the format has no place.
+    /// Hull of a ship whose format has no size.
     pub(super) fn usual_hull(&self) -> Hull {
         Hull {
             length: self.length.unwrap_or(USUAL_HULL.length),
@@ -159,7 +136,7 @@ impl Assumed {
         }
     }
 
-    /// The hull of a ship that ought to have said how large she is: only what was asked for.
+    /// Hull of a ship whose file lacks its size: only if the user gave one.
     pub(super) fn asked_hull(&self) -> Option<Hull> {
         Some(Hull {
             length: self.length?,

@@ -1,89 +1,54 @@
-//! What each planner asks of a scenario beyond what the fields say.
+//! Requirements of each planner on a scenario, beyond those of the single fields.
 
-use super::{Compliance, Fault, Land, Scenario};
+use super::{Compliance, Land, Scenario};
 use crate::frame::{Vector, heading_of, wrap};
+use crate::input::Fault;
 use crate::planner::{Objective, PlannerKind};
 use crate::tolerance;
 use crate::trajectory::{NetworkError, PathNetwork};
 
-/// Every fault, by the paths of the fields.
+/// Every field that the scenario's planner cannot honour; faults without lines.
 pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
-    let mut faults = match scenario.planner {
-        PlannerKind::SpaceTime => return for_space_time(scenario),
+    let planner = scenario.planner;
+    let name = planner.word();
+    let mut faults = match planner {
         PlannerKind::PathTime => for_path_time(scenario),
-        PlannerKind::OptimalControl => for_optimal_control(scenario),
+        PlannerKind::SpaceTime | PlannerKind::OptimalControl => Vec::new(),
     };
-    if scenario.compliance == Compliance::Rules {
-        faults.push(fault(
+    let follows_paths = planner == PlannerKind::PathTime;
+    if !follows_paths && scenario.objective != Objective::SpaceTimeError {
+        let found = format!("\"{}\" for the {name} planner", scenario.objective.word());
+        let allowed = match planner {
+            PlannerKind::OptimalControl => "nothing: it minimises its own stage cost",
+            _ => "\"space-time-error\", or the path-time planner",
+        };
+        faults.push(Fault::new("planner.objective", found, allowed));
+    }
+    if !follows_paths && !scenario.alternatives.is_empty() {
+        faults.push(Fault::new(
+            "mission.alternatives",
+            format_args!("other paths for the {name} planner"),
+            "nothing: it chooses its way; or the path-time planner",
+        ));
+    }
+    if planner == PlannerKind::OptimalControl && scenario.land.is_some() {
+        faults.push(Fault::new(
+            "map",
+            "land for the optimal-control planner",
+            "nothing: it keeps off no land, this is not built yet",
+        ));
+    }
+    if planner != PlannerKind::SpaceTime && scenario.compliance == Compliance::Rules {
+        faults.push(Fault::new(
             "planner.compliance",
-            format!("\"rules\" for the {} planner", scenario.planner.word()),
+            format_args!("\"rules\" for the {name} planner"),
             "\"shape\" or \"none\", or the space-time planner: it alone keeps to the rules",
         ));
     }
     faults
 }
 
-fn fault(path: &str, found: String, allowed: &str) -> Fault {
-    Fault {
-        path: path.to_owned(),
-        found,
-        allowed: allowed.to_owned(),
-        line: None,
-    }
-}
-
-fn for_space_time(scenario: &Scenario) -> Vec<Fault> {
-    let mut faults = Vec::new();
-    if scenario.objective != Objective::SpaceTimeError {
-        faults.push(fault(
-            "planner.objective",
-            format!(
-                "\"{}\" for the space-time planner",
-                scenario.objective.word()
-            ),
-            "\"space-time-error\", or the path-time planner",
-        ));
-    }
-    if !scenario.alternatives.is_empty() {
-        faults.push(fault(
-            "mission.alternatives",
-            "other paths for the space-time planner".to_owned(),
-            "nothing: it chooses its way; or the path-time planner",
-        ));
-    }
-    faults
-}
-
-fn for_optimal_control(scenario: &Scenario) -> Vec<Fault> {
-    let mut faults = Vec::new();
-    if scenario.objective != Objective::SpaceTimeError {
-        faults.push(fault(
-            "planner.objective",
-            format!(
-                "\"{}\" for the optimal-control planner",
-                scenario.objective.word()
-            ),
-            "nothing: it minimises its own stage cost",
-        ));
-    }
-    if !scenario.alternatives.is_empty() {
-        faults.push(fault(
-            "mission.alternatives",
-            "other paths for the optimal-control planner".to_owned(),
-            "nothing: it chooses its way; or the path-time planner",
-        ));
-    }
-    if scenario.land.is_some() {
-        faults.push(fault(
-            "map",
-            "land for the optimal-control planner".to_owned(),
-            "nothing: it keeps off no land, this is not built yet",
-        ));
-    }
-    faults
-}
-
-/// A length to the micrometre, without digits that say nothing.
+/// A length rounded to the micrometre.
 fn micrometres(length: f64) -> f64 {
     (length * 1e6).round() / 1e6
 }
@@ -94,9 +59,9 @@ fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
     let away = (scenario.own_ship.pose.position - first).norm();
     // negated on purpose: a NaN is away
     if !(away <= tolerance::JOINT_M) {
-        faults.push(fault(
+        faults.push(Fault::new(
             "own_ship.position",
-            format!("a start {} m from the first waypoint", micrometres(away)),
+            format_args!("a start {} m from the first waypoint", micrometres(away)),
             "the first waypoint: the path-time planner keeps to the path",
         ));
     }
@@ -107,30 +72,29 @@ fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
                 faults.extend(turns_aground(scenario, land, &network));
             }
         }
-        Err(NetworkError::NoSharedPoint { alternative: index }) => faults.push(fault(
-            &alternative(index),
-            "a path that shares no point with another one".to_owned(),
+        Err(NetworkError::NoSharedPoint { alternative: index }) => faults.push(Fault::new(
+            alternative(index),
+            "a path that shares no point with another one",
             "a path that leaves the mission's path, or another alternative, and comes back",
         )),
-        Err(NetworkError::NoWayThrough { alternative: index }) => faults.push(fault(
-            &alternative(index),
-            "a path on no way from the first waypoint to the last".to_owned(),
+        Err(NetworkError::NoWayThrough { alternative: index }) => faults.push(Fault::new(
+            alternative(index),
+            "a path on no way from the first waypoint to the last",
             "a path that is met first where it can be reached, and later where another path goes on",
         )),
-        Err(NetworkError::EmptyLeg { path, leg }) => faults.push(fault(
-            &match path.checked_sub(1) {
+        Err(NetworkError::EmptyLeg { path, leg }) => faults.push(Fault::new(
+            match path.checked_sub(1) {
                 Some(index) => alternative(index),
                 None => "mission.waypoints".to_owned(),
             },
-            format!("no length of leg {leg}"),
+            format_args!("no length of leg {leg}"),
             "legs of some length",
         )),
     }
     faults
 }
 
-/// Every place where own hull, turning on the spot from one leg to the next, would come too near to land. About a hull's middle
-/// half a turn covers the same to either side.
+/// Places where own hull, turning on the spot from one leg to the next, would be too near to land.
 fn turns_aground(scenario: &Scenario, land: &Land, network: &PathNetwork) -> Vec<Fault> {
     let own = &scenario.own_ship;
     let legs = network.legs();
@@ -167,17 +131,17 @@ fn turns_aground(scenario: &Scenario, land: &Land, network: &PathNetwork) -> Vec
                 format!("a turn on the spot that takes own hull to {least:.1} m from land")
             };
             let allowed = format!(
-                "at least {} m of water around own hull on every heading between the legs that meet here, or the \
-                 space-time planner",
+                "at least {} m of water around own hull on every heading between the legs that meet \
+                 here, or the space-time planner",
                 land.margin
             );
-            faults.push(fault(&field, found, &allowed));
+            faults.push(Fault::new(field, found, allowed));
         }
     }
     faults
 }
 
-/// The field of the waypoint at a place; of the paths where they only cross there.
+/// Path of the waypoint at a place, or of the alternatives if they only cross there.
 fn field_at(scenario: &Scenario, place: Vector) -> String {
     let at = |points: &[Vector]| {
         let near = |p: &Vector| (p - place).norm() <= tolerance::JOINT_M;

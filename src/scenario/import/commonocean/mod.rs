@@ -1,25 +1,20 @@
 //! CommonOcean scenarios (XML 2022a; 2020a, which names some elements otherwise): metres, m/s, seconds; angles
 //! counter-clockwise from east, radians; times in steps.
 
+mod geometry;
 mod problem;
-mod shape;
-mod state;
-
-use std::cell::RefCell;
 
 use roxmltree::Document;
 
-use super::super::fault::Fault;
-use super::super::file::Range;
-use super::super::limits;
-use super::situation::{Declared, HullSaid, Other, Own, Situation};
+use super::situation::{Declared, GivenHull, Other, Own, Situation};
 use super::track::{RouteLeg, RoutePoint, Track};
-use super::xml::{Xml, shown};
+use super::xml::Xml;
 use crate::frame::{Vector, wrap};
+use crate::input::{Fault, Faults, Range, abbreviated};
+use crate::scenario::limits;
 use crate::text::is_line;
 use crate::vessel::Hull;
-use shape::{Shape, shapes};
-use state::{State, state};
+use geometry::{Shape, State, shapes, state};
 
 /// Seconds of a step.
 const STEP: Range = Range::between(1e-3, 3600.0);
@@ -65,22 +60,22 @@ const VERSIONS: [&str; 2] = ["2022a", "2020a"];
 pub(super) fn situations(
     document: &Document,
 ) -> Result<Vec<Result<Situation, Vec<Fault>>>, Vec<Fault>> {
-    let faults = RefCell::default();
+    let faults = Faults::default();
     let root = Xml::root(document, &faults);
     let version = root.attribute("commonOceanVersion").unwrap_or_default();
     if !VERSIONS.contains(&version) {
         root.fault(
-            format_args!("commonOceanVersion {}", shown(version)),
+            format_args!("commonOceanVersion {}", abbreviated(version)),
             format_args!("one of {}", VERSIONS.join(", ")),
         );
-        return Err(faults.into_inner());
+        return Err(faults.take());
     }
-    let step = root.attribute_number("timeStepSize", STEP, "s");
+    let step = root.attribute_number("timeStepSize", STEP.in_unit("s"));
     let name = match root.attribute("benchmarkID") {
         Some(id) if is_line(id) => Some(id.trim()),
         Some(id) => {
             root.fault(
-                format_args!("benchmarkID {}", shown(id)),
+                format_args!("benchmarkID {}", abbreviated(id)),
                 "a name on one line",
             );
             None
@@ -205,7 +200,10 @@ fn kind<'a>(element: &Xml<'a>) -> Option<&'a str> {
     if TYPES.contains(&kind) {
         return Some(kind);
     }
-    entry.fault(shown(kind), format_args!("one of {}", TYPES.join(", ")));
+    entry.fault(
+        abbreviated(kind),
+        format_args!("one of {}", TYPES.join(", ")),
+    );
     None
 }
 
@@ -256,7 +254,7 @@ fn moving(element: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Other> {
     let kind = kind(element);
     let hull = match element.take("shape") {
         Some(entry) => shapes(&entry).and_then(|parts| hull(&entry, &parts)),
-        None => Some(HullSaid::Missing(format!("{}/shape", element.path()))),
+        None => Some(GivenHull::Missing(format!("{}/shape", element.path()))),
     };
     let initial = element
         .require("initialState", "position, orientation, time, velocity")
@@ -276,7 +274,7 @@ fn moving(element: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Other> {
     Some(Other::Ship { name, hull, track })
 }
 
-fn hull(entry: &Xml, parts: &[Shape]) -> Option<HullSaid> {
+fn hull(entry: &Xml, parts: &[Shape]) -> Option<GivenHull> {
     let [only] = parts else {
         entry.fault(
             format_args!("{} shapes", parts.len()),
@@ -284,7 +282,7 @@ fn hull(entry: &Xml, parts: &[Shape]) -> Option<HullSaid> {
         );
         return None;
     };
-    Some(HullSaid::Is(Hull {
+    Some(GivenHull::Known(Hull {
         length: only.length,
         beam: only.width,
     }))

@@ -1,11 +1,12 @@
-//! Shapes: rectangles, circles and polygons, in convex parts.
+//! Shapes (rectangles, circles, polygons) in convex parts, and states of ships at a step.
 
-use super::super::super::file::Range;
-use super::super::super::limits;
+use std::f64::consts::TAU;
+
 use super::super::xml::Xml;
-use super::state::COORDINATE;
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, outer_disc};
+use crate::input::Range;
+use crate::scenario::limits;
 use crate::vessel::Hull;
 
 /// Metres: sizes of things and regions.
@@ -25,8 +26,8 @@ pub(super) struct Shape {
 
 /// A point in metres.
 pub(super) fn point(entry: &Xml) -> Option<Vector> {
-    let x = entry.required_number("x", COORDINATE, "m");
-    let y = entry.required_number("y", COORDINATE, "m");
+    let x = entry.required_number("x", limits::COORDINATE.in_unit("m"));
+    let y = entry.required_number("y", limits::COORDINATE.in_unit("m"));
     Some(Vector::new(x?, y?))
 }
 
@@ -47,10 +48,10 @@ fn one(entry: &Xml) -> Option<Shape> {
     };
     let outline = match entry.name() {
         "rectangle" => {
-            let length = entry.required_number("length", SIZE, "m");
-            let width = entry.required_number("width", SIZE, "m");
+            let length = entry.required_number("length", SIZE.in_unit("m"));
+            let width = entry.required_number("width", SIZE.in_unit("m"));
             let angle = match entry.take("orientation") {
-                Some(angle) => angle.number(ANGLE, "rad")?,
+                Some(angle) => angle.number(ANGLE.in_unit("rad"))?,
                 None => 0.0,
             };
             let hull = Hull {
@@ -60,7 +61,7 @@ fn one(entry: &Xml) -> Option<Shape> {
             hull.polygon(&Pose::new(center, angle))
         }
         "circle" => {
-            let radius = entry.required_number("radius", SIZE, "m")?;
+            let radius = entry.required_number("radius", SIZE.in_unit("m"))?;
             outer_disc(radius, 0.0).translated(center)
         }
         "polygon" => {
@@ -84,5 +85,48 @@ fn one(entry: &Xml) -> Option<Shape> {
         length: reach(Vector::x()),
         width: reach(Vector::y()),
         outline,
+    })
+}
+
+/// Radians: twice the circle to either side.
+const HEADING: Range = Range::within(2.0 * TAU);
+/// Steps.
+const STEPS: Range = Range::between(0.0, 1e9);
+/// m/s; astern is negative.
+const VELOCITY: Range = Range::within(50.0);
+
+/// A state whose values are exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct State {
+    /// Metres.
+    pub(super) position: Vector,
+    /// Radians, counter-clockwise from east.
+    pub(super) orientation: f64,
+    /// Steps.
+    pub(super) time: f64,
+    /// m/s along the orientation, where it is said.
+    pub(super) velocity: Option<f64>,
+}
+
+/// Reads a state; intervals and regions are refused.
+pub(super) fn state(entry: &Xml) -> Option<State> {
+    let position = entry
+        .require("position", "a point")
+        .and_then(|place| place.require("point", "x, y in metres"))
+        .and_then(|place| point(&place));
+    let orientation = match entry.take("orientation") {
+        Some(angle) => angle.exact(HEADING.in_unit("rad")),
+        None => Some(0.0),
+    };
+    let time = entry.required_exact("time", STEPS.in_unit("steps"));
+    let velocity = match entry.take("velocity") {
+        Some(velocity) => velocity.exact(VELOCITY.in_unit("m/s")).map(Some),
+        None => Some(None),
+    };
+    Some(State {
+        position: position?,
+        orientation: orientation?,
+        time: time?,
+        velocity: velocity?,
     })
 }
