@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
-use searoom::colregs::conduct::Thresholds;
+use searoom::colregs::Thresholds;
 use searoom::planner::{PlannerKind, SearchKind};
 use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};

@@ -20,7 +20,10 @@ pub(super) fn without_shapes_stood_on_for(
 ) -> Vec<TargetSets> {
     let roles = sets.iter().map(|s| s.encounter.role);
     if scenario.compliance == Compliance::Rules && Duty::of(roles).stands_on {
-        for set in sets.iter_mut().filter(|s| s.encounter.role.stands_on()) {
+        for set in sets
+            .iter_mut()
+            .filter(|s| s.encounter.role.duties().stands_on)
+        {
             set.give_up_shape();
         }
     }

@@ -18,7 +18,7 @@ pub use land::Land;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::colregs::conduct::Thresholds;
+use crate::colregs::Thresholds;
 use crate::frame::{Georeference, Vector};
 use crate::input::{Faults, read_text};
 use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};

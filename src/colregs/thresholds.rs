@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_6;
 use std::path::Path;
 
-use crate::colregs::Sectors;
+use super::Sectors;
 use crate::frame::radians_from_deg;
 use crate::input::{Fault, Faults, Field, InputError, Range, from_toml, read_text};
 use crate::text::LINE;
@@ -103,6 +103,60 @@ pub struct MonitorLimits {
     pub react: f64,
     /// Time to manoeuvre, seconds.
     pub manoeuvre: f64,
+}
+
+impl RiskLimits {
+    /// Part of [`Thresholds::STANDARD`].
+    pub const STANDARD: Self = Self {
+        time: 420.0,
+        lengths: 2.0,
+        release_factor: 1.5,
+        evaluations: 2,
+    };
+}
+
+impl ScoreLimits {
+    /// Part of [`Thresholds::STANDARD`].
+    pub const STANDARD: Self = Self {
+        collision_lengths: 0.0,
+        near_miss_lengths: 0.5,
+        least_lengths: 1.0,
+        preferred_lengths: 2.0,
+        weight_least: 0.2,
+        weight_near_miss: 0.3,
+        weight_collision: 0.5,
+        apparent: FRAC_PI_6,
+        steady: radians_from_deg(2.0),
+        steady_speed: 0.2,
+        turn_rate: radians_from_deg(0.3),
+        small_turns: 2,
+        starboard: radians_from_deg(10.0),
+        weight_starboard: 0.4,
+        weight_delay: 0.2,
+        weight_side: 0.6,
+        ahead_lengths: 3.0,
+        ahead_time: 60.0,
+        weight_ahead_overtaking: 0.3,
+        weight_ahead_crossing: 0.5,
+        hold: radians_from_deg(10.0),
+        stage_3_lengths: 12.0,
+    };
+
+    /// Distance ahead of a ship, metres, within which its course line must not be crossed.
+    pub fn room_ahead(&self, length: f64, speed: f64) -> f64 {
+        (self.ahead_lengths * length).max(self.ahead_time * speed)
+    }
+}
+
+impl MonitorLimits {
+    /// Part of [`Thresholds::STANDARD`].
+    pub const STANDARD: Self = Self {
+        turn: radians_from_deg(20.0),
+        lengths: 3.0,
+        time: 420.0,
+        react: 60.0,
+        manoeuvre: 70.0,
+    };
 }
 
 /// Largest error of the sum of weights.
@@ -224,47 +278,14 @@ impl Thresholds {
             source: Cow::Borrowed(source),
             sectors: Sectors {
                 head_on,
-                abaft_the_beam: radians_from_deg(112.5),
-                at_rest: 0.2,
-                closing: 0.1,
+                ..Sectors::STANDARD
             },
-            risk: RiskLimits {
-                time: 420.0,
-                lengths: 2.0,
-                release_factor: 1.5,
-                evaluations: 2,
-            },
+            risk: RiskLimits::STANDARD,
             score: ScoreLimits {
-                collision_lengths: 0.0,
-                near_miss_lengths: 0.5,
-                least_lengths: 1.0,
-                preferred_lengths: 2.0,
-                weight_least: 0.2,
-                weight_near_miss: 0.3,
-                weight_collision: 0.5,
-                apparent: FRAC_PI_6,
-                steady: radians_from_deg(2.0),
-                steady_speed: 0.2,
-                turn_rate: radians_from_deg(0.3),
-                small_turns: 2,
                 starboard,
-                weight_starboard: 0.4,
-                weight_delay: 0.2,
-                weight_side: 0.6,
-                ahead_lengths: 3.0,
-                ahead_time: 60.0,
-                weight_ahead_overtaking: 0.3,
-                weight_ahead_crossing: 0.5,
-                hold: radians_from_deg(10.0),
-                stage_3_lengths: 12.0,
+                ..ScoreLimits::STANDARD
             },
-            monitor: MonitorLimits {
-                turn: radians_from_deg(20.0),
-                lengths: 3.0,
-                time: 420.0,
-                react: 60.0,
-                manoeuvre: 70.0,
-            },
+            monitor: MonitorLimits::STANDARD,
         }
     }
 

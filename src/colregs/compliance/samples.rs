@@ -1,45 +1,45 @@
-//! Two ships that meet, sight after sight: all that the judges see.
+//! Samples of an encounter of own ship and one target: the only input of the assessment.
 
-use super::super::role::SteadyShip;
-use crate::frame::{Vector, relative_bearing, to_port};
+use crate::colregs::SteadyShip;
+use crate::frame::{Vector, relative_bearing, to_port, wrap};
 use crate::target::ShipTrack;
 use crate::trajectory::Trajectory;
 use crate::vessel::Hull;
 
-/// Seconds between two sights; the joints of a trajectory are sights, too.
+/// Seconds between two samples; the joints of a trajectory are samples too.
 const STEP_S: f64 = 1.0;
 
-/// Steps at most: those of a longer trajectory are longer.
-const MOST_SIGHTS: u32 = 20_000;
+/// Most steps; a longer trajectory has longer steps.
+const MOST_SAMPLES: u32 = 20_000;
 
 /// m/s. Below this relative speed two ships keep their distance.
 const NO_RELATIVE_SPEED: f64 = 1e-9;
 
 /// Both ships at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
+pub struct EncounterSample {
     /// Seconds.
     pub time: f64,
     /// Own ship.
     pub own: SteadyShip,
     /// The target.
     pub target: SteadyShip,
-    /// Between the hulls, metres, negative in overlap.
+    /// Distance of the hulls, metres, negative in overlap.
     pub apart: f64,
-    /// Seconds until the hulls meet if both hold course and speed; infinite where they never do.
+    /// Seconds until the hulls meet if both hold course and speed; infinite if they never do.
     pub meets_in: f64,
 }
 
-/// Where two ships that hold course and speed will be nearest.
+/// Closest approach of two ships that hold course and speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ahead {
     /// Metres between the centres.
     pub distance: f64,
-    /// Seconds from now; negative when it is past, 0 when the distance does not change.
+    /// Seconds from now; negative if it is past, 0 if the distance does not change.
     pub time: f64,
 }
 
-impl Sight {
+impl EncounterSample {
     fn offset(&self) -> Vector {
         self.target.pose.position - self.own.pose.position
     }
@@ -49,23 +49,23 @@ impl Sight {
         self.offset().norm()
     }
 
-    /// How fast the range grows, m/s; a NaN where the centres coincide.
+    /// Rate at which the range grows, m/s; a NaN if the centres coincide.
     pub fn opening(&self) -> f64 {
         let relative = self.target.velocity() - self.own.velocity();
         self.offset().dot(&relative) / self.range()
     }
 
-    /// Of the target from own ship, radians clockwise from ahead.
+    /// Bearing of the target from own ship, radians clockwise from ahead.
     pub fn bearing(&self) -> f64 {
         relative_bearing(&self.own.pose, self.target.pose.position)
     }
 
-    /// Of own ship from the target, radians clockwise from ahead.
+    /// Bearing of own ship from the target, radians clockwise from ahead.
     pub fn aspect(&self) -> f64 {
         relative_bearing(&self.target.pose, self.own.pose.position)
     }
 
-    /// If both hold course and speed.
+    /// Closest approach if both hold course and speed.
     pub fn ahead(&self) -> Ahead {
         let relative = self.own.velocity() - self.target.velocity();
         let square = relative.norm_squared();
@@ -82,77 +82,62 @@ impl Sight {
         }
     }
 
-    /// Own ship from the target: metres ahead of her, and to port.
+    /// Own ship in the frame of the target: metres ahead, and to port.
     pub fn seen_from_target(&self) -> Vector {
         self.target.pose.body_coordinates(self.own.pose.position)
     }
 }
 
-/// All sights of own ship and one target, in order of time.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::colregs::conduct::Meeting;
-/// use searoom::comparison;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let ferry = scenario.targets[0].ship().expect("a ship");
-/// let held = comparison::hold_course(&scenario).trajectory;
-/// let meeting = Meeting::along(&held, scenario.own_ship.hull, ferry);
-/// assert_eq!((meeting.length(), meeting.target_length()), (60.0, 60.0), "metres: the longer ship is hers");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// All samples of own ship and one target, in order of time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Meeting {
-    sights: Vec<Sight>,
+pub struct EncounterSamples {
+    samples: Vec<EncounterSample>,
     own: Hull,
     target: Hull,
 }
 
-impl Meeting {
-    /// From the start of a trajectory to its end, the target on her nominal track. O(duration). Own ship's heading is
-    /// taken for her course: a drift is not seen.
+impl EncounterSamples {
+    /// Samples from the start of a trajectory to its end, the target on its nominal track. Own ship's
+    /// heading is taken for its course: drift is not seen. O(duration).
     pub fn along(trajectory: &Trajectory, own: Hull, target: &ShipTrack) -> Self {
-        OwnTrack::along(trajectory, own).meeting(target, f64::INFINITY)
+        OwnSamples::along(trajectory, own).encounter(target, f64::INFINITY)
     }
 
-    /// In order of time, at least one.
-    pub(crate) fn sights(&self) -> &[Sight] {
-        &self.sights
+    /// The samples in order of time, at least one.
+    pub(crate) fn samples(&self) -> &[EncounterSample] {
+        &self.samples
     }
 
-    /// Of the longer ship, metres.
+    /// Length of the longer ship, metres.
     pub fn length(&self) -> f64 {
         self.own.length.max(self.target.length)
     }
 
-    /// Of the target, metres.
+    /// Length of the target, metres.
     pub fn target_length(&self) -> f64 {
         self.target.length
     }
 }
 
-/// Own ship at the instants of its sights: one for all targets.
+/// Samples of own ship, common to all targets.
 #[derive(Debug, Clone)]
-pub(crate) struct OwnTrack {
+pub(crate) struct OwnSamples {
     ships: Vec<(f64, SteadyShip)>,
     hull: Hull,
-    /// m/s; infinite where it is not known.
+    /// m/s; infinite if unknown.
     greatest_speed: f64,
 }
 
-impl OwnTrack {
+impl OwnSamples {
     pub(crate) fn along(trajectory: &Trajectory, hull: Hull) -> Self {
         let at = |time: f64| SteadyShip {
             pose: trajectory.pose_at(time),
             speed: trajectory.speed_at(time),
         };
-        let times = trajectory.sample_times(STEP_S, MOST_SIGHTS).into_iter();
+        let times = trajectory.sample_times(STEP_S, MOST_SAMPLES).into_iter();
         let ships: Vec<_> = times.map(|time| (time, at(time))).collect();
         let speeds = ships.iter().map(|(_, ship)| ship.speed);
-        // between two sights one under forces may be faster
+        // a trajectory under forces may be faster between two samples
         let greatest_speed = match trajectory.steered() {
             Some(_) => f64::INFINITY,
             None => speeds.fold(0.0, f64::max),
@@ -168,28 +153,28 @@ impl OwnTrack {
         self.hull
     }
 
-    /// The greatest speed of own ship and a target toward each other, m/s.
+    /// Greatest closing speed of own ship and a target, m/s.
     pub(crate) fn closing(&self, target: &ShipTrack) -> f64 {
         self.greatest_speed + target.speed
     }
 
-    /// All sights of a target; of one whose hull never comes within `far` metres the nearest sight alone.
-    pub(crate) fn meeting(&self, target: &ShipTrack, far: f64) -> Meeting {
+    /// All samples of a target, or the nearest sample alone if the hulls are never within `far` metres.
+    pub(crate) fn encounter(&self, target: &ShipTrack, far: f64) -> EncounterSamples {
         let nearest = far.is_finite().then(|| self.nearest(target)).flatten();
-        let sights = match nearest {
-            Some(sight) if sight.apart > far => vec![sight],
+        let samples = match nearest {
+            Some(sample) if sample.apart > far => vec![sample],
             _ => (0..self.ships.len())
-                .map(|index| self.sight(index, target))
+                .map(|index| self.sample(index, target))
                 .collect(),
         };
-        Meeting {
-            sights,
+        EncounterSamples {
+            samples,
             own: self.hull,
             target: target.hull,
         }
     }
 
-    fn sight(&self, index: usize, track: &ShipTrack) -> Sight {
+    fn sample(&self, index: usize, track: &ShipTrack) -> EncounterSample {
         let (time, own) = self.ships[index];
         let target = SteadyShip {
             pose: track.pose_at(time),
@@ -204,7 +189,7 @@ impl OwnTrack {
         } else {
             between.seconds_to(closing)
         };
-        Sight {
+        EncounterSample {
             time,
             own,
             target,
@@ -213,9 +198,9 @@ impl OwnTrack {
         }
     }
 
-    /// The first sight of the least distance between the hulls, by branch and bound: between two sights, ships come no closer than
-    /// their speeds let them. `None` of what is no number.
-    fn nearest(&self, target: &ShipTrack) -> Option<Sight> {
+    /// First sample of the least distance of the hulls, by branch and bound on the speeds of the
+    /// ships. `None` if the distance is not finite.
+    fn nearest(&self, target: &ShipTrack) -> Option<EncounterSample> {
         // turning hulls come closer than their centres
         let swing = self.hull.half_diagonal() + target.hull.half_diagonal();
         let closing = self.closing(target);
@@ -223,16 +208,16 @@ impl OwnTrack {
             let (time, own) = &self.ships[index];
             (target.pose_at(*time).position - own.pose.position).norm()
         };
-        let mut best = self.sight(0, target);
+        let mut best = self.sample(0, target);
         let mut open = vec![(0, self.ships.len() - 1)];
         while let Some((from, until)) = open.pop() {
-            let last = self.sight(until, target);
+            let last = self.sample(until, target);
             if last.apart < best.apart || last.apart == best.apart && last.time < best.time {
                 best = last;
             }
             let lasts = self.ships[until].0 - self.ships[from].0;
             let least = 0.5 * (range(from) + range(until) - closing * lasts) - swing;
-            // negated on purpose: a NaN is looked at
+            // negated on purpose: a NaN is searched
             if until > from + 1 && !(least > best.apart) {
                 let middle = from + (until - from) / 2;
                 open.push((middle, until));
@@ -243,11 +228,10 @@ impl OwnTrack {
     }
 }
 
-/// Two hulls: where own ship's centre meets the target's hull, about the target's centre less own ship's. A sum of two rectangles, and
-/// so the points between four pairs of lines.
+/// Minkowski sum of two hulls about the offset of their centres: the intersection of four strips.
 struct Between {
     offset: Vector,
-    /// Half of own length and beam, and of the target's, each along its axis.
+    /// Half of own length and beam and of the target's, each with its axis.
     halves: [(Vector, f64); 4],
 }
 
@@ -267,7 +251,7 @@ impl Between {
         }
     }
 
-    /// The half-width of the sum along a normal.
+    /// Half-width of the sum along a normal.
     fn half(&self, normal: &Vector) -> f64 {
         self.halves
             .iter()
@@ -292,7 +276,7 @@ impl Between {
         if !(most > 0.0) {
             return most;
         }
-        // the nearest points are a corner of one and a point of the other
+        // the nearest points are a corner of one hull and a point of the other
         let [a, b] = [&self.halves[..2], &self.halves[2..]];
         let corners = |of: &[(Vector, f64)]| {
             let (ahead, aside) = (of[0].0 * of[0].1, of[1].0 * of[1].1);
@@ -307,7 +291,7 @@ impl Between {
         theirs.into_iter().chain(ours).fold(f64::INFINITY, f64::min)
     }
 
-    /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite where it never is.
+    /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite if it never is.
     fn seconds_to(&self, velocity: Vector) -> f64 {
         let (mut from, mut until) = (0.0_f64, f64::INFINITY);
         for (axis, _) in &self.halves {
@@ -327,10 +311,54 @@ impl Between {
     }
 }
 
+/// An uninterrupted turn to one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alteration {
+    /// Seconds.
+    pub from: f64,
+    /// Seconds.
+    pub until: f64,
+    /// Radians, to port positive.
+    pub turn: f64,
+}
+
+/// Turns faster than `least_rate` (rad/s) of more than `least_turn` in total (radians), in order of
+/// time.
+pub fn alterations(
+    samples: &[EncounterSample],
+    least_rate: f64,
+    least_turn: f64,
+) -> Vec<Alteration> {
+    let mut found: Vec<Alteration> = Vec::new();
+    for pair in samples.windows(2) {
+        let (from, until) = (pair[0].time, pair[1].time);
+        let turn = wrap(pair[1].own.pose.heading - pair[0].own.pose.heading);
+        if !(turn.abs() > least_rate * (until - from)) {
+            continue;
+        }
+        match found.last_mut() {
+            Some(last) if last.until == from && last.turn * turn > 0.0 => {
+                last.until = until;
+                last.turn += turn;
+            }
+            _ => found.push(Alteration { from, until, turn }),
+        }
+    }
+    found.retain(|a| a.turn.abs() > least_turn);
+    found
+}
+
+/// Time of the first sample at which the speed differs by more than a fraction of the first speed.
+pub fn speed_changed(samples: &[EncounterSample], fraction: f64) -> Option<f64> {
+    let first = samples.first()?.own.speed;
+    let changed = |s: &&EncounterSample| (s.own.speed - first).abs() > fraction * first;
+    samples.iter().find(changed).map(|s| s.time)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{planned, standard};
-    use super::super::{Conduct, Meeting};
+    use super::super::tests::{LENGTH, planned, standard, steady};
+    use super::super::{ComplianceReport, EncounterSamples};
     use super::*;
     use crate::frame::Pose;
     use crate::target::DomainKind;
@@ -376,7 +404,7 @@ mod tests {
         assert!(met > 300 && meeting > 300, "{met} {meeting}");
     }
 
-    /// Judged by the nearest sight alone, a target that stays far away is judged as by all sights.
+    /// A target that stays far away is assessed by its nearest sample as by all samples.
     #[test]
     fn a_far_target_is_judged_by_its_nearest_sight() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
@@ -385,7 +413,7 @@ mod tests {
             length: 50.0,
             beam: 10.0,
         };
-        let track = OwnTrack::along(&own, hull);
+        let track = OwnSamples::along(&own, hull);
         let (mut few, mut all) = (0, 0);
         for case in 0..300 {
             let SteadyShip { pose, speed } = ship(&mut rng, [9e3, 3e4][case % 2]);
@@ -399,14 +427,30 @@ mod tests {
                 turn_rate: 0.0,
                 domain: DomainKind::Hull,
             };
-            let whole = Meeting::along(&own, hull, &target);
-            let found = Conduct::along(&track, &target, standard());
-            assert_eq!(found, Conduct::judge(&whole, standard()));
-            match track.meeting(&target, 12e3).sights().len() {
+            let whole = EncounterSamples::along(&own, hull, &target);
+            let found = ComplianceReport::along(&track, &target, standard());
+            assert_eq!(found, ComplianceReport::judge(&whole, standard()));
+            match track.encounter(&target, 12e3).samples().len() {
                 1 => few += 1,
                 _ => all += 1,
             }
         }
         assert!(few > 30 && all > 30, "{few} {all}");
+    }
+
+    #[test]
+    fn a_turn_out_and_back_are_two_alterations_with_their_angles() {
+        let own = planned(&[(0.0, 40.0), (-0.6, 30.0), (0.6, 60.0)], 6.0);
+        let meeting = steady(&own, 1440.0, 0.0, std::f64::consts::PI, 6.0);
+        let found = alterations(meeting.samples(), 0.005, 0.03);
+        let turns: Vec<f64> = found.iter().map(|a| a.turn).collect();
+        assert_eq!(turns.len(), 2, "{found:?}");
+        assert!((turns[0] + 0.6).abs() < 1e-9 && (turns[1] - 0.6).abs() < 1e-9);
+        assert!((found[0].from - 40.0).abs() < 1e-9);
+        // an arc of 2.5 lengths
+        let arc = 0.6 * 2.5 * LENGTH / 6.0;
+        assert!((found[0].until - 40.0 - arc).abs() < 1e-9);
+        assert!(alterations(meeting.samples(), 0.005, 0.7).is_empty());
+        assert_eq!(speed_changed(meeting.samples(), 0.2), None);
     }
 }

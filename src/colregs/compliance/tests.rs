@@ -1,4 +1,4 @@
-//! Fixtures of docs/colregs.md 0.1, sailed well and badly.
+//! Fixtures of docs/colregs.md 0.1 with good and bad manoeuvres.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -61,9 +61,9 @@ fn track(pose: Pose, speed: f64) -> ShipTrack {
 }
 
 /// Own ship and a target that holds course and speed.
-pub fn steady(own: &Trajectory, x: f64, y: f64, heading: f64, speed: f64) -> Meeting {
+pub fn steady(own: &Trajectory, x: f64, y: f64, heading: f64, speed: f64) -> EncounterSamples {
     let pose = Pose::new(Vector::new(x, y), heading);
-    Meeting::along(own, HULL, &track(pose, speed))
+    EncounterSamples::along(own, HULL, &track(pose, speed))
 }
 
 const OUT_AND_BACK: [(f64, f64); 4] = [(0.0, 30.0), (-0.7, 90.0), (1.1, 50.0), (-0.4, 60.0)];
@@ -72,17 +72,17 @@ fn mirrored(legs: &[(f64, f64)]) -> Vec<(f64, f64)> {
     legs.iter().map(|(turn, t)| (-turn, *t)).collect()
 }
 
-fn conduct(legs: &[(f64, f64)], x: f64, y: f64, heading: f64, speed: f64) -> Conduct {
+fn conduct(legs: &[(f64, f64)], x: f64, y: f64, heading: f64, speed: f64) -> ComplianceReport {
     let meeting = steady(&planned(legs, 6.0), x, y, heading, speed);
-    Conduct::judge(&meeting, standard())
+    ComplianceReport::judge(&meeting, standard())
 }
 
-fn rules(c: &Conduct) -> Vec<&'static str> {
-    c.breaches.iter().map(|b| b.rule).collect()
+fn rules(c: &ComplianceReport) -> Vec<&'static str> {
+    c.violations.iter().map(|b| b.rule).collect()
 }
 
-fn violated(c: &Conduct) -> Vec<&'static str> {
-    let broken = c.findings.iter().filter(|f| f.verdict == Verdict::Violated);
+fn violated(c: &ComplianceReport) -> Vec<&'static str> {
+    let broken = c.monitors.iter().filter(|f| f.verdict == Verdict::Violated);
     broken.map(|f| f.monitor).collect()
 }
 
@@ -123,7 +123,7 @@ fn nothing_done_is_a_collision_and_scores_nothing() {
 fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
     let left = |turn_at: f64| {
         let legs = [(0.0, turn_at), (-0.9, 200.0)];
-        let found = conduct(&legs, 1440.0, 0.0, PI, 6.0).findings[1];
+        let found = conduct(&legs, 1440.0, 0.0, PI, 6.0).monitors[1];
         assert_eq!((found.monitor, found.measure), ("R1", Measure::Time));
         (found.verdict, found.robustness)
     };
@@ -136,12 +136,12 @@ fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
     assert_eq!(left(meets), (Verdict::Violated, Some(0.0)));
     // the plan ends on the way to the meeting
     let own = planned(&[(0.0, meets - 30.0)], 6.0);
-    let meeting = Meeting::along(
+    let meeting = EncounterSamples::along(
         &own,
         HULL,
         &track(Pose::new(Vector::new(1440.0, 0.0), PI), 6.0),
     );
-    let found = Conduct::judge(&meeting, standard()).findings[1];
+    let found = ComplianceReport::judge(&meeting, standard()).monitors[1];
     assert_eq!(found.verdict, Verdict::Undecided);
     assert!((found.robustness.expect("in extremis") - 30.0).abs() < 1e-6);
 }
@@ -196,7 +196,7 @@ fn overtaking_is_free_in_its_side_and_not_across_the_bow() {
     ];
     for legs in [far.to_vec(), mirrored(&far)] {
         let c = conduct(&legs, 432.0, 0.0, 0.0, 2.4);
-        assert!(c.breaches.is_empty(), "{:?}", c.breaches);
+        assert!(c.violations.is_empty(), "{:?}", c.violations);
         assert!(c.scores.rule_13 > Some(0.3), "{:?}", c.scores);
     }
     let across = [(0.0, 5.0), (-0.5, 40.0), (0.5, 45.0), (0.7, 90.0)];
@@ -232,7 +232,7 @@ fn the_judges_do_not_see_where_the_scene_lies() {
             6.0,
         );
         let own = Trajectory::new(segments.collect()).expect("a trajectory");
-        Conduct::judge(&Meeting::along(&own, HULL, &target), standard())
+        ComplianceReport::judge(&EncounterSamples::along(&own, HULL, &target), standard())
     };
     let here = judge(0.0, Vector::zeros());
     for k in 0..20 {
@@ -249,7 +249,7 @@ fn the_judges_do_not_see_where_the_scene_lies() {
 #[test]
 fn what_is_not_a_number_is_a_collision() {
     let own = planned(&[(0.0, 60.0)], 6.0);
-    let c = Conduct::judge(&steady(&own, f64::NAN, 0.0, PI, 6.0), standard());
+    let c = ComplianceReport::judge(&steady(&own, f64::NAN, 0.0, PI, 6.0), standard());
     assert_eq!(c.scores.safety, 0.0);
-    assert_eq!(c.findings[0].verdict, Verdict::Violated);
+    assert_eq!(c.monitors[0].verdict, Verdict::Violated);
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::tests::{LENGTH, standard, steady};
-use super::{Conduct, Measure, Verdict};
+use super::{ComplianceReport, Measure, Verdict};
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector, deg_from_radians, radians_from_deg};
 use crate::trajectory::{Segment, Trajectory};
@@ -45,9 +45,9 @@ fn sailed(legs: &[Leg]) -> Trajectory {
 }
 
 /// Own ship, and a target at east, north with heading and speed; the role that own ship begins with.
-fn judged(legs: &[Leg], target: [f64; 4], role: Role) -> Conduct {
+fn judged(legs: &[Leg], target: [f64; 4], role: Role) -> ComplianceReport {
     let [east, north, heading, speed] = target;
-    let conduct = Conduct::judge(
+    let conduct = ComplianceReport::judge(
         &steady(&sailed(legs), east, north, heading, speed),
         standard(),
     );
@@ -330,10 +330,10 @@ fn monitors_are_those_worked_out_by_hand() {
         ),
     ];
     for (legs, target, role, expected) in cases {
-        let findings = judged(legs, *target, *role).findings;
-        let names = findings.each_ref().map(|f| f.monitor);
+        let monitors = judged(legs, *target, *role).monitors;
+        let names = monitors.each_ref().map(|f| f.monitor);
         assert_eq!(names, ["S", "R1", "R3", "R4", "R5", "R6"]);
-        for (found, expected) in findings.iter().zip(expected) {
+        for (found, expected) in monitors.iter().zip(expected) {
             let Some((verdict, robustness, time)) = *expected else {
                 assert_eq!(found.verdict, Verdict::Idle, "{legs:?}: {found:?}");
                 continue;

@@ -1,32 +1,15 @@
-//! The first judge: scores in `[0, 1]` and hard rules, as evaluators of collision avoidance compute them (docs/colregs.md 2).
+//! Scores in `[0, 1]` and rule violations, as evaluators of collision avoidance compute them
+//! (docs/colregs.md 2).
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::Breach;
-use super::alteration::{alterations, speed_changed};
-use super::latch::RoleSpell;
-use super::meeting::{Meeting, Sight};
-use super::thresholds::Thresholds;
-use crate::colregs::Role;
+use super::RuleViolation;
+use super::role_intervals::RoleInterval;
+use super::samples::{EncounterSample, EncounterSamples, alterations, speed_changed};
+use crate::colregs::{APPARENT_SPEED, Role, Thresholds};
 use crate::frame::{deg_from_radians, wrap};
 
-/// How well own ship behaved toward one target; 1 is best. `None` where the rule asks nothing of her.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::colregs::conduct::{Scores, Thresholds};
-///
-/// let scenario = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let thresholds = Thresholds::standard();
-/// let toward_the_ferry = run.conduct(thresholds).remove(0).expect("a plan among ships");
-/// let scores: &Scores = &toward_the_ferry.scores;
-/// assert!(scores.safety > 0.9 && scores.rule_15.is_none(), "Rule 15 asks nothing of a stand-on ship");
-/// assert_eq!(scores.by_name().len(), 2, "safety and Rule 17");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Scores of own ship toward one target; 1 is best. `None` if the rule does not apply.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Scores {
     /// Distance and pose at the closest approach; 0 after a collision, as every other score then.
@@ -37,16 +20,16 @@ pub struct Scores {
     pub rule_13: Option<f64>,
     /// Rule 14: head-on.
     pub rule_14: Option<f64>,
-    /// Rule 15: crossing, the target on her starboard side.
+    /// Rule 15: crossing, the target on own starboard side.
     pub rule_15: Option<f64>,
     /// Rule 16: early and substantial action to keep well clear.
     pub rule_16: Option<f64>,
-    /// Rule 17: stand-on, and of the overtaken ship.
+    /// Rule 17: the stand-on and the overtaken ship.
     pub rule_17: Option<f64>,
 }
 
 impl Scores {
-    /// The worst.
+    /// The least score.
     pub fn least(&self) -> f64 {
         self.by_name()
             .into_iter()
@@ -54,7 +37,7 @@ impl Scores {
             .fold(1.0, f64::min)
     }
 
-    /// Those that apply, by the names of documents.
+    /// Scores that apply, by their names in documents.
     pub fn by_name(&self) -> Vec<(&'static str, f64)> {
         let rules = [
             ("safety", Some(self.safety)),
@@ -77,33 +60,33 @@ fn unit(x: f64) -> f64 {
     if !(x > 0.0) { 0.0 } else { x.min(1.0) }
 }
 
-/// Own ship from the beginning of her role to the closest approach.
+/// Own ship from the beginning of its role to the closest approach.
 struct Act<'a> {
     t: &'a Thresholds,
     role: Role,
     length: f64,
     /// At least one.
-    sights: &'a [Sight],
+    samples: &'a [EncounterSample],
     /// From the closest approach on.
-    after: &'a [Sight],
+    after: &'a [EncounterSample],
     target_length: f64,
 }
 
 impl Act<'_> {
-    fn first(&self) -> &Sight {
-        &self.sights[0]
+    fn first(&self) -> &EncounterSample {
+        &self.samples[0]
     }
 
-    fn closest(&self) -> &Sight {
-        &self.sights[self.sights.len() - 1]
+    fn closest(&self) -> &EncounterSample {
+        &self.samples[self.samples.len() - 1]
     }
 
     /// The greatest departure from the first course, radians, to starboard and to port.
     fn departure(&self) -> [f64; 2] {
         let from = self.first().own.pose.heading;
-        let turned = |s: &Sight| wrap(s.own.pose.heading - from);
+        let turned = |s: &EncounterSample| wrap(s.own.pose.heading - from);
         let greatest = |sign: f64| {
-            self.sights
+            self.samples
                 .iter()
                 .map(|s| sign * turned(s))
                 .fold(0.0, f64::max)
@@ -119,20 +102,20 @@ impl Act<'_> {
     /// The least and the greatest speed in multiples of the first.
     fn speeds(&self) -> [f64; 2] {
         let first = self.first().own.speed;
-        let ratios = self.sights.iter().map(|s| s.own.speed / first);
+        let ratios = self.samples.iter().map(|s| s.own.speed / first);
         ratios.fold([1.0, 1.0], |[low, high], r| [r.min(low), r.max(high)])
     }
 
-    /// When she first altered course or speed, seconds.
+    /// Time of the first alteration of course or speed, seconds.
     fn onset(&self) -> Option<f64> {
         let s = &self.t.score;
-        let turned = alterations(self.sights, s.turn_rate, s.steady);
-        let slowed = speed_changed(self.sights, s.steady_speed);
+        let turned = alterations(self.samples, s.turn_rate, s.steady);
+        let slowed = speed_changed(self.samples, s.steady_speed);
         let times = turned.first().map(|a| a.from).into_iter().chain(slowed);
         times.min_by(f64::total_cmp)
     }
 
-    /// By the distance of the hulls, in multiples of the longer ship's length.
+    /// Score of a distance of the hulls.
     fn range_score(&self, apart: f64) -> f64 {
         let s = &self.t.score;
         let r = apart / self.length;
@@ -155,13 +138,13 @@ impl Act<'_> {
         0.5 * self.range_score(closest.apart) + 0.5 * pose
     }
 
-    /// 0 for action at once, 1 for none.
+    /// Delay of action: 0 at once, 1 never.
     fn delay(&self) -> f64 {
         let Some(onset) = self.onset() else {
             let near = self.first().ahead().distance < self.t.score.least_lengths * self.length;
             return f64::from(u8::from(near));
         };
-        let then = self.sights.iter().find(|s| s.time >= onset);
+        let then = self.samples.iter().find(|s| s.time >= onset);
         let (first, last) = (self.first().range(), self.closest().range());
         then.map_or(1.0, |s| {
             if first > last {
@@ -174,18 +157,18 @@ impl Act<'_> {
 
     /// 0 for a readily apparent course change, 0.5 for none.
     fn unapparent_turn(&self) -> f64 {
-        let share = self.greatest_departure() / self.t.score.apparent;
-        0.5 * (1.0 - share * share).max(0.0)
+        let fraction = self.greatest_departure() / self.t.score.apparent;
+        0.5 * (1.0 - fraction * fraction).max(0.0)
     }
 
-    /// 0 where course or speed is readily altered, 1 where nothing is done.
+    /// 0 for a readily apparent alteration of course or speed, 1 for none.
     fn unapparent(&self) -> f64 {
-        // half the penalty of no action
+        // below this penalty, one of the two is apparent
         const LITTLE: f64 = 0.3;
-        // of both together where nothing is done
+        // product of the two penalties without action
         const NOTHING: f64 = 0.25;
         let turn = self.unapparent_turn();
-        let slower = 0.5 * unit((self.speeds()[0] - 0.5) / 0.5);
+        let slower = 0.5 * unit((self.speeds()[0] - APPARENT_SPEED) / (1.0 - APPARENT_SPEED));
         if turn < LITTLE || slower < LITTLE {
             0.0
         } else {
@@ -193,10 +176,10 @@ impl Act<'_> {
         }
     }
 
-    /// True when more turns than allowed are too small to be readily apparent.
+    /// Time of the first of too many turns that are not readily apparent, seconds.
     fn succession(&self) -> Option<f64> {
         let s = &self.t.score;
-        let mut small = alterations(self.sights, s.turn_rate, s.steady);
+        let mut small = alterations(self.samples, s.turn_rate, s.steady);
         small.retain(|a| a.turn.abs() < self.t.monitor.turn);
         (small.len() > s.small_turns).then(|| small[s.small_turns].from)
     }
@@ -212,10 +195,10 @@ impl Act<'_> {
         unit(self.safety() * (1.0 - self.delay()) * (1.0 - self.unapparent()))
     }
 
-    /// When own ship crosses the target's course line ahead of her, nearer than allowed, seconds.
+    /// Time at which own ship crosses the target's course line too close ahead, seconds.
     fn crosses_ahead(&self) -> Option<f64> {
         let s = &self.t.score;
-        let all = self.sights.iter().chain(self.after.iter().skip(1));
+        let all = self.samples.iter().chain(self.after.iter().skip(1));
         let places: Vec<_> = all
             .map(|s| (s.time, s.target.speed, s.seen_from_target()))
             .collect();
@@ -225,7 +208,7 @@ impl Act<'_> {
                 return None;
             }
             let ahead = a.x + (b.x - a.x) * a.y / (a.y - b.y);
-            let allowed = (s.ahead_lengths * self.target_length).max(s.ahead_time * speed);
+            let allowed = s.room_ahead(self.target_length, speed);
             (ahead > 0.0 && ahead < allowed).then_some(time)
         })
     }
@@ -283,32 +266,22 @@ impl Act<'_> {
     }
 
     fn scores(&self) -> Scores {
-        let keeps_clear = matches!(
-            self.role,
-            Role::GiveWay | Role::BothGiveWay | Role::Overtaking
-        );
-        let head_on = matches!(self.role, Role::HeadOn | Role::PortToPort);
-        let of = |applies: bool, score: &dyn Fn() -> f64| applies.then(score);
+        let duties = self.role.duties();
+        let clears = |rule: u8| duties.keeps_clear && duties.rule == Some(rule);
         Scores {
             safety: self.safety(),
-            rule_8: of(keeps_clear || head_on, &|| self.rule_8()),
-            rule_13: of(self.role == Role::Overtaking, &|| self.rule_13()),
-            rule_14: of(head_on, &|| self.rule_14()),
-            rule_15: of(
-                matches!(self.role, Role::GiveWay | Role::BothGiveWay),
-                &|| self.rule_15(),
-            ),
-            rule_16: of(keeps_clear, &|| self.rule_16()),
-            rule_17: of(
-                matches!(self.role, Role::StandOn | Role::Overtaken),
-                &|| self.rule_17(),
-            ),
+            rule_8: duties.keeps_clear.then(|| self.rule_8()),
+            rule_13: clears(13).then(|| self.rule_13()),
+            rule_14: clears(14).then(|| self.rule_14()),
+            rule_15: clears(15).then(|| self.rule_15()),
+            rule_16: (duties.keeps_clear && !duties.port_to_port).then(|| self.rule_16()),
+            rule_17: duties.stands_on.then(|| self.rule_17()),
         }
     }
 
-    fn turned(&self, least: f64, port_alone: bool) -> Option<&Sight> {
+    fn turned(&self, least: f64, port_alone: bool) -> Option<&EncounterSample> {
         let from = self.first().own.pose.heading;
-        self.sights.iter().find(|s| {
+        self.samples.iter().find(|s| {
             let turn = wrap(s.own.pose.heading - from);
             if port_alone {
                 turn > least
@@ -318,41 +291,42 @@ impl Act<'_> {
         })
     }
 
-    /// Every rule that is broken, in order of time.
-    fn breaches(&self) -> Vec<Breach> {
+    /// Rule violations in order of time.
+    fn violations(&self) -> Vec<RuleViolation> {
         let (s, closest) = (&self.t.score, self.closest());
         let mut found = Vec::new();
-        let mut breach = |rule: &'static str, time: f64, what: String| {
-            found.push(Breach { rule, time, what });
+        let mut violation = |rule: &'static str, time: f64, what: String| {
+            found.push(RuleViolation { rule, time, what });
         };
-        let port_turn = |rule: &'static str, breach: &mut dyn FnMut(&'static str, f64, String)| {
-            if let Some(sight) = self.turned(s.steady, true) {
-                breach(
-                    rule,
-                    sight.time,
-                    "heads to port of her first course before she has passed".to_owned(),
-                );
-            }
-        };
+        let port_turn =
+            |rule: &'static str, violation: &mut dyn FnMut(&'static str, f64, String)| {
+                if let Some(sample) = self.turned(s.steady, true) {
+                    violation(
+                        rule,
+                        sample.time,
+                        "heads to port of its first course before the other has passed".to_owned(),
+                    );
+                }
+            };
         let passing = self.onset().is_some() || !(closest.apart > s.least_lengths * self.length);
         match self.role {
             Role::HeadOn | Role::PortToPort => {
-                port_turn("14(a)", &mut breach);
+                port_turn("14(a)", &mut violation);
                 // negated on purpose: what is not known to be to port is not
                 if passing && !(closest.bearing() < 0.0 && closest.aspect() < 0.0) {
                     let what = "does not pass on the port side of the other".to_owned();
-                    breach("14(a)", closest.time, what);
+                    violation("14(a)", closest.time, what);
                 }
             }
             Role::GiveWay | Role::BothGiveWay => {
                 if let Some(time) = self.crosses_ahead() {
-                    breach("15", time, "crosses ahead of the other".to_owned());
-                    port_turn("15", &mut breach);
+                    violation("15", time, "crosses ahead of the other".to_owned());
+                    port_turn("15", &mut violation);
                 }
             }
             Role::Overtaking => {
                 if let Some(time) = self.crosses_ahead() {
-                    breach(
+                    violation(
                         "13",
                         time,
                         "crosses ahead of the ship it overtakes".to_owned(),
@@ -361,32 +335,32 @@ impl Act<'_> {
             }
             Role::StandOn | Role::Overtaken => {
                 let near = s.stage_3_lengths * self.length;
-                if let Some(sight) = self.turned(s.hold, false).filter(|s| s.range() > near) {
+                if let Some(sample) = self.turned(s.hold, false).filter(|s| s.range() > near) {
                     let hold = deg_from_radians(s.hold);
-                    let what = format!("does not hold her course within {hold:.0} deg");
-                    breach("17(a)(i)", sight.time, what);
+                    let what = format!("does not hold its course within {hold:.0} deg");
+                    violation("17(a)(i)", sample.time, what);
                 }
                 if self.role == Role::StandOn {
-                    port_turn("17(c)", &mut breach);
+                    port_turn("17(c)", &mut violation);
                 }
                 // negated on purpose: a NaN is a collision
                 if !(closest.apart > 0.0) {
                     let what = "holds on into a collision".to_owned();
-                    breach("17(b)", closest.time, what);
+                    violation("17(b)", closest.time, what);
                 }
             }
             Role::None | Role::Static => {}
         }
-        if !matches!(self.role, Role::StandOn | Role::Overtaken) {
+        if !self.role.duties().stands_on {
             if let Some(time) = self.succession() {
                 let what = "makes a succession of small alterations".to_owned();
-                breach("8(b)", time, what);
+                violation("8(b)", time, what);
             }
             let least = s.least_lengths * self.length;
             if !(closest.apart >= least) {
                 let apart = closest.apart;
                 let what = format!("passes at {apart:.0} m, less than {least:.0} m");
-                breach("8(d)", closest.time, what);
+                violation("8(d)", closest.time, what);
             }
         }
         found.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -394,12 +368,16 @@ impl Act<'_> {
     }
 }
 
-/// The scores of own ship in a role, and the rules that she breaks: from the beginning of the role to the closest approach of
-/// the hulls, whether a line is crossed ahead also after it. O(sights).
-pub fn scores(meeting: &Meeting, spell: &RoleSpell, t: &Thresholds) -> (Scores, Vec<Breach>) {
-    let all = meeting.sights();
+/// Scores and rule violations of own ship in a role, from its beginning to the closest approach of
+/// the hulls; crossing ahead is also judged after it. O(samples).
+pub fn scores(
+    encounter: &EncounterSamples,
+    interval: &RoleInterval,
+    t: &Thresholds,
+) -> (Scores, Vec<RuleViolation>) {
+    let all = encounter.samples();
     let begin = all
-        .partition_point(|s| s.time < spell.from)
+        .partition_point(|s| s.time < interval.from)
         .min(all.len() - 1);
     // negated on purpose: a NaN is the nearest
     let nearest = (begin..all.len()).fold(begin, |best, k| {
@@ -411,21 +389,21 @@ pub fn scores(meeting: &Meeting, spell: &RoleSpell, t: &Thresholds) -> (Scores, 
     });
     let act = Act {
         t,
-        role: spell.role,
-        length: meeting.length(),
-        sights: &all[begin..=nearest],
+        role: interval.role,
+        length: encounter.length(),
+        samples: &all[begin..=nearest],
         after: &all[nearest..],
-        target_length: meeting.target_length(),
+        target_length: encounter.target_length(),
     };
-    (act.scores(), act.breaches())
+    (act.scores(), act.violations())
 }
 
-/// Of a target that own ship has no role toward: safety alone.
-pub fn safety(meeting: &Meeting, t: &Thresholds) -> Scores {
-    let spell = RoleSpell {
+/// Scores toward a target without a role: safety alone.
+pub fn safety(encounter: &EncounterSamples, t: &Thresholds) -> Scores {
+    let interval = RoleInterval {
         role: Role::None,
-        from: meeting.sights()[0].time,
-        until: meeting.sights()[0].time,
+        from: encounter.samples()[0].time,
+        until: encounter.samples()[0].time,
     };
-    scores(meeting, &spell, t).0
+    scores(encounter, &interval, t).0
 }
