@@ -1,15 +1,12 @@
 //! Land: polygons from a GeoJSON file, cut into convex pieces and indexed.
 //!
-//! Everything is in metres on the scenario's plane. Polygons are what the file draws, pieces tile them. Land is
-//! the union of all polygons; they may overlap. What no polygon covers is water, whatever it is in truth: a map
-//! that is cut off somewhere has water beyond the cut.
+//! Everything is in metres on the scenario's plane. Land is the union of all polygons, which may
+//! overlap; the convex pieces tile them. Everything else is water: a map that is cut off somewhere
+//! has water beyond the cut.
 
-mod fault;
 mod path;
 mod reading;
 
-pub(crate) use fault::listed;
-pub use fault::{MapError, MapFault};
 pub use path::LandCrossing;
 
 use rstar::RTree;
@@ -108,9 +105,9 @@ impl Map {
         self.pieces_within(&here).iter().any(|c| c.contains(p))
     }
 
-    /// Metres from the nearest edge of the land: positive on water, negative on land, infinite without land.
-    /// Where polygons overlap an edge of one inside another counts too: then less than the depth. NaN in, NaN
-    /// out. O(log n).
+    /// Metres from the nearest edge of the land: positive on water, negative on land, infinite
+    /// without land. If polygons overlap, an edge inside another polygon counts too, so the result may
+    /// be less than the depth. NaN gives NaN. O(log n).
     pub fn signed_distance(&self, p: Vector) -> f64 {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return f64::NAN;
@@ -138,8 +135,8 @@ mod tests {
         Map::read(file.as_ref(), &earth).unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// The pieces of real coasts are their polygons: areas add up, membership agrees with the even-odd rule,
-    /// distances with a scan over all edges.
+    /// Pieces tile the polygons of real coasts: areas add up, membership agrees with the even-odd
+    /// rule, distances with a scan over all edges.
     #[test]
     fn real_maps_are_tiled_and_measured() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(75);
