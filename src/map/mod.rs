@@ -9,12 +9,9 @@ mod reading;
 
 pub use path::LandCrossing;
 
-use rstar::RTree;
-use rstar::primitives::Line;
-
 use crate::frame::Vector;
 use crate::geometry::{
-    BoxIndex, ConvexPolygon, DecompositionError, Polygon, Window, convex_pieces,
+    BoxIndex, ConvexPolygon, DecompositionError, EdgeTree, Polygon, Window, convex_pieces,
 };
 
 /// The land of a scenario. Two maps are equal when their polygons are.
@@ -39,7 +36,7 @@ pub struct Map {
     /// The pieces by their boxes.
     boxes: BoxIndex,
     /// The edges of the polygons.
-    edges: RTree<Line<[f64; 2]>>,
+    edges: EdgeTree,
 }
 
 impl std::fmt::Debug for Map {
@@ -66,16 +63,12 @@ impl Map {
         }
         let boxes = pieces.iter().filter_map(|c| Window::around(c.vertices()));
         let boxes = BoxIndex::new(boxes);
-        let edges = polygons
-            .iter()
-            .flat_map(Polygon::edges)
-            .map(|(a, b)| Line::new(a.into(), b.into()))
-            .collect();
+        let edges = EdgeTree::new(polygons.iter().flat_map(Polygon::edges));
         Ok(Self {
             polygons,
             pieces,
             boxes,
-            edges: RTree::bulk_load(edges),
+            edges,
         })
     }
 
@@ -112,8 +105,8 @@ impl Map {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return f64::NAN;
         }
-        let nearest = self.edges.nearest_neighbor_with_distance_2(p.into());
-        let distance = nearest.map_or(f64::INFINITY, |(_, square)| square.sqrt());
+        let nearest = self.edges.nearest(p);
+        let distance = nearest.map_or(f64::INFINITY, |edge| edge.distance);
         if self.contains(p) {
             -distance
         } else {
