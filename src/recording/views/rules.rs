@@ -1,4 +1,4 @@
-//! The rules of the road: own ship's roles over time, what she breaks and when, and how long a ship that stands on holds.
+//! Own ship's roles over time, the rules that it breaks, and how long it stands on.
 
 use rerun::{
     AsComponents, Color, Points2D, Points3D, RecordingStreamResult, StateChange,
@@ -6,38 +6,38 @@ use rerun::{
 };
 
 use super::chart::Lines;
-use super::columns::log_columns;
-use super::recorder::Recorder;
-use super::scene::{Scene, flat};
-use super::style::{self, Pace};
-use super::{MAP, TIMELINE, VOLUME, path};
 use crate::colregs::compliance::{ComplianceReport, Measure, MonitorResult, Verdict};
 use crate::frame::{Side, Vector, clockwise_deg, deg_from_radians, knots_from_mps};
 use crate::planner::Escape;
+use crate::recording::canvas::style::{self, SpeedClass};
+use crate::recording::canvas::{ViewModel, flat};
+use crate::recording::write::Recorder;
+use crate::recording::{MAP, TIMELINE, VOLUME, path};
 
-/// The lanes: a row where one changes, in it a text per lane, empty where nothing holds.
+/// Entity of the lanes. It has a row where one changes, with a text per lane, empty where nothing
+/// holds.
 pub const ROLES: &str = "rules/roles";
 
-/// Of a colour behind white letters.
+/// Strength of a colour behind white letters.
 const LANE: f32 = 0.55;
 
-/// One lane of the view: what holds from a time on, in order of time; an empty text ends it.
+/// One lane of the view: states from a time on, in order of time; an empty text ends one.
 struct Lane {
-    spells: Vec<(f64, String)>,
-    /// One per spell.
+    states: Vec<(f64, String)>,
+    /// One per state.
     colors: Vec<Color>,
 }
 
 impl Lane {
     fn new() -> Self {
         Self {
-            spells: Vec::new(),
+            states: Vec::new(),
             colors: Vec::new(),
         }
     }
 
     fn add(&mut self, time: f64, text: String, color: Color) {
-        self.spells.push((time, text));
+        self.states.push((time, text));
         self.colors.push(style::toward_background(color, LANE));
     }
 
@@ -45,17 +45,17 @@ impl Lane {
         self.add(time, String::new(), style::background());
     }
 
-    /// Of several at one time the last.
+    /// The text at a time; the last where several begin at once.
     fn at(&self, time: f64) -> &str {
-        let begun = self.spells.partition_point(|(from, _)| *from <= time);
-        self.spells[..begun].last().map_or("", |(_, text)| text)
+        let begun = self.states.partition_point(|(from, _)| *from <= time);
+        self.states[..begun].last().map_or("", |(_, text)| text)
     }
 }
 
 /// A rule that is broken, or a monitor that is violated.
 struct Broken {
     time: f64,
-    /// Short.
+    /// Its short name.
     rule: String,
     what: String,
 }
@@ -69,7 +69,7 @@ fn broken(conduct: &ComplianceReport) -> Vec<Broken> {
     let is_violated = |f: &&MonitorResult| f.verdict == Verdict::Violated;
     let monitors = conduct.monitors.iter().filter(is_violated).map(|finding| {
         let time = finding.time.unwrap_or(0.0);
-        // a difference has no negative zero
+        // 0.0 - x is never a negative zero
         let short = 0.0 - finding.robustness.unwrap_or(0.0);
         let short = match finding.measure {
             Measure::Distance => format!("{short:.1} m"),
@@ -88,9 +88,9 @@ fn broken(conduct: &ComplianceReport) -> Vec<Broken> {
     all
 }
 
-/// The targets toward whom own ship has a role or breaks a rule, with their place in the scenario.
-fn judged<'a>(scene: &'a Scene) -> impl Iterator<Item = (usize, &'a str, &'a ComplianceReport)> {
-    let both = scene.scenario.targets.iter().zip(&scene.conduct);
+/// The targets toward which own ship has a role or breaks a rule, with their index and name.
+fn judged<'a>(model: &'a ViewModel) -> impl Iterator<Item = (usize, &'a str, &'a ComplianceReport)> {
+    let both = model.scenario.targets.iter().zip(&model.conduct);
     both.enumerate().filter_map(|(index, (target, conduct))| {
         let conduct = conduct.as_ref()?;
         let silent = conduct.roles.is_empty() && broken(conduct).is_empty();
@@ -98,24 +98,24 @@ fn judged<'a>(scene: &'a Scene) -> impl Iterator<Item = (usize, &'a str, &'a Com
     })
 }
 
-fn lanes(scene: &Scene) -> Vec<Lane> {
-    let end = scene.motion.end().min(scene.end);
+fn lanes(model: &ViewModel) -> Vec<Lane> {
+    let end = model.motion.end().min(model.end);
     let mut lanes = Vec::new();
-    if let Some(escape) = scene.run.planned.escape {
+    if let Some(escape) = model.run.planned.escape {
         let mut lane = Lane::new();
         let held = "own ship holds course and speed".to_owned();
-        lane.add(0.0, held, Pace::Slow.color());
+        lane.add(0.0, held, SpeedClass::Slow.color());
         let away = format!("own ship escapes: {}", manoeuvre(&escape));
-        lane.add(escape.latest, away, Pace::Fast.color());
+        lane.add(escape.latest, away, SpeedClass::Fast.color());
         lane.end(end);
         lanes.push(lane);
     }
-    for (index, name, conduct) in judged(scene) {
+    for (index, name, conduct) in judged(model) {
         let mut roles = Lane::new();
-        for spell in &conduct.roles {
-            let text = format!("{name}: {}", spell.role.name());
-            roles.add(spell.from, text, style::target(index));
-            roles.end(spell.until);
+        for state in &conduct.roles {
+            let text = format!("{name}: {}", state.role.name());
+            roles.add(state.from, text, style::target(index));
+            roles.end(state.until);
         }
         lanes.extend((!conduct.roles.is_empty()).then_some(roles));
         let mut rules: Vec<String> = Vec::new();
@@ -135,30 +135,30 @@ fn lanes(scene: &Scene) -> Vec<Lane> {
     lanes
 }
 
-/// How many lanes the view has.
-pub fn height(scene: &Scene) -> usize {
-    lanes(scene).len()
+/// The number of lanes of the view.
+pub fn height(model: &ViewModel) -> usize {
+    lanes(model).len()
 }
 
-/// The lanes, and the moments on the chart and in the volume; nothing where no rule asks anything.
-pub fn log_rules(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    let lanes = lanes(scene);
+/// Logs the lanes, and the marks on the chart and in the volume; nothing where no rule applies.
+pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let lanes = lanes(model);
     if lanes.is_empty() {
         return Ok(());
     }
-    // a row at the very beginning: the look has to hold from then on
+    // the lanes begin with the run
     let mut times = vec![0.0];
-    times.extend(lanes.iter().flat_map(|l| l.spells.iter().map(|(t, _)| *t)));
+    times.extend(lanes.iter().flat_map(|l| l.states.iter().map(|(t, _)| *t)));
     times.sort_by(f64::total_cmp);
     times.dedup();
     let known = lanes
         .iter()
-        .flat_map(|lane| lane.spells.iter().zip(&lane.colors))
+        .flat_map(|lane| lane.states.iter().zip(&lane.colors))
         .filter(|((_, text), _)| !text.is_empty());
     let (values, colors): (Vec<&str>, Vec<Color>) = known
         .map(|((_, text), color)| (text.as_str(), *color))
         .unzip();
-    let look = StateConfiguration::update_fields()
+    let style = StateConfiguration::update_fields()
         .with_values(values)
         .with_colors(colors);
     let states = times
@@ -168,18 +168,18 @@ pub fn log_rules(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()>
         .with_state(states)
         .columns(vec![lanes.len(); times.len()])?;
     let times = TimeColumn::new_duration_secs(TIMELINE, times);
-    log_columns(rec, path(&[ROLES]), times, &look, columns)?;
-    log_moments(rec, scene)
+    rec.log_moving(path(&[ROLES]), times, &style, columns)?;
+    log_marks(rec, model)
 }
 
-/// Of the sea that is shown: between two names of moments.
+/// Distance between the names of two marks, as a fraction of the bounds.
 const ABOVE: f64 = 1.0 / 22.0;
 
-/// Where own ship is when she breaks a rule, and where her hold ends.
-fn log_moments(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    let several = judged(scene).count() > 1;
+/// Logs where own ship breaks a rule, and where it stops standing on.
+fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let several = judged(model).count() > 1;
     let mut marks: Vec<(f64, String, Color)> = Vec::new();
-    for (_, name, conduct) in judged(scene) {
+    for (_, name, conduct) in judged(model) {
         for each in conduct.violations.iter() {
             let toward = if several {
                 format!(", toward {name}")
@@ -190,15 +190,15 @@ fn log_moments(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
             marks.push((each.time, text, style::alarm()));
         }
     }
-    if let Some(escape) = scene.run.planned.escape {
+    if let Some(escape) = model.run.planned.escape {
         let text = format!("holds until {:.0} s", escape.latest);
-        marks.push((escape.latest, text, Pace::Fast.color()));
+        marks.push((escape.latest, text, SpeedClass::Fast.color()));
     }
     if marks.is_empty() {
         return Ok(());
     }
     marks.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // several at one moment are one mark
+    // several at one time are one mark
     marks.dedup_by(|later, earlier| {
         let one = later.0 == earlier.0;
         if one {
@@ -206,11 +206,11 @@ fn log_moments(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
         }
         one
     });
-    let place = |time: f64| scene.motion.pose_at(time).position;
+    let place = |time: f64| model.motion.pose_at(time).position;
     let colors: Vec<Color> = marks.iter().map(|m| m.2).collect();
     let labels: Vec<&str> = marks.iter().map(|m| m.1.as_str()).collect();
-    // the names of ships and of time marks are near the track: these stand off it, one above another
-    let off = ABOVE * scene.bounds.extent();
+    // names of ships and of time marks are near the track: these are off it, one above another
+    let off = ABOVE * model.bounds.extent();
     let above = |(k, m): (usize, &(f64, String, Color))| {
         place(m.0) + Vector::new(0.0, off * (2.0 + k as f64))
     };
@@ -222,7 +222,7 @@ fn log_moments(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
     let leaders = leaders.archetype();
     let spots = marks.iter().map(|m| flat(place(m.0)));
     let names = marks.iter().enumerate().map(|mark| flat(above(mark)));
-    // labels are of the first points: the marks themselves have none
+    // the first points have the labels, the marks themselves have none
     let radii = names.clone().map(|_| style::points(0.0));
     let radii = radii.chain(spots.clone().map(|_| style::points(4.5)));
     let on_chart = Points2D::new(names.chain(spots))
@@ -233,7 +233,7 @@ fn log_moments(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
         .with_draw_order(40.0);
     let parts: [&dyn AsComponents; 2] = [&leaders, &on_chart];
     rec.log_static(path(&[MAP, "rules"]), &parts)?;
-    let in_volume = Points3D::new(marks.iter().map(|m| scene.lifted(place(m.0), m.0)))
+    let in_volume = Points3D::new(marks.iter().map(|m| model.lifted(place(m.0), m.0)))
         .with_colors(colors)
         .with_radii([style::points(4.5)])
         .with_labels(labels)
@@ -252,18 +252,19 @@ fn manoeuvre(escape: &Escape) -> String {
     }
 }
 
-/// Roles, scores and broken rules as a table, and the hold in words; empty where no rule asks anything.
-pub fn text(scene: &Scene) -> String {
+/// Roles, scores and broken rules as a table, and until when own ship stands on; empty where no
+/// rule applies.
+pub fn text(model: &ViewModel) -> String {
     let mut parts = Vec::new();
-    if let Some(escape) = scene.run.planned.escape {
+    if let Some(escape) = model.run.planned.escape {
         parts.push(format!(
-            "**Own ship stands on:** she holds course and speed until {:.1} s, the latest time from which an escape is known to be \
-             clear, and escapes then: {}.",
+            "**Own ship stands on:** it holds course and speed until {:.1} s, the latest time from \
+             which an escape is known to be clear, and escapes then: {}.",
             escape.latest,
             manoeuvre(&escape)
         ));
     }
-    let rows: Vec<String> = judged(scene)
+    let rows: Vec<String> = judged(model)
         .map(|(_, name, conduct)| {
             let roles = conduct
                 .roles
@@ -274,14 +275,14 @@ pub fn text(scene: &Scene) -> String {
                 scores.map(|(rule, score)| format!("{} {score:.2}", rule.replace('_', " ")));
             let broken = broken(conduct);
             let broken: Vec<&str> = broken.iter().map(|b| b.what.as_str()).collect();
-            let said = if broken.is_empty() {
+            let broken = if broken.is_empty() {
                 "nothing".to_owned()
             } else {
                 format!("**{}**", broken.join("; "))
             };
             let [roles, scores] =
                 [roles.collect::<Vec<_>>(), scores.collect()].map(|l| l.join(", "));
-            format!("| {name} | {roles} | {scores} | {said} |")
+            format!("| {name} | {roles} | {scores} | {broken} |")
         })
         .collect();
     if !rows.is_empty() {
@@ -310,35 +311,35 @@ mod tests {
     #[test]
     fn a_rule_is_broken_from_its_moment_on() {
         let run = stand_on(Compliance::Shape);
-        let scene = Scene::new(&run);
-        let conduct = scene.conduct[0].as_ref().expect("a ship");
+        let model = ViewModel::new(&run);
+        let conduct = model.conduct[0].as_ref().expect("a ship");
         let breach = conduct.violations.iter().find(|b| b.rule == "17(c)");
         let breach = breach.expect("a turn to port");
-        let [roles, broken] = &lanes(&scene)[..] else {
+        let [roles, broken] = &lanes(&model)[..] else {
             panic!("two lanes");
         };
         assert_eq!(roles.at(conduct.roles[0].from), "target: stand-on");
-        assert_eq!(roles.at(scene.motion.end()), "");
+        assert_eq!(roles.at(model.motion.end()), "");
         assert!(!broken.at(breach.time - 1e-6).contains("17(c)"));
         assert!(broken.at(breach.time).contains("17(c)"));
-        assert_eq!(broken.at(scene.motion.end()), "");
-        let said = text(&scene);
+        assert_eq!(broken.at(model.motion.end()), "");
+        let text = super::text(&model);
         let expected = format!("17(c) at {:.0} s: ", breach.time);
         assert!(
-            said.contains(&expected) && said.contains("rule 17"),
-            "{said}"
+            text.contains(&expected) && text.contains("rule 17"),
+            "{text}"
         );
     }
 
     #[test]
     fn a_hold_ends_at_its_latest_time() {
         let run = stand_on(Compliance::Rules);
-        let scene = Scene::new(&run);
+        let model = ViewModel::new(&run);
         let latest = run.planned.escape.expect("stands on").latest;
-        let own = &lanes(&scene)[0];
+        let own = &lanes(&model)[0];
         assert_eq!(own.at(0.0), "own ship holds course and speed");
         assert_eq!(own.at(latest - 1e-6), own.at(0.0));
         assert!(own.at(latest).starts_with("own ship escapes: "));
-        assert!(text(&scene).contains("**Own ship stands on:**"));
+        assert!(text(&model).contains("**Own ship stands on:**"));
     }
 }

@@ -1,72 +1,77 @@
-//! The verdict in words and figures, markdown.
+//! The verdict in words and figures, as markdown.
 
 use std::fmt::Write;
 
 use rerun::{MediaType, RecordingStreamResult, TextDocument};
 
 use super::explored::Drawn;
-use super::movers::vector_seconds;
-use super::recorder::Recorder;
-use super::scene::{Motion, Scene};
-use super::{SUMMARY, rules};
+use super::rules;
+use super::ships::vector_seconds;
 use crate::evaluation::Evaluation;
 use crate::frame::{Side, deg_from_radians, knots_from_mps};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::Relaxation;
 use crate::planner::{Objective, Outcome, Plan};
+use crate::recording::SUMMARY;
+use crate::recording::canvas::{Motion, ViewModel};
+use crate::recording::write::Recorder;
 use crate::scenario::Compliance;
 use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
 
-/// Writes the text once, for all times.
-pub fn log_summary(rec: &mut Recorder, scene: &Scene, drawn: Drawn) -> RecordingStreamResult<()> {
+/// Logs the text, which holds at all times.
+pub fn log_summary(
+    rec: &mut Recorder,
+    model: &ViewModel,
+    drawn: Drawn,
+) -> RecordingStreamResult<()> {
     rec.log_static(
         SUMMARY,
-        &TextDocument::new(text(scene, drawn)).with_media_type(MediaType::MARKDOWN),
+        &TextDocument::new(text(model, drawn)).with_media_type(MediaType::MARKDOWN),
     )
 }
 
-fn text(scene: &Scene, drawn: Drawn) -> String {
-    let run = scene.run;
+fn text(model: &ViewModel, drawn: Drawn) -> String {
+    let run = model.run;
     let mut parts = vec![format!("# {}", run.headline())];
     match (run.planned.outcome.plan(), &run.evaluation) {
         (Some(plan), evaluation) => {
-            parts.push(manoeuvre(scene, plan));
+            parts.push(manoeuvre(model, plan));
             parts.extend(evaluation.iter().flat_map(violations));
         }
         (None, _) => parts.push(reason(&run.planned.outcome)),
     }
     parts.extend(run.relaxations.iter().map(relaxation));
-    parts.push(targets_table(scene));
-    parts.push(rules::text(scene));
+    parts.push(targets_table(model));
+    parts.push(rules::text(model));
     if let (Some(plan), Some(evaluation)) = (run.planned.outcome.plan(), &run.evaluation) {
         parts.push(cost_table(plan, run.scenario.objective, evaluation));
     }
-    parts.push(search(scene, drawn));
-    parts.push(claim(scene));
-    parts.push(key(scene));
+    parts.push(search(model, drawn));
+    parts.push(claim(model));
+    parts.push(key(model));
     parts.retain(|part| !part.is_empty());
     parts.join("\n\n")
 }
 
-/// What a navigator would say of the plan.
-fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
+/// The plan as a navigator would describe it.
+fn manoeuvre(model: &ViewModel, plan: &Plan) -> String {
     let trajectory = &plan.trajectory;
-    let mut said = Vec::new();
+    let mut parts = Vec::new();
     match first_turn(trajectory) {
-        Some(turn) => said.push(format!(
+        Some(turn) => parts.push(format!(
             "alters course {:.0}° to {} at {:.0} s",
             deg_from_radians(turn.angle),
             turn.side,
             turn.time
         )),
-        None => said.push("keeps her course".to_owned()),
+        None => parts.push("keeps its course".to_owned()),
     }
     let joints = trajectory.joints();
     let speeds = || joints.iter().map(|&time| trajectory.speed_at(time));
     let slowest = speeds().fold(f64::INFINITY, f64::min);
     let fastest = speeds().fold(0.0, f64::max);
-    said.push(if slowest < fastest {
+    parts.push(if slowest < fastest {
         format!(
             "runs {:.1} to {:.1} kn",
             knots_from_mps(slowest),
@@ -77,11 +82,11 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
     });
     let arrival = trajectory.end_time();
     if trajectory.steered().is_some() {
-        said.push(format!("is planned for {arrival:.0} s, all of the horizon"));
-        return format!("**Own ship {}.**", said.join(", "));
+        parts.push(format!("is planned for {arrival:.0} s, all of the horizon"));
+        return format!("**Own ship {}.**", parts.join(", "));
     }
-    let delay = arrival - scene.scenario.desired.duration();
-    said.push(if plan.to_go > 0.0 {
+    let delay = arrival - model.scenario.desired.duration();
+    parts.push(if plan.to_go > 0.0 {
         format!(
             "does not arrive: {:.0} m are left at {arrival:.0} s",
             plan.to_go
@@ -92,22 +97,22 @@ fn manoeuvre(scene: &Scene, plan: &Plan) -> String {
         let word = if delay > 0.0 { "late" } else { "early" };
         format!("arrives at {arrival:.0} s, {:.1} s {word}", delay.abs())
     });
-    format!("**Own ship {}.**", said.join(", "))
+    format!("**Own ship {}.**", parts.join(", "))
 }
 
 /// The first alteration of course.
 struct Turn {
     side: Side,
-    /// Radians, positive.
+    /// Positive, radians.
     angle: f64,
     /// Seconds.
     time: f64,
 }
 
-/// Radians. A smaller turn is no alteration of course.
+/// Least alteration of course, radians.
 const LEAST_TURN: f64 = 0.01;
 
-/// Turning segments to one side, one after another, are one alteration.
+/// The first alteration of course. Successive turns to one side are one alteration.
 fn first_turn(trajectory: &Trajectory) -> Option<Turn> {
     if let Some(motion) = trajectory.steered() {
         return first_swing(motion);
@@ -138,7 +143,7 @@ fn first_turn(trajectory: &Trajectory) -> Option<Turn> {
     turn.filter(|t| t.angle >= LEAST_TURN)
 }
 
-/// The first alteration of course under forces, which looks through steering.
+/// The first alteration of course under forces, without corrections of the steering.
 fn first_swing(motion: &Steered) -> Option<Turn> {
     let swing = *motion.swings().first()?;
     Some(Turn {
@@ -151,11 +156,11 @@ fn first_swing(motion: &Steered) -> Option<Turn> {
 fn reason(outcome: &Outcome) -> String {
     match outcome {
         Outcome::Infeasible(why) => format!(
-            "**Why: {why}.** The pictures and curves show own ship as if she followed the desired trajectory."
+            "**Why: {why}.** The views show own ship as if it followed the desired trajectory."
         ),
         Outcome::Deadline(None) => {
-            "**The deadline passed before a plan was found.** The pictures and \
-            curves show own ship as if she followed the desired trajectory."
+            "**The deadline passed before a plan was found.** The views show own ship as if it \
+             followed the desired trajectory."
                 .to_owned()
         }
         Outcome::Solved(_) | Outcome::Deadline(Some(_)) => String::new(),
@@ -173,8 +178,8 @@ fn violations(evaluation: &Evaluation) -> Vec<String> {
 fn relaxation(relaxation: &Relaxation) -> String {
     match relaxation {
         Relaxation::Domain { target, amount } => format!(
-            "- **Given up:** the shape around {target} was drawn back by {amount:.1} m: own ship starts \
-             inside it, or no plan is clear of it."
+            "- **Relaxed:** the ship domain of {target} was reduced by {amount:.1} m, as own ship \
+             starts inside it, or no plan is clear of it."
         ),
         Relaxation::Risk {
             target,
@@ -186,27 +191,28 @@ fn relaxation(relaxation: &Relaxation) -> String {
             amount,
             until: Some(time),
         } => format!(
-            "- **Enters** the set of {target}, at a risk of up to {amount:.3}; the plan is clear of it \
-             only from {time:.1} s on."
+            "- **Enters** the set of {target}, at a risk of up to {amount:.3}; the plan is clear \
+             of it only from {time:.1} s on."
         ),
         Relaxation::Arrival { target, amount } => format!(
-            "- **Given up:** it does not arrive: {amount:.0} m are left at the horizon, {target} is in the way."
+            "- **Relaxed:** own ship does not arrive, as {target} is in the way; {amount:.0} m are \
+             left at the horizon."
         ),
         Relaxation::Compliance { target, role } => format!(
-            "- **Given up:** no plan complies with the rules as {} to {target}.",
+            "- **Relaxed:** no plan complies with the rules as {} to {target}.",
             role.name()
         ),
     }
 }
 
-fn targets_table(scene: &Scene) -> String {
-    let run = scene.run;
+fn targets_table(model: &ViewModel) -> String {
+    let run = model.run;
     if run.sets.is_empty() {
         return "No targets.".to_owned();
     }
     let mut table = String::from(
-        "| target | own ship is | CPA undisturbed | CPA planned | passes to | worst-case clearance | margin to set | largest risk |\n\
-         |---|---|---|---|---|---|---|---|",
+        "| target | own ship is | nominal CPA | planned CPA | passes to | worst-case clearance \
+         | margin to set | largest risk |\n|---|---|---|---|---|---|---|---|",
     );
     for (index, sets) in run.sets.iter().enumerate() {
         let encounter = &sets.encounter;
@@ -240,7 +246,8 @@ fn targets_table(scene: &Scene) -> String {
     table
 }
 
-/// A closest approach: metres between the hulls, negative in overlap, and seconds. Touching is no collision.
+/// A closest approach in words: metres between the hulls, negative in overlap, and seconds.
+/// Touching is no collision.
 pub fn approach(distance: f64, time: f64) -> String {
     if distance < -tolerance::DEPTH_M {
         format!("collision at {time:.0} s")
@@ -249,7 +256,7 @@ pub fn approach(distance: f64, time: f64) -> String {
     }
 }
 
-/// Rounded to one decimal; what rounds to zero has no sign.
+/// Rounds to one decimal, without a negative zero.
 fn tenths(value: f64) -> f64 {
     (value * 10.0).round() / 10.0 + 0.0
 }
@@ -264,8 +271,8 @@ fn cost_table(plan: &Plan, objective: Objective, evaluation: &Evaluation) -> Str
         "–".to_owned()
     };
     format!(
-        "| J, space-time error | graph alone | over arc length | delay | duration | length | worst-case clearance |\n\
-         |---|---|---|---|---|---|---|\n\
+        "| J, space-time error | graph alone | over arc length | delay | duration | length \
+         | worst-case clearance |\n|---|---|---|---|---|---|---|\n\
          | {:.1} m² | {graph} | {:.1} m² | {delay} | {:.1} s | {:.0} m | {:.1} m |",
         evaluation.space_time_error,
         evaluation.arc_length_error,
@@ -275,24 +282,25 @@ fn cost_table(plan: &Plan, objective: Objective, evaluation: &Evaluation) -> Str
     )
 }
 
-fn search(scene: &Scene, drawn: Drawn) -> String {
-    let stats = scene.run.planned.stats;
+fn search(model: &ViewModel, drawn: Drawn) -> String {
+    let stats = model.run.planned.stats;
     let graph = if drawn.edges < drawn.tested {
         format!("{} of {} are in the recording", drawn.edges, drawn.tested)
     } else {
         format!("all {} that take time are in the recording", drawn.tested)
     };
     format!(
-        "Search: {} nodes expanded, {} made, {} edges tested; {graph} under `explored`, hidden on the chart.",
+        "Search: {} nodes expanded, {} generated, {} edges tested; {graph} under `explored`, \
+         hidden on the chart.",
         stats.expanded, stats.generated, stats.edges_checked
     )
 }
 
-/// What is claimed, and on what assumptions.
-fn claim(scene: &Scene) -> String {
-    let run = scene.run;
+/// What is claimed, and under which assumptions.
+fn claim(model: &ViewModel) -> String {
+    let run = model.run;
     let judged = run.evaluation.as_ref().is_some_and(Evaluation::verified);
-    let Motion::Planned(trajectory) = scene.motion else {
+    let Motion::Planned(trajectory) = model.motion else {
         return String::new();
     };
     if !judged {
@@ -301,11 +309,11 @@ fn claim(scene: &Scene) -> String {
     if run.greatest_risk() > 0.0 || !run.safe() {
         let safe = if run.safe() { "safe" } else { "not safe" };
         return format!(
-            "The plan is {safe}, and enters sets: of these nothing is claimed but what is said above."
+            "The plan is {safe}, and enters sets: nothing more is claimed about these than above."
         );
     }
     let sets = match run.scenario.compliance {
-        Compliance::Shape | Compliance::Rules => "shaped and hard sets",
+        Compliance::Shape | Compliance::Rules => "hard sets and those with ship domains",
         Compliance::None => "hard sets",
     };
     let ships = run.scenario.targets.iter().filter(|t| t.ship().is_some());
@@ -319,20 +327,22 @@ fn claim(scene: &Scene) -> String {
         _ => format!("{margin}except of targets whose sets are given, "),
     };
     format!(
-        "**Claimed** until arrival at {:.0} s: own ship's centre stays out of all {sets}, {hulls}wherever in its \
-         initial set a target starts and however its velocity varies within its velocity set. **Not claimed:** \
-         anything after arrival, or of a target that leaves its sets.",
+        "**Claimed** until arrival at {:.0} s: own ship's centre stays out of all {sets}, \
+         {hulls}wherever in its initial set a target starts and however its velocity varies within \
+         its velocity set. **Not claimed:** anything after arrival, or about a target that leaves \
+         its sets.",
         trajectory.end_time(),
     )
 }
 
 /// How to read the chart.
-fn key(scene: &Scene) -> String {
+fn key(model: &ViewModel) -> String {
     format!(
-        "Chart: own ship white; thin lines ahead of ships are speed vectors of {:.0} s; dots on the tracks \
-         every {:.0} s. Sets are for own ship's centre: her hull and the margin are folded in.",
-        vector_seconds(scene),
-        super::chart::mark_step(scene)
+        "Chart: own ship is white; thin lines ahead of ships are speed vectors of {:.0} s; dots on \
+         the tracks are every {:.0} s. Sets apply to own ship's centre: they include its hull and \
+         the margin.",
+        vector_seconds(model),
+        super::chart::mark_step(model)
     )
 }
 

@@ -1,5 +1,5 @@
-//! Colours and line widths. Own ship is the brightest thing, targets are of middle brightness, what is
-//! only asked for is grey: the three stay apart without colour.
+//! Colours and line widths. Own ship is the brightest, targets have a middle brightness, and the
+//! desired motion is grey: they differ without colour, too.
 
 use rerun::{Color, Radius};
 
@@ -65,12 +65,12 @@ pub fn graph_blocked() -> Color {
     rgb(GRAPH_BLOCKED)
 }
 
-/// Colour of a target by its place in the scenario.
+/// The colour of a target by its index in the scenario.
 pub fn target(index: usize) -> Color {
     rgb(TARGETS[index % TARGETS.len()])
 }
 
-/// A grey for a target by its place in the scenario, where colours tell own ships apart.
+/// A grey for a target by its index, where colours distinguish own ships.
 pub fn grey_target(index: usize) -> Color {
     rgb(GREYS[index % GREYS.len()])
 }
@@ -102,7 +102,7 @@ pub fn points(radius: f32) -> Radius {
 
 /// How a planned speed compares with the desired one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pace {
+pub enum SpeedClass {
     /// Below the desired speed.
     Slow,
     /// At the desired speed.
@@ -111,8 +111,8 @@ pub enum Pace {
     Fast,
 }
 
-impl Pace {
-    /// Of a speed against the desired one, both m/s.
+impl SpeedClass {
+    /// Compares a speed with the desired one, both m/s.
     pub fn of(speed: f64, desired: f64) -> Self {
         let slack = desired * tolerance::LIMIT;
         if speed < desired - slack {

@@ -4,28 +4,28 @@ use std::collections::HashMap;
 
 use rerun::{LineStrips2D, Mesh3D, RecordingStreamResult};
 
-use super::recorder::Recorder;
-use super::scene::{Stage, flat};
-use super::thinning::thinned;
-use super::{MAP, VOLUME, path, style};
 use crate::frame::Vector;
 use crate::geometry::{Polygon, Window};
+use crate::recording::canvas::simplify::simplified;
+use crate::recording::canvas::{Canvas, flat, style};
+use crate::recording::write::Recorder;
+use crate::recording::{MAP, VOLUME, path};
 
-/// Of the sea that is shown: how far the coast beyond it may be drawn from where it is.
-const FAR_FINENESS: f64 = 1.0 / 300.0;
+/// Largest error of land outside the bounds, as a fraction of them.
+const FAR_TOLERANCE: f64 = 1.0 / 300.0;
 
-/// Nothing without land.
-pub fn log_land(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
-    let Some(land) = &stage.scenario.land else {
+/// Logs the land, where there is a map.
+pub fn log_land(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    let Some(land) = &canvas.scenario.land else {
         return Ok(());
     };
-    let shown = stage.bounds;
-    let (fine, coarse) = (stage.fineness(), FAR_FINENESS * shown.extent());
+    let shown = canvas.bounds;
+    let (fine, coarse) = (canvas.line_tolerance(), FAR_TOLERANCE * shown.extent());
     let off = |p: &Vector| if shown.contains(p) { fine } else { coarse };
     let rings = land.map.polygons().iter().flat_map(Polygon::rings);
     let strips = rings.map(|ring| {
         let outline: Vec<Vector> = ring.iter().chain(&ring[..1]).copied().collect();
-        thinned(&outline, off).into_iter().map(flat)
+        simplified(&outline, off).into_iter().map(flat)
     });
     rec.log_static(
         path(&[MAP, "land"]),
@@ -46,7 +46,7 @@ pub fn log_land(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> 
         *known
             .entry([p.x.to_bits(), p.y.to_bits()])
             .or_insert_with(|| {
-                corners.push(stage.lifted(p, 0.0));
+                corners.push(canvas.lifted(p, 0.0));
                 corners.len() as u32 - 1
             })
     };

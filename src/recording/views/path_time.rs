@@ -1,25 +1,25 @@
-//! The path-time diagram: distance along the path to the right, time upward, own ship at the cursor.
+//! The path-time diagram: distance along the path to the right, time upward, own ship at the
+//! cursor.
 
 use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult, Transform3D};
 
 use super::chart::{Lines, multiples};
-use super::columns::log_columns;
-use super::recorder::Recorder;
-use super::scene::{Scene, round_down};
-use super::{PATH_TIME_PLANE, path, style};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::planner::path_time::PathTimeDiagram;
+use crate::recording::canvas::{ViewModel, round_down, style};
+use crate::recording::write::Recorder;
+use crate::recording::{PATH_TIME_PLANE, path};
 
-/// Height of the view over its width.
+/// Height of the view as a multiple of its width.
 const SHAPE: f64 = 0.3;
 
-/// Time shown beyond the arrival, as a share of it.
+/// Time shown after arrival, as a fraction of the time until then.
 const AFTER: f64 = 0.15;
 
-/// Lines of the grid to each side, at least.
+/// Least number of grid lines in each direction.
 const LINES: f64 = 3.0;
 
-/// What the view shows, and how many metres a second is drawn as.
+/// What the view shows, and how many metres one second is drawn as.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
     /// Metres.
@@ -31,7 +31,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The diagram until a while after arrival; without a plan up to the horizon.
+    /// Shows the diagram until a while after arrival; without a plan up to the horizon.
     pub fn of(diagram: &PathTimeDiagram) -> Self {
         let length = diagram.length().max(1e-3);
         let arrival = diagram.profile.last().map_or(0.0, |last| last.time);
@@ -52,9 +52,9 @@ impl Frame {
     }
 }
 
-/// The whole view; nothing without a diagram.
-pub fn log_path_time(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    let Some(diagram) = scene.run.planned.path_time.as_deref() else {
+/// Logs the whole view; nothing without a diagram.
+pub fn log_path_time(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let Some(diagram) = model.run.planned.path_time.as_deref() else {
         return Ok(());
     };
     let frame = Frame::of(diagram);
@@ -62,17 +62,17 @@ pub fn log_path_time(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult
     let turned = Transform3D::from_scale([1.0, -1.0, 1.0]);
     rec.log_static(PATH_TIME_PLANE, &turned)?;
     log_axes(rec, diagram, &frame)?;
-    log_obstacles(rec, scene, diagram, &frame)?;
+    log_obstacles(rec, model, diagram, &frame)?;
     let profile: Vec<[f32; 2]> = diagram.profile.iter().map(|p| frame.point(p)).collect();
     let line = LineStrips2D::new([profile])
         .with_colors([style::own_ship()])
         .with_radii([style::points(2.0)])
         .with_draw_order(20.0);
     rec.log_static(path(&[PATH_TIME_PLANE, "profile"]), &line)?;
-    log_now(rec, scene, diagram, &frame)
+    log_now(rec, model, diagram, &frame)
 }
 
-/// A grid with its units, and where legs join.
+/// Logs a grid with its units, and where legs join.
 fn log_axes(
     rec: &mut Recorder,
     diagram: &PathTimeDiagram,
@@ -109,14 +109,14 @@ fn log_axes(
     rec.log_static(path(&[PATH_TIME_PLANE, "axes"]), &parts)
 }
 
-/// The outlines of each target's polygons, and her name at the first of them.
+/// Logs the outlines of each target's polygons, and its name at the first of them.
 fn log_obstacles(
     rec: &mut Recorder,
-    scene: &Scene,
+    model: &ViewModel,
     diagram: &PathTimeDiagram,
     frame: &Frame,
 ) -> RecordingStreamResult<()> {
-    for (index, obstacle) in scene.run.obstacles.iter().enumerate() {
+    for (index, obstacle) in model.run.obstacles.iter().enumerate() {
         let outlines: Vec<Vec<[f32; 2]>> = diagram
             .obstacles
             .iter()
@@ -147,16 +147,16 @@ fn log_obstacles(
     Ok(())
 }
 
-/// Own ship in the diagram, and the instant as a line.
+/// Logs own ship in the diagram, and the cursor's time as a line.
 fn log_now(
     rec: &mut Recorder,
-    scene: &Scene,
+    model: &ViewModel,
     diagram: &PathTimeDiagram,
     frame: &Frame,
 ) -> RecordingStreamResult<()> {
-    let times: Vec<f64> = scene.moments.clone();
+    let times: Vec<f64> = model.cursor_times.clone();
     let entity = path(&[PATH_TIME_PLANE, "now"]);
-    let look = LineStrips2D::update_fields()
+    let style = LineStrips2D::update_fields()
         .with_colors([style::chart_text()])
         .with_radii([style::points(0.8)]);
     let lines = times
@@ -165,12 +165,12 @@ fn log_now(
     let columns = LineStrips2D::update_fields()
         .with_strips(lines)
         .columns_of_unit_batches()?;
-    log_columns(rec, entity, scene.moment_column(), &look, columns)?;
+    rec.log_moving(entity, model.cursor_column(), &style, columns)?;
     if diagram.profile.len() < 2 {
         return Ok(());
     }
     let entity = path(&[PATH_TIME_PLANE, "own_ship"]);
-    let look = Points2D::update_fields()
+    let style = Points2D::update_fields()
         .with_colors([style::own_ship()])
         .with_radii([style::points(5.0)]);
     let places: Vec<[f32; 2]> = times
@@ -180,10 +180,10 @@ fn log_now(
     let columns = Points2D::update_fields()
         .with_positions(places)
         .columns_of_unit_batches()?;
-    log_columns(rec, entity, scene.moment_column(), &look, columns)
+    rec.log_moving(entity, model.cursor_column(), &style, columns)
 }
 
-/// Where own ship is on her profile, resting at its end.
+/// Where own ship is on its profile; it rests at the end.
 fn on_profile(profile: &[PathTime], time: f64) -> PathTime {
     for pair in profile.windows(2) {
         if time <= pair[1].time {

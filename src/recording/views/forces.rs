@@ -1,13 +1,12 @@
-//! Curves of a plan of forces: velocities in the ship's frame, and the forces themselves.
+//! Curves of a plan of forces: velocities in the ship's frame, and the forces.
 
 use rerun::components::{AggregationPolicy, InterpolationMode};
 use rerun::{RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
-use super::columns::log_columns;
-use super::recorder::Recorder;
-use super::scene::{Motion, Scene};
-use super::{TIMELINE, path, style};
 use crate::frame::clockwise_deg_per_s;
+use crate::recording::canvas::{Motion, ViewModel, style};
+use crate::recording::write::Recorder;
+use crate::recording::{TIMELINE, path};
 use crate::trajectory::{Node, Steered};
 
 /// Surge, sway and yaw rate at the nodes.
@@ -16,16 +15,16 @@ pub const STATES: &str = "curves/states";
 pub const FORCES: &str = "curves/forces";
 
 /// The motion under forces, where the plan is one.
-pub fn steered<'a>(scene: &Scene<'a>) -> Option<&'a Steered> {
-    match scene.motion {
+pub fn steered<'a>(model: &ViewModel<'a>) -> Option<&'a Steered> {
+    match model.motion {
         Motion::Planned(trajectory) => trajectory.steered(),
-        Motion::Undisturbed(_) => None,
+        Motion::Nominal(_) => None,
     }
 }
 
-/// Both plots; nothing for a plan of lines and arcs.
-pub fn log_forces(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    let Some(motion) = steered(scene) else {
+/// Logs both plots; nothing for a plan of lines and arcs.
+pub fn log_forces(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let Some(motion) = steered(model) else {
         return Ok(());
     };
     let states = |n: &Node| [n.velocity.x, -n.velocity.y, clockwise_deg_per_s(n.yaw_rate)];
@@ -62,7 +61,7 @@ fn log(
     motion: &Steered,
     values: impl Fn(&Node) -> [f64; 3],
 ) -> RecordingStreamResult<()> {
-    let look = SeriesLines::new()
+    let style = SeriesLines::new()
         .with_names(names)
         .with_colors([0, 1, 2].map(style::target))
         .with_widths([2.0; 3])
@@ -73,5 +72,5 @@ fn log(
     let columns = Scalars::update_fields()
         .with_scalars(nodes.iter().flat_map(values))
         .columns(vec![3; nodes.len()])?;
-    log_columns(rec, path(&[entity]), times, &look, columns)
+    rec.log_moving(path(&[entity]), times, &style, columns)
 }

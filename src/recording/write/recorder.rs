@@ -1,4 +1,4 @@
-//! What a store of a recording holds, in the order in which it is logged.
+//! Collects the chunks of a store, in the order in which they are logged.
 
 use rerun::external::re_log_types::external::re_tuid::Tuid;
 use rerun::log::{Chunk, ChunkId};
@@ -6,17 +6,18 @@ use rerun::{
     AsComponents, EntityPath, RecordingStreamResult, SerializedComponentColumn, TimeColumn,
 };
 
-/// Chunks of one store. Unlike the stream of the library it has no thread, no clock and no random number: what is logged alike has the
-/// same bytes.
+/// Chunks of one store. Rerun's `RecordingStream` has a thread, a clock, random names, and
+/// environment variables that redirect it; this has none, so that the same run makes the same
+/// recording.
 #[derive(Debug)]
 pub struct Recorder {
-    /// Before the number of the chunk in ids: sections of a store are logged side by side.
+    /// High half of the chunk ids: sections of a store are logged in parallel.
     section: u64,
     chunks: Vec<Chunk>,
 }
 
 impl Recorder {
-    /// One of the sections of a store, numbered in their order.
+    /// Creates one of the sections of a store, numbered in their order.
     pub fn of_section(section: usize) -> Self {
         Self {
             section: section as u64 + 1,
@@ -34,16 +35,32 @@ impl Recorder {
         self.send_columns(entity, None, columns.map(SerializedComponentColumn::from))
     }
 
-    /// Logs columns with a row per time, or with the one that holds at all times.
+    /// Logs `style`, which holds at all times, and `columns` with a row per time.
+    pub fn log_moving(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        times: TimeColumn,
+        style: &(impl AsComponents + ?Sized),
+        columns: impl IntoIterator<Item = SerializedComponentColumn>,
+    ) -> RecordingStreamResult<()> {
+        let entity = entity.into();
+        self.log_static(entity.clone(), style)?;
+        self.send_columns(entity, Some(times), columns)
+    }
+
+    /// Logs columns with a row per time, or with the one row that holds at all times.
     pub fn send_columns(
         &mut self,
         entity: impl Into<EntityPath>,
         times: Option<TimeColumn>,
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
     ) -> RecordingStreamResult<()> {
+        if times.as_ref().is_some_and(|times| times.num_rows() == 0) {
+            return Ok(());
+        }
         let times = times.map(|column| (*column.timeline().name(), column));
         let columns = columns.into_iter().map(|c| (c.descriptor, c.list_array));
-        // rows are numbered on from the chunk
+        // the ids of the rows follow from that of the chunk
         let number = (self.section << 32) + self.chunks.len() as u64;
         self.chunks.push(Chunk::from_auto_row_ids(
             ChunkId::from_tuid(Tuid::from_nanos_and_inc(number, 0)),
@@ -54,12 +71,12 @@ impl Recorder {
         Ok(())
     }
 
-    /// Adds what a later section holds.
+    /// Appends a later section.
     pub fn append(&mut self, later: Self) {
         self.chunks.extend(later.chunks);
     }
 
-    /// Everything, in its order.
+    /// The chunks, in their order.
     pub fn into_chunks(self) -> Vec<Chunk> {
         self.chunks
     }

@@ -1,5 +1,5 @@
-//! A layout of the viewer as it is built: views, the containers around them, and what is set of each. The library's own needs streams,
-//! has random names, and no way to set most properties.
+//! Views, the containers around them, and their properties. Rerun's own builder of layouts has no
+//! setter for most properties, and it has random names.
 
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     ContainerBlueprint, PanelBlueprint, TimePanelBlueprint, ViewBlueprint, ViewContents,
@@ -9,27 +9,27 @@ use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, PanelS
 use rerun::external::re_sdk_types::{View, datatypes};
 use rerun::{AsComponents, EntityPath, RecordingStreamResult, TimeColumn};
 
-use super::recorder::Recorder;
+use crate::recording::write::Recorder;
 
-/// The timeline of the store that a layout is in: what a user changes comes later on it.
+/// The timeline of a layout: changes by the user come later on it.
 const TIMELINE: &str = "blueprint";
 
 /// A view or a container.
 #[derive(Debug)]
 pub struct Pane {
-    /// Where it is in the store of the layout.
+    /// Its entity in the layout.
     path: String,
     id: [u8; 16],
 }
 
-/// The panes made so far.
+/// The layout that is being built.
 #[derive(Debug)]
-pub struct Layout {
+pub struct Panes {
     rec: Recorder,
     panes: u64,
 }
 
-impl Layout {
+impl Panes {
     pub fn new() -> Self {
         Self {
             rec: Recorder::of_section(0),
@@ -37,7 +37,7 @@ impl Layout {
         }
     }
 
-    /// A view of a class, its name, and the entity that it begins with.
+    /// Adds a view of a class, with its name and the entity at its origin.
     pub fn view<V: View>(&mut self, name: &str, origin: &str) -> RecordingStreamResult<Pane> {
         let pane = self.pane("view");
         let contents = ViewContents::new(["$origin/**"]);
@@ -59,7 +59,7 @@ impl Layout {
         self.log(&format!("{}/{property}", pane.path), value)
     }
 
-    /// Sets what a view does with an entity and all below it.
+    /// Sets how a view shows an entity and all below it.
     pub fn set_of(
         &mut self,
         pane: &Pane,
@@ -72,7 +72,7 @@ impl Layout {
         self.set(pane, &property, value)
     }
 
-    /// Panes beside one another, each with its share of the width.
+    /// Puts panes beside one another, each with its fraction of the width.
     pub fn beside(
         &mut self,
         panes: &[Pane],
@@ -82,7 +82,7 @@ impl Layout {
         self.container(panes, kind.with_col_shares(shares))
     }
 
-    /// Panes one below another, each with its share of the height.
+    /// Puts panes one below another, each with its fraction of the height.
     pub fn below(
         &mut self,
         panes: &[Pane],
@@ -92,13 +92,13 @@ impl Layout {
         self.container(panes, kind.with_row_shares(shares))
     }
 
-    /// Panes in rows of so many.
+    /// Puts panes in rows with `columns` of them.
     pub fn grid(&mut self, panes: &[Pane], columns: u32) -> RecordingStreamResult<Pane> {
         let kind = ContainerBlueprint::new(ContainerKind::Grid);
         self.container(panes, kind.with_grid_columns(columns))
     }
 
-    /// The whole: a pane that fills the window, and the panel of time; the others are hidden.
+    /// Finishes the layout: `root` fills the window above the time panel, other panels are hidden.
     pub fn finished(
         mut self,
         root: &Pane,
@@ -127,7 +127,7 @@ impl Layout {
         Ok(pane)
     }
 
-    /// Named by its number, in the form of a UUID.
+    /// Adds a pane, named by its number in the form of a UUID.
     fn pane(&mut self, kind: &str) -> Pane {
         self.panes += 1;
         let id = (0x4000_8000_u128 << 64) | u128::from(self.panes);

@@ -1,24 +1,27 @@
-//! The chart that stands still: grid, legend, desired and planned trajectory, closest points.
+//! What does not move on the chart: grid, legend, desired and planned trajectory, closest points.
 
 use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStreamResult};
 
-use super::recorder::Recorder;
-use super::scene::{Bounds, Hues, Motion, Scene, Stage, desired_leg, flat, round_down};
-use super::style::{self, Pace};
+use super::ships::{HARD_RADIUS, SHAPED_RADIUS, shaped_color};
 use super::summary::approach;
-use super::{MAP, path};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
+use crate::recording::canvas::style::{self, SpeedClass};
+use crate::recording::canvas::{
+    Bounds, Canvas, Motion, Palette, ViewModel, desired_leg, flat, round_down,
+};
+use crate::recording::write::Recorder;
+use crate::recording::{MAP, path};
 use crate::target::Target;
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Cubic, Segment, Trajectory};
 
-/// Degrees of turn between two drawn points of an arc, radians.
+/// Turn between two drawn points of an arc, radians.
 const ARC_STEP: f64 = std::f64::consts::PI / 60.0;
 
 /// A line of the chart.
 pub type Strip = Vec<[f32; 2]>;
 
-/// Lines, each with its look.
+/// Lines, each with its style.
 #[derive(Debug, Default)]
 pub struct Lines {
     strips: Vec<Strip>,
@@ -40,33 +43,33 @@ impl Lines {
     }
 }
 
-/// Everything of the chart that does not move.
-pub fn log_chart(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    log_waters(rec, scene)?;
-    log_legend(rec, scene, plan_legend(scene), 1)?;
-    log_planned(rec, scene)?;
-    log_time_marks(rec, scene)?;
-    log_closest_points(rec, scene)?;
-    log_conflict(rec, scene)?;
-    log_violations(rec, scene)
+/// Logs everything of the chart that does not move.
+pub fn log_chart(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    log_waters(rec, model)?;
+    log_legend(rec, model, plan_legend(model), 1)?;
+    log_planned(rec, model)?;
+    log_time_marks(rec, model)?;
+    log_closest_points(rec, model)?;
+    log_conflict(rec, model)?;
+    log_violations(rec, model)
 }
 
-/// What is there whoever sails: the grid, the desired trajectory, the targets' tracks.
-pub fn log_waters(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
+/// Logs what does not depend on own ship: the grid, the desired trajectory, the targets' tracks.
+pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
     // views of Rerun are y-down: this turns north up for everything below
     rec.log_static(MAP, &rerun::Transform3D::from_scale([1.0, -1.0, 1.0]))?;
-    log_grid(rec, stage)?;
-    log_desired(rec, stage)?;
-    for (index, target) in stage.scenario.targets.iter().enumerate() {
-        log_track(rec, stage, index, target)?;
+    log_grid(rec, canvas)?;
+    log_desired(rec, canvas)?;
+    for (index, target) in canvas.scenario.targets.iter().enumerate() {
+        log_track(rec, canvas, index, target)?;
     }
     Ok(())
 }
 
-/// Lines every round number of metres, the scale named at one of them, and north.
-fn log_grid(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
-    let Bounds { low, high } = stage.bounds.grown(0.6 * stage.bounds.extent());
-    let spacing = grid_spacing(stage);
+/// Logs lines every round number of metres, and the north arrow.
+fn log_grid(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = canvas.bounds.grown(0.6 * canvas.bounds.extent());
+    let spacing = grid_spacing(canvas);
     let mut lines = Lines::default();
     for east in multiples(low.x, high.x, spacing) {
         let ends = [Vector::new(east, low.y), Vector::new(east, high.y)];
@@ -77,8 +80,8 @@ fn log_grid(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
         lines.add(ends.map(flat).to_vec(), style::grid(), style::points(0.5));
     }
 
-    let unit = stage.bounds.extent() / 100.0;
-    let corner = Vector::new(stage.bounds.low.x, stage.bounds.high.y);
+    let unit = canvas.bounds.extent() / 100.0;
+    let corner = Vector::new(canvas.bounds.low.x, canvas.bounds.high.y);
     let foot = corner + Vector::new(2.5, -9.0) * unit;
     let head = foot + Vector::new(0.0, 5.0 * unit);
     let barbs = [-1.0, 1.0].map(|side| head + Vector::new(side * unit, -2.0 * unit));
@@ -101,8 +104,8 @@ fn log_grid(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
 }
 
 /// Metres between two lines of the grid.
-pub fn grid_spacing(stage: &Stage) -> f64 {
-    round_down(stage.bounds.extent() / 4.0)
+pub fn grid_spacing(canvas: &Canvas) -> f64 {
+    round_down(canvas.bounds.extent() / 4.0)
 }
 
 /// Multiples of `step` within the interval.
@@ -111,69 +114,69 @@ pub fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     (first..=last).map(move |i| step * i as f64)
 }
 
-/// A line of the chart and what it means.
+/// The name of a line in the legend, its colour and its width.
 pub type Key = (String, Color, Radius);
 
-fn plan_legend(scene: &Scene) -> Vec<Key> {
+fn plan_legend(model: &ViewModel) -> Vec<Key> {
     let mut entries = vec![("desired".into(), style::desired(), style::points(0.8))];
-    for pace in shown_paces(scene) {
+    for pace in shown_speeds(model) {
         entries.push((pace.name().into(), pace.color(), pace.radius()));
     }
-    entries.extend(waters_legend(scene));
+    entries.extend(waters_legend(model));
     entries
 }
 
-/// The sets, the land and the grid.
-pub fn waters_legend(stage: &Stage) -> Vec<Key> {
+/// The keys of the sets, the land and the grid.
+pub fn waters_legend(canvas: &Canvas) -> Vec<Key> {
     let mut entries: Vec<Key> = Vec::new();
-    // those who sail may each keep out of sets of their own
-    let whose = match stage.hues {
-        Hues::Targets => "",
-        Hues::OwnShips => " of the scenario",
+    // the methods of a comparison may have sets of their own
+    let whose = match canvas.palette {
+        Palette::Targets => "",
+        Palette::OwnShips => " of the scenario",
     };
-    if !stage.sets.is_empty() {
+    if !canvas.sets.is_empty() {
         entries.push((
             format!("hard set{whose}"),
-            stage.target_color(0),
-            super::movers::HARD_RADIUS,
+            canvas.target_color(0),
+            HARD_RADIUS,
         ));
-        if stage.sets.iter().any(|s| stage.shaped(s).is_some()) {
+        if canvas.sets.iter().any(|s| canvas.shaped(s).is_some()) {
             entries.push((
                 format!("shaped set{whose}"),
-                super::movers::shaped_color(stage, 0),
-                super::movers::SHAPED_RADIUS,
+                shaped_color(canvas, 0),
+                SHAPED_RADIUS,
             ));
         }
     }
-    if stage.scenario.land.is_some() {
+    if canvas.scenario.land.is_some() {
         entries.push(("land".into(), style::land(), style::points(1.2)));
     }
     entries.push((
-        format!("grid {:.0} m", grid_spacing(stage)),
+        format!("grid {:.0} m", grid_spacing(canvas)),
         style::chart_text(),
         style::points(0.5),
     ));
     entries
 }
 
-/// Samples of the line styles with their meaning, in rows below the sea that is shown.
+/// Logs samples of the line styles with their meaning, in rows below the bounds.
 pub fn log_legend(
     rec: &mut Recorder,
-    stage: &Stage,
+    canvas: &Canvas,
     entries: Vec<Key>,
     rows: usize,
 ) -> RecordingStreamResult<()> {
-    let bounds = stage.bounds;
+    let bounds = canvas.bounds;
     let columns = entries.len().div_ceil(rows.max(1)).max(1);
-    // the view is wider than it is high: beside a sea that is not there is room
-    let height = bounds.size().y + legend_height(stage, rows);
+    // the view is wider than it is high, so there may be space beside the bounds
+    let height = bounds.size().y + legend_height(canvas, rows);
     let whole = bounds.size().x.max(LEGEND_SHAPE * height);
     let width = whole / columns as f64;
     let mut lines = Lines::default();
     let mut labels = Vec::new();
     for (index, (label, color, radius)) in entries.into_iter().enumerate() {
         let (row, column) = (index / columns, index % columns);
-        let north = bounds.low.y - (0.25 + LEGEND_ROW * row as f64) * legend_height(stage, 1);
+        let north = bounds.low.y - (0.25 + LEGEND_ROW * row as f64) * legend_height(canvas, 1);
         let west = bounds.center().x - 0.5 * whole + width * (column as f64 + 0.2);
         let ends = [
             Vector::new(west, north),
@@ -188,29 +191,29 @@ pub fn log_legend(
     )
 }
 
-/// Of the height of the view: the least width of a legend.
+/// Least width of a legend as a multiple of the height of the view.
 const LEGEND_SHAPE: f64 = 1.36;
 
-/// Of the height of a legend of one row: what each further one adds.
+/// Height of each further row of a legend as a fraction of the first.
 const LEGEND_ROW: f64 = 0.7;
 
-/// Metres below the sea that is shown, for a legend of so many rows.
-pub fn legend_height(stage: &Stage, rows: usize) -> f64 {
+/// Metres below the bounds for a legend with `rows`.
+pub fn legend_height(canvas: &Canvas, rows: usize) -> f64 {
     let further = rows.saturating_sub(1) as f64;
-    0.1 * stage.bounds.extent() * (1.0 + LEGEND_ROW * further)
+    0.1 * canvas.bounds.extent() * (1.0 + LEGEND_ROW * further)
 }
 
-fn shown_paces(scene: &Scene) -> Vec<Pace> {
-    let all = [Pace::Slow, Pace::Desired, Pace::Fast];
-    let used: Vec<Pace> = planned_strips(scene).into_iter().map(|(p, _)| p).collect();
+fn shown_speeds(model: &ViewModel) -> Vec<SpeedClass> {
+    let all = [SpeedClass::Slow, SpeedClass::Desired, SpeedClass::Fast];
+    let used: Vec<SpeedClass> = planned_strips(model).into_iter().map(|(p, _)| p).collect();
     all.into_iter().filter(|pace| used.contains(pace)).collect()
 }
 
-/// Dashed: where own ship is meant to be.
-fn log_desired(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
-    let dash = stage.bounds.extent() / 120.0;
+/// Logs the desired trajectory, dashed.
+fn log_desired(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    let dash = canvas.bounds.extent() / 120.0;
     let mut lines = Lines::default();
-    for leg in stage.scenario.desired.legs() {
+    for leg in canvas.scenario.desired.legs() {
         let mut along = 0.0;
         while along < leg.length {
             let ends = [along, (along + dash).min(leg.length)];
@@ -225,35 +228,35 @@ fn log_desired(rec: &mut Recorder, stage: &Stage) -> RecordingStreamResult<()> {
     rec.log_static(path(&[MAP, "desired"]), &lines.archetype())
 }
 
-/// The plan, one line per segment, by its speed against the desired one.
-fn log_planned(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    if !scene.motion.is_planned() {
+/// Logs the plan, one line per segment, styled by its speed.
+fn log_planned(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    if !model.motion.is_planned() {
         return Ok(());
     }
     let mut lines = Lines::default();
-    for (pace, points) in planned_strips(scene) {
+    for (pace, points) in planned_strips(model) {
         let strip = points.into_iter().map(|(p, _)| flat(p)).collect();
         lines.add(strip, pace.color(), pace.radius());
     }
     rec.log_static(path(&[MAP, "planned"]), &lines.archetype())
 }
 
-/// Points of a piece of a motion under forces, less one.
+/// Lines that a piece of a motion under forces is drawn with.
 const PIECE_POINTS: usize = 4;
 
 /// The plan's segments, or pieces, as polylines through `(position, time)`. Empty without a plan.
-pub fn planned_strips(scene: &Scene) -> Vec<(Pace, Vec<(Vector, f64)>)> {
-    match scene.motion {
-        Motion::Planned(trajectory) => strips(scene, trajectory),
-        Motion::Undisturbed(_) => Vec::new(),
+pub fn planned_strips(model: &ViewModel) -> Vec<(SpeedClass, Vec<(Vector, f64)>)> {
+    match model.motion {
+        Motion::Planned(trajectory) => strips(model, trajectory),
+        Motion::Nominal(_) => Vec::new(),
     }
 }
 
 /// The segments, or pieces, of a motion as polylines through `(position, time)`.
-pub fn strips(stage: &Stage, trajectory: &Trajectory) -> Vec<(Pace, Vec<(Vector, f64)>)> {
-    let desired = &stage.scenario.desired;
+pub fn strips(canvas: &Canvas, trajectory: &Trajectory) -> Vec<(SpeedClass, Vec<(Vector, f64)>)> {
+    let desired = &canvas.scenario.desired;
     if let Some(motion) = trajectory.steered() {
-        let strip = |piece: crate::trajectory::Cubic| {
+        let strip = |piece: Cubic| {
             let points = (0..=PIECE_POINTS).map(|k| {
                 let part = k as f64 / PIECE_POINTS as f64;
                 (
@@ -263,7 +266,7 @@ pub fn strips(stage: &Stage, trajectory: &Trajectory) -> Vec<(Pace, Vec<(Vector,
             });
             let speed = piece.velocity(0.5).norm();
             let wanted = desired_leg(desired, piece.start_time).speed;
-            (Pace::of(speed, wanted), points.collect())
+            (SpeedClass::of(speed, wanted), points.collect())
         };
         return joined(motion.pieces().map(strip));
     }
@@ -273,16 +276,16 @@ pub fn strips(stage: &Stage, trajectory: &Trajectory) -> Vec<(Pace, Vec<(Vector,
         .filter(|segment| segment.duration > 0.0)
         .map(|segment| {
             let desired = desired_leg(desired, segment.start_time).speed;
-            (Pace::of(segment.speed, desired), polyline(segment))
+            (SpeedClass::of(segment.speed, desired), polyline(segment))
         })
         .collect()
 }
 
-/// Strips of one pace that follow one another as one: a strip costs more than a point.
+/// Joins strips of one speed class that follow one another: a strip costs more than a point.
 fn joined(
-    strips: impl Iterator<Item = (Pace, Vec<(Vector, f64)>)>,
-) -> Vec<(Pace, Vec<(Vector, f64)>)> {
-    let mut all: Vec<(Pace, Vec<(Vector, f64)>)> = Vec::new();
+    strips: impl Iterator<Item = (SpeedClass, Vec<(Vector, f64)>)>,
+) -> Vec<(SpeedClass, Vec<(Vector, f64)>)> {
+    let mut all: Vec<(SpeedClass, Vec<(Vector, f64)>)> = Vec::new();
     for (pace, points) in strips {
         match all.last_mut() {
             Some((before, line)) if *before == pace => line.extend(points.into_iter().skip(1)),
@@ -293,7 +296,7 @@ fn joined(
 }
 
 /// Points of a segment with their times: an arc every 3° at most.
-pub fn polyline(segment: &crate::trajectory::Segment) -> Vec<(Vector, f64)> {
+pub fn polyline(segment: &Segment) -> Vec<(Vector, f64)> {
     let turn = (segment.turn_rate * segment.duration).abs();
     let pieces = (turn / ARC_STEP).ceil().clamp(1.0, 1e3) as usize;
     (0..=pieces)
@@ -304,21 +307,21 @@ pub fn polyline(segment: &crate::trajectory::Segment) -> Vec<(Vector, f64)> {
         .collect()
 }
 
-/// Seconds between two time marks on the tracks.
-pub fn mark_step(stage: &Stage) -> f64 {
-    round_down(stage.end / 4.0)
+/// Time between two time marks on the tracks, seconds.
+pub fn mark_step(canvas: &Canvas) -> f64 {
+    round_down(canvas.end / 4.0)
 }
 
-/// Own ship's position every round number of seconds, with the time.
-fn log_time_marks(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    let times: Vec<f64> = multiples(0.0, scene.end, mark_step(scene))
+/// Logs own ship's position every round number of seconds, with the time.
+fn log_time_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let times: Vec<f64> = multiples(0.0, model.end, mark_step(model))
         .skip(1)
         .collect();
-    // who has arrived has no further places
-    let times = scene.motion.until_arrival(&times);
+    // a plan has no positions after arrival
+    let times = model.motion.until_arrival(&times);
     let points = times
         .iter()
-        .map(|&t| flat(scene.motion.pose_at(t).position));
+        .map(|&t| flat(model.motion.pose_at(t).position));
     rec.log_static(
         path(&[MAP, "time_marks"]),
         &Points2D::new(points)
@@ -329,16 +332,16 @@ fn log_time_marks(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()
     )
 }
 
-/// Where a target is expected, with the same time marks.
+/// Logs where a target is expected, with the same time marks.
 fn log_track(
     rec: &mut Recorder,
-    stage: &Stage,
+    canvas: &Canvas,
     index: usize,
     target: &Target,
 ) -> RecordingStreamResult<()> {
-    let color = style::toward_background(stage.target_color(index), 0.6);
-    let ends = [0.0, stage.end].map(|t| flat(target.position_at(t)));
-    let marks = multiples(0.0, stage.end, mark_step(stage))
+    let color = style::toward_background(canvas.target_color(index), 0.6);
+    let ends = [0.0, canvas.end].map(|t| flat(target.position_at(t)));
+    let marks = multiples(0.0, canvas.end, mark_step(canvas))
         .skip(1)
         .map(|t| flat(target.position_at(t)));
     let line = LineStrips2D::new([ends])
@@ -353,16 +356,17 @@ fn log_track(
     )
 }
 
-/// A line between own ship and each target at their closest, with distance and time of the least.
-fn log_closest_points(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    let Some(evaluation) = &scene.run.evaluation else {
+/// Logs a line between own ship and each target at their closest approach, and the distance and
+/// time of the least.
+fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let Some(evaluation) = &model.run.evaluation else {
         return Ok(());
     };
-    let beyond = scene.bounds.extent() / 10.0;
+    let beyond = model.bounds.extent() / 10.0;
     let mut lines = Lines::default();
     let mut nearest: Option<(f64, Vector, String)> = None;
-    for (target, passage) in scene.scenario.targets.iter().zip(&evaluation.passages) {
-        let own = scene.motion.pose_at(passage.tcpa).position;
+    for (target, passage) in model.scenario.targets.iter().zip(&evaluation.passages) {
+        let own = model.motion.pose_at(passage.tcpa).position;
         let other = target.position_at(passage.tcpa);
         lines.add(
             [own, other].map(flat).to_vec(),
@@ -370,7 +374,7 @@ fn log_closest_points(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResul
             style::points(0.8),
         );
         if nearest.as_ref().is_none_or(|n| passage.dcpa < n.0) {
-            // on the far side of the target: own ship and her time marks are named on the near side
+            // on the far side of the target: own ship's name and time marks are on the near one
             let away = (other - own)
                 .try_normalize(0.0)
                 .unwrap_or_else(Vector::zeros);
@@ -391,14 +395,14 @@ fn log_closest_points(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResul
     rec.log_static(path(&[MAP, "closest_points"]), &parts)
 }
 
-/// Without a plan: where own ship on the desired trajectory first is in a set.
-fn log_conflict(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    if scene.motion.is_planned() {
+/// Logs, without a plan, where own ship on the desired trajectory first enters a set.
+fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    if model.motion.is_planned() {
         return Ok(());
     }
-    let inside = scene.samples.iter().find_map(|&time| {
-        let own = scene.motion.pose_at(time).position;
-        let mut sets = scene.run.obstacles.iter();
+    let inside = model.samples.iter().find_map(|&time| {
+        let own = model.motion.pose_at(time).position;
+        let mut sets = model.run.obstacles.iter();
         let set = sets.find(|set| set.contains(own, time))?;
         Some((
             own,
@@ -418,9 +422,9 @@ fn log_conflict(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> 
     )
 }
 
-/// Where the independent check found something wrong.
-fn log_violations(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()> {
-    let Some(evaluation) = &scene.run.evaluation else {
+/// Logs where the independent check found a fault.
+fn log_violations(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let Some(evaluation) = &model.run.evaluation else {
         return Ok(());
     };
     if evaluation.violations.is_empty() {
@@ -429,7 +433,7 @@ fn log_violations(rec: &mut Recorder, scene: &Scene) -> RecordingStreamResult<()
     let points = evaluation
         .violations
         .iter()
-        .map(|v| flat(scene.motion.pose_at(v.time).position));
+        .map(|v| flat(model.motion.pose_at(v.time).position));
     rec.log_static(
         path(&[MAP, "violations"]),
         &Points2D::new(points)

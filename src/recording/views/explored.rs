@@ -1,26 +1,25 @@
-//! The graph that the search made, on the chart and in the volume; what was refused says why.
+//! The graph that was searched, on the chart and in the volume, with the reasons for blocked edges.
 
 use std::cell::OnceCell;
 
 use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D, RecordingStreamResult};
 
 use super::chart::polyline;
-use super::recorder::Recorder;
-use super::scene::{Stage, flat};
-use super::style;
 use crate::frame::Vector;
 use crate::obstacle::{Coast, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
+use crate::recording::canvas::{Canvas, flat, style};
+use crate::recording::write::Recorder;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Edges that are clear of every set.
+/// Entity of the edges that are clear of every set.
 const FREE: &str = "free";
-/// Edges that meet one.
+/// Entity of the edges that meet one.
 pub const BLOCKED: &str = "blocked";
 
-/// Points that the edges of a plan may have in all: 24 bytes each, in both pictures.
+/// Most points of all edges of a plan. A point takes 24 bytes in both views together.
 pub const POINT_BUDGET: usize = 2400;
 
 /// How much of the graph is drawn.
@@ -28,7 +27,7 @@ pub const POINT_BUDGET: usize = 2400;
 pub struct Drawn {
     /// Edges in the recording.
     pub edges: usize,
-    /// Edges that the search tested, those that take no time left out.
+    /// Edges that the search tested, without those that take no time.
     pub tested: usize,
 }
 
@@ -37,16 +36,17 @@ struct Kind {
     name: &'static str,
     color: Color,
     strips: Vec<Vec<(Vector, f64)>>,
-    /// One per strip, or none at all.
+    /// One per strip, or empty.
     reasons: Vec<String>,
 }
 
-/// Tested edges, in the order in which they were made, until `budget` points are used; edges that were never
-/// tested are not drawn. They lie below `folders`, on the chart and in the volume, and the refused ones carry the reason as
-/// their label, which is shown where one is pointed at. The answer says how many that were.
+/// Logs tested edges, in the order in which they were made, until `budget` points are used.
+///
+/// They lie below `folders`, on the chart and in the volume. Blocked edges carry the reason as a
+/// label, which is shown where one is pointed at. Returns how many edges were drawn.
 pub fn log_explored(
     rec: &mut Recorder,
-    stage: &Stage,
+    canvas: &Canvas,
     run: &Run,
     folders: [EntityPath; 2],
     budget: usize,
@@ -88,15 +88,15 @@ pub fn log_explored(
         }
     }
     for kind in kinds {
-        log_kind(rec, stage, kind, &folders)?;
+        log_kind(rec, canvas, kind, &folders)?;
     }
     Ok(drawn)
 }
 
-/// Says why an edge was refused.
+/// Finds why an edge was blocked.
 struct Judge<'a> {
     run: &'a Run,
-    /// Made for the first edge that runs aground.
+    /// Made for the first edge that meets land.
     coast: OnceCell<Coast>,
 }
 
@@ -108,8 +108,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// What an edge meets, when first, and what of it: `obstacle` is an index of [`Run::obstacles`], or behind the last for
-    /// land.
+    /// What an edge meets, when first, and the limit that it breaks. `obstacle` is an index of
+    /// [`Run::obstacles`], or behind the last for land.
     fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
         let Some(set) = self.run.obstacles.get(obstacle) else {
             let coast = self
@@ -117,16 +117,16 @@ impl<'a> Judge<'a> {
                 .get_or_init(|| pipeline::coast(&self.run.scenario, &self.run.land));
             let depth = tolerance::GRAZE_M;
             let met = edge.iter().find_map(|s| coast.first_contact(s, depth));
-            return said("land", met, "nearer than the hull and the margin allow");
+            return reason("land", met, "nearer than the hull and the margin allow");
         };
         let enters = |set: &dyn Fn(&Segment) -> Option<f64>| edge.iter().find_map(set);
         // an edge that only just meets the set is found without the depth
         let met = enters(&|s| set.first_contact(s, tolerance::DEPTH_M))
             .or_else(|| enters(&|s| set.first_contact(s, 0.0)));
-        said(set.name(), met, &self.limit(edge, obstacle))
+        reason(set.name(), met, &self.limit(edge, obstacle))
     }
 
-    /// What of a target is in the way.
+    /// The limit of a target that an edge breaks.
     fn limit(&self, edge: &[Segment], obstacle: usize) -> String {
         let run = self.run;
         let sets = &run.sets[obstacle];
@@ -135,7 +135,7 @@ impl<'a> Judge<'a> {
         let limit = if run.whole[obstacle] != sets.hard && !edge.iter().any(is_hard) {
             let role = sets.encounter.role;
             let rule = role.rule().map_or(String::new(), |n| format!(", Rule {n}"));
-            format!("the shape about her ({}{rule})", role.name())
+            format!("its ship domain ({}{rule})", role.name())
         } else if ship.is_some() {
             let margin = run.scenario.own_ship.safety_margin;
             format!("hulls and a margin of {margin} m")
@@ -149,14 +149,14 @@ impl<'a> Judge<'a> {
     }
 }
 
-fn said(who: &str, met: Option<f64>, limit: &str) -> String {
+fn reason(what: &str, met: Option<f64>, limit: &str) -> String {
     match met {
-        Some(time) => format!("{who} at {time:.0} s: {limit}"),
-        None => format!("{who}: {limit}"),
+        Some(time) => format!("{what} at {time:.0} s: {limit}"),
+        None => format!("{what}: {limit}"),
     }
 }
 
-/// The whole edge, its arcs coarser than those of the plan.
+/// The line of an edge, its arcs coarser than those of the plan.
 fn edge_line(edge: &ExploredEdge) -> Vec<(Vector, f64)> {
     let mut line: Vec<(Vector, f64)> = Vec::new();
     for segment in edge.segments.iter().filter(|s| s.duration > 0.0) {
@@ -175,7 +175,7 @@ fn edge_line(edge: &ExploredEdge) -> Vec<(Vector, f64)> {
 
 fn log_kind(
     rec: &mut Recorder,
-    stage: &Stage,
+    canvas: &Canvas,
     kind: Kind,
     folders: &[EntityPath; 2],
 ) -> RecordingStreamResult<()> {
@@ -198,7 +198,7 @@ fn log_kind(
     let in_volume = kind
         .strips
         .iter()
-        .map(|s| s.iter().map(|&(p, t)| stage.lifted(p, t)));
+        .map(|s| s.iter().map(|&(p, t)| canvas.lifted(p, t)));
     let in_volume = LineStrips3D::new(in_volume)
         .with_colors([kind.color])
         .with_radii([style::points(0.4)]);

@@ -2,16 +2,16 @@
 
 use rerun::Mesh3D;
 
-use super::scene::Stage;
 use crate::frame::{Vector, direction, heading_of, wrap_positive};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::recording::canvas::Canvas;
 
-/// A vertex of the section as it moves: `place + time * velocity`. These lines are the edges of the
+/// A moving vertex of a section: `place + time * velocity`. These lines are the edges of the
 /// space-time polytope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingVertex {
-    /// Where it is at t = 0, metres.
+    /// Its position at t = 0, metres.
     pub place: Vector,
     /// m/s.
     pub velocity: Vector,
@@ -23,26 +23,26 @@ impl MovingVertex {
     }
 }
 
-/// Sides, and stretches of time, of the polytopes that stand for an ellipsoid in pictures.
+/// Sides, and time intervals, of the polytopes that approximate an ellipsoid in views.
 const ROUND_SIDES: usize = 24;
-const ROUND_STRETCHES: usize = 6;
+const ROUND_PRISMS: usize = 6;
 
-/// A stretch of time within which the section is a polygon whose vertices move in straight lines.
+/// A time interval in which the section is a polygon whose vertices move on straight lines.
 #[derive(Debug)]
-pub struct Stretch {
+pub struct Prism {
     from: f64,
     to: f64,
     /// Counter-clockwise.
     vertices: Vec<MovingVertex>,
-    /// Of the side from the vertex before to each vertex: its normal, and how fast it moves outward.
+    /// The normal and the outward speed of the side that ends at each vertex.
     sides: Vec<(Vector, f64)>,
     /// The sides are chords of a surface without edges.
     round: bool,
 }
 
-impl Stretch {
+impl Prism {
     fn polytope(set: &PolytopeObstacle, from: f64, to: f64) -> Self {
-        let by_the_clock = |v: MovingVertex| MovingVertex {
+        let from_zero = |v: MovingVertex| MovingVertex {
             place: v.place - v.velocity * from,
             ..v
         };
@@ -50,7 +50,7 @@ impl Stretch {
         Self {
             from,
             to,
-            vertices: moving_vertices(set).into_iter().map(by_the_clock).collect(),
+            vertices: moving_vertices(set).into_iter().map(from_zero).collect(),
             sides: faces.map(|f| (f.normal, f.velocity_support)).collect(),
             round: false,
         }
@@ -83,8 +83,8 @@ impl Stretch {
     }
 
     /// The section at a time, closed.
-    pub fn ring(&self, stage: &Stage, time: f64) -> Vec<[f32; 3]> {
-        let lifted = |v: &MovingVertex| stage.lifted(v.at(time), time);
+    pub fn ring(&self, canvas: &Canvas, time: f64) -> Vec<[f32; 3]> {
+        let lifted = |v: &MovingVertex| canvas.lifted(v.at(time), time);
         let mut ring: Vec<_> = self.vertices.iter().map(lifted).collect();
         ring.extend(ring.first().copied());
         ring
@@ -95,17 +95,17 @@ impl Stretch {
     }
 }
 
-/// The stretches from t = 0 to the scene's end: exact for polytopes and slabs, chords of an ellipsoid.
-pub fn stretches(stage: &Stage, set: &Obstacle) -> Vec<Stretch> {
-    let end = stage.end;
+/// The prisms from t = 0 to the end: exact for polytopes and slabs, chords of an ellipsoid.
+pub fn prisms(canvas: &Canvas, set: &Obstacle) -> Vec<Prism> {
+    let end = canvas.end;
     match set {
-        Obstacle::Polytope(o) => vec![Stretch::polytope(o, 0.0, end)],
+        Obstacle::Polytope(o) => vec![Prism::polytope(o, 0.0, end)],
         Obstacle::Ellipsoid(o) => match o.flat() {
-            Some(flat) => vec![Stretch::polytope(flat, 0.0, end)],
-            None => (0..ROUND_STRETCHES)
+            Some(flat) => vec![Prism::polytope(flat, 0.0, end)],
+            None => (0..ROUND_PRISMS)
                 .map(|k| {
-                    let at = |k: usize| end * k as f64 / ROUND_STRETCHES as f64;
-                    Stretch::round(o, at(k), at(k + 1))
+                    let at = |k: usize| end * k as f64 / ROUND_PRISMS as f64;
+                    Prism::round(o, at(k), at(k + 1))
                 })
                 .collect(),
         },
@@ -113,7 +113,7 @@ pub fn stretches(stage: &Stage, set: &Obstacle) -> Vec<Stretch> {
             .slabs()
             .iter()
             .filter(|slab| slab.start() < end)
-            .map(|slab| Stretch::polytope(slab.obstacle(), slab.start(), slab.end().min(end)))
+            .map(|slab| Prism::polytope(slab.obstacle(), slab.start(), slab.end().min(end)))
             .collect(),
     }
 }
@@ -143,7 +143,7 @@ fn extreme(set: &ConvexPolygon, along: Vector) -> Vector {
         .unwrap_or_else(Vector::zeros)
 }
 
-/// A surface as it grows.
+/// A triangulated surface.
 #[derive(Debug, Default)]
 struct Surface {
     corners: Vec<[f32; 3]>,
@@ -152,34 +152,34 @@ struct Surface {
 }
 
 impl Surface {
-    /// One flat side per face: every side has its own corners.
-    fn add_flat(&mut self, stage: &Stage, stretch: &Stretch) {
-        let vertices = &stretch.vertices;
+    /// Adds one flat side per face; every side has its own corners.
+    fn add_flat(&mut self, canvas: &Canvas, prism: &Prism) {
+        let vertices = &prism.vertices;
         let count = vertices.len();
-        for (i, side) in stretch.sides.iter().enumerate() {
+        for (i, side) in prism.sides.iter().enumerate() {
             let ends = [vertices[(i + count - 1) % count], vertices[i]];
             let base = self.corners.len() as u32;
-            for time in [stretch.from, stretch.to] {
-                let ends = ends.map(|v| stage.lifted(v.at(time), time));
+            for time in [prism.from, prism.to] {
+                let ends = ends.map(|v| canvas.lifted(v.at(time), time));
                 self.corners.extend(ends);
             }
-            self.normals.extend([upward(stage, *side); 4]);
+            self.normals.extend([upward(canvas, *side); 4]);
             let sides = [[base, base + 1, base + 3], [base, base + 3, base + 2]];
             self.triangles.extend(sides);
         }
     }
 
-    /// Neighbours share their corners.
-    fn add_round(&mut self, stage: &Stage, stretch: &Stretch) {
-        let count = stretch.vertices.len();
+    /// Adds sides that share their corners.
+    fn add_round(&mut self, canvas: &Canvas, prism: &Prism) {
+        let count = prism.vertices.len();
         let base = self.corners.len() as u32;
-        for time in [stretch.from, stretch.to] {
-            for (i, vertex) in stretch.vertices.iter().enumerate() {
-                self.corners.push(stage.lifted(vertex.at(time), time));
-                let (before, after) = (stretch.sides[i], stretch.sides[(i + 1) % count]);
+        for time in [prism.from, prism.to] {
+            for (i, vertex) in prism.vertices.iter().enumerate() {
+                self.corners.push(canvas.lifted(vertex.at(time), time));
+                let (before, after) = (prism.sides[i], prism.sides[(i + 1) % count]);
                 let outward = (before.0 + after.0).normalize();
                 let side = (outward, 0.5 * (before.1 + after.1));
-                self.normals.push(upward(stage, side));
+                self.normals.push(upward(canvas, side));
             }
         }
         let count = count as u32;
@@ -193,12 +193,12 @@ impl Surface {
         }
     }
 
-    fn add_top(&mut self, stage: &Stage, stretch: &Stretch) {
+    fn add_top(&mut self, canvas: &Canvas, prism: &Prism) {
         let base = self.corners.len() as u32;
-        let top = stretch.vertices.iter();
-        let top = top.map(|v| stage.lifted(v.at(stretch.to), stretch.to));
+        let top = prism.vertices.iter();
+        let top = top.map(|v| canvas.lifted(v.at(prism.to), prism.to));
         self.corners.extend(top);
-        let count = stretch.vertices.len();
+        let count = prism.vertices.len();
         self.normals
             .extend(std::iter::repeat_n([0.0, 0.0, 1.0], count));
         let fan = (2..count as u32).map(|i| [base, base + i - 1, base + i]);
@@ -206,25 +206,25 @@ impl Surface {
     }
 }
 
-/// The normal in the volume of a side that moves outward at a speed.
-fn upward(stage: &Stage, (outward, speed): (Vector, f64)) -> [f32; 3] {
-    let rise = -speed / stage.metres_per_second;
+/// The normal in the volume of a side that moves outward at `speed`.
+fn upward(canvas: &Canvas, (outward, speed): (Vector, f64)) -> [f32; 3] {
+    let rise = -speed / canvas.metres_per_second;
     let length = (1.0 + rise * rise).sqrt();
     [outward.x, outward.y, rise].map(|n| (n / length) as f32)
 }
 
-/// The body from t = 0 to the scene's end, and the last section on top.
-pub fn mesh(stage: &Stage, stretches: &[Stretch]) -> Mesh3D {
+/// The body from t = 0 to the end, and the last section on top.
+pub fn mesh(canvas: &Canvas, prisms: &[Prism]) -> Mesh3D {
     let mut surface = Surface::default();
-    for stretch in stretches {
-        if stretch.round {
-            surface.add_round(stage, stretch);
+    for prism in prisms {
+        if prism.round {
+            surface.add_round(canvas, prism);
         } else {
-            surface.add_flat(stage, stretch);
+            surface.add_flat(canvas, prism);
         }
     }
-    if let Some(last) = stretches.last() {
-        surface.add_top(stage, last);
+    if let Some(last) = prisms.last() {
+        surface.add_top(canvas, last);
     }
     Mesh3D::new(surface.corners)
         .with_vertex_normals(surface.normals)
