@@ -6,10 +6,10 @@
 
 use std::path::Path;
 
-use searoom::comparison::compare;
 use searoom::pipeline;
 use searoom::report::figure::{comparison_figure, plan_figure};
 use searoom::scenario::Scenario;
+use searoom::study::compare::compare;
 
 /// Folder of the pictures.
 const FOLDER: &str = "docs/gallery";

@@ -2,6 +2,7 @@
 
 mod boxes;
 mod convex;
+mod convex_set;
 mod crossing;
 mod decomposition;
 mod disc;
@@ -13,6 +14,7 @@ mod simplify;
 
 pub(crate) use boxes::{BoxIndex, Window};
 pub use convex::{ConvexPolygon, GeometryError};
+pub use convex_set::ConvexSet;
 pub use crossing::{Crossing, EdgeIndex};
 pub use decomposition::{DecompositionError, convex_pieces};
 pub use disc::{DISC_SIDES, outer_disc};

@@ -2,9 +2,9 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, Table, presets};
 
-use crate::assessment::{Assessment, Situation};
 use crate::frame::{Vector, course_deg_from_heading, deg_from_radians};
-use crate::obstacle::Section;
+use crate::geometry::ConvexSet;
+use crate::study::assess::{Assessment, Situation};
 
 /// The title and the sets, holding course, the least alteration, and one table for what else was asked.
 pub fn assessment_text(
@@ -175,8 +175,8 @@ fn sections(assessment: &Assessment) -> String {
                 format!("{:.1}", -reach(0.0, -1.0)),
                 format!("{:.1}", reach(0.0, 1.0)),
                 match section {
-                    Section::Polygon(polygon) => format!("{} vertices", polygon.vertices().len()),
-                    Section::Ellipse(_) => "an ellipse".to_owned(),
+                    ConvexSet::Polygon(polygon) => format!("{} vertices", polygon.vertices().len()),
+                    ConvexSet::Ellipse(_) => "an ellipse".to_owned(),
                 },
             ]);
         }

@@ -4,12 +4,12 @@ use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets
 
 use super::conduct;
 use super::summary::{Meeting, Summary};
-use super::words;
+use crate::document::words;
 pub(super) use crate::evaluation::Tone;
 use crate::evaluation::{Counted, outcome, risk_figure};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
-use crate::pipeline::{Relaxation, Run, Rung};
+use crate::pipeline::{Relaxation, RelaxationLevel, Run};
 use crate::planner::optimal_control::ControlReport;
 use crate::text::printable_lines;
 
@@ -40,21 +40,6 @@ pub(super) const NUMBERS: std::ops::Range<usize> = 5..11;
 pub(super) const TIME: usize = 10;
 
 /// One line of a suite's table.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::UNREADABLE;
-/// use searoom::report::{Row, Summary, suite_table};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let failed = Row::Failed { file: "a.toml".to_owned(), outcome: UNREADABLE };
-/// let table = suite_table(&[Row::Run(Summary::of(&run)), failed], false);
-/// assert!(table.contains("Give-way") && table.contains("a.toml"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub enum Row {
     /// A scenario that was run.
@@ -278,7 +263,7 @@ fn forces(run: &Run, report: &ControlReport) -> Vec<(&'static str, String)> {
     let feasible = report.starts.iter().filter(|start| start.feasible).count();
     let steps: usize = report.starts.iter().map(|start| start.iterations).sum();
     // of two passes, with the domains and without, one is told of
-    let pass = if run.rung == Rung::Domains {
+    let pass = if run.level == RelaxationLevel::ReducedDomains {
         "without the domains, "
     } else {
         ""

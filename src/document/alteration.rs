@@ -1,0 +1,211 @@
+//! Alterations of course of any motion: the first one and the largest.
+
+use crate::frame::{Side, deg_from_radians, wrap};
+use crate::report::Turn;
+use crate::trajectory::Trajectory;
+
+/// Degrees. A smaller alteration of lines and arcs is no turn: nobody would see it.
+const LEAST_TURN_DEG: f64 = 0.5;
+
+/// The first alteration of a trajectory: arcs that follow each other to one side are one turn. Under forces the first
+/// swing of the heading to one side.
+pub(crate) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
+    if let Some(motion) = trajectory.steered() {
+        return motion.swings().first().and_then(|swing| seen(swing.turned));
+    }
+    let mut turned = 0.0_f64;
+    for segment in trajectory.segments() {
+        let more = if segment.duration > 0.0 {
+            segment.turn_rate * segment.duration
+        } else {
+            0.0
+        };
+        if turned * more > 0.0 {
+            turned += more;
+            continue;
+        }
+        if let Some(turn) = seen(turned) {
+            return Some(turn);
+        }
+        turned = more;
+    }
+    seen(turned)
+}
+
+/// The largest turn to one side without a straight stretch or a turn back in it, the one at the start from the course before,
+/// radians, included; under forces the largest swing of the heading to one side. `None` where all are too small to be seen.
+pub(crate) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option<Turn> {
+    if let Some(motion) = trajectory.steered() {
+        let largest = motion
+            .swings()
+            .iter()
+            .map(|swing| swing.turned)
+            .max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+        return seen(largest);
+    }
+    let mut largest = 0.0_f64;
+    let mut turned = 0.0_f64;
+    for change in changes(trajectory, before) {
+        // a straight stretch, a change of 0, ends a turn
+        turned = if turned * change > 0.0 {
+            turned + change
+        } else {
+            change
+        };
+        if turned.abs() > largest.abs() {
+            largest = turned;
+        }
+    }
+    seen(largest)
+}
+
+/// A change of the heading, radians, as a turn; `None` for one that nobody would see.
+fn seen(turned: f64) -> Option<Turn> {
+    let degrees = deg_from_radians(turned.abs());
+    let side = Side::of_turn(turned)?;
+    (degrees >= LEAST_TURN_DEG).then_some(Turn { side, degrees })
+}
+
+/// Changes of the heading along segments one after another, radians.
+fn changes(trajectory: &Trajectory, before: f64) -> Vec<f64> {
+    let mut heading = before;
+    let mut changes = Vec::new();
+    for segment in trajectory.segments() {
+        let corner = wrap(segment.start.heading - heading);
+        // rounding at a joint is no corner
+        if corner.abs() > crate::tolerance::JOINT_RAD {
+            changes.push(corner);
+        }
+        if segment.duration > 0.0 && segment.speed > 0.0 {
+            changes.push(segment.turn_rate * segment.duration);
+        }
+        heading = segment.start.heading + segment.turn_rate * segment.duration;
+    }
+    changes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Vector};
+    use crate::trajectory::{Node, Segment, Steered};
+
+    /// Degrees to starboard per segment of ten seconds.
+    fn arcs(turns: &[f64]) -> Trajectory {
+        let mut start = Pose::new(Vector::zeros(), 0.3);
+        let mut segments = Vec::new();
+        for (index, degrees) in turns.iter().enumerate() {
+            let segment = Segment {
+                start,
+                start_time: 10.0 * index as f64,
+                duration: 10.0,
+                speed: 5.0,
+                turn_rate: -degrees.to_radians() / 10.0,
+            };
+            start = segment.end();
+            segments.push(segment);
+        }
+        Trajectory::new(segments).expect("continuous")
+    }
+
+    #[test]
+    fn the_first_turn_is_the_first_that_can_be_seen() {
+        use Side::{Port, Starboard};
+        for (turns, expected) in [
+            (vec![0.0], None),
+            (vec![0.2, 0.0, -0.3], None),
+            (vec![0.0, 30.0, -60.0], Some((Starboard, 30.0))),
+            (vec![-30.0, -15.0, 0.0, -5.0], Some((Port, 45.0))),
+            (vec![0.1, -20.0], Some((Port, 20.0))),
+            (vec![0.0, 40.0], Some((Starboard, 40.0))),
+        ] {
+            let found = first_alteration(&arcs(&turns));
+            let found = found.map(|turn| (turn.side, (turn.degrees * 1e6).round() / 1e6));
+            assert_eq!(found, expected, "{turns:?}");
+        }
+    }
+
+    #[test]
+    fn under_forces_what_swings_by_less_than_five_degrees_is_steering() {
+        use Side::{Port, Starboard};
+        // courses in degrees, clockwise
+        let steered = |courses: &[f64]| {
+            let nodes = courses.iter().enumerate().map(|(k, course)| Node {
+                time: k as f64,
+                pose: Pose::new(Vector::zeros(), -course.to_radians()),
+                velocity: Vector::new(1.0, 0.0),
+                yaw_rate: 0.0,
+                force: Vector::zeros(),
+                moment: 0.0,
+            });
+            Trajectory::from(Steered::new(nodes.collect()).expect("in order"))
+        };
+        let found = |turn: Option<Turn>| turn.map(|t| (t.side, t.degrees.round()));
+        for (courses, first, largest) in [
+            (vec![10.0, 12.0, 9.0, 13.0, 8.5], None, None),
+            // two degrees to port first, and again at the end
+            (
+                vec![0.0, -2.0, 10.0, 30.0, 28.0],
+                Some((Starboard, 32.0)),
+                Some((Starboard, 32.0)),
+            ),
+            // a swing back by four degrees ends no turn
+            (
+                vec![0.0, -10.0, -6.0, -40.0, 20.0, 0.0],
+                Some((Port, 40.0)),
+                Some((Starboard, 60.0)),
+            ),
+            (
+                vec![0.0, 5.5],
+                Some((Starboard, 6.0)),
+                Some((Starboard, 6.0)),
+            ),
+        ] {
+            let motion = steered(&courses);
+            assert_eq!(found(first_alteration(&motion)), first, "{courses:?}");
+            assert_eq!(
+                found(largest_alteration(&motion, 0.0)),
+                largest,
+                "{courses:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_largest_turn_is_found_at_the_start_in_arcs_and_at_corners() {
+        let chain = |turns: &[f64]| {
+            let mut pose = Pose::new(Vector::zeros(), 0.2);
+            let mut segments: Vec<Segment> = Vec::new();
+            for (i, turn) in turns.iter().enumerate() {
+                let s = Segment {
+                    start: pose,
+                    start_time: 10.0 * i as f64,
+                    duration: 10.0,
+                    speed: 5.0,
+                    turn_rate: turn / 10.0,
+                };
+                pose = s.end();
+                segments.push(s);
+            }
+            Trajectory::new(segments).expect("a chain")
+        };
+        let degrees = |t: &Trajectory, before: f64| {
+            largest_alteration(t, before)
+                .map(|turn| (turn.side, (turn.degrees * 10.0).round() / 10.0))
+        };
+        let t = chain(&[0.1, 0.0, -0.2, -0.3, 0.0, 0.4]);
+        assert_eq!(degrees(&t, 0.2), Some((Side::Starboard, 28.6)));
+        // from a course of 0.9 before: 0.7 to starboard at once
+        assert_eq!(degrees(&t, 0.9), Some((Side::Starboard, 40.1)));
+        assert_eq!(degrees(&chain(&[0.0, 0.001]), 0.2), None);
+        let mut corner = chain(&[0.0]).segments().to_vec();
+        let end = corner[0].end();
+        corner.push(Segment {
+            start: Pose::new(end.position, end.heading + 1.0),
+            start_time: 10.0,
+            ..corner[0]
+        });
+        let corner = Trajectory::with_corners(corner).expect("a chain");
+        assert_eq!(degrees(&corner, 0.2), Some((Side::Port, 57.3)));
+    }
+}

@@ -1,0 +1,200 @@
+//! The comparison document: contenders of every scenario side by side.
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
+use super::plan::{cost_of, finite, position, stats, timing};
+use super::words;
+use crate::report::ComparisonRow;
+use crate::study::compare::{Entry, Inapplicable, Sailed};
+
+/// Seconds between two positions of a track, and how many there are at most beside the first: those of a longer motion are farther
+/// apart, evenly.
+const TRACK_STEP: f64 = 5.0;
+const MOST_STEPS: f64 = 1000.0;
+
+/// Every scenario that was compared, in order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct ComparisonDocument {
+    pub comparisons: Vec<ScenarioComparisonDocument>,
+}
+
+/// One scenario. Where it could not be read `error` says why, and the rest is empty.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/compare.md says what each key means")]
+pub struct ScenarioComparisonDocument {
+    pub file: String,
+    pub scenario: Option<String>,
+    pub error: Option<String>,
+    pub entries: Vec<EntryDocument>,
+    pub inapplicable: Vec<InapplicableDocument>,
+}
+
+/// One contender.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/compare.md says what each key means")]
+pub struct EntryDocument {
+    pub method: String,
+    pub max_risk: f64,
+    /// Of a planner; null for a baseline.
+    pub objective: Option<String>,
+    pub outcome: String,
+    /// The word that people see for it.
+    pub verdict: String,
+    pub reason: Option<String>,
+    /// Of a baseline: clear of sets, hulls and land.
+    pub verified: bool,
+    /// No hard set, hull or land is entered.
+    pub safe: bool,
+    pub cost: Option<CostDocument>,
+    /// Positive.
+    pub largest_turn_deg: Option<f64>,
+    pub largest_turn_side: Option<String>,
+    /// Rules and monitors; null without a motion and without ships.
+    pub breaks: Option<Vec<String>>,
+    pub search_stats: Option<SearchStatsDocument>,
+    pub timing: Option<TimingDocument>,
+    /// Every five seconds, or every thousandth part of a motion of more than 5000 s, and at the end.
+    pub track: Vec<TrackPointDocument>,
+}
+
+/// A place at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct TrackPointDocument {
+    pub t_s: f64,
+    #[serde(flatten)]
+    pub position: PositionDocument,
+}
+
+/// A method that the scenario has no use for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct InapplicableDocument {
+    pub method: String,
+    pub reason: String,
+}
+
+impl ScenarioComparisonDocument {
+    /// The entry of a scenario that was compared; `rows` are those of the entries.
+    pub fn of(
+        file: String,
+        title: &str,
+        entries: &[Entry],
+        rows: &[ComparisonRow],
+        inapplicable: &[Inapplicable],
+    ) -> Self {
+        Self {
+            file,
+            scenario: Some(title.to_owned()),
+            error: None,
+            entries: (entries.iter().zip(rows))
+                .map(|(entry, row)| EntryDocument::of(entry, row))
+                .collect(),
+            inapplicable: (inapplicable.iter())
+                .map(|other| InapplicableDocument {
+                    method: other.method.to_string(),
+                    reason: other.reason.clone(),
+                })
+                .collect(),
+        }
+    }
+
+    /// The entry of a file that gave no comparison.
+    pub fn failed(file: String, error: String) -> Self {
+        Self {
+            file,
+            scenario: None,
+            error: Some(error),
+            entries: Vec::new(),
+            inapplicable: Vec::new(),
+        }
+    }
+}
+
+impl EntryDocument {
+    fn of(entry: &Entry, row: &ComparisonRow) -> Self {
+        let run = match &entry.result {
+            Sailed::Planned(run) => Some(run),
+            Sailed::Baseline(_) | Sailed::Nothing(_) => None,
+        };
+        let objective = run
+            .and_then(|run| run.planned.outcome.plan())
+            .map(|plan| plan.cost);
+        Self {
+            method: row.method.to_string(),
+            max_risk: row.max_risk,
+            objective: run.map(|run| words::objective(&run.scenario).to_owned()),
+            outcome: row.outcome.to_owned(),
+            verdict: row.seen().0,
+            reason: row.reason.clone(),
+            verified: row.verified == Some(true),
+            safe: row.safe() == Some(true),
+            cost: entry.evaluation().map(|evaluation| {
+                // a baseline minimises nothing else
+                let objective = objective.unwrap_or(evaluation.space_time_error);
+                let mut cost = cost_of(evaluation, objective, row.arrived, entry.risks());
+                cost.delay_s = row.delay;
+                cost
+            }),
+            largest_turn_deg: row.largest_turn.map(|turn| turn.degrees),
+            largest_turn_side: row.largest_turn.map(|turn| turn.side.to_string()),
+            breaks: (row.broken.as_ref())
+                .map(|broken| broken.iter().map(|rule| (*rule).to_owned()).collect()),
+            search_stats: run.map(|run| stats(run)),
+            timing: run.map(|run| timing(run)),
+            track: track(entry),
+        }
+    }
+}
+
+fn track(entry: &Entry) -> Vec<TrackPointDocument> {
+    let Some(trajectory) = entry.trajectory() else {
+        return Vec::new();
+    };
+    let end = trajectory.end_time();
+    let step = TRACK_STEP.max(end / MOST_STEPS);
+    let steps = (end / step).ceil().clamp(1.0, MOST_STEPS) as usize;
+    (0..=steps)
+        .map(|k| if k == steps { end } else { k as f64 * step })
+        .filter_map(|time| Some((finite(time)?, entry.position_at(time)?)))
+        .map(|(t_s, at)| TrackPointDocument {
+            t_s,
+            position: position(at),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn a_long_track_has_no_more_than_its_thousandth_parts() {
+        for (way, expected) in [(1000.0, 5.0), (200_000.0, 40.0)] {
+            let text = format!(
+                r#"title = "long"
+                horizon_s = 100000.0
+                own_ship = {{ position = {{ east_m = 0, north_m = 0 }}, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8,
+                    turning_radius_m = 100 }}
+                mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {way}, north_m = 0 }}] }}"#
+            );
+            let scenario = Scenario::parse(&text).expect("valid");
+            let entries = crate::study::compare::compare(&scenario, &[0.0]);
+            let tracks: Vec<_> = entries
+                .iter()
+                .map(track)
+                .filter(|t| !t.is_empty())
+                .collect();
+            assert!(!tracks.is_empty());
+            let direct = tracks.iter().find(|t| t[t.len() - 1].t_s < way / 5.0 + 1.0);
+            let direct = direct.expect("one that arrives");
+            assert!((direct[1].t_s - expected).abs() < 1e-6, "{:?}", direct[1]);
+            for t in tracks {
+                assert!(t.len() <= MOST_STEPS as usize + 1 && t.is_sorted_by_key(|p| p.t_s));
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! How a plan of forces was found.
+
+use serde::{Deserialize, Serialize};
+
+use super::words;
+use crate::pipeline::Run;
+
+/// Ship, weights and grid; what every start led to; the homotopy classes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "docs/optimal-control.md says what each key means"
+)]
+pub struct ControlDocument {
+    pub vessel: String,
+    pub force_limits: ForceLimitsDocument,
+    pub state_weights: [f64; 6],
+    pub control_weights: [f64; 3],
+    /// As asked for: starts and homotopy classes are on that grid.
+    pub start_intervals: usize,
+    /// Of the plan; more than asked for where those were too coarse.
+    pub intervals: usize,
+    /// The largest deviation at the end of an interval, in the ship's units; null where no start led to a plan.
+    pub defect: Option<f64>,
+    /// Targets that are kept out of by an ellipsoid around their set.
+    pub enclosed_targets: Vec<String>,
+    pub starts: Vec<StartAttemptDocument>,
+    /// The cheapest first.
+    pub homotopy_classes: Vec<HomotopyClassDocument>,
+}
+
+/// To either side of zero.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct ForceLimitsDocument {
+    pub surge_n: f64,
+    pub sway_n: f64,
+    pub yaw_nm: f64,
+}
+
+/// What one start led to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct StartAttemptDocument {
+    pub start: String,
+    pub status: String,
+    pub feasible: bool,
+    pub objective: Option<f64>,
+    pub iterations: usize,
+}
+
+/// Plans that pass every set alike.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct HomotopyClassDocument {
+    /// Per target the side on which it is passed; null where it stays far away.
+    pub sides: Vec<Option<String>>,
+    pub objective: f64,
+    pub starts: usize,
+}
+
+/// `None` for another planner.
+pub(super) fn control(run: &Run) -> Option<ControlDocument> {
+    let (report, settings) = (run.control.as_ref()?, &run.scenario.control);
+    let finite = |value: f64| value.is_finite().then_some(value);
+    let limits = settings.force_limits;
+    Some(ControlDocument {
+        vessel: settings.vessel.word().to_owned(),
+        force_limits: ForceLimitsDocument {
+            surge_n: limits[0],
+            sway_n: limits[1],
+            yaw_nm: limits[2],
+        },
+        state_weights: settings.state_weights.into(),
+        control_weights: settings.force_weights.into(),
+        start_intervals: report.start_intervals,
+        intervals: report.intervals,
+        defect: finite(report.defect),
+        enclosed_targets: run.enclosed.clone(),
+        starts: report
+            .starts
+            .iter()
+            .map(|start| StartAttemptDocument {
+                start: start.start.to_string(),
+                status: start.status.to_string(),
+                feasible: start.feasible,
+                objective: finite(start.objective),
+                iterations: start.iterations,
+            })
+            .collect(),
+        homotopy_classes: report
+            .classes
+            .iter()
+            .map(|class| HomotopyClassDocument {
+                sides: class
+                    .sides
+                    .iter()
+                    .map(|side| side.map(words::side).map(str::to_owned))
+                    .collect(),
+                objective: class.objective,
+                starts: class.starts,
+            })
+            .collect(),
+    })
+}

@@ -1,0 +1,37 @@
+//! The JSON documents, docs/documents.md.
+//!
+//! A number that is not finite is written as null. Keys of what does not exist yet are absent.
+
+pub(crate) mod alteration;
+mod assessment;
+mod comparison;
+mod conduct;
+mod control;
+mod lint;
+mod parts;
+mod path_time;
+mod plan;
+mod suite;
+mod targets;
+mod verification;
+pub(crate) mod words;
+
+pub use assessment::*;
+pub use comparison::{
+    ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
+    TrackPointDocument,
+};
+pub use conduct::{BreachDocument, ConductDocument, MonitorDocument, RoleDocument};
+pub use control::{
+    ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
+};
+pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
+pub use parts::*;
+pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
+pub use plan::{PLAN_FORMAT, PlanDocument};
+pub use suite::{
+    INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
+    UNREADABLE,
+};
+pub use targets::{ShipDocument, SpellDocument, TargetDocument};
+pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};

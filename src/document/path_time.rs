@@ -1,0 +1,86 @@
+//! The diagram of a path-time plan: docs/documents.md.
+
+use serde::{Deserialize, Serialize};
+
+use super::words;
+use crate::frame::clockwise_deg;
+use crate::obstacle::{PathTime, SpaceTimeObstacle};
+use crate::pipeline::Run;
+use crate::planner::path_time::PathTimeDiagram;
+
+/// Distance along the path and time; points are `[s_m, t_s]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct PathTimeDocument {
+    /// `"main"`, `"alternative 1"` …; where own ship changes, one after another.
+    pub path: String,
+    pub legs: Vec<PathLegDocument>,
+    pub obstacles: Vec<PathObstacleDocument>,
+    pub corners: Vec<PathCornerDocument>,
+    /// Without a plan the start alone.
+    pub profile: Vec<[f64; 2]>,
+}
+
+/// A leg that is sailed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct PathLegDocument {
+    pub start_m: f64,
+    pub end_m: f64,
+    /// Which path it is of.
+    pub path: String,
+}
+
+/// An obstacle on a leg, clipped to the leg and the horizon.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct PathObstacleDocument {
+    pub target: String,
+    pub leg: usize,
+    pub vertices: Vec<[f64; 2]>,
+}
+
+/// A corner of the path: exempt from the turning radius, the hull over both headings there.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct PathCornerDocument {
+    pub s_m: f64,
+    /// To starboard positive.
+    pub turn_deg: f64,
+}
+
+/// The diagram of a run.
+pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTimeDocument {
+    // +0.0 turns a negative zero into zero
+    let plain = |p: &PathTime| [p.distance + 0.0, p.time + 0.0];
+    PathTimeDocument {
+        path: words::paths(diagram),
+        legs: diagram
+            .legs
+            .iter()
+            .map(|leg| PathLegDocument {
+                start_m: leg.begin,
+                end_m: leg.begin + leg.track.length,
+                path: words::path(leg.path),
+            })
+            .collect(),
+        obstacles: diagram
+            .obstacles
+            .iter()
+            .map(|seen| PathObstacleDocument {
+                target: run.obstacles[seen.obstacle].name().to_owned(),
+                leg: seen.leg,
+                vertices: seen.corners.iter().map(plain).collect(),
+            })
+            .collect(),
+        corners: diagram
+            .corners
+            .iter()
+            .map(|corner| PathCornerDocument {
+                s_m: corner.distance,
+                turn_deg: clockwise_deg(corner.turn),
+            })
+            .collect(),
+        profile: diagram.profile.iter().map(plain).collect(),
+    }
+}

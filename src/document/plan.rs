@@ -1,0 +1,454 @@
+//! The plan document: docs/documents.md.
+
+use serde::{Deserialize, Serialize};
+
+use super::conduct::ConductDocument;
+use super::control::{ControlDocument, control};
+use super::parts::{
+    CostDocument, EncounterDocument, EscapeDocument, InitialSetDocument, MissionDocument,
+    NodeDocument, ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument,
+    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument,
+    TrajectoryDocument, VelocitySetDocument, ViolationDocument,
+};
+use super::path_time::{PathTimeDocument, path_time_document};
+use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
+use super::words;
+use crate::evaluation::Evaluation;
+use crate::frame::{
+    Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
+};
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
+use crate::pipeline::Verdict;
+use crate::pipeline::{Relaxation, Run};
+use crate::planner::{Objective, Plan};
+use crate::tolerance;
+use crate::trajectory::{Segment, Steered, Trajectory};
+
+/// The name of the plan document's format.
+pub const PLAN_FORMAT: &str = "searoom-plan/1";
+
+/// Seconds between two samples of a trajectory, and how many there are at most beside those where it changes: a day's way
+/// is not written second by second.
+const SAMPLE_STEP: f64 = 1.0;
+const MOST_SAMPLES: u32 = 20_000;
+
+/// One plan, alone: everything that is needed to check it again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct PlanDocument {
+    pub format: String,
+    pub scenario: String,
+    pub planner: String,
+    pub search: String,
+    pub compliance: String,
+    /// The name of what own ship's behaviour is judged by.
+    #[serde(default)]
+    pub thresholds: String,
+    pub objective: String,
+    /// Of the objective that weighs risk; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub risk_weight_m: Option<f64>,
+    pub time_weight_m2_per_s2: f64,
+    /// The risk that the plan may accept: `obstacles` are the level sets of it.
+    pub max_risk: f64,
+    pub horizon_s: f64,
+    pub own_ship: OwnShipDocument,
+    pub mission: MissionDocument,
+    pub land: Vec<Vec<[f64; 2]>>,
+    pub outcome: String,
+    /// The word that people see for it, by what happens to hulls.
+    pub verdict: String,
+    /// Why there is no plan, or none that was finished or keeps all that was asked.
+    pub reason: Option<String>,
+    pub relaxation: Option<RelaxationDocument>,
+    /// All of what was given up, the most important first.
+    pub relaxations: Vec<RelaxationDocument>,
+    pub verified: bool,
+    /// No hard set, hull or land is entered from start to arrival.
+    pub safe: bool,
+    /// Where it was asked for: null where nothing is met, or nothing was found even from the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_of_no_return_s: Option<Option<f64>>,
+    /// What the independent checker found wrong.
+    pub violations: Vec<ViolationDocument>,
+    pub cost: Option<CostDocument>,
+    pub search_stats: SearchStatsDocument,
+    pub timing: TimingDocument,
+    pub trajectory: Option<TrajectoryDocument>,
+    /// Where own ship stands on; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub escape: Option<EscapeDocument>,
+    /// As the scenario has them: what the sets have to contain.
+    pub targets: Vec<TargetDocument>,
+    pub obstacles: Vec<ObstacleDocument>,
+    pub encounters: Vec<EncounterDocument>,
+    /// Of a path-time plan; absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path_time: Option<PathTimeDocument>,
+    /// Of a plan of forces alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimal_control: Option<ControlDocument>,
+}
+
+impl PlanDocument {
+    /// The document of a run.
+    pub fn of(run: &Run) -> Self {
+        let scenario = &run.scenario;
+        let verdict = Verdict::of(run);
+        let relaxations: Vec<_> = run.relaxations.iter().map(relaxation).collect();
+        Self {
+            format: PLAN_FORMAT.to_owned(),
+            scenario: scenario.title.clone(),
+            planner: scenario.planner.word().to_owned(),
+            search: words::search(scenario.search).to_owned(),
+            compliance: scenario.compliance.word().to_owned(),
+            thresholds: scenario
+                .judged_by()
+                .map_or_else(String::new, |t| t.name.clone()),
+            objective: words::objective(scenario).to_owned(),
+            risk_weight_m: match scenario.objective {
+                Objective::LengthRisk { weight } => Some(weight),
+                _ => None,
+            },
+            time_weight_m2_per_s2: scenario.time_weight,
+            max_risk: run.max_risk,
+            horizon_s: scenario.horizon,
+            own_ship: own_ship(run),
+            mission: mission(run),
+            land: run.land.iter().map(vertices).collect(),
+            outcome: verdict.word().to_owned(),
+            verdict: run.word(),
+            reason: run.reason(),
+            relaxation: relaxations.first().cloned(),
+            relaxations,
+            verified: verified(run),
+            safe: run.safe(),
+            time_of_no_return_s: None,
+            violations: run
+                .evaluation
+                .iter()
+                .flat_map(|evaluation| &evaluation.violations)
+                .map(|violation| ViolationDocument {
+                    what: violation.what.clone(),
+                    t_s: finite(violation.time),
+                })
+                .collect(),
+            cost: cost(run),
+            search_stats: stats(run),
+            timing: timing(run),
+            trajectory: plan(run).map(|plan| trajectory(&plan.trajectory)),
+            escape: escape(run),
+            targets: scenario.targets.iter().map(target).collect(),
+            obstacles: run
+                .obstacles
+                .iter()
+                .zip(&run.released)
+                .flat_map(|(set, from)| obstacles(set, from.unwrap_or(0.0), scenario.horizon))
+                .collect(),
+            encounters: encounters(run),
+            path_time: (run.planned.path_time.as_deref())
+                .map(|diagram| path_time_document(run, diagram)),
+            optimal_control: control(run),
+        }
+    }
+}
+
+fn plan(run: &Run) -> Option<&Plan> {
+    run.planned.outcome.plan()
+}
+
+pub(super) fn verified(run: &Run) -> bool {
+    run.evaluation.as_ref().is_some_and(|e| e.verified())
+}
+
+pub(super) fn finite(value: f64) -> Option<f64> {
+    // +0.0 turns a negative zero into zero
+    value.is_finite().then_some(value + 0.0)
+}
+
+pub(super) fn position(p: Vector) -> PositionDocument {
+    PositionDocument {
+        east_m: p.x + 0.0,
+        north_m: p.y + 0.0,
+    }
+}
+
+pub(super) fn vertices(polygon: &ConvexPolygon) -> Vec<[f64; 2]> {
+    polygon.vertices().iter().copied().map(plain).collect()
+}
+
+pub(super) fn timing(run: &Run) -> TimingDocument {
+    TimingDocument {
+        plan_s: run.plan_time.as_secs_f64(),
+    }
+}
+
+pub(super) fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
+    match given_up {
+        Relaxation::Domain { target, amount } => RelaxationDocument {
+            kind: "domain".to_owned(),
+            target: target.clone(),
+            amount: *amount,
+            unit: "m".to_owned(),
+            until_s: None,
+        },
+        Relaxation::Risk {
+            target,
+            amount,
+            until,
+        } => RelaxationDocument {
+            kind: "risk".to_owned(),
+            target: target.clone(),
+            amount: *amount,
+            unit: "1".to_owned(),
+            until_s: *until,
+        },
+        Relaxation::Arrival { target, amount } => RelaxationDocument {
+            kind: "arrival".to_owned(),
+            target: target.clone(),
+            amount: *amount,
+            unit: "m".to_owned(),
+            until_s: None,
+        },
+        Relaxation::Compliance { target, .. } => RelaxationDocument {
+            kind: "compliance".to_owned(),
+            target: target.clone(),
+            amount: 1.0,
+            unit: "1".to_owned(),
+            until_s: None,
+        },
+    }
+}
+
+fn escape(run: &Run) -> Option<EscapeDocument> {
+    let (escape, plan) = (run.planned.escape?, run.planned.outcome.plan()?);
+    let held = |s: &&Segment| s.start_time < escape.latest - tolerance::TIME_S;
+    Some(EscapeDocument {
+        policy: "stand-on-hold".to_owned(),
+        latest_s: escape.latest,
+        first_segment: plan.trajectory.segments().iter().take_while(held).count(),
+        turn_deg: clockwise_deg(escape.turn),
+        speed_mps: escape.speed,
+    })
+}
+
+fn own_ship(run: &Run) -> OwnShipDocument {
+    let own = &run.scenario.own_ship;
+    OwnShipDocument {
+        position: position(own.pose.position),
+        course_deg: course_deg_from_heading(own.pose.heading),
+        speed_mps: own.speed,
+        length_m: own.hull.length,
+        beam_m: own.hull.beam,
+        turning_radius_m: own.turning_radius,
+        speeds_mps: own.speeds.clone(),
+        safety_margin_m: own.safety_margin,
+        land_margin_m: run.scenario.land.as_ref().map_or(0.0, |land| land.margin),
+    }
+}
+
+fn mission(run: &Run) -> MissionDocument {
+    let desired = &run.scenario.desired;
+    MissionDocument {
+        waypoints: desired.waypoints().into_iter().map(position).collect(),
+        leg_speeds_mps: desired.legs().iter().map(|leg| leg.speed).collect(),
+        duration_s: desired.duration(),
+        length_m: desired.length(),
+        alternatives: (run.scenario.alternatives.iter())
+            .map(|path| path.iter().copied().map(position).collect())
+            .collect(),
+    }
+}
+
+pub(super) fn cost(run: &Run) -> Option<CostDocument> {
+    let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
+    Some(cost_of(
+        evaluation,
+        plan.cost,
+        run.control.is_none() && plan.to_go == 0.0,
+        &run.risks,
+    ))
+}
+
+/// Of any motion.
+pub(super) fn cost_of(
+    evaluation: &Evaluation,
+    objective: f64,
+    arrived: bool,
+    risks: &[PeakRisk],
+) -> CostDocument {
+    CostDocument {
+        objective,
+        space_time_error_m2: evaluation.space_time_error,
+        space_time_error_arc_length_m2: evaluation.arc_length_error,
+        space_time_error_until_s: evaluation.counted.until,
+        arrived,
+        duration_s: evaluation.duration,
+        length_m: evaluation.length,
+        delay_s: finite(evaluation.delay),
+        max_risk: risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
+        min_clearance_m: finite(evaluation.min_clearance),
+        hold_clearance_m: finite(evaluation.hold_clearance),
+        arrival_hold_s: evaluation.arrival_hold,
+        min_land_distance_m: finite(evaluation.min_land_distance),
+    }
+}
+
+pub(super) fn stats(run: &Run) -> SearchStatsDocument {
+    SearchStatsDocument {
+        expanded: run.planned.stats.expanded,
+        generated: run.planned.stats.generated,
+        edges_checked: run.planned.stats.edges_checked,
+    }
+}
+
+fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
+    let start = |pose: Pose, time: f64| StartDocument {
+        t_s: time,
+        east_m: pose.position.x + 0.0,
+        north_m: pose.position.y + 0.0,
+        course_deg: course_deg_from_heading(pose.heading),
+    };
+    let segments = trajectory.segments().iter().map(|segment| SegmentDocument {
+        start: start(segment.start, segment.start_time),
+        duration_s: segment.duration,
+        speed_mps: segment.speed,
+        turn_rate_deg_per_s: clockwise_deg_per_s(segment.turn_rate),
+    });
+    TrajectoryDocument {
+        segments: trajectory.steered().is_none().then(|| segments.collect()),
+        samples: trajectory
+            .sample_times(SAMPLE_STEP, MOST_SAMPLES)
+            .into_iter()
+            .map(|time| {
+                let mut pose = trajectory.pose_at(time);
+                if let Some(motion) = trajectory.steered() {
+                    pose.heading = course(motion, time);
+                }
+                let at = start(pose, time);
+                SampleDocument {
+                    t_s: at.t_s,
+                    east_m: at.east_m,
+                    north_m: at.north_m,
+                    course_deg: at.course_deg,
+                    speed_mps: trajectory.speed_at(time),
+                    node: trajectory.steered().and_then(|motion| node(motion, time)),
+                }
+            })
+            .collect(),
+    }
+}
+
+/// The node at exactly this time.
+fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
+    let node = motion.node_at(time);
+    (node.time == time).then(|| NodeDocument {
+        heading_deg: course_deg_from_heading(node.pose.heading),
+        surge_mps: node.velocity.x + 0.0,
+        sway_mps: 0.0 - node.velocity.y,
+        yaw_rate_deg_per_s: clockwise_deg_per_s(node.yaw_rate),
+        surge_n: node.force.x + 0.0,
+        sway_n: 0.0 - node.force.y,
+        yaw_nm: 0.0 - node.moment,
+    })
+}
+
+/// The direction of the way made good, radians; the heading where no way is made.
+fn course(motion: &Steered, time: f64) -> f64 {
+    let piece = motion.piece_at(time);
+    let velocity = piece.velocity(piece.part(time));
+    if velocity.norm() > tolerance::LENGTH_M {
+        heading_of(velocity)
+    } else {
+        piece.pose_at(time).heading
+    }
+}
+
+/// One entry, or one per slab: its initial set is the section at its start, and its time counts from there. Of a set that the
+/// plan enters, what is left of it from when it has left it.
+fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
+    let from = from.min(horizon);
+    let set = &set.remainder(from);
+    let left = horizon - from;
+    let entry = |valid_s, initial_set, velocity_set| ObstacleDocument {
+        name: set.name().to_owned(),
+        valid_s,
+        initial_set,
+        velocity_set,
+    };
+    let polytope = |o: &PolytopeObstacle, valid_s| {
+        entry(
+            valid_s,
+            InitialSetDocument::Polygon {
+                vertices_m: vertices(o.initial()),
+            },
+            VelocitySetDocument::Polygon {
+                vertices_mps: vertices(o.velocity()),
+            },
+        )
+    };
+    match set {
+        Obstacle::Polytope(o) => vec![polytope(o, [from, horizon])],
+        Obstacle::Ellipsoid(o) => vec![entry(
+            [from, horizon],
+            ellipse(o.initial()),
+            velocity_ellipse(o.velocity()),
+        )],
+        Obstacle::Slabs(o) => o
+            .slabs()
+            .iter()
+            .filter(|slab| slab.start() < left || slab.start() == 0.0)
+            .map(|slab| {
+                let times = [slab.start(), slab.end().min(left)];
+                polytope(slab.obstacle(), times.map(|time| from + time))
+            })
+            .collect(),
+    }
+}
+
+pub(super) fn plain(p: Vector) -> [f64; 2] {
+    // +0.0 turns a negative zero into zero
+    [p.x + 0.0, p.y + 0.0]
+}
+
+pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
+    let q = ellipse.shape();
+    [
+        plain(Vector::new(q[(0, 0)], q[(0, 1)])),
+        plain(Vector::new(q[(1, 0)], q[(1, 1)])),
+    ]
+}
+
+pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
+    let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
+    let conduct = run.judged_conduct();
+    run.scenario
+        .targets
+        .iter()
+        .zip(&run.sets)
+        .enumerate()
+        .map(|(index, (target, sets))| {
+            let passage = passages.and_then(|passages| passages.get(index));
+            EncounterDocument {
+                target: target.name.clone(),
+                role: sets.encounter.role.name().to_owned(),
+                dcpa_m: passage.and_then(|p| finite(p.dcpa)),
+                tcpa_s: passage.and_then(|p| finite(p.tcpa)),
+                undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
+                undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
+                passing_side: passage.map(|p| p.passing_side.to_string()),
+                max_risk: run.risks.get(index).map(|peak| peak.risk),
+                max_risk_t_s: run
+                    .risks
+                    .get(index)
+                    .filter(|peak| peak.risk > 0.0)
+                    .map(|peak| peak.time),
+                conduct: conduct
+                    .get(index)
+                    .and_then(Option::as_ref)
+                    .map(ConductDocument::of),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,183 @@
+//! The suite document: docs/documents.md.
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::{CostDocument, EncounterDocument, RelaxationDocument, TimingDocument};
+use super::plan::{cost, encounters, relaxation, timing, verified};
+use crate::evaluation::outcome_word;
+use crate::pipeline::Run;
+use crate::pipeline::Verdict;
+
+/// The outcome of a file that is no scenario.
+pub const UNREADABLE: &str = "unreadable";
+
+/// The outcome of a run that ended in a fault of the program.
+pub const INTERNAL_FAULT: &str = "internal-fault";
+
+/// The outcome of a scenario that is sound, but of no use to the planner or the rules that the command line asks for.
+pub const NOT_APPLICABLE: &str = "not-applicable";
+
+/// Many runs in one document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct SuiteDocument {
+    pub runs: Vec<SuiteRunDocument>,
+    pub summary: SuiteSummaryDocument,
+}
+
+/// One run of a suite. Where there was none, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`], and `error` says why, or
+/// [`NOT_APPLICABLE`], and `reason` does; the keys that have no meaning are null.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct SuiteRunDocument {
+    pub file: String,
+    pub scenario: Option<String>,
+    pub planner: Option<String>,
+    pub outcome: String,
+    /// The word that people see for it.
+    pub verdict: String,
+    pub error: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// All of what was given up, the most important first.
+    pub relaxations: Vec<RelaxationDocument>,
+    pub verified: bool,
+    pub safe: bool,
+    pub cost: Option<CostDocument>,
+    pub encounters: Vec<EncounterDocument>,
+    pub targets: Option<usize>,
+    pub timing: Option<TimingDocument>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+}
+
+/// How many of which.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SuiteSummaryDocument {
+    /// All of them: the sum of the seven outcomes below.
+    pub scenarios: usize,
+    /// Plans that give up nothing.
+    pub solved: usize,
+    /// Plans that give something up.
+    pub relaxed: usize,
+    /// No plan.
+    pub infeasible: usize,
+    /// Budget ran out.
+    pub deadline: usize,
+    /// Scenarios of no use to the planner or the rules that were asked for.
+    pub not_applicable: usize,
+    /// Files that are no scenario.
+    pub unreadable: usize,
+    /// Runs that ended in a fault of the program.
+    pub internal_faults: usize,
+    /// Plans in which the independent checker found nothing wrong.
+    pub verified: usize,
+    /// Plans that enter no hard set, hull or land.
+    pub safe: usize,
+    /// Of the relaxed plans, those that are not safe.
+    pub not_safe: usize,
+}
+
+impl SuiteDocument {
+    /// The document of these runs, with their summary.
+    pub fn of(runs: Vec<SuiteRunDocument>) -> Self {
+        let ended = |word: &str| runs.iter().filter(|run| run.outcome == word).count();
+        let is_relaxed = |run: &SuiteRunDocument| run.outcome == Verdict::Relaxed.word();
+        let summary = SuiteSummaryDocument {
+            scenarios: runs.len(),
+            solved: ended(Verdict::Solved.word()),
+            relaxed: ended(Verdict::Relaxed.word()),
+            infeasible: ended(Verdict::Infeasible.word()),
+            deadline: ended(Verdict::Deadline.word()),
+            not_applicable: ended(NOT_APPLICABLE),
+            unreadable: ended(UNREADABLE),
+            internal_faults: ended(INTERNAL_FAULT),
+            verified: runs.iter().filter(|run| run.verified).count(),
+            safe: runs.iter().filter(|run| run.safe).count(),
+            not_safe: runs
+                .iter()
+                .filter(|run| is_relaxed(run) && !run.safe)
+                .count(),
+        };
+        Self { runs, summary }
+    }
+}
+
+impl std::fmt::Display for SuiteSummaryDocument {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let plural = if self.scenarios == 1 { "" } else { "s" };
+        write!(
+            f,
+            "{} scenario{plural}: {} solved",
+            self.scenarios, self.solved
+        )?;
+        for (count, name) in [
+            (self.relaxed.saturating_sub(self.not_safe), "relaxed"),
+            (self.not_safe, "not safe"),
+            (self.infeasible, "infeasible"),
+            (self.deadline, "out of time"),
+            (self.not_applicable, "not applicable"),
+            (self.unreadable, UNREADABLE),
+            (self.internal_faults, "failed inside"),
+        ] {
+            if count > 0 {
+                write!(f, ", {count} {name}")?;
+            }
+        }
+        write!(f, "; {} verified, {} safe", self.verified, self.safe)
+    }
+}
+
+impl SuiteRunDocument {
+    /// The entry of a run; the notes say what was assumed or not used of a foreign file.
+    pub fn of(file: String, run: &Run, notes: Vec<String>) -> Self {
+        Self {
+            file,
+            scenario: Some(run.scenario.title.clone()),
+            planner: Some(run.scenario.planner.word().to_owned()),
+            outcome: Verdict::of(run).word().to_owned(),
+            verdict: run.word(),
+            error: None,
+            reason: run.reason(),
+            relaxations: run.relaxations.iter().map(relaxation).collect(),
+            verified: verified(run),
+            safe: run.safe(),
+            cost: cost(run),
+            encounters: encounters(run),
+            targets: Some(run.scenario.targets.len()),
+            timing: Some(timing(run)),
+            notes,
+        }
+    }
+
+    /// The entry of a scenario that is of no use to what was asked for.
+    pub fn not_applicable(file: String, title: String, reason: String) -> Self {
+        Self {
+            scenario: Some(title),
+            error: None,
+            reason: Some(reason),
+            ..Self::failed(file, NOT_APPLICABLE, String::new())
+        }
+    }
+
+    /// The entry of a file that gave no run.
+    pub fn failed(file: String, outcome: &str, error: String) -> Self {
+        Self {
+            file,
+            scenario: None,
+            planner: None,
+            outcome: outcome.to_owned(),
+            verdict: outcome_word(outcome, None, 0.0),
+            error: Some(error),
+            reason: None,
+            relaxations: Vec::new(),
+            verified: false,
+            safe: false,
+            cost: None,
+            encounters: Vec::new(),
+            targets: None,
+            timing: None,
+            notes: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The targets as a plan was made for them: with these a document can be checked alone.
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::{InitialSetDocument, PositionDocument, VelocitySetDocument};
+use super::plan::{plain, rows, vertices};
+use crate::frame::{clockwise_deg_per_s, course_deg_from_heading, deg_from_radians};
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::target::{Motion, Representation, ShipTrack, Target};
+
+/// A tracked ship, or the sets of an explicit target, as the scenario gives them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TargetDocument {
+    /// Unique within a document.
+    pub name: String,
+    /// `"polytope"` or `"ellipsoid"`: what her obstacle is made of.
+    pub representation: String,
+    /// Absent where the sets are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ship: Option<ShipDocument>,
+    /// Absent for a ship.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub initial_set: Option<InitialSetDocument>,
+    /// One after another; absent for a ship.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub velocity_sets: Vec<SpellDocument>,
+}
+
+/// A tracked ship, in the keys of the scenario file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct ShipDocument {
+    pub position: PositionDocument,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+    pub length_m: f64,
+    pub beam_m: f64,
+    pub position_std_m: f64,
+    pub speed_spread_mps: f64,
+    pub course_spread_deg: f64,
+    pub turn_rate_deg_per_s: f64,
+}
+
+/// A set of velocities and until when it holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpellDocument {
+    /// Null for the last.
+    pub until_s: Option<f64>,
+    /// The set.
+    #[serde(flatten)]
+    pub set: VelocitySetDocument,
+}
+
+/// A target as it is known.
+pub(super) fn target(target: &Target) -> TargetDocument {
+    let polygon = |set: &ConvexPolygon| InitialSetDocument::Polygon {
+        vertices_m: vertices(set),
+    };
+    let velocities = |set: &ConvexPolygon| VelocitySetDocument::Polygon {
+        vertices_mps: vertices(set),
+    };
+    let whole = |set| SpellDocument { until_s: None, set };
+    let (ship, initial_set, velocity_sets) = match &target.motion {
+        Motion::Ship(track) => (Some(ship(track)), None, Vec::new()),
+        Motion::Sets { initial, velocity } => (
+            None,
+            Some(polygon(initial)),
+            vec![whole(velocities(velocity))],
+        ),
+        Motion::Ellipses { initial, velocity } => (
+            None,
+            Some(ellipse(initial)),
+            vec![whole(velocity_ellipse(velocity))],
+        ),
+        Motion::Spells { initial, spells } => (
+            None,
+            Some(polygon(initial)),
+            spells
+                .iter()
+                .map(|spell| SpellDocument {
+                    until_s: spell.until.is_finite().then_some(spell.until),
+                    set: velocities(&spell.velocities),
+                })
+                .collect(),
+        ),
+    };
+    TargetDocument {
+        name: target.name.clone(),
+        representation: match target.representation {
+            Representation::Polytope => "polytope",
+            Representation::Ellipsoid => "ellipsoid",
+        }
+        .to_owned(),
+        ship,
+        initial_set,
+        velocity_sets,
+    }
+}
+
+fn ship(track: &ShipTrack) -> ShipDocument {
+    let [east_m, north_m] = plain(track.pose.position);
+    ShipDocument {
+        position: PositionDocument { east_m, north_m },
+        course_deg: course_deg_from_heading(track.pose.heading),
+        speed_mps: track.speed,
+        length_m: track.hull.length,
+        beam_m: track.hull.beam,
+        position_std_m: track.position_std,
+        speed_spread_mps: track.speed_spread,
+        course_spread_deg: deg_from_radians(track.course_spread),
+        turn_rate_deg_per_s: clockwise_deg_per_s(track.turn_rate).abs(),
+    }
+}
+
+pub(super) fn ellipse(set: &Ellipse) -> InitialSetDocument {
+    InitialSetDocument::Ellipse {
+        center_m: plain(set.center()),
+        shape_m2: rows(set),
+    }
+}
+
+pub(super) fn velocity_ellipse(set: &Ellipse) -> VelocitySetDocument {
+    VelocitySetDocument::Ellipse {
+        center_mps: plain(set.center()),
+        shape_m2_per_s2: rows(set),
+    }
+}

@@ -1,0 +1,135 @@
+//! What became of plan documents that were checked again.
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::ViolationDocument;
+use super::plan::finite;
+use crate::verification::Verification;
+
+/// The verdict on a document that is none.
+const UNREADABLE: &str = "unreadable";
+/// And on one that was not checked in time.
+const UNPROVEN: &str = "unproven";
+
+/// Every document that was asked for, in order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct VerificationDocument {
+    pub plans: Vec<VerifiedPlanDocument>,
+    pub verified: usize,
+    pub safe: usize,
+}
+
+/// One document. What is unknown of one that is unreadable or unproven is null.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/verify.md says what each key means")]
+pub struct VerifiedPlanDocument {
+    pub file: String,
+    pub scenario: Option<String>,
+    pub planner: Option<String>,
+    pub outcome: String,
+    pub error: Option<String>,
+    pub verified: bool,
+    /// No hard set, hull or land is entered from start to arrival.
+    pub safe: bool,
+    pub violations: Vec<ViolationDocument>,
+    pub targets: Vec<MarginDocument>,
+    /// Least distance between own hull and land; null without land.
+    pub min_land_distance_m: Option<f64>,
+    pub min_land_distance_t_s: Option<f64>,
+}
+
+/// How near a target is met.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MarginDocument {
+    /// Her name.
+    pub target: String,
+    /// Nothing is claimed of her set before: the plan enters it. 0 where all is claimed.
+    pub claimed_from_s: f64,
+    /// Least signed distance to the set that was kept out of.
+    pub min_margin_m: Option<f64>,
+    /// And when.
+    pub min_margin_t_s: Option<f64>,
+    /// Least distance to any hull that she may have.
+    pub min_clearance_m: Option<f64>,
+    /// Least distance to her hull if she keeps course and speed.
+    pub dcpa_m: Option<f64>,
+    /// And when.
+    pub tcpa_s: Option<f64>,
+}
+
+impl VerificationDocument {
+    /// The document of these.
+    pub fn of(plans: Vec<VerifiedPlanDocument>) -> Self {
+        let verified = plans.iter().filter(|plan| plan.verified).count();
+        let safe = plans.iter().filter(|plan| plan.safe).count();
+        Self {
+            plans,
+            verified,
+            safe,
+        }
+    }
+}
+
+impl VerifiedPlanDocument {
+    /// The entry of a document that was checked.
+    pub fn of(file: String, checked: &Verification) -> Self {
+        let evaluation = checked.evaluation.as_ref();
+        let passages = evaluation.map_or(&[][..], |e| &e.passages);
+        let land = evaluation.filter(|e| e.min_land_distance.is_finite());
+        Self {
+            file,
+            scenario: Some(checked.scenario.clone()),
+            planner: Some(checked.planner.clone()),
+            outcome: checked.outcome.clone(),
+            error: None,
+            verified: checked.verified(),
+            safe: checked.safe(),
+            violations: (checked.violations.iter())
+                .map(|violation| ViolationDocument {
+                    what: violation.what.clone(),
+                    t_s: finite(violation.time),
+                })
+                .collect(),
+            targets: (checked.targets.iter().zip(&checked.claimed_from))
+                .zip(passages)
+                .map(|((target, claimed_from), passage)| MarginDocument {
+                    target: target.clone(),
+                    claimed_from_s: *claimed_from,
+                    min_margin_m: finite(passage.min_margin),
+                    min_margin_t_s: finite(passage.min_margin_time),
+                    min_clearance_m: finite(passage.min_clearance),
+                    dcpa_m: finite(passage.dcpa),
+                    tcpa_s: finite(passage.tcpa),
+                })
+                .collect(),
+            min_land_distance_m: land.map(|e| e.min_land_distance),
+            min_land_distance_t_s: land.map(|e| e.min_land_distance_time),
+        }
+    }
+
+    /// The entry of a file whose check was not done within its time.
+    pub fn unproven(file: String, error: String) -> Self {
+        Self {
+            outcome: UNPROVEN.to_owned(),
+            ..Self::unreadable(file, error)
+        }
+    }
+
+    /// The entry of a file that is no plan document.
+    pub fn unreadable(file: String, error: String) -> Self {
+        Self {
+            file,
+            scenario: None,
+            planner: None,
+            outcome: UNREADABLE.to_owned(),
+            error: Some(error),
+            verified: false,
+            safe: false,
+            violations: Vec::new(),
+            targets: Vec::new(),
+            min_land_distance_m: None,
+            min_land_distance_t_s: None,
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Own ship among the obstacles at t = 0.
+
+use crate::frame::{Pose, Vector, direction};
+use crate::obstacle::Obstacle;
+use crate::trajectory::Segment;
+
+/// Own ship at t = 0 and the obstacles that she meets.
+#[derive(Debug, Clone, Copy)]
+pub struct Situation<'a> {
+    /// Position, metres, and heading, radians; her course is her heading.
+    pub pose: Pose,
+    /// m/s, not negative.
+    pub speed: f64,
+    /// The greatest speed that an alteration may ask for, m/s; a lower one than `speed` counts as that.
+    pub max_speed: f64,
+    /// Everything is asked over `[0, horizon]`, seconds; may be infinite but for the risk of holding course.
+    pub horizon: f64,
+    /// Own ship's footprint folded in.
+    pub obstacles: &'a [Obstacle],
+}
+
+impl Situation<'_> {
+    /// Her velocity if she holds course and speed, m/s.
+    pub fn velocity(&self) -> Vector {
+        self.velocity_on(self.pose.heading, self.speed)
+    }
+
+    /// The velocity on a heading, radians, at a speed, m/s.
+    pub(super) fn velocity_on(&self, heading: f64, speed: f64) -> Vector {
+        direction(heading) * speed
+    }
+
+    /// Course and speed held over the horizon.
+    pub fn held(&self) -> Segment {
+        Segment {
+            start: self.pose,
+            start_time: 0.0,
+            duration: self.horizon,
+            speed: self.speed,
+            turn_rate: 0.0,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Two motions that need no planner: hold course, and one velocity that is out of every velocity obstacle.
+
+use crate::evaluation::Evaluation;
+use crate::frame::{Pose, direction};
+use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
+use crate::pipeline::{self, TargetSets};
+use crate::scenario::{Compliance, Scenario};
+use crate::study::assess::{Situation, least_alteration};
+use crate::tolerance;
+use crate::trajectory::{Segment, Trajectory};
+
+/// One velocity from t = 0, to the last waypoint where it leads there, else to the horizon.
+#[derive(Debug, Clone)]
+pub struct Baseline {
+    /// The motion: one segment.
+    pub trajectory: Trajectory,
+    /// Level sets of the accepted risk, in the order of the targets.
+    pub obstacles: Vec<Obstacle>,
+    /// The judgement: sets, hulls and land. Own ship's limits are not asked for, her velocity changes at once.
+    pub evaluation: Evaluation,
+    /// The largest risk, per target.
+    pub risks: Vec<PeakRisk>,
+    /// True when it ends at the last waypoint.
+    pub arrived: bool,
+}
+
+/// Own course and speed, whatever is in the way.
+pub fn hold_course(scenario: &Scenario) -> Baseline {
+    let own = &scenario.own_ship;
+    baseline(scenario, &Sets::of(scenario), own.pose.heading, own.speed)
+}
+
+/// The constant velocity with the least space-time error of those that meet no set within the horizon.
+///
+/// At each of own ship's speeds, her speed at t = 0 among them, the least turns to starboard and to port out of every velocity obstacle;
+/// and the least change of speed on her course: the ends of what is forbidden, exact to
+/// [`tolerance::ALTERATION_RAD`]. The turn is from the course to the last waypoint as well as from her own, so that a mission
+/// off her course is not missed. `None` when no such velocity exists, as from inside a set. Velocities that run
+/// aground are chosen only where all do.
+pub fn constant_velocity(scenario: &Scenario) -> Option<Baseline> {
+    let own = &scenario.own_ship;
+    let sets = Sets::of(scenario);
+    let away = scenario.desired.end() - own.pose.position;
+    let mut headings = vec![own.pose.heading];
+    if away.norm() > tolerance::LENGTH_M {
+        headings.push(crate::frame::heading_of(away));
+    }
+    let mut speeds: Vec<f64> = own.speeds.clone();
+    speeds.push(own.speed);
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    let mut candidates: Vec<(f64, f64)> = Vec::new();
+    for &heading in &headings {
+        for &speed in &speeds {
+            let situation = Situation {
+                pose: Pose::new(own.pose.position, heading),
+                speed,
+                max_speed: own.max_speed(),
+                horizon: scenario.horizon,
+                obstacles: &sets.level,
+            };
+            let least = least_alteration(&situation);
+            candidates.extend(least.starboard.map(|turn| (heading - turn, speed)));
+            candidates.extend(least.port.map(|turn| (heading + turn, speed)));
+            candidates.extend(least.speed.map(|change| (heading, speed + change)));
+        }
+    }
+    candidates
+        .into_iter()
+        .map(|(heading, speed)| baseline(scenario, &sets, heading, speed))
+        .filter(|b| b.evaluation.space_time_error.is_finite())
+        // of equal ones the first: own course before others, starboard before port
+        .min_by(|a, b| {
+            let cost = |b: &Baseline| b.evaluation.space_time_error;
+            let bad = |b: &Baseline| !b.evaluation.verified();
+            bad(a).cmp(&bad(b)).then(cost(a).total_cmp(&cost(b)))
+        })
+}
+
+/// What a planner would keep out of, at the accepted risk and whole: risk is measured against these.
+pub(super) struct Sets {
+    level: Vec<Obstacle>,
+    whole: Vec<Obstacle>,
+}
+
+impl Sets {
+    pub fn of(scenario: &Scenario) -> Self {
+        let used = |sets: TargetSets| match scenario.compliance {
+            Compliance::Shape | Compliance::Rules => sets.shaped,
+            Compliance::None => sets.hard,
+        };
+        let whole: Vec<Obstacle> = pipeline::sets(scenario).into_iter().map(used).collect();
+        let risk = scenario.max_risk;
+        let level = if risk > 0.0 {
+            whole.iter().map(|set| set.at_risk(risk)).collect()
+        } else {
+            whole.clone()
+        };
+        Self { level, whole }
+    }
+}
+
+/// A velocity held from t = 0, judged.
+pub(super) fn baseline(scenario: &Scenario, sets: &Sets, heading: f64, speed: f64) -> Baseline {
+    let own = &scenario.own_ship;
+    let along = direction(heading).dot(&(scenario.desired.end() - own.pose.position));
+    let least = (scenario.desired.end() - own.pose.position - direction(heading) * along).norm();
+    let arrival = if speed > 0.0 { along / speed } else { -1.0 };
+    let arrived = least <= tolerance::ARRIVAL_M && arrival > 0.0 && arrival <= scenario.horizon;
+    let segment = Segment {
+        start: Pose::new(own.pose.position, heading),
+        start_time: 0.0,
+        duration: if arrived { arrival } else { scenario.horizon },
+        speed,
+        turn_rate: 0.0,
+    };
+    let trajectory = Trajectory::from(segment);
+    let mut evaluation = pipeline::judge_free(scenario, &sets.level, &trajectory);
+    super::count_alike(&mut evaluation, scenario, &trajectory);
+    let risk = |set| pipeline::peak_risk(set, &trajectory, scenario.max_risk);
+    let risks = sets.whole.iter().map(risk).collect();
+    Baseline {
+        trajectory,
+        obstacles: sets.level.clone(),
+        evaluation,
+        risks,
+        arrived,
+    }
+}

@@ -1,0 +1,99 @@
+//! Scenarios that are the same as others, or their mirror images.
+
+use crate::frame::{Pose, Vector, direction, heading_of, wrap};
+use crate::scenario::Scenario;
+use crate::target::Motion;
+
+/// Metres, m/s and radians (0.2°) within which two ships are the same.
+const SAME_PLACE: f64 = 5.0;
+const SAME_SPEED: f64 = 0.05;
+const SAME_COURSE: f64 = std::f64::consts::PI / 900.0;
+
+/// How a scenario is like one before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Likeness {
+    /// The same ships on the same courses, seen from own ship.
+    Same,
+    /// The same with port and starboard exchanged.
+    Mirrored,
+}
+
+/// A ship seen from own ship at the start: ahead and to port, metres; course from hers; speed.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    place: Vector,
+    course: f64,
+    speed: f64,
+}
+
+impl Seen {
+    fn mirrored(&self) -> Self {
+        Self {
+            place: Vector::new(self.place.x, -self.place.y),
+            course: -self.course,
+            ..*self
+        }
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        (self.place - other.place).norm() <= SAME_PLACE
+            && (self.speed - other.speed).abs() <= SAME_SPEED
+            && wrap(self.course - other.course).abs() <= SAME_COURSE
+    }
+}
+
+/// Of every scenario the first one before it that it is like: own ship is meant to run as fast, and the targets are the same;
+/// routes are not compared. Scenarios without targets are like none. O(scenarios² targets²).
+pub fn likenesses(scenarios: &[&Scenario]) -> Vec<Option<(usize, Likeness)>> {
+    let all: Vec<Option<Vec<Seen>>> = scenarios.iter().map(|s| seen(s)).collect();
+    let run = |index: usize| {
+        let desired = &scenarios[index].desired;
+        desired.length() / desired.duration()
+    };
+    let like = |index: usize| {
+        let here = all[index].as_ref()?;
+        let mirrored: Vec<Seen> = here.iter().map(Seen::mirrored).collect();
+        all[..index].iter().enumerate().find_map(|(before, there)| {
+            let there = there.as_ref()?;
+            // negated on purpose: a NaN is like none
+            if !((run(before) - run(index)).abs() <= SAME_SPEED) {
+                return None;
+            }
+            if are(here, there) {
+                return Some((before, Likeness::Same));
+            }
+            are(&mirrored, there).then_some((before, Likeness::Mirrored))
+        })
+    };
+    (0..scenarios.len()).map(like).collect()
+}
+
+/// The tracked ships; `None` where there are none, or others.
+fn seen(scenario: &Scenario) -> Option<Vec<Seen>> {
+    let own: Pose = scenario.own_ship.pose;
+    let ships = scenario.targets.iter().map(|target| match &target.motion {
+        Motion::Ship(ship) => Some(Seen {
+            place: own.body_coordinates(ship.pose.position),
+            course: wrap(heading_of(direction(ship.pose.heading)) - own.heading),
+            speed: ship.speed,
+        }),
+        Motion::Sets { .. } | Motion::Ellipses { .. } | Motion::Spells { .. } => None,
+    });
+    let ships: Vec<Seen> = ships.collect::<Option<_>>()?;
+    (!ships.is_empty()).then_some(ships)
+}
+
+/// The same ships in any order.
+fn are(some: &[Seen], others: &[Seen]) -> bool {
+    let mut left: Vec<&Seen> = others.iter().collect();
+    some.len() == others.len()
+        && some
+            .iter()
+            .all(|ship| match left.iter().position(|other| ship.is(other)) {
+                Some(index) => {
+                    left.swap_remove(index);
+                    true
+                }
+                None => false,
+            })
+}
