@@ -181,7 +181,7 @@ pub fn clockwise_deg_per_s(turn_rate: f64) -> f64 {
 }
 
 /// Radians from degrees: a spread or a half-width, which has no direction.
-pub fn radians_from_deg(degrees: f64) -> f64 {
+pub const fn radians_from_deg(degrees: f64) -> f64 {
     degrees.to_radians()
 }
 
