@@ -1,4 +1,4 @@
-//! Upright boxes, and an index over many of them.
+//! Axis-aligned boxes, and an index of many boxes.
 
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -6,7 +6,7 @@ use rstar::{AABB, RTree};
 use super::ConvexPolygon;
 use crate::frame::Vector;
 
-/// An upright box.
+/// An axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// South-western corner.
@@ -16,7 +16,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// The least one around some points; `None` without points.
+    /// The smallest box around points; `None` without points.
     pub fn around<'a>(points: impl IntoIterator<Item = &'a Vector>) -> Option<Self> {
         let mut points = points.into_iter();
         let first = points.next()?;
@@ -43,8 +43,10 @@ impl Window {
         }
     }
 
-    /// The vertices of what of a convex set is within the box, counter-clockwise; empty where nothing is. Cut side by
-    /// side (Sutherland & Hodgman, doi:10.1145/360767.360802).
+    /// Vertices of the part of a convex set inside the box, counter-clockwise; empty where there is
+    /// none.
+    ///
+    /// Clips side by side (Sutherland & Hodgman, doi:10.1145/360767.360802).
     pub fn part_of(&self, set: &ConvexPolygon) -> Vec<Vector> {
         let sides = [
             (Vector::new(1.0, 0.0), self.high.x),
@@ -76,14 +78,14 @@ impl Window {
     }
 }
 
-/// Which of many boxes meet a box: an R*-tree, built in O(n log n).
+/// An index of boxes: an R*-tree, built in O(n log n).
 #[derive(Debug, Clone)]
 pub struct BoxIndex {
     tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
 }
 
 impl BoxIndex {
-    /// Of boxes that count from 0.
+    /// An index of boxes, numbered from 0.
     pub fn new(boxes: impl IntoIterator<Item = Window>) -> Self {
         let boxes = boxes
             .into_iter()

@@ -1,4 +1,4 @@
-//! Convex sets, polygons and predicates in the plane. Knows no ship and no time.
+//! Convex sets, polygons and predicates in the plane.
 
 mod boxes;
 mod convex;
@@ -25,7 +25,7 @@ pub(crate) use nearness::stretch_near;
 pub use polygon::{Polygon, PolygonError};
 pub(crate) use simplify::outer_simplified;
 
-/// A number to six digits, for an error to say.
+/// A number rounded to six digits, for error messages.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }

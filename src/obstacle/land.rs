@@ -1,4 +1,4 @@
-//! Land as own ship's centre sees it: an obstacle that does not move, of many convex blocks.
+//! Land as an obstacle for own ship's centre: many static convex blocks.
 
 use std::sync::LazyLock;
 
@@ -7,14 +7,16 @@ use crate::frame::Vector;
 use crate::geometry::{BoxIndex, ConvexPolygon, Window, outer_disc};
 use crate::trajectory::Segment;
 
-/// The name of the land among the names of targets.
+/// Name of land among the names of targets.
 pub const LAND: &str = "land";
 
-/// An outer approximation of the places where own ship's centre is nearer to land than a radius: the union of
-/// blocks, each a convex piece of land with a circumscribed 16-gon folded in, 2 % of the radius too large at most.
+/// Outer approximation of the points nearer to land than a radius: a union of convex blocks. Each
+/// block is the Minkowski sum of a convex piece of land and a circumscribed 16-gon, at most 2 % of
+/// the radius too large.
 ///
-/// A block is a space-time polytope with one velocity, zero, so that a plan treats it like any other. Pieces of one
-/// land touch, their blocks overlap by twice the radius: what slips between two pieces is inside both blocks.
+/// A block is a space-time polytope whose only velocity is zero, so planners treat it like any
+/// other. Pieces of one land touch and their blocks overlap by twice the radius, so no path passes
+/// between two pieces.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -42,14 +44,14 @@ impl Coast {
         &NONE
     }
 
-    /// Around convex pieces of land, by `radius >= 0` metres: own ship's half-diagonal, so that she may have any
-    /// heading, and what she keeps from land.
+    /// Land around convex pieces, grown by `radius >= 0` metres: own ship's half-diagonal, which
+    /// permits any heading, plus the margin to land.
     pub fn around<'a>(pieces: impl IntoIterator<Item = &'a ConvexPolygon>, radius: f64) -> Self {
         let disc = outer_disc(radius, 0.0);
         Self::of(pieces.into_iter().map(|p| p.minkowski_sum(&disc)))
     }
 
-    /// The same land elsewhere, block by block.
+    /// The same land with every block mapped.
     pub(crate) fn mapped(&self, to: impl Fn(&ConvexPolygon) -> ConvexPolygon) -> Self {
         Self::of(self.blocks.iter().map(|b| to(b.initial())))
     }
@@ -73,17 +75,17 @@ impl Coast {
         self.blocks.is_empty()
     }
 
-    /// The blocks.
+    /// The convex blocks.
     pub fn blocks(&self) -> &[PolytopeObstacle] {
         &self.blocks
     }
 
-    /// The blocks whose boxes meet a window, in no order.
+    /// Indices of the blocks whose boxes meet a window, in no order.
     pub fn near<'a>(&'a self, window: &Window) -> impl Iterator<Item = usize> + use<'a> {
         self.index.meeting(window)
     }
 
-    /// Metres that a place is inside, in the block that it is deepest in; `None` on water, NaN for a NaN.
+    /// Largest depth of a position in any block, metres; `None` on water, NaN for a NaN.
     pub fn depth(&self, position: Vector) -> Option<f64> {
         if !(position.x.is_finite() && position.y.is_finite()) {
             return Some(f64::NAN);
@@ -94,10 +96,11 @@ impl Coast {
             .max_by(f64::total_cmp)
     }
 
-    /// Metres from a place in a direction, a unit vector, to where the ray first is in no block; 0 on water.
+    /// Distance from a position along the unit vector `toward` to the first point outside every
+    /// block, metres; 0 on water.
     pub fn way_out(&self, position: Vector, toward: Vector) -> f64 {
         let mut gone = 0.0;
-        // a ray that has left a block does not enter it again
+        // a ray does not enter a convex block twice
         for _ in 0..=self.blocks.len() {
             let here = position + toward * gone;
             let step = self
@@ -127,7 +130,7 @@ impl Coast {
     }
 }
 
-/// Metres from a place inside a block to its edge in a direction.
+/// Distance from a position inside a block to its edge along `toward`, metres.
 fn exit(block: &PolytopeObstacle, position: Vector, toward: Vector) -> f64 {
     block
         .faces()
@@ -139,7 +142,7 @@ fn exit(block: &PolytopeObstacle, position: Vector, toward: Vector) -> f64 {
         .max(0.0)
 }
 
-/// A box around the places of a segment; of one that is not finite everything.
+/// A box around a segment; all of the plane where the segment is not finite.
 pub(crate) fn window_of(segment: &Segment) -> Window {
     if !segment.is_valid() {
         let all = Vector::repeat(f64::MAX);
@@ -156,7 +159,7 @@ pub(crate) fn window_of(segment: &Segment) -> Window {
     if !segment.is_arc() {
         return ends;
     }
-    // no place of an arc is farther from its chord than the sagitta, of a half circle or more than the radius
+    // an arc is within its sagitta of its chord, or within its radius for half a circle or more
     let turn = (segment.turn_rate * segment.duration).abs();
     let half = 0.5 * turn.min(std::f64::consts::PI);
     let sagitta = segment.radius().abs() * (1.0 - half.cos());
@@ -193,7 +196,7 @@ mod tests {
         (pieces, radius, coast)
     }
 
-    /// Outer, and not by much: against the distance from the pieces themselves.
+    /// Outer and tight, compared with the distance from the pieces themselves.
     #[test]
     fn blocks_hold_every_place_within_the_radius_and_little_more() {
         let mut rng = ChaCha8Rng::seed_from_u64(81);
@@ -220,7 +223,7 @@ mod tests {
         }
     }
 
-    /// Every block, one by one; the index loses none.
+    /// The index finds every block that a search of all blocks finds.
     #[test]
     fn contacts_match_a_scan_over_all_blocks() {
         let mut rng = ChaCha8Rng::seed_from_u64(82);

@@ -95,7 +95,8 @@ fn no_spread_is_a_point() {
     assert_eq!(ship.outer_velocity_set().vertices().len(), 1);
 }
 
-/// A tanker, a ferry, a raft: on any heading that she may have she is within the outer hull, which is little larger.
+/// A tanker, a ferry and a raft: at every possible heading the hull is inside the outer hull, which
+/// is only slightly larger.
 #[test]
 fn the_outer_hull_holds_the_hull_on_every_heading() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(6);
@@ -104,7 +105,7 @@ fn the_outer_hull_holds_the_hull_on_every_heading() {
         ship.pose.position = Vector::new(rng.random_range(-1e2..1e2), 50.0);
         ship.hull.length = 10.0_f64.powf(rng.random_range(0.0..3.0));
         ship.hull.beam = ship.hull.length * rng.random_range(0.01..1.2);
-        // from next to nothing to every heading
+        // from nearly none to every heading
         ship.course_spread = match case % 4 {
             0 => 10.0_f64.powf(rng.random_range(-12.0..-3.0)),
             _ => rng.random_range(0.0..1.0),

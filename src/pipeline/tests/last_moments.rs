@@ -1,13 +1,15 @@
-//! The last moments that are told of, from both sides: a second search finds an escape then, and none a little later.
+//! The latest times, from both sides: an independent search finds an escape then, and none slightly
+//! later.
 
 use super::*;
 use crate::frame::radians_from_deg;
 use crate::planner::space_time;
 
-/// Seconds for which the hull is looked at after an escape began.
+/// Duration for which an escape must be clear, seconds.
 const CLEAR_FOR_S: f64 = 200.0;
 
-/// A turn and a straight line on, at one of own ship's speeds, from where a motion is at a time: clear of every set.
+/// True where a turn and a straight line, at one of own ship's speeds, from the motion at `time`
+/// are clear of every set.
 fn escapes(sets: &[Obstacle], held: &[Segment], time: f64, turns: &[f64]) -> bool {
     let own = scenario(track(0.0, 0.0, 0.0, 0.0), Compliance::Shape).own_ship;
     let leg = held.iter().find(|s| time <= s.end_time()).expect("held");
@@ -44,7 +46,8 @@ fn degrees(turns: impl Iterator<Item = i32>) -> Vec<f64> {
         .collect()
 }
 
-/// A way out exists at the time that is given. For most encounters none exists 3 s later; the planner may miss a late one.
+/// An escape exists at the reported time. For most encounters none exists 3 s later; the planner
+/// may miss a late one.
 #[test]
 fn until_the_time_of_no_return_there_is_a_way_out_and_then_mostly_none() {
     let mut last = 0;
@@ -89,7 +92,7 @@ fn a_ship_that_stands_on_escapes_at_the_latest_time() {
             .iter()
             .filter_map(|s| run.obstacles[0].first_contact(s, 0.0));
         let met = met.next().expect("she is in the way");
-        // to starboard by what is readily apparent and no more than she turns, every half degree
+        // to starboard by a readily apparent turn within own ship's limit, every half degree
         let turns = degrees((-240..=-60).rev());
         let before = (0..).map(|k| met - 0.25 * f64::from(k));
         let mut may_leave = before.filter(|time| escapes(&run.obstacles, &held, *time, &turns));
