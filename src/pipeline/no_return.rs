@@ -1,6 +1,5 @@
 //! The time of no return: the last moment from which a plan clear of every hard set was found.
 
-use super::sets::TargetSets;
 use super::{Run, coast, problem};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::{PlannerKind, space_time};
@@ -43,7 +42,7 @@ impl Run {
         if scenario.planner != PlannerKind::SpaceTime {
             return None;
         }
-        let hard: Vec<Obstacle> = self.sets.iter().map(TargetSets::hard_set).collect();
+        let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let coast = coast(scenario, &self.land);
         let asked = problem(scenario, &hard, &coast);
         let held = space_time::nominal_motion(&asked)?;

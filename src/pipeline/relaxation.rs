@@ -393,7 +393,7 @@ impl Relaxer<'_> {
     }
 
     fn has_domains(&self) -> bool {
-        self.sets.iter().any(TargetSets::has_shape)
+        self.sets.iter().any(TargetSets::has_domain)
     }
 
     /// True for a planner that has a plan for every subset of the sets that it has a plan for.
@@ -539,7 +539,7 @@ impl Relaxer<'_> {
                 let enters = |s| set.first_contact(s, TOUCH_M).is_some();
                 !trajectory.segments().iter().any(enters)
             };
-            if !sets.has_shape() || clear(1.0) {
+            if !sets.has_domain() || clear(1.0) {
                 return 1.0;
             }
             let (mut retained, mut entered) = (0.0, 1.0);

@@ -24,7 +24,7 @@ pub(super) fn without_domains_of_give_way_targets(
     let roles = sets.iter().map(|s| s.encounter.role);
     if scenario.compliance == Compliance::Rules && Duty::of(roles).stands_on {
         for set in sets.iter_mut().filter(|s| s.encounter.role.stands_on()) {
-            set.give_up_shape();
+            set.remove_domain();
         }
     }
     sets

@@ -3,12 +3,10 @@
 //! The signed distance is jointly convex in space and time, because supports are concave in time.
 //! So its tangent is a lower bound along a chord, and an arc is within the sagitta of its chord.
 
+use super::CHORD_RAD;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::tolerance;
 use crate::trajectory::{Mover, Segment};
-
-/// Longest arc per chord, radians.
-const CHORD_RAD: f64 = 0.4;
 
 /// Bound on the tangents along one chord; each doubles the digits near a crossing.
 const MAX_TANGENTS: usize = 200;
