@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::path::PathBuf;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use searoom::document::PlanDocument;
 use searoom::pipeline;
-use searoom::report::document::PlanDocument;
 use searoom::scenario::Scenario;
 use searoom::verification::verify;
 

@@ -18,8 +18,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use searoom::document::PlanDocument;
 use searoom::pipeline;
-use searoom::report::document::PlanDocument;
 use searoom::scenario::Scenario;
 use searoom::verification::verify;
 

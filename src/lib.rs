@@ -64,16 +64,15 @@
 //! | [`target`] | a tracked ship or explicit sets, with their uncertainty |
 //! | [`colregs`] | roles by the rules of the road; ship domains |
 //! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
-//! | [`assessment`] | risk, closest approach and the least alteration of own ship among the obstacles, without a plan |
 //! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
 //! | [`evaluation`] | judges any trajectory, without the sets and contact tests of the planner |
 //! | [`verification`] | checks a plan document alone, without scenario and planner |
 //! | [`scenario`] | scenario files: every fault of a file at once; [`scenario::formats`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
-//! | [`comparison`] | every planner that applies and two baselines, on the same scenario |
-//! | [`lint`] | what is odd about a scenario, without planning |
 //! | [`simulation`] | random encounters, and targets that do anything their sets allow |
-//! | [`report`] | tables, JSON documents and figures |
+//! | [`study`] | [`study::assess`]: risk and closest approach without a plan; [`study::compare`]: every planner and two baselines on one scenario; [`study::lint`]: faults of a scenario |
+//! | [`document`] | the published documents: the one description of a result |
+//! | [`report`] | tables, HTML pages and figures |
 //! | `recording` | Rerun recordings (feature `recording`, on by default) |
 //!
 //! # Example
@@ -125,13 +124,11 @@
 
 #![warn(missing_docs)]
 
-pub mod assessment;
 pub mod colregs;
-pub mod comparison;
+pub mod document;
 pub mod evaluation;
 pub mod frame;
 pub mod geometry;
-pub mod lint;
 pub mod map;
 pub mod obstacle;
 mod output;
@@ -143,6 +140,7 @@ pub mod report;
 pub mod scenario;
 pub mod search;
 pub mod simulation;
+pub mod study;
 pub mod target;
 mod text;
 pub mod tolerance;

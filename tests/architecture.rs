@@ -46,10 +46,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "assessment",
-        &["obstacle", "trajectory", "geometry", "frame", "tolerance"],
-    ),
-    (
         "planner",
         &[
             "obstacle",
@@ -79,6 +75,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "verification",
         &[
+            "document",
             "frame",
             "tolerance",
             "geometry",
@@ -123,30 +120,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "comparison",
-        &[
-            "frame",
-            "tolerance",
-            "geometry",
-            "trajectory",
-            "vessel",
-            "target",
-            "colregs",
-            "obstacle",
-            "assessment",
-            "planner",
-            "evaluation",
-            "scenario",
-            "pipeline",
-        ],
-    ),
-    (
-        "lint",
-        &[
-            "frame", "geometry", "colregs", "target", "obstacle", "scenario", "pipeline",
-        ],
-    ),
-    (
         "simulation",
         &[
             "frame",
@@ -166,6 +139,42 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "study",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "trajectory",
+            "vessel",
+            "target",
+            "colregs",
+            "obstacle",
+            "planner",
+            "evaluation",
+            "scenario",
+            "pipeline",
+        ],
+    ),
+    (
+        "document",
+        &[
+            "frame",
+            "tolerance",
+            "geometry",
+            "trajectory",
+            "target",
+            "colregs",
+            "obstacle",
+            "planner",
+            "evaluation",
+            "verification",
+            "scenario",
+            "pipeline",
+            "study",
+            "report",
+        ],
+    ),
+    (
         "report",
         &[
             "frame",
@@ -177,14 +186,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "target",
             "colregs",
             "obstacle",
-            "assessment",
             "planner",
             "evaluation",
             "verification",
             "scenario",
             "pipeline",
-            "comparison",
-            "lint",
+            "document",
+            "study",
             "simulation",
             "output",
             "text",
@@ -206,7 +214,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "evaluation",
             "scenario",
             "pipeline",
-            "comparison",
+            "document",
+            "study",
             "simulation",
             "output",
         ],
@@ -450,10 +459,7 @@ fn every_border_can_be_broken() {
             "evaluation/mod.rs",
             "use crate::obstacle::contact::first_contact;",
         ),
-        (
-            "verification/mod.rs",
-            "use crate::report::document::PlanDocument;",
-        ),
+        ("verification/mod.rs", "use crate::recording::Recorded;"),
         ("verification/coverage.rs", "use crate::obstacle::Obstacle;"),
         ("verification/motion.rs", "use crate::planner::PlannerKind;"),
         (

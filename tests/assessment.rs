@@ -4,12 +4,12 @@ mod set_generators;
 
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use searoom::assessment::{Alteration, Query, Situation, assess, least_alteration};
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{
     EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
+use searoom::study::assess::{Alteration, Query, Situation, assess, least_alteration};
 use searoom::target::VelocitySpell;
 use set_generators::{seeded, vector};
 use std::f64::consts::PI;

@@ -1,10 +1,10 @@
 //! The figures: the same bytes every time, units on the axes, nothing that cannot be drawn.
 
-use searoom::assessment::Situation;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle};
 use searoom::report::figure::{Figure, assessment_figure, volume_panel};
+use searoom::study::assess::Situation;
 use searoom::target::VelocitySpell;
 
 fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {

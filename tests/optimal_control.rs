@@ -8,6 +8,7 @@ use std::time::Duration;
 use optimal_control_scenes as scenes;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use searoom::document::PlanDocument;
 use searoom::evaluation::{Evaluation, Steering};
 use searoom::frame::Vector;
 use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -22,7 +23,6 @@ use searoom::planner::optimal_control::{
     Weights, attempt, family, plan,
 };
 use searoom::planner::{ControlSettings, NoPlan, Outcome, Problem};
-use searoom::report::document::PlanDocument;
 use searoom::report::figure::plan_figure;
 use searoom::report::plan_text;
 use searoom::scenario::Scenario;

@@ -11,12 +11,12 @@ mod wild;
 
 use std::path::{Path, PathBuf};
 
+use searoom::document::PlanDocument;
 use searoom::frame::Vector;
 use searoom::geometry::{ConvexPolygon, outer_disc};
 use searoom::obstacle::SlabObstacle;
 use searoom::pipeline;
 use searoom::planner::Objective;
-use searoom::report::document::PlanDocument;
 use searoom::scenario::{Compliance, Scenario};
 use searoom::target::{Motion, Representation, ShipTrack};
 use searoom::verification::{Verification, verify};

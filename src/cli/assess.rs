@@ -1,13 +1,13 @@
 //! `searoom assess`: risk, closest approach and velocity obstacle, no planning.
 
-use searoom::assessment::{Query, Situation, SpaceTimePoint, assess as answer};
+use searoom::document::AssessmentDocument;
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::report::assessment_text;
-use searoom::report::document::AssessmentDocument;
 use searoom::report::figure::assessment_figure;
 use searoom::scenario::Scenario;
+use searoom::study::assess::{Query, Situation, SpaceTimePoint, assess as answer};
 
 use super::args::AssessArgs;
 use super::figure;

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use rayon::prelude::*;
-use searoom::comparison::{Contender, Entry, Inapplicable, Method, Sailed, contenders, methods};
-use searoom::report::document::{
+use searoom::document::{
     ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument, UNREADABLE,
 };
 use searoom::report::figure::comparison_figure;
@@ -15,6 +14,9 @@ use searoom::report::{
     write_atomically,
 };
 use searoom::scenario::Scenario;
+use searoom::study::compare::{
+    Contender, Entry, Inapplicable, Method, Sailed, contenders, methods,
+};
 
 use super::args::CompareArgs;
 use super::figure;

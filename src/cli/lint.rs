@@ -1,10 +1,10 @@
 //! `searoom suite --lint`: what is odd about scenarios, without planning.
 
-use searoom::lint::{Likeness, Lint, likenesses, lint};
-use searoom::report::document::{LintDocument, LintScenarioDocument};
+use searoom::document::{LintDocument, LintScenarioDocument};
 use searoom::report::lint_text;
 use searoom::scenario::Scenario;
 use searoom::scenario::formats::Assumed;
+use searoom::study::lint::{Likeness, Lint, likenesses, lint};
 
 use super::args::SuiteArgs;
 use super::output::Output;

@@ -4,13 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail};
-use searoom::comparison::Entry;
+use searoom::document::{ComparisonDocument, PlanDocument};
 use searoom::pipeline::{NoReturn, Run};
-use searoom::report::document::{ComparisonDocument, PlanDocument};
 use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
 use searoom::report::page::{Report, Subject, link_from};
 use searoom::report::write_atomically;
 use searoom::scenario::Scenario;
+use searoom::study::compare::Entry;
 
 use super::files::{Found, refuse_clashes};
 use super::output::json;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use searoom::pipeline::Run;
-use searoom::report::document::{
+use searoom::document::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, UNREADABLE,
 };
+use searoom::pipeline::Run;
 use searoom::report::page::Report;
 use searoom::report::{Row, Summary, printable, suite_table};
 use searoom::scenario::formats::Assumed;

@@ -5,7 +5,7 @@ use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use searoom::report::document::{VerificationDocument, VerifiedPlanDocument};
+use searoom::document::{VerificationDocument, VerifiedPlanDocument};
 use searoom::report::verification_text;
 use searoom::verification::{Verification, verify as check};
 

@@ -17,11 +17,11 @@ use super::{
     COMPARISON, Logged, MAP, RecordingError, SUMMARY, VOLUME, blueprint, land, path, put,
     space_time, style,
 };
-use crate::comparison::{Entry, Look, Method, Sailed};
 use crate::frame::{Vector, knots_from_mps};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
 use crate::scenario::Scenario;
+use crate::study::compare::{Entry, Look, Method, Sailed};
 
 /// The folder of the contenders, on the chart and in the volume.
 const METHODS: &str = "methods";
@@ -52,7 +52,7 @@ const WEAKEST: f32 = 0.45;
 /// # Examples
 ///
 /// ```
-/// use searoom::comparison::{Contender, Method};
+/// use searoom::study::compare::{Contender, Method};
 /// use searoom::recording::{Compared, Recorded, write_comparison};
 /// use searoom::scenario::Scenario;
 ///

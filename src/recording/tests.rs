@@ -238,8 +238,8 @@ fn holds_nothing(value: &serde_json::Value) -> bool {
     }
 }
 
-fn compared(scenario: &Scenario) -> Vec<crate::comparison::Entry> {
-    crate::comparison::compare(scenario, &[scenario.max_risk])
+fn compared(scenario: &Scenario) -> Vec<crate::study::compare::Entry> {
+    crate::study::compare::compare(scenario, &[scenario.max_risk])
 }
 
 fn recorded_comparison(scenario: &Scenario, path: &Path) -> Recorded {
@@ -296,7 +296,7 @@ fn a_comparison_is_one_recording_with_every_motion() {
             format!("/space_time/methods/{name}/way"),
             format!("/curves/clearance_m/{name}"),
         ];
-        if let crate::comparison::Method::Planner { kind, .. } = entry.contender.method {
+        if let crate::study::compare::Method::Planner { kind, .. } = entry.contender.method {
             // no graph is searched for forces
             if kind != crate::planner::PlannerKind::OptimalControl {
                 parts.push(format!("/chart/map/methods/{name}/explored/free"));

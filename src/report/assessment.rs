@@ -2,9 +2,9 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, Table, presets};
 
-use crate::assessment::{Assessment, Situation};
 use crate::frame::{Vector, course_deg_from_heading, deg_from_radians};
 use crate::geometry::ConvexSet;
+use crate::study::assess::{Assessment, Situation};
 
 /// The title and the sets, holding course, the least alteration, and one table for what else was asked.
 pub fn assessment_text(

@@ -2,14 +2,14 @@
 
 use comfy_table::Cell;
 
-use super::alteration::largest_alteration;
 use super::summary::Turn;
 use super::table::{cell, figures, metres, said, signed, square_metres, verified};
-use crate::comparison::{Entry, Inapplicable, Method, Sailed};
+use crate::document::alteration::largest_alteration;
 use crate::evaluation::{Counted, Safety, Tone, outcome, risk_figure};
 use crate::frame::Side;
 use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
+use crate::study::compare::{Entry, Inapplicable, Method, Sailed};
 
 /// Units below the names, so that the table fits a terminal.
 pub(super) const HEADER: [&str; 15] = [
@@ -37,21 +37,6 @@ pub(super) const TIME: usize = 11;
 pub(super) const ACCEPTED: &str = "accepted\nrisk";
 
 /// One contender in a few figures. Figures of the motion are `None` without one.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Contender, Method};
-/// use searoom::report::{ComparisonRow, comparison_table};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let held = Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario);
-/// let row = ComparisonRow::of(&scenario, &held);
-/// assert_eq!((row.verified, row.duration), (Some(false), Some(300.0)));
-/// assert!(comparison_table(&scenario.title, &[row], &[], false).contains("hold course"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparisonRow {
     /// Who.
@@ -159,7 +144,7 @@ impl ComparisonRow {
     }
 
     /// The word that people see for how it ended, and what it says.
-    pub(super) fn seen(&self) -> (String, Tone) {
+    pub(crate) fn seen(&self) -> (String, Tone) {
         let risk = self.largest_risk.unwrap_or(0.0);
         outcome(self.outcome, self.safety, risk)
     }

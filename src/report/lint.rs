@@ -2,8 +2,8 @@
 
 use comfy_table::Cell;
 
-use super::document::LintDocument;
 use super::table::figures;
+use crate::document::LintDocument;
 
 /// Units below the names.
 const HEADER: [&str; 7] = [

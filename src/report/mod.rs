@@ -1,11 +1,10 @@
 //! What people and other programs read of a [`Run`](crate::pipeline::Run): tables, verdicts, JSON
 //! documents. Nautical at this border: degrees clockwise, starboard positive, every unit in its name.
 
-mod alteration;
 mod assessment;
 mod comparison;
 mod conduct;
-pub mod document;
+
 pub mod figure;
 mod lint;
 mod no_return;
@@ -13,7 +12,7 @@ pub mod page;
 mod summary;
 mod table;
 mod verification;
-mod words;
+
 mod write;
 
 pub use crate::pipeline::Verdict;

@@ -1,7 +1,7 @@
 //! A run in the few figures that a navigator asks for first.
 
-use super::alteration::first_alteration;
 use crate::colregs::Role;
+use crate::document::alteration::first_alteration;
 use crate::evaluation::{Safety, Tone, outcome};
 use crate::frame::Side;
 use crate::pipeline::{Run, Verdict};
@@ -13,20 +13,6 @@ const CROSSING_STEP: f64 = 1.0;
 const MOST_CROSSINGS: u32 = 1_000_000;
 
 /// An alteration of course.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::frame::Side;
-/// use searoom::report::{Summary, Turn};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let Turn { side, degrees } = Summary::of(&run).turn.expect("she alters");
-/// assert!(side == Side::Starboard && degrees > 30.0, "readily apparent");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
     /// To which side.
@@ -36,20 +22,6 @@ pub struct Turn {
 }
 
 /// How one target was met.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::frame::Side;
-/// use searoom::report::{Meeting, Summary};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let met: &Meeting = &Summary::of(&run).meetings[0];
-/// assert_eq!((met.role, met.side, met.cuts_astern), ("give-way", Some(Side::Port), Some(true)));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Meeting {
     /// Its name.
@@ -72,20 +44,6 @@ pub struct Meeting {
 }
 
 /// A run in a few figures. Figures of the plan are `None` without one.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::Summary;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let summary = Summary::of(&run);
-/// assert_eq!((summary.title.as_str(), summary.verified, summary.targets), ("Give-way", Some(true), 1));
-/// assert!(summary.clearance > Some(20.0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// The scenario's title.

@@ -4,7 +4,7 @@ use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets
 
 use super::conduct;
 use super::summary::{Meeting, Summary};
-use super::words;
+use crate::document::words;
 pub(super) use crate::evaluation::Tone;
 use crate::evaluation::{Counted, outcome, risk_figure};
 use crate::frame::Side;
@@ -40,21 +40,6 @@ pub(super) const NUMBERS: std::ops::Range<usize> = 5..11;
 pub(super) const TIME: usize = 10;
 
 /// One line of a suite's table.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::UNREADABLE;
-/// use searoom::report::{Row, Summary, suite_table};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let failed = Row::Failed { file: "a.toml".to_owned(), outcome: UNREADABLE };
-/// let table = suite_table(&[Row::Run(Summary::of(&run)), failed], false);
-/// assert!(table.contains("Give-way") && table.contains("a.toml"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub enum Row {
     /// A scenario that was run.

@@ -5,16 +5,6 @@ use std::path::{Path, PathBuf};
 use crate::output::write_whole;
 
 /// A file that could not be written.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::{WriteError, write_atomically};
-///
-/// let nowhere = std::path::Path::new("Cargo.toml/plan.json");
-/// let WriteError { file, .. } = write_atomically(nowhere, b"{}").expect_err("no folder");
-/// assert_eq!(file, nowhere);
-/// ```
 #[derive(Debug, thiserror::Error)]
 #[error("{}: cannot be written: {source}", file.display())]
 pub struct WriteError {

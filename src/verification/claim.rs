@@ -37,7 +37,7 @@ const KEYS: usize = 5;
 /// # Examples
 ///
 /// ```
-/// # use searoom::{pipeline, report::document::PlanDocument, scenario::Scenario};
+/// # use searoom::{pipeline, document::PlanDocument, scenario::Scenario};
 /// use searoom::verification::{ClaimError, ClaimFault, verify};
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;

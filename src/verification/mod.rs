@@ -46,7 +46,7 @@ pub const FORMAT: &str = "searoom-plan/1";
 ///
 /// ```
 /// use searoom::pipeline;
-/// use searoom::report::document::PlanDocument;
+/// use searoom::document::PlanDocument;
 /// use searoom::scenario::Scenario;
 /// use searoom::verification::{ClaimError, Verification, verify};
 ///

@@ -2,9 +2,9 @@
 
 mod scene;
 
+use searoom::document::PlanDocument;
 use searoom::pipeline::{self, Relaxation, RelaxationLevel, Run};
 use searoom::planner::{Objective, Outcome, PlannerKind};
-use searoom::report::document::PlanDocument;
 use searoom::scenario::Scenario;
 use searoom::trajectory::Trajectory;
 use searoom::verification::verify;

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use searoom::document::{PlanDocument, VerifiedPlanDocument};
 use searoom::evaluation::{Freedom, Request, evaluate};
 use searoom::frame::Vector;
 use searoom::pipeline;
 use searoom::planner::PlannerKind;
-use searoom::report::document::{PlanDocument, VerifiedPlanDocument};
 use searoom::report::verification_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::Segment;

@@ -94,12 +94,12 @@ impl Sight {
 ///
 /// ```
 /// use searoom::colregs::conduct::Meeting;
-/// use searoom::comparison;
+/// use searoom::study::compare;
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
 /// let ferry = scenario.targets[0].ship().expect("a ship");
-/// let held = comparison::hold_course(&scenario).trajectory;
+/// let held = compare::hold_course(&scenario).trajectory;
 /// let meeting = Meeting::along(&held, scenario.own_ship.hull, ferry);
 /// assert_eq!((meeting.length(), meeting.target_length()), (60.0, 60.0), "metres: the longer ship is hers");
 /// # Ok::<(), searoom::scenario::ScenarioError>(())

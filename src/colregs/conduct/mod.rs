@@ -56,13 +56,14 @@ pub struct Breach {
 /// ```
 /// use searoom::colregs::conduct::{Conduct, Meeting, Thresholds};
 /// use searoom::scenario::Scenario;
-/// use searoom::{comparison, pipeline};
+/// use searoom::pipeline;
+/// use searoom::study::compare;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
 /// let thresholds = Thresholds::standard().expect("the profile of the program");
 /// let ferry = scenario.targets[0].ship().expect("a ship");
 /// // whoever holds course and speed does not keep clear
-/// let held = comparison::hold_course(&scenario).trajectory;
+/// let held = compare::hold_course(&scenario).trajectory;
 /// let meeting = Meeting::along(&held, scenario.own_ship.hull, ferry);
 /// let judged: Conduct = Conduct::judge(&meeting, thresholds);
 /// assert!(!judged.complies() && judged.scores.least() < 0.1);

@@ -1,13 +1,13 @@
-//! The space-time planner: a graph of Dubins segments that hug the bodies' edges, searched for the
-//! least space-time error, then refined.
+//! Space-time planner: searches a graph of Dubins segments tangent to the obstacles for the least
+//! space-time error, then refines the result.
 //!
 //! ```text
-//! route ─► nominal motion ─► graph (A*, k best) ─► initial guesses ─► refinement (SQP) ─► exact contact test ─► plan
+//! route ─► nominal motion ─► graph (A*, k best) ─► initial guesses ─► SQP ─► exact test ─► plan
 //! ```
 //!
-//! The graph decides the side, the order and whether to wait; the refinement finds the numbers, speeds
-//! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
-//! plan is one of the candidates.
+//! The graph decides the sides, the order and whether to wait. The refinement optimises the
+//! lengths; speeds stay in the finite set. The cheapest candidate that passes the exact contact
+//! test wins. The graph's own best plan is one of the candidates.
 
 mod bound;
 mod chain;
@@ -45,18 +45,18 @@ use selection::budget::SearchBudget;
 use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
-/// Plans of the graph that are refined, each passing the targets on other sides.
+/// Largest number of graph plans that are refined; each passes the targets on other sides.
 const MAX_SIGNATURES: usize = 4;
 
-/// Expansions beyond the graph's best plan, to find such others.
+/// Expansions beyond the graph's best plan, in search of such plans.
 const FURTHER_EXPANDED: usize = 4;
 
 /// Plans one problem.
 ///
-/// The plan is clear of every obstacle to rounding (deeper than 1e-7 m nowhere), keeps the turning
-/// radius, sails only at the given speeds, and ends at the last waypoint before the horizon. It is the
-/// cheapest of the candidates, not proven the cheapest of all: see the docs on its quality. The same
-/// problem gives the same plan unless the deadline strikes. Waypoints on a line change nothing.
+/// The plan is clear of every obstacle to rounding (never deeper than 1e-7 m), keeps the turning
+/// radius, uses only the given speeds, and ends at the last waypoint before the horizon. It is the
+/// cheapest of the candidates, not proven to be globally optimal. The same problem gives the same
+/// plan unless the deadline is reached. Waypoints on a straight line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
     let clock = Clock::new(problem.deadline);
     as_usual(problem, |problem, proxies, _| {
@@ -64,8 +64,9 @@ pub fn plan(problem: &Problem) -> Planned {
     })
 }
 
-/// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
-/// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
+/// Plan by hybrid A* that is clear of every set and of land; `None` where none was found within the
+/// budget. The plan is not refined: use it only where nothing else is found. Ten to several hundred
+/// milliseconds.
 pub fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     let planned = as_usual(problem, |problem, _, _| {
         let wide = hybrid_a_star::hybrid_a_star(problem);
@@ -74,8 +75,8 @@ pub fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     planned.outcome.into_plan()
 }
 
-/// Planned at the usual place and size; where the plan, brought back, touches a set, at the usual place alone, and where that does too,
-/// as it is.
+/// Plans a problem in normalised coordinates. Where the restored plan touches a set, plans it
+/// without scaling; where that touches too, plans the original problem.
 fn as_usual(
     problem: &Problem,
     plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
@@ -113,15 +114,15 @@ fn brought_back(
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
 
-/// True where own ship starts at the last waypoint; a round trip ends where it begins, and is to be sailed.
+/// True where own ship starts at the last waypoint and the path is not a round trip.
 fn has_arrived(problem: &Problem) -> bool {
     let here = problem.own.pose.position;
     let at_end = (problem.desired.end() - here).norm() <= tolerance::LENGTH_M;
-    // a path that comes by there before, as a round trip does, is to be sailed
+    // a path that passes own ship's position earlier, as a round trip does, remains to be followed
     at_end && !problem.desired.comes_by(here)
 }
 
-/// The plan of a ship that has arrived.
+/// Plan of a ship that has arrived.
 fn stay(problem: &Problem) -> Option<Plan> {
     let stay = Segment {
         start: problem.own.pose,
@@ -148,7 +149,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         }
     }
     if let Some(depth) = problem.coast.depth(own.pose.position)
-        // negated on purpose: a NaN is ashore
+        // negated on purpose: a NaN is on land
         && !(depth <= TOUCH_M)
     {
         return refuse(NoPlan::StartAshore { depth });
@@ -234,7 +235,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, clock);
     }
-    // one manoeuvre around conflicts that are far apart is long and dear, if there is one
+    // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
     let is_bent = problem.desired.legs().len() > 1;
     if !timed_out
         && (sequential::are_several(&conflicts) || is_bent && !selection.has_plan())
@@ -275,7 +276,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     }
 }
 
-/// What the nominal motion meets first, the land or the set of a target.
+/// Reason that names the first contact of the nominal motion, with land or with a target's set.
 fn no_candidate(
     problem: &Problem,
     contact: Option<(usize, f64)>,

@@ -5,9 +5,9 @@ use super::names::{Named, places};
 use super::outline::{Stroke, curve, mark};
 use super::sections::{seconds, sections_beside};
 use super::{Figure, Panel, Window};
-use crate::assessment::Situation;
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
+use crate::study::assess::Situation;
 
 /// Velocities shown, of the greatest speed.
 const FASTEST: f64 = 1.3;

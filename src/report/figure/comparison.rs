@@ -5,12 +5,12 @@ use super::path_time::{ProfileLine, path_time_panel};
 use super::plan::{DESIRED, LAND, land_areas};
 use super::sections::PLAN;
 use super::{Figure, Panel, Window};
-use crate::comparison::{Entry, Look, Method, Sailed};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
+use crate::study::compare::{Entry, Look, Method, Sailed};
 
 /// Of the targets' sets.
 const SETS: &str = "#888888";
@@ -336,8 +336,8 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::comparison::Contender;
     use crate::planner::{PlannerKind, SearchKind};
+    use crate::study::compare::Contender;
     use crate::target::Representation;
 
     /// Head-on there is no way along the path, whatever may be risked.

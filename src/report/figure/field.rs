@@ -38,22 +38,6 @@ const VELOCITY_OBSTACLE: Stroke = Stroke {
 pub(super) const OWN: &str = "#d55e00";
 
 /// The velocities that a panel shows, and own ship's.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::frame::Vector;
-/// use searoom::report::figure::{VelocityWindow, Window, dcpa_panel};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let corners = [Vector::new(-8.0, -8.0), Vector::new(8.0, 8.0)];
-/// let shown = VelocityWindow { window: Window::around(corners, 0.0), own: Some(Vector::new(5.0, 0.0)) };
-/// let panel = dcpa_panel("dCPA", &run.obstacles, Vector::zeros(), 400.0, &shown);
-/// assert_eq!(panel.title(), "dCPA");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VelocityWindow {
     /// m/s.

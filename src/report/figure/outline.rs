@@ -14,16 +14,6 @@ const ELLIPSE_POINTS: usize = 96;
 const FINENESS: f64 = 5e-4;
 
 /// How a curve is drawn.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::figure::Stroke;
-///
-/// let planned = Stroke { colour: "#0072b2", width: 2.0, dashed: false };
-/// let undisturbed = Stroke { dashed: true, ..planned };
-/// assert!(undisturbed.dashed && undisturbed.colour == planned.colour);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
     /// `#rrggbb`.

@@ -33,20 +33,6 @@ const LEGEND_FRAME: f64 = 26.0;
 pub(super) const NOTE_SIZE: u32 = 11;
 
 /// One pair of axes with what is drawn between them.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::figure::{Figure, Panel, chart_panel};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let chart: Panel = chart_panel("Crossing", &run);
-/// assert!(chart.window().contains(run.scenario.own_ship.pose.position));
-/// assert!(Figure::new(1, vec![chart]).svg().contains("Crossing"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 pub struct Panel {
     title: String,
     axes: [String; 2],

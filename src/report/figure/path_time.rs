@@ -31,22 +31,6 @@ pub(super) fn target_colour(index: usize) -> &'static str {
 }
 
 /// A profile to be drawn.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::figure::{ProfileLine, Stroke, path_time_panel};
-///
-/// let scenario = Scenario::read("scenarios/harbour/ferry-crossing.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let diagram = run.planned.path_time.as_deref().expect("planned along paths");
-/// let stroke = Stroke { colour: "#d55e00", width: 2.0, dashed: false };
-/// let line = ProfileLine { label: "planned".to_owned(), diagram, stroke };
-/// let panel = path_time_panel("Ferry", &["trawler", "sailing boat", "motor boat"], &[line]);
-/// assert!(panel.window().high.x >= diagram.length());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 pub struct ProfileLine<'a> {
     /// In the legend.
     pub label: String,

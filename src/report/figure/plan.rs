@@ -7,13 +7,13 @@ use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
 use super::{Figure, Panel, Window};
+use crate::document::words;
 use crate::evaluation::Safety;
 use crate::frame::Vector;
 use crate::geometry::{self, ConvexPolygon};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::Run;
 use crate::planner::EdgeVerdict;
-use crate::report::words;
 use crate::scenario::Land;
 use crate::trajectory::Trajectory;
 

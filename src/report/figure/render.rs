@@ -22,15 +22,6 @@ const LETTERS: usize = 54;
 const CLIP: &str = "kuva-clip-";
 
 /// What a figure is written as.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::figure::FigureFormat;
-///
-/// assert_eq!(FigureFormat::of("plan.svg".as_ref()), Some(FigureFormat::Svg));
-/// assert_eq!(FigureFormat::of("plan.pdf".as_ref()), None);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigureFormat {
     /// Scalable, the text kept as text.
@@ -54,15 +45,6 @@ impl FigureFormat {
 }
 
 /// Why there is no figure.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::figure::{Figure, FigureError};
-///
-/// let error = Figure::new(1, Vec::new()).write("plan.pdf".as_ref()).expect_err("neither SVG nor PNG");
-/// assert!(matches!(error, FigureError::Format { .. }));
-/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
     /// Neither ending.
@@ -80,20 +62,6 @@ pub enum FigureError {
 }
 
 /// Panels in rows of `columns`, under a title.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::figure::{Figure, plan_figure};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let figure: Figure = plan_figure(&run);
-/// let svg = figure.svg();
-/// assert!(svg.starts_with("<svg") && svg.contains("Give-way"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 pub struct Figure {
     title: Option<String>,
     columns: usize,

@@ -3,18 +3,6 @@
 use crate::frame::Vector;
 
 /// A rectangle of the plane, in the units of the panel.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::report::figure::Window;
-///
-/// let window = Window::around([Vector::zeros(), Vector::new(100.0, 50.0)], 0.1);
-/// assert!(window.contains(Vector::new(-9.0, -9.0)) && !window.contains(Vector::new(-11.0, 0.0)));
-/// let square = window.with_ratio(1.0).size();
-/// assert!((square.x - square.y).abs() < 1e-9);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// The corner with the least coordinates.

@@ -14,10 +14,10 @@ use super::figure::{Figure, Panel, comparison_panels, diagram_panels, plan_panel
 use super::summary::Summary;
 use super::table::{self, Tone, plan_lines};
 use super::write::{WriteError, write_atomically};
-use crate::comparison::{Entry, Inapplicable};
 use crate::evaluation::outcome;
 use crate::pipeline::Run;
 use crate::scenario::Scenario;
+use crate::study::compare::{Entry, Inapplicable};
 use parts::{Link, address, list, table_of};
 
 pub use parts::link_from;
@@ -29,22 +29,6 @@ const INDEX: &str = "index.html";
 const STYLE: &str = include_str!("style.css");
 
 /// One scenario of a report: what its files are called, where it came from, and what else was written of it.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::page::{Report, Subject};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let subject = Subject { stem: "give-way".to_owned(), file: "give-way.toml".to_owned(), links: Vec::new() };
-/// let recorded = Subject { links: vec![("recording".to_owned(), "give-way.rrd".to_owned())], ..subject };
-/// let mut report = Report::new();
-/// report.add_run(&recorded, &run);
-/// assert!(report.html("Plans", "").contains("give-way.rrd"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Subject {
     /// Begins the names of its figures.
@@ -56,23 +40,6 @@ pub struct Subject {
 }
 
 /// A report that grows scenario by scenario.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::page::{Report, Subject};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let subject = Subject { stem: "give-way".to_owned(), file: "give-way.toml".to_owned(), links: Vec::new() };
-/// let mut report = Report::new();
-/// report.add_run(&subject, &run);
-/// report.add_failure("a.toml", "unreadable", "title: missing <here>");
-/// let page = report.html("Plans", "Two files.");
-/// assert!(page.contains("Give-way") && page.contains("title: missing &lt;here&gt;"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Default)]
 pub struct Report {
     rows: Vec<Markup>,

@@ -85,7 +85,7 @@ fn a_report_of_plans_has_rows_sections_and_figures() {
 #[test]
 fn a_report_of_a_comparison_has_a_table_and_the_diagrams() {
     let scenario = scenario("space-time");
-    let entries = crate::comparison::compare(&scenario, &[0.0, 0.2]);
+    let entries = crate::study::compare::compare(&scenario, &[0.0, 0.2]);
     let mut report = Report::new();
     report.add_comparison(&subject("c"), &scenario, &entries, &[]);
     let page = report.html("Compared", "");

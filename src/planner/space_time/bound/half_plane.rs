@@ -1,36 +1,40 @@
-//! What half-planes and bodies together ask of own ship for a while: a part of [`crate::planner::space_time::bound::tight`].
+//! Bound on the error of a ship that must stay within half-planes and outside obstacles during an
+//! interval: part of [`crate::planner::space_time::bound::tight`].
 
 use std::f64::consts::FRAC_PI_2;
 
 use crate::frame::{Vector, direction, heading_of};
 use crate::planner::space_time::bound::obstacle::ObstacleBound;
 
-/// Radians from straight to the path toward straight ahead.
+/// Angles from the perpendicular to the path, radians, positive toward straight ahead.
 const ASLANT: [f64; LIMITS] = [-1.0, -0.4, 0.2, 0.7, 1.1, 1.57];
 pub(crate) const LIMITS: usize = 6;
 
-/// The directions in which own ship makes way: straight to the path, ahead, and those of [`ASLANT`].
+/// Directions in which progress is bounded: perpendicular to the path, straight ahead, and
+/// [`ASLANT`].
 pub(crate) const WAYS: usize = LIMITS + 2;
 
-/// What lies ahead from one side of the leg: headings are relative to the leg.
+/// Obstacle faces and directions of progress on one side of the leg. Headings are relative to the
+/// leg.
 #[derive(Debug)]
 pub(crate) struct View {
-    /// Radians, of every way, and where it leads.
+    /// Heading of every direction, radians, and its unit vector.
     pub headings: [f64; WAYS],
     pub directions: [Vector; WAYS],
     pub limits: [Limit; LIMITS],
-    /// Of the faces of all bodies, in order, with the limits.
+    /// Products of each face of all obstacles, in order, with each half-plane.
     pairs: Vec<[Pair; LIMITS]>,
 }
 
-/// A half-plane that own ship cannot be beyond: its outer normal in the error's metric.
+/// Half-plane that contains own ship: its outer normal in the metric of the error.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limit {
     pub metric: Vector,
     pub scale: f64,
 }
 
-/// Two unit normals: their product and the inverse square of their sine, zero where they are parallel.
+/// Two unit normals: their product and the inverse square of the sine between them, zero where
+/// parallel.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     cosine: f64,
@@ -46,7 +50,8 @@ impl Pair {
         }
     }
 
-    /// Least square of a vector with at least these components along the two; the first is positive.
+    /// Least squared norm of a vector with at least these components along the two normals; the
+    /// first is positive.
     fn least_square(self, a: f64, b: f64) -> f64 {
         if self.spread == 0.0 {
             greater(a, b).powi(2)
@@ -88,18 +93,18 @@ impl View {
     }
 }
 
-/// What is asked of own ship in one interval.
+/// Constraints on own ship in one interval.
 pub(crate) struct HalfPlanes<'a> {
     pub obstacle_bound: &'a ObstacleBound,
     pub view: &'a View,
     pub reached: &'a [f64],
-    /// Metres that the point on schedule is beyond each limit at least.
+    /// Least distance of the scheduled point beyond each half-plane, metres.
     pub limits: [f64; LIMITS],
 }
 
 impl HalfPlanes<'_> {
-    /// Least mean squared error between two times outside every body and within the limits; `known` is what
-    /// the limits ask for by themselves.
+    /// Least mean squared error between two times, outside every obstacle and within the
+    /// half-planes. `known` is the bound by the half-planes alone.
     pub(crate) fn least(&self, known: f64, from: f64, to: f64) -> f64 {
         let mut greatest = known;
         let mut first = 0;
@@ -122,11 +127,11 @@ impl HalfPlanes<'_> {
                 }
             }
             greatest = greater(greatest, squared_chord(a, b));
-            // behind a face that is not deep the limits by themselves are all
+            // beyond a face that is not deep, only the half-planes count
             if !(shallowest.0 > 0.0) || greatest == f64::INFINITY {
                 continue;
             }
-            // the least first: it leaves little to do for the others
+            // the smallest first: it decides most of the others
             let mut joint = self.both(shallowest.0, shallowest.1);
             for (face, index) in body.faces.iter().zip(faces) {
                 if joint <= greatest {
@@ -144,7 +149,7 @@ impl HalfPlanes<'_> {
         greatest
     }
 
-    /// Least squared error beyond a face and within the limits at once.
+    /// Least squared error of a point beyond a face and within the half-planes.
     fn both(&self, depth: f64, face: usize) -> f64 {
         let pairs = self.view.pairs[face].iter();
         pairs
@@ -154,12 +159,12 @@ impl HalfPlanes<'_> {
     }
 }
 
-/// The lesser; the second when the first is not a number. One instruction, unlike [`f64::min`].
+/// Minimum; `b` when `a` is a NaN. Compiles to one instruction, unlike [`f64::min`].
 pub(crate) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The greater, likewise.
+/// Maximum; `b` when `a` is a NaN.
 pub(crate) fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }

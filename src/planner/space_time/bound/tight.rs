@@ -1,29 +1,31 @@
-//! The closer bound of the cost to go, for one straight leg: what the way back and the obstacles ask for,
-//! interval by interval.
+//! Tight lower bound of the cost to go for one straight leg: bounds by progress and by the
+//! obstacles, interval by interval.
 //!
 //! # Why it never exceeds the true cost to go
 //!
-//! *Ways.* In a direction at an angle `theta` to the heading own ship makes good at most 0 or `P(s)` metres in
-//! `s` seconds ([`crate::planner::space_time::bound`]): `P` is convex, and `u s - r (theta - sin theta)` once she has turned. So
-//! she is nowhere beyond a half-plane that moves away by `max(0, P)`, and the point on schedule, which moves
-//! steadily, is beyond it by a concave function of time.
+//! *Directions.* In a direction at an angle `theta` to the heading, the progress in `s` seconds is
+//! at most 0 or `P(s)` metres ([`crate::planner::space_time::bound`]). `P` is convex, and
+//! `u s - r (theta - sin theta)` after the turn. So own ship stays within a half-plane that moves
+//! away by `max(0, P)`. The scheduled point, which moves steadily, is beyond it by a concave
+//! function of time.
 //!
-//! *Between two instants* a concave function is at least the chord between its values there, and at least
-//! the lesser of them. Two half-planes at right angles, toward the path and ahead, add their squares; of
-//! those in other directions, aslant, the greatest counts.
+//! *Between two instants* a concave function is at least the chord between its end values, and at
+//! least the smaller of them. Two half-planes at right angles, toward the path and ahead, add their
+//! squares. The greatest counts of those in the other, oblique directions.
 //!
-//! *Faces.* Outside a body she is beyond one of its faces. One from whose outer side she is `need > 0` metres
-//! away, itself moving at `h_V`, she is beyond only when `max(0, P(s)) - h_V s >= need`; the left side is
-//! convex and 0 at first, so what it is below at a time after the turn it was below before. Faces that
-//! nobody can be beyond by the end of an interval are left out. The depth behind a face is linear in time and
-//! the least over some faces concave: again at least its chord.
+//! *Faces.* Outside an obstacle own ship is beyond one of its faces. Take a face that moves at
+//! `h_V` and is `need > 0` metres away. Own ship is beyond it only when
+//! `max(0, P(s)) - h_V s >= need`. The left side is convex and 0 at first. If it is below `need` at
+//! a time after the turn, it was below at all earlier times. Faces that cannot be reached by the
+//! end of an interval are left out. The depth behind a face is linear in time, and the minimum over
+//! some faces is concave: again at least its chord.
 //!
-//! *Both.* Beyond a face and within the half-planes at once, her error is at least the least vector that
-//! has the depth along the face's normal and the distance beyond along a half-plane's; it grows with
-//! both, so the lesser values of the interval bound it. Of the half-planes the greatest counts, of the faces
-//! the least, of the bodies the greatest.
+//! *Both.* Beyond a face and within the half-planes at once, the error is at least the shortest
+//! vector with the depth along the face's normal and the distance along a half-plane's. It grows
+//! with both, so the smaller values of the interval bound it. The bound takes the greatest over
+//! half-planes, the least over faces, the greatest over obstacles.
 //!
-//! After the last contact, and once she has turned, the ramps are integrated to their ends.
+//! After the last contact, and after the turn, the ramps are integrated to their ends.
 
 use std::f64::consts::{PI, TAU};
 
@@ -35,11 +37,11 @@ use crate::planner::space_time::bound::obstacle::{Face, ObstacleBound};
 use crate::planner::space_time::bound::squared_ramp;
 use crate::trajectory::DesiredLeg;
 
-/// Seconds of an interval at least, and how many there are at most.
+/// Least length of an interval in seconds, and greatest number of intervals.
 const INTERVAL_S: f64 = 12.0;
 const MOST_INTERVALS: f64 = 24.0;
 
-/// What the bound depends on beside the node.
+/// Data of the bound that do not depend on the node.
 #[derive(Debug)]
 pub(crate) struct TightBound<'a> {
     leg: &'a DesiredLeg,
@@ -52,11 +54,11 @@ pub(crate) struct TightBound<'a> {
     speed: f64,
     /// Metres.
     radius: f64,
-    /// From starboard of the leg, and from port.
+    /// Geometry seen from starboard and from port of the leg.
     views: [View; 2],
 }
 
-/// How far the ways are off own ship's heading.
+/// Angles between the directions of progress and own ship's heading.
 struct Ways {
     angles: [f64; WAYS],
     cosines: [f64; WAYS],
@@ -66,7 +68,7 @@ struct Ways {
 }
 
 impl Ways {
-    /// `ahead` is where the heading leads.
+    /// `ahead` is the unit vector of `heading`.
     fn new(heading: f64, ahead: Vector, view: &View, radius: f64) -> Self {
         let angles = view.headings.map(|h| between(heading, h));
         Self {
@@ -78,7 +80,7 @@ impl Ways {
         }
     }
 
-    /// Metres made good at most after so many metres sailed.
+    /// Largest progress in each direction after the given path length, metres.
     fn made_good(&self, rollout: f64) -> [f64; WAYS] {
         let (turned, r) = (rollout / self.radius, self.radius);
         if turned >= self.greatest {
@@ -89,7 +91,7 @@ impl Ways {
         let (sin, cos) = turned.sin_cos();
         std::array::from_fn(|k| {
             let way = if self.angles[k] > turned {
-                // the sine of what is left to turn
+                // sine of the angle left to turn
                 let left = self.sines[k] * cos - self.cosines[k] * sin;
                 r * (self.sines[k] - left)
             } else {
@@ -100,7 +102,7 @@ impl Ways {
     }
 }
 
-/// The angle between two headings of at most half a turn, radians.
+/// Angle between two headings, at most pi, radians.
 fn between(a: f64, b: f64) -> f64 {
     let apart = (a - b).abs();
     if apart > PI { TAU - apart } else { apart }
@@ -126,8 +128,8 @@ impl<'a> TightBound<'a> {
         }
     }
 
-    /// Least integral of the squared error from a pose at a time to the arrival, which is at least
-    /// `arrival` seconds away; m² s.
+    /// Lower bound of the integral of the squared error from a pose and time to the arrival, m² s.
+    /// `arrival` is a lower bound of the seconds until the arrival.
     pub(crate) fn cost_to_go(
         &self,
         obstacle_bound: &ObstacleBound,
@@ -139,7 +141,8 @@ impl<'a> TightBound<'a> {
         let offset = pose.position - leg.start;
         let across = cross(leg.direction, offset);
         let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
-        // from here the point on schedule is at `(lag + u_d tau, -across)`, along and across the leg
+        // relative to own ship, the scheduled point is at `(lag + u_d tau, -across)` along and
+        // across the leg
         let view = &self.views[usize::from(across.is_sign_positive())];
         let heading = wrap(pose.heading - self.course);
         let ahead = pose.ahead();
@@ -150,7 +153,8 @@ impl<'a> TightBound<'a> {
         } else {
             -leg.speed - u
         };
-        // how far the point on schedule is from the path, late, and beyond the limits, at least
+        // least distance of the scheduled point from the path, behind schedule, and beyond the
+        // half-planes
         let apart = |tau: f64| {
             let made_good = ways.made_good(u * tau);
             let late = if lag >= 0.0 {
@@ -198,7 +202,7 @@ impl<'a> TightBound<'a> {
         sum + rest.max(obstacle_bound.cost_from(time + from))
     }
 
-    /// The earliest time at which own ship can be beyond each face of each body.
+    /// Earliest time at which own ship can be beyond each face of each obstacle.
     fn reached(
         &self,
         obstacle_bound: &ObstacleBound,
@@ -222,8 +226,8 @@ impl<'a> TightBound<'a> {
             .collect()
     }
 
-    /// Seconds until own ship can be `need` metres on; `turn` is the angle to the face's normal, and its sine. Infinite
-    /// when never.
+    /// Seconds until own ship can have moved `need` metres along the face's normal; infinite when
+    /// never. `turn` gives the angle to the normal and its sine.
     fn reached_after(&self, face: &Face, need: f64, turn: impl FnOnce() -> (f64, f64)) -> f64 {
         let faster = self.speed - face.plane.velocity_support;
         if need <= 0.0 {
@@ -237,7 +241,7 @@ impl<'a> TightBound<'a> {
         if turned < self.radius * angle / self.speed {
             need / faster
         } else if face.plane.velocity_support < 0.0 {
-            // or she waits for it
+            // or it waits for the face
             turned.min(-need / face.plane.velocity_support)
         } else {
             turned
@@ -264,7 +268,7 @@ mod tests {
     use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
     use crate::target::{Motion, Representation, Target};
 
-    /// The same graph without its bound.
+    /// The same graph without its heuristic.
     struct Blind<'a, 'b>(&'b mut Graph<'a>);
 
     impl Space for Blind<'_, '_> {
@@ -283,8 +287,8 @@ mod tests {
         }
     }
 
-    /// On every way that Dijkstra finds, and on the plan that is refined, at every joint: the bounds against
-    /// the cost that follows. How near the closer one comes.
+    /// Compares the bounds at every joint of every path that Dijkstra finds, and of the refined
+    /// plan, with the cost that follows. Returns the largest ratio of the tight bound.
     fn nearest(problem: &Problem) -> f64 {
         let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
         let mut nominal_motion = Vec::new();
@@ -311,7 +315,7 @@ mod tests {
             cheapest.get_or_insert(cost);
             joints.extend(nodes.map(|n| (n.state.clone(), cost - n.cost)));
         }
-        // with its bounds the graph has the same best plan, among several targets too
+        // with its heuristic the graph has the same best plan, also among several targets
         if let Some(cheapest) = cheapest {
             let mut search = Search::new(graph.root());
             let Stop::Goal(goal) = search.next_goal(&mut graph, 1500) else {

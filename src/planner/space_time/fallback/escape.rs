@@ -1,11 +1,12 @@
-//! Out of the sets that own ship starts in, then on to the end of the path.
+//! Escape from the sets that own ship starts in, then a motion to the end of the path.
 //!
 //! ```text
-//! turns x speeds ─► out of the sets? ─► least harm first ─► planned anew from there, else along the path
+//! turns x speeds ─► outside the sets? ─► least harm first ─► plan from there, else along the path
 //! ```
 //!
-//! A way out is one turn and a straight line at one speed. Of these the one that does the least harm is taken: [`Harm`].
-//! Where every way out of the sets meets a nominal hull, or none leads out, the sets are those of the nominal tracks.
+//! An exit is one turn and a straight line at one speed. The exit with the least [`Harm`] is taken.
+//! Where every exit meets a nominal hull, or none exists, the sets of the nominal tracks are used
+//! instead.
 
 use crate::frame::{Pose, Side};
 use crate::obstacle::Obstacle;
@@ -18,50 +19,56 @@ use crate::planner::{Plan, Problem};
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::{Hull, OwnShip};
 
-/// Radians between two turns that are tried. They are tried coarsely first, each number of steps once: to half a circle.
+/// Radians between two candidate turns, up to a half circle. Coarse turns are tried first, each
+/// turn once.
 const TURN_RAD: f64 = std::f64::consts::PI / 36.0;
 const STEPS: [u32; 4] = [18, 9, 3, 1];
 const TURNS: u32 = 36;
 
-/// Speeds that are tried, at most: the least, the greatest and some between.
+/// Largest number of candidate speeds: the least, the greatest and some between.
 const MOST_SPEEDS: usize = 4;
 
-/// Seconds between two looks at whether own ship is out, at least, and how many there are at most.
+/// Least interval in seconds between two samples of the exit test, and largest number of samples.
 const LOOK_S: f64 = 1.0;
 const MOST_LOOKS: usize = 400;
 
-/// Halvings of that within which the instant is found: to a microsecond.
+/// Bisection steps for the exit time: to a microsecond.
 const HALVINGS: usize = 20;
 
-/// Ways out from which plans are sought, least harm first.
+/// Exits from which plans are sought, least harm first.
 const MOST_WAYS: usize = 4;
 
-/// Seconds for which a way out is held before the planner takes over: at the very edge of a growing set every turn leads
-/// back into it.
+/// Seconds for which an exit is held before the planner takes over. At the very edge of a growing
+/// set every turn leads back into it.
 const HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
 
 /// Seconds for which a turn is held where own ship is in no set and there is no plan.
 const DETOURS_S: [f64; 3] = [30.0, 60.0, 120.0];
 
-/// Motions that are compared even when the clock is up.
+/// Motions that are compared even after the deadline.
 const LEAST_COMPARED: usize = 12;
 
-/// A target on its nominal track, without spreads.
+/// Target on its nominal track, without uncertainty.
 #[derive(Debug, Clone)]
 pub(crate) struct NominalTarget {
-    /// Its hull; of a target without one, its set.
+    /// Hull of the target; for a target without one, its set.
     pub hull: Obstacle,
-    /// Its hard set.
+    /// Hard set of the target.
     pub set: Obstacle,
-    /// Own hull; of no size where the set already contains it.
+    /// Own hull; of zero size where the set already contains it.
     pub own: Hull,
 }
 
-/// A motion from own ship's start to the last waypoint before the horizon that leaves the sets that it starts in with the
-/// least harm, by one turn at one speed, and is clear of every set from then on. Where no such plan is found, one that leaves
-/// them so and then follows the path at one speed. `None` where the path, as own ship can sail it, is too long for the horizon
-/// or leads ashore. The caller finds out from when on it is clear of what. Some milliseconds, and up to twenty plans; a few
-/// motions are compared even where the time is up.
+/// Motion from own ship's start to the last waypoint within the horizon that leaves the sets it
+/// starts in.
+///
+/// The motion leaves the sets with the least harm by one turn at one speed. A plan that is clear of
+/// every set follows. Where none is found, the path follows at one speed. `None` where the sailable
+/// path is too long for the horizon or leads onto land. The caller determines from when on the
+/// motion is clear of which sets.
+///
+/// Cost: some milliseconds and up to twenty plans. A few motions are compared even after the
+/// deadline.
 pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     if crate::planner::space_time::has_arrived(problem) {
@@ -106,15 +113,15 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
     if ways.is_empty() {
         aways.extend(detours(problem.own, problem.horizon));
     } else {
-        // where every way out is too long for the horizon
+        // used where every exit is too long for the horizon
         aways.push(Vec::new());
     }
     let motion = on_to_the_end(problem, &aways, &watch, clock)?;
     Plan::measured(problem, motion, None)
 }
 
-/// A few beginnings, each followed by the path, or straight to its end, at one speed: the first that meets no nominal hull, or the
-/// one that is least deep in one.
+/// Continues a few initial motions along the path, or straight to its end, at one speed. Returns
+/// the first that meets no nominal hull, or else the one with the least depth in one.
 fn on_to_the_end(
     problem: &Problem,
     aways: &[Vec<Segment>],
@@ -148,8 +155,8 @@ fn on_to_the_end(
     best.map(|(_, motion)| motion)
 }
 
-/// Along the path, or straight to its end, at one speed: that nearest to the desired one, or the greatest where the horizon asks for
-/// it. `None` where that goes ashore.
+/// Motion along the path, or straight to its end, at one speed: the speed nearest to the desired
+/// one, or the greatest where the horizon requires it. `None` where it meets land.
 fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
     let (own, desired) = (problem.own, problem.desired);
     let mean = desired.length() / desired.duration();
@@ -174,7 +181,8 @@ fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment
     (!crate::planner::space_time::land::meets(problem.coast, &motion)).then_some(motion)
 }
 
-/// The motion along the path as if nobody else were there; `None` where it is not at the end before the horizon.
+/// Motion along the path that ignores other ships; `None` where it does not arrive within the
+/// horizon.
 pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
     let route = Route::new(problem, Clock::new(problem.deadline))?;
     let mut motion = Vec::new();
@@ -183,14 +191,14 @@ pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
     (arrival <= problem.horizon).then_some(motion)
 }
 
-/// A plan that holds a motion until a time, and is clear of every set from then on.
+/// Plan that holds a motion until a time and is clear of every set from then on.
 pub fn after_holding(problem: &Problem, motion: &[Segment], until: f64) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     let motion = onward(problem, &cut(motion, until), |rest| planned(rest, clock))?;
     Plan::measured(problem, motion, None)
 }
 
-/// Asks the planner for what time is left.
+/// Runs the planner in the remaining time.
 fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
     let planned = crate::planner::space_time::plan(&Problem {
         deadline: clock.left(),
@@ -200,14 +208,15 @@ fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
     Some(plan.trajectory.segments().to_vec())
 }
 
-/// A motion that is out of the sets at a time, for as long as it is held.
+/// Motion that is outside the sets from a time on, for as long as it is held.
 struct WayOut {
     motion: Vec<Segment>,
     out: f64,
     harm: Harm,
 }
 
-/// The ways out of the sets that own ship starts in, least harm first; when the clock is up, of coarse turns alone.
+/// Exits from the sets that own ship starts in, least harm first. After the deadline only coarse
+/// turns are tried.
 fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -> Vec<WayOut> {
     let own = problem.own;
     let inside = |h: &&Proxy| {
@@ -241,7 +250,7 @@ fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -
                 continue;
             };
             let before = cut(&motion, out);
-            // own ship may come back into one that grows: then it is not out for good
+            // own ship may enter a growing set again: then it has not left for good
             if meets(&others, &before)
                 || meets(&held, &after(&motion, out))
                 || before.iter().any(|s| problem.coast.meets(s, TOUCH_M))
@@ -263,7 +272,8 @@ fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -
         .collect()
 }
 
-/// Radians, to port positive, each once, and whether it is one of the coarsest; of equal ones that to starboard first.
+/// Candidate turns, radians, to port positive, each once, and whether it is one of the coarsest.
+/// Starboard comes first among equal turns.
 fn turns() -> impl Iterator<Item = (f64, bool)> {
     let levels = STEPS.iter().enumerate().flat_map(|(level, by)| {
         let is_new = move |k: &u32| {
@@ -284,7 +294,7 @@ fn turns() -> impl Iterator<Item = (f64, bool)> {
     })
 }
 
-/// Some of own ship's speeds, the least first.
+/// Candidate speeds of own ship, the least first.
 fn speeds(own: &OwnShip) -> Vec<f64> {
     let (count, most) = (own.speeds.len(), MOST_SPEEDS.min(own.speeds.len()));
     (0..most)
@@ -298,7 +308,7 @@ fn speeds(own: &OwnShip) -> Vec<f64> {
         .collect()
 }
 
-/// Beginnings of a motion: every way out held for a while; none at all where own ship is in no set.
+/// Initial motions: every exit held for a while; none where own ship is in no set.
 fn aways(ways: &[WayOut]) -> Vec<Vec<Segment>> {
     if ways.is_empty() {
         return vec![Vec::new()];
@@ -322,7 +332,7 @@ fn detours(own: &OwnShip, horizon: f64) -> Vec<Vec<Segment>> {
     detours
 }
 
-/// An arc and a line until the horizon; a wait where the speed is zero.
+/// Arc and line until the horizon; a wait where the speed is zero.
 fn turned(own: &OwnShip, speed: f64, turn: f64, horizon: f64) -> Vec<Segment> {
     let line = |start, start_time: f64| Segment {
         start,
@@ -342,8 +352,8 @@ fn turned(own: &OwnShip, speed: f64, turn: f64, horizon: f64) -> Vec<Segment> {
     vec![arc, line(arc.end(), arc.end_time())]
 }
 
-/// The first instant from which a motion is clear, where own ship is `depth` metres inside, and that changes by no more than
-/// `rate` metres per second.
+/// First instant from which a motion stays clear. `depth` is own ship's depth inside, metres; it
+/// changes by at most `rate` metres per second.
 fn out_at(
     motion: &[Segment],
     horizon: f64,
@@ -360,7 +370,7 @@ fn out_at(
     let (mut inside, mut deep) = (0.0, depth(0.0));
     let mut found = None;
     for _ in 0..MOST_LOOKS {
-        // not out before
+        // not outside before
         let time: f64 = inside + (deep / rate).max(LOOK_S);
         if !(time <= horizon) {
             return None;
@@ -384,19 +394,19 @@ fn out_at(
     Some(high)
 }
 
-/// Until a time.
+/// Motion until a time.
 fn cut(motion: &[Segment], until: f64) -> Vec<Segment> {
     let rollout = motion.iter().filter(|s| s.start_time < until);
     rollout.map(|s| s.between(s.start_time, until)).collect()
 }
 
-/// From a time on.
+/// Motion from a time on.
 fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
     let later = motion.iter().filter(|s| s.end_time() > from);
     later.map(|s| s.between(from, s.end_time())).collect()
 }
 
-/// A motion, and what follows from its end on by a clock that starts there.
+/// Appends to a motion another one, whose clock starts at the first one's end.
 fn onward(
     problem: &Problem,
     away: &[Segment],
@@ -465,7 +475,8 @@ mod tests {
         assert_eq!(speeds(&own_ship(vec![5.0])), [5.0]);
     }
 
-    /// A day of horizon in a set that grows faster than own ship sails costs as many looks as an hour.
+    /// A horizon of a day in a set that grows faster than own ship sails costs as many samples as
+    /// an hour.
     #[test]
     fn a_set_that_is_never_left_costs_few_looks() {
         let own = own_ship(vec![5.0]);
@@ -477,7 +488,7 @@ mod tests {
         let motion = turned(&own, 5.0, 0.0, 86_400.0);
         assert_eq!(out_at(&motion, 86_400.0, 5.0 + growing, depth), None);
         assert!(looks.get() < 100, "{}", looks.get());
-        // one that grows more slowly is left when its edge is reached
+        // a set that grows more slowly is left when own ship reaches its edge
         let depth = |pose: &Pose, time: f64| 60.0 + 3.0 * time - pose.position.norm();
         let out = out_at(&motion, 86_400.0, 8.0, depth).expect("out");
         assert!((out - 30.0).abs() < 1e-3, "{out}");

@@ -1,8 +1,8 @@
-//! Wide ways: where the graph and its refinement find none, because the way out is far from the path, fast from the beginning on,
-//! or late.
+//! Hybrid A*: finds motions far from the path that the graph and its refinement miss.
 //!
-//! Turns and lines of about the length of a grid's cell, one after another, best first by cost plus what the grid says is still to
-//! come ([`CostToGoGrid`]); from each of them also a turn and a line straight to the end. A piece is tested when it leaves the queue: most
+//! The start is left at once and fast, or late. A motion primitive is a turn and a line of about
+//! one grid cell. Primitives are expanded best first by cost plus [`CostToGoGrid`]. Each node also
+//! gets a turn and a line straight to the end. A primitive is tested when it leaves the queue; most
 //! never do.
 
 use std::cmp::Ordering;
@@ -19,20 +19,20 @@ use crate::planner::{Plan, Problem};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Radians of the turns that begin a piece.
+/// Turns of the motion primitives, radians.
 const TURNS_RAD: [f64; 7] = [0.0, 0.25, -0.25, 0.6, -0.6, 1.4, -1.4];
 
-/// Courses that are told apart in one place at one time.
+/// Courses that are distinguished at one position and time.
 const COURSES: f64 = 12.0;
 
-/// How finely is searched.
+/// Resolution of the search.
 #[derive(Debug, Clone, Copy)]
 struct Fineness {
-    /// Cells of way in a piece.
+    /// Length of a primitive in cells.
     way: f64,
-    /// Places, courses and times that are told apart, per cell and instant.
+    /// States that are distinguished per cell and time step.
     apart: f64,
-    /// Pieces that are followed at most: the bound on time and memory.
+    /// Largest number of expanded primitives: the bound on time and memory.
     most: usize,
 }
 
@@ -50,23 +50,23 @@ const FINENESSES: [Fineness; 2] = [
     },
 ];
 
-/// What is still to come is multiplied by this (weighted A*): a plan a little dearer, and a fraction of the pieces.
+/// Heuristic weight (weighted A*): slightly dearer plans for a fraction of the expansions.
 const WEIGHT: f64 = 1.1;
 
-/// Metres. A centre of a turn this near to a point has no line to it.
+/// Metres. A turn whose circle passes this near to a point has no tangent to it.
 const NEAR_M: f64 = 1e-6;
 
-/// A turn and a line after it, or a wait.
+/// Motion primitive: a turn and a line, or a wait.
 #[derive(Debug, Clone, Copy)]
 enum Piece {
-    /// Radians to port, and metres.
+    /// `turn` in radians to port, `line` in metres.
     Bent { speed: f64, turn: f64, line: f64 },
     /// Seconds.
     Wait { duration: f64 },
 }
 
 impl Piece {
-    /// From a pose at a time.
+    /// Segments of the primitive from a pose and time.
     fn motion(self, pose: &Pose, time: f64, radius: f64) -> Vec<Segment> {
         match self {
             Self::Bent { speed, turn, line } => bent(pose, time, speed, radius, turn, line),
@@ -81,7 +81,7 @@ impl Piece {
     }
 }
 
-/// A state that may be reached, or the end of the path, and how: the state before it and the piece from there.
+/// Search node: a state or the end of the path, its parent, and the primitive between them.
 #[derive(Debug)]
 struct Reached {
     pose: Pose,
@@ -91,7 +91,7 @@ struct Reached {
     is_end: bool,
 }
 
-/// In the queue: the least first, of equals the older.
+/// Queue entry: least estimate first; among equals the older one.
 #[derive(Debug, PartialEq)]
 struct Open {
     total: f64,
@@ -113,8 +113,9 @@ impl Ord for Open {
     }
 }
 
-/// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
-/// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
+/// Plan that is clear of every set and of land, by a coarse search over position, course and time.
+/// `None` where none was found within the budget. The plan is not refined: use it only where
+/// nothing else is found. Ten to several hundred milliseconds.
 pub(crate) fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     let pieces = pieces(problem.obstacles, problem.horizon);
@@ -135,7 +136,7 @@ pub(crate) fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     })
 }
 
-/// The way to a state as a plan.
+/// Plan that leads to a node.
 fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
     let mut motion = Vec::new();
     let mut at = end;
@@ -158,7 +159,7 @@ struct Detour<'a> {
 }
 
 impl Detour<'_> {
-    /// The state at the end of the path.
+    /// Index of the node at the end of the path.
     fn run(&mut self, clock: Clock) -> Option<usize> {
         self.reach(Reached {
             pose: self.problem.own.pose,
@@ -219,7 +220,7 @@ impl Detour<'_> {
         }
     }
 
-    /// The piece by which a state is reached; nothing at the root.
+    /// Segments of the primitive that leads to a node; empty at the root.
     fn motion_to(&self, index: usize) -> Vec<Segment> {
         self.reached[index]
             .from
@@ -229,13 +230,13 @@ impl Detour<'_> {
             })
     }
 
-    /// True where the piece that leads to a state is clear.
+    /// True where the primitive that leads to a node is clear.
     fn admits(&self, index: usize) -> bool {
         let motion = self.motion_to(index);
         first_met(self.proxies, &motion).is_none() && !land::meets(self.problem.coast, &motion)
     }
 
-    /// Takes a way on where it is in time and leads on.
+    /// Adds a successor where it is in time and can still reach the end.
     fn offer(&mut self, from: usize, piece: Piece, is_end: bool) {
         let problem = self.problem;
         let before = &self.reached[from];
@@ -276,7 +277,7 @@ impl Detour<'_> {
     }
 }
 
-/// An arc of so many radians to port and a line.
+/// Arc of `turn` radians to port and a line.
 fn bent(pose: &Pose, time: f64, speed: f64, radius: f64, turn: f64, line: f64) -> Vec<Segment> {
     let mut motion = Vec::with_capacity(2);
     let arc = Segment {
@@ -304,7 +305,8 @@ fn bent(pose: &Pose, time: f64, speed: f64, radius: f64, turn: f64, line: f64) -
     motion
 }
 
-/// The turn to a side (radians to port) and the line after it that end at a point; `None` for one within the circle.
+/// Turn to a side (radians to port) and line that end at a point; `None` for a point within the
+/// circle.
 fn toward(pose: &Pose, radius: f64, side: Side, point: Vector) -> Option<(f64, f64)> {
     let sign = side.turn_sign();
     let center = pose.position + to_port(pose.ahead()) * (sign * radius);
@@ -315,7 +317,7 @@ fn toward(pose: &Pose, radius: f64, side: Side, point: Vector) -> Option<(f64, f
         return None;
     }
     let line = (far * far - radius * radius).sqrt();
-    // the course of the tangent: that to the point, turned by what the circle is seen under
+    // course of the tangent: the bearing of the point, turned by the angle the circle subtends
     let heading = heading_of(away) + sign * (radius / far).asin();
     let mut turn = sign * wrap(heading - pose.heading);
     if turn < -tolerance::JOINT_RAD {

@@ -1,4 +1,4 @@
-//! Where the nominal motion is left.
+//! Departure: where a manoeuvre leaves the nominal motion.
 
 use crate::colregs::APPARENT_TIME;
 use crate::planner::Problem;
@@ -9,10 +9,11 @@ use crate::planner::space_time::rules::compliance::slow;
 use crate::planner::space_time::selection::initial_guess::SpeedTable;
 use crate::trajectory::Segment;
 
-/// Seconds for which less speed is kept before a turn.
+/// Seconds for which a reduced speed is held before a turn.
 const SLOW_SPELLS_S: [f64; 3] = [APPARENT_TIME, 2.0 * APPARENT_TIME, 4.0 * APPARENT_TIME];
 
-/// The time at which a motion is to be left for a constant speed, to be at a distance along it at a time.
+/// Time at which to leave a motion for a constant speed, in order to be at a given distance along
+/// it at a given time.
 pub(crate) fn leave_for(
     nominal_motion: &[Segment],
     distance: f64,
@@ -32,7 +33,7 @@ pub(crate) fn leave_for(
     None
 }
 
-/// A motion up to a time.
+/// Motion up to a time.
 pub(crate) fn until(nominal_motion: &[Segment], time: f64) -> Vec<Segment> {
     nominal_motion
         .iter()
@@ -41,8 +42,9 @@ pub(crate) fn until(nominal_motion: &[Segment], time: f64) -> Vec<Segment> {
         .collect()
 }
 
-/// Motions along the route from which it is left, each with the least turn that complies with the rules there, radians: the one given,
-/// and the same with less speed at its end, where nobody has to see a turn then.
+/// Motions along the route up to a departure, each with the least turn (radians) that complies with
+/// the rules there. These are the given motion, and variants that slow down at its end; after these
+/// no turn need be readily apparent.
 pub(crate) fn ways_out(
     problem: &Problem,
     route: &Route,
@@ -64,8 +66,9 @@ pub(crate) fn ways_out(
     found
 }
 
-/// The least turns that are readily apparent, from where a motion `before` along the route ends, each held for so many seconds: where
-/// a line that touches a vertex asks for less. None where nobody has to see them.
+/// Least readily apparent turns from the end of a motion `before` along the route, each held for
+/// `hold` seconds. They serve where the tangent to a vertex needs a smaller turn. Empty where no
+/// rule requires an apparent turn.
 pub(crate) fn apparent_turns<'a>(
     problem: &'a Problem,
     from: &State,

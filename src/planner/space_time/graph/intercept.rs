@@ -1,11 +1,11 @@
-//! Meeting a moving vertex by turning and then running straight, docs/theory.md section 10 (vi).
+//! Interception of a moving vertex by a turn and a line, docs/theory.md section 10 (vi).
 
 use std::f64::consts::TAU;
 
 use crate::frame::{Pose, Side, Vector, cross, to_port, wrap};
 use crate::obstacle::{HalfSpace, MovingVertex};
 
-/// What own ship sails: a turn and a line at one speed.
+/// Own ship's turn and line at one speed that shall meet a moving point.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Chase {
     position: Vector,
@@ -13,49 +13,49 @@ pub(crate) struct Chase {
     ahead: Vector,
     centre: Vector,
     radius: f64,
-    /// Of the turn, to port positive.
+    /// Sign of the turn, to port positive.
     sigma: f64,
     time: f64,
     speed: f64,
-    /// Seconds for a radian.
+    /// Turning radius over speed: seconds per radian.
     pace: f64,
 }
 
-/// Bounds of what counts as a meeting.
+/// Limits of an interception.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
-    /// Radians of turn at most.
+    /// Largest turn, radians.
     pub turn: f64,
-    /// Seconds on the clock at most.
+    /// Latest time, seconds.
     pub time: f64,
 }
 
-/// A meeting.
+/// Interception of a moving point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Interception {
-    /// Radians turned, not negative.
+    /// Turn, radians, not negative.
     pub turn: f64,
-    /// Metres of line after the turn.
+    /// Length of the line after the turn, metres.
     pub line: f64,
-    /// Seconds on the clock.
+    /// Time, seconds.
     pub time: f64,
 }
 
-/// Metres. Own ship and the vertex are this close when they meet.
+/// Metres. Own ship and the vertex are at most this far apart when they meet.
 const MEETING_M: f64 = 1e-7;
 
-/// Radians. A turn this close to a full circle is none.
+/// Radians. A turn this close to a full circle counts as zero.
 const DEAD_AHEAD_RAD: f64 = 1e-12;
 
-/// Radians. After a step this small a turn is as good as its rounding.
+/// Radians. After a Newton step this small the turn is exact to rounding.
 const LAST_STEP_RAD: f64 = 1e-9;
 
-/// Iterations of a root; Newton on a concave piece needs about five.
+/// Largest number of iterations for a root; Newton on a concave piece needs about five.
 const MAX_ITERATIONS: usize = 60;
 
 impl Chase {
-    /// From a pose (metres, radians) at a time (seconds), at a positive speed (m/s), turning to one side
-    /// with a radius (metres).
+    /// From a pose (metres, radians) at a time (seconds), at a positive speed (m/s), turning to one
+    /// side with a radius (metres).
     pub(crate) fn new(pose: &Pose, time: f64, speed: f64, radius: f64, side: Side) -> Self {
         let (ahead, sigma) = (pose.ahead(), side.turn_sign());
         let centre = pose.position + to_port(ahead) * (sigma * radius);
@@ -72,7 +72,7 @@ impl Chase {
         }
     }
 
-    /// The same chase at another speed.
+    /// Copy with another speed.
     pub(crate) fn at_speed(&self, speed: f64) -> Self {
         Self {
             speed,
@@ -85,33 +85,35 @@ impl Chase {
         self.speed
     }
 
-    /// Before the turn, radians in `(-pi, pi]`.
+    /// Heading before the turn, radians in `(-pi, pi]`.
     pub(crate) fn heading(&self) -> f64 {
         self.heading
     }
 
-    /// Direction after a turn of this many radians.
+    /// Direction after a turn of `turn` radians.
     pub(crate) fn after(&self, turn: f64) -> Vector {
         let (sin, cos) = turn.sin_cos();
         self.ahead * cos + to_port(self.ahead) * (self.sigma * sin)
     }
 
-    /// Where and when a turn of this many radians, which leads into a direction, ends.
+    /// Position and time at the end of a turn of `turn` radians into `direction`.
     pub(crate) fn turned(&self, direction: Vector, turn: f64) -> (Vector, f64) {
         let position = self.centre - to_port(direction) * (self.sigma * self.radius);
         (position, self.time + self.pace * turn)
     }
 
-    /// The distance of own ship from a plane, metres, positive outside; and how much greater it is after a turn of this
-    /// many radians to port, smaller after one to starboard. `across` is the plane's normal to port of where she then heads.
+    /// Distance of own ship from a plane, metres, positive outside, and the increase of that
+    /// distance after `turn` radians to port. A turn to starboard decreases it by this much.
+    /// `across` is the component of the plane's normal to port of the heading after the turn.
     pub(crate) fn slacks(&self, plane: &HalfSpace, across: f64, turn: f64) -> [f64; 2] {
         let before = plane.normal.dot(&to_port(self.ahead));
         let moved = self.radius * (before - across) - plane.velocity_support * self.pace * turn;
         [plane.slack(self.position, self.time), moved]
     }
 
-    /// The meeting with a moving vertex by a turn between two, where own ship's motion relative to the
-    /// vertex passes it on different sides: `moments` of the vertex about that motion, m²/s, have two signs.
+    /// Interception of a moving vertex by a turn between `turns`, where own ship's relative motion
+    /// passes the vertex on different sides. `moments` of the vertex about the relative velocity at
+    /// the two turns, m²/s, have opposite signs. Root finding by safeguarded Newton.
     pub(crate) fn touch(
         &self,
         vertex: &MovingVertex,
@@ -146,7 +148,7 @@ impl Chase {
             let next = if within { newton } else { 0.5 * (low + high) };
             let step = (next - turn).abs();
             turn = next;
-            // each step of Newton's squares the error
+            // each Newton step squares the error
             if step <= LAST_STEP_RAD {
                 break;
             }
@@ -166,7 +168,7 @@ impl Chase {
         })
     }
 
-    /// The way to a fixed point: turn and line. `None` inside the turning circle.
+    /// Path to a fixed point: turn and line. `None` inside the turning circle.
     pub(crate) fn way_to(&self, point: Vector) -> Option<(f64, f64)> {
         let (turn, line, _) = self.tangent(point)?;
         // a full circle is a rounded zero: the point is dead ahead
@@ -180,9 +182,9 @@ impl Chase {
         ))
     }
 
-    /// Turn, line and the line's direction, without the rounding of full circles, which would hide the jump
-    /// at a wrap. One arctangent: the tangent is the line to the centre, turned by the angle whose sine is
-    /// `radius / distance`.
+    /// Turn, line and the line's direction. A full circle is not rounded to zero, which would hide
+    /// the jump at a wrap. One arctangent suffices: the tangent is the line to the centre, turned
+    /// by the angle whose sine is `radius / distance`.
     fn tangent(&self, point: Vector) -> Option<(f64, f64, Vector)> {
         let to = point - self.centre;
         let square = to.norm_squared();
@@ -197,8 +199,9 @@ impl Chase {
         Some((if turn < 0.0 { turn + TAU } else { turn }, line, course))
     }
 
-    /// The earliest meeting with `origin + velocity t` within the limits. `t` is on the clock. Between
-    /// its breakpoints `F(t) = u (t - t0) - length(t)` is concave, so each piece has at most two roots.
+    /// Earliest interception of `origin + velocity t` within the limits; `t` is absolute time.
+    /// Between its breakpoints `F(t) = u (t - t0) - length(t)` is concave, so each piece has at
+    /// most two roots.
     pub(crate) fn intercept(
         &self,
         origin: Vector,
@@ -219,12 +222,12 @@ impl Chase {
                 count += 1;
             }
         };
-        // P on the line ahead: the turn wraps between nothing and a full circle
+        // point on the line ahead: the turn wraps between zero and a full circle
         let drift = cross(ahead, velocity);
         if drift != 0.0 {
             cut(-cross(ahead, origin - self.position) / drift);
         }
-        // P on the turning circle
+        // point on the turning circle
         let (a, b, c) = (
             velocity.norm_squared(),
             velocity.dot(&(origin - centre)),
@@ -268,7 +271,7 @@ impl Chase {
     /// `F` and its derivative.
     fn gap(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
         let (turn, line, course) = self.tangent(origin + velocity * time)?;
-        // parallel and dead ahead for ever: a full circle is a rounded zero
+        // parallel motion dead ahead: a full circle is a rounded zero
         let wraps = TAU - turn < DEAD_AHEAD_RAD
             && cross(self.ahead, velocity).abs() <= 1e-12 * velocity.norm();
         let turn = if wraps { 0.0 } else { turn };
@@ -276,7 +279,7 @@ impl Chase {
         Some((value, self.speed - course.dot(&velocity)))
     }
 
-    /// Roots of the concave `F` on one piece, at most two, earliest first.
+    /// Roots of the concave `F` on one piece: at most two, earliest first.
     fn roots(&self, origin: Vector, velocity: Vector, low: f64, high: f64) -> [Option<f64>; 2] {
         let gap = |t: f64| self.gap(origin, velocity, t);
         let (Some((fa, da)), Some((fb, db))) = (gap(low), gap(high)) else {
@@ -311,7 +314,7 @@ impl Chase {
         [None, None]
     }
 
-    /// The one sign change between `a` and `b`, by safeguarded Newton.
+    /// The only sign change between `a` and `b`, by safeguarded Newton.
     fn root(
         &self,
         gap: impl Fn(f64) -> Option<(f64, f64)>,
@@ -321,7 +324,7 @@ impl Chase {
     ) -> Option<f64> {
         let (mut low, mut high) = (a, b);
         let rising = fa < 0.0;
-        // concave: from the end where it is negative Newton runs straight to the root
+        // concave: from the negative end Newton converges monotonically
         let mut at = if rising { a } else { b };
         for _ in 0..MAX_ITERATIONS {
             let (f, d) = gap(at)?;

@@ -1,7 +1,7 @@
-//! The space-time graph: lines from the route that touch moving vertices, courses held beyond them, ways back.
+//! Space-time graph: tangents from the route to moving vertices, courses held beyond them, returns.
 //!
-//! Nodes and edges are made when the search asks for them. The graph decides on which side, in which
-//! order and whether to wait; `refinement` finds the numbers.
+//! Nodes and edges are generated on demand by the search. The graph decides on which side and in
+//! which order to pass, and whether to wait. `refinement` optimises the lengths.
 
 pub(crate) mod departure;
 pub(crate) mod intercept;
@@ -34,32 +34,33 @@ use crate::search::Space;
 use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
 
-/// Seconds before first contact at which a manoeuvre may begin, besides t = 0.
+/// Times before the first contact at which a manoeuvre may begin, besides t = 0, seconds.
 const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
-/// Angles at which the route is met again, radians.
+/// Angles between a return line and the route, radians.
 const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
-/// Seconds for which a course is held beyond a vertex, one after another.
+/// Times for which a course is held beyond a vertex, one after another, seconds.
 const HOLDS_S: [f64; 3] = [20.0, 40.0, 80.0];
-/// Radians. Larger turns toward a vertex are not offered.
+/// Largest turn toward a vertex, radians.
 const MAX_TURN: f64 = 2.0;
-/// Seconds. Later meetings with a vertex are not offered.
+/// Largest duration of an interception, seconds.
 const MAX_CHASE_S: f64 = 240.0;
-/// Vertices met one after another.
+/// Largest number of consecutive vertices.
 const MAX_CHAIN: u8 = 5;
-/// Vertices at most of the sets whose moving vertices are nodes: others are simplified first.
+/// Largest numbers of vertices of the initial and velocity sets whose moving vertices are nodes.
+/// Larger sets are simplified first.
 const INITIAL_VERTICES: usize = 24;
 const VELOCITY_VERTICES: usize = 12;
-/// Metres. Obstacles farther than this from the nominal motion are not met.
+/// Metres. Obstacles farther than this from the nominal motion get no nodes.
 const RELEVANT_M: f64 = 120.0;
-/// Seconds of the pieces in which that is looked at.
+/// Length in seconds of the pieces of the nominal motion in this test.
 const PIECE_S: f64 = 5.0;
 
-/// Own ship's speeds above zero.
+/// Positive speeds of own ship.
 fn moving(own: &OwnShip) -> impl Iterator<Item = f64> + '_ {
     own.speeds.iter().copied().filter(|u| *u > 0.0)
 }
 
-/// The graph of one problem.
+/// Space-time graph of one problem.
 #[derive(Debug)]
 pub(crate) struct Graph<'a> {
     problem: &'a Problem<'a>,
@@ -70,12 +71,14 @@ pub(crate) struct Graph<'a> {
     tangent_edges: Vec<TangentEdges>,
     heuristic: Option<Heuristic<'a>>,
     clock: Clock,
-    /// The time up to which a way to the end has to be clear, where only one conflict is asked about.
+    /// Time until which a motion to the end must be clear, where the graph covers one conflict
+    /// only.
     stage: Option<f64>,
 }
 
 impl<'a> Graph<'a> {
-    /// `nominal_motion` is the route followed from t = 0. Makes nothing more once the clock is up.
+    /// Graph of the whole problem. `nominal_motion` is the route followed from t = 0. Generates
+    /// nothing after the deadline.
     pub(crate) fn new(
         problem: &'a Problem<'a>,
         proxies: &'a [Proxy<'a>],
@@ -141,8 +144,9 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// The graph around the conflict at `contact` alone, from where the rest of a motion begins: `near` is what of it is around the conflict.
-    /// Ways to the end have to be clear of what comes soon, not of all.
+    /// Graph of the conflict at `contact` only, from the start of the rest of a motion. `near` is
+    /// the part of the motion around the conflict. Motions to the end must be clear of early
+    /// contacts only.
     pub(crate) fn for_conflict(
         problem: &'a Problem<'a>,
         proxies: &'a [Proxy<'a>],
@@ -210,8 +214,8 @@ impl<'a> Graph<'a> {
         ));
     }
 
-    /// Ways to a first vertex from several places of the nominal motion, and those that never leave
-    /// the route. A departure is no node: it costs nothing and decides nothing.
+    /// Edges to a first vertex from several points of the nominal motion, and edges that never
+    /// leave the route. A departure is not a node: it costs nothing and decides nothing.
     fn departures(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let nominal_motion = self.nominal_motion.to_vec();
         self.push(out, NodeKind::End, Ending::Follow, nominal_motion, 0, from);
@@ -242,8 +246,8 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// Ways that never leave the route: on schedule, then at the least or the greatest speed so as to
-    /// touch a corner of a path-time obstacle, then on to the schedule.
+    /// Edges that never leave the route: on schedule, then at the least or greatest speed to touch
+    /// a corner of a path-time obstacle, then back on schedule.
     fn paced(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let (own, desired) = (self.problem.own, self.problem.desired);
         for (proxy, (index, leg)) in self
@@ -264,7 +268,7 @@ impl<'a> Graph<'a> {
             };
             let start = leg.start + leg.direction * stretch.from;
             let length = stretch.to - stretch.from;
-            // by the clock of the part
+            // in the clock of the convex piece
             let clock = proxy.start();
             let end = proxy.window.map_or(f64::INFINITY, |w| w.end);
             let corners = along_path(
@@ -307,8 +311,8 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// Ways to the vertices at which a line only just touches, from a node or from where a motion `before`
-    /// along the route ends. The first turn of a way is no less than `least_turn`, radians.
+    /// Tangent edges to vertices, from a node or from the end of a motion `before` along the route.
+    /// The first turn is at least `least_turn`, radians.
     fn interceptions(
         &self,
         from: &State,
@@ -360,7 +364,7 @@ impl<'a> Graph<'a> {
                 chain.segments.extend_from_slice(before);
                 chain.arc(aim.meeting.turn * radius * aim.side.turn_sign());
                 chain.line(aim.meeting.line);
-                // a turn of no length is found to both sides
+                // a turn of zero length is found on both sides
                 let known = out[first..].iter().any(|(s, _)| {
                     s.kind == aim.kind
                         && (s.time - chain.time).abs() < 1e-6
@@ -381,8 +385,8 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// Ways back onto the legs ahead, and straight to the last waypoint, all at the greatest speed: own
-    /// ship is late after a manoeuvre.
+    /// Edges back onto the legs ahead and straight to the last waypoint, all at the greatest speed:
+    /// own ship is late after a manoeuvre.
     fn returns(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let (own, desired) = (self.problem.own, self.problem.desired);
         let (radius, speed) = (own.turning_radius, own.max_speed());
@@ -410,7 +414,7 @@ impl<'a> Graph<'a> {
                 }
             }
         }
-        // the way between is another conflict's
+        // the rest of the path belongs to another conflict
         if self.stage.is_some() && near + 2 < desired.legs().len() {
             return;
         }
@@ -428,7 +432,7 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// Straight on from a vertex: where a line only just touches a body, that is clear of it.
+    /// Edges straight on from a vertex: the tangent line stays clear of that obstacle.
     fn onward(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let hold = HOLDS_S.get(usize::from(from.held));
         if let (Some(last), Some(hold)) = (from.motion.last(), hold) {
@@ -461,7 +465,7 @@ impl Space for Graph<'_> {
                 self.returns(state, out);
                 self.onward(state, out);
             }
-            // the last two are of graphs on paths
+            // the last two kinds belong to path-time graphs
             NodeKind::End | NodeKind::Corner { .. } | NodeKind::Waypoint => {}
         }
     }

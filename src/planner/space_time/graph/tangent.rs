@@ -1,11 +1,11 @@
-//! What own ship aims at: moving vertices of a body, where her line only just touches it.
+//! Tangent edges: turns and lines that touch the moving vertices of an obstacle.
 //!
 //! Along a line at speed `u` in direction `d` the distance from a face with normal `n` grows by
-//! `u n.d - h_V(n)` m/s. The line only just touches a moving vertex when of the two faces there one is not
-//! left and the other not approached. The distance from a face is constant along two directions,
-//! `n.d = h_V(n) / u`; between those of neighbouring faces a line touches the vertex they share, if it
-//! touches. So the signs of the constant distances at the two ends tell whether one does, before any root
-//! is sought.
+//! `u n.d - h_V(n)` m/s. The line is tangent to a moving vertex when it does not recede from one of
+//! the two faces there and does not approach the other. The distance from a face is constant along
+//! two directions, `n.d = h_V(n) / u`. Between such directions of neighbouring faces a tangent line
+//! touches the shared vertex. So the signs of the constant distances at the two ends tell whether a
+//! tangent exists, before any root is sought.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,18 +19,19 @@ use crate::planner::space_time::proxy::Proxy;
 /// Metres. A distance this small has no sign.
 const NO_SIGN_M: f64 = 1e-6;
 
-/// Gaps between the two levels of a face beside one that is faster than own ship.
+/// Number of sectors between the two tangent directions of a face next to one that moves faster
+/// than own ship.
 const FAN: usize = 4;
 
-/// Radians. A turn is found to this.
+/// Accuracy of a turn, radians.
 const TURN_RAD: f64 = 1e-13;
 
-/// A moving vertex with the faces that meet there.
+/// Moving vertex with the faces that meet there.
 #[derive(Debug)]
 struct Corner {
     vertex: MovingVertex,
     faces: Vec<HalfSpace>,
-    /// False where no way leads past it.
+    /// False where no trajectory can pass it.
     open: bool,
 }
 
@@ -42,38 +43,38 @@ impl Corner {
     }
 }
 
-/// A direction along which the distance from a face is constant, or from another plane that touches the
-/// body in one corner.
+/// Direction along which the distance from a face is constant, or from another plane that touches
+/// the obstacle in one corner.
 #[derive(Debug, Clone, Copy)]
 struct Level {
     ahead: Vector,
     heading: f64,
     plane: HalfSpace,
-    /// Of the normal, to port of the direction.
+    /// Component of the plane's normal to port of the direction.
     across: f64,
 }
 
-/// Directions between two [`Level`]s, in which a corner is touched.
+/// Sector between two [`TangentDirection`]s, in which tangents touch one corner.
 #[derive(Debug, Clone, Copy)]
 struct Gap {
     corner: usize,
     levels: [usize; 2],
-    /// m/s. The moment of the corner's position about the relative velocity is so many times the distance
-    /// from the plane of each level, along which that velocity points.
+    /// The moment of the corner's position about the relative velocity, divided by the distance
+    /// from the plane of each direction, m/s. The relative velocity points along that plane.
     moments: [f64; 2],
 }
 
-/// What does not depend on where own ship is, for one speed.
+/// Sectors for one speed; they do not depend on own ship's position.
 #[derive(Debug)]
 struct Pace {
     speed: f64,
     levels: Vec<Level>,
     gaps: Vec<Gap>,
-    /// Corners of sets without an interior: their meetings are sought one by one.
+    /// Corners of sets without an interior: their interceptions are computed one by one.
     others: Vec<usize>,
 }
 
-/// The corners of one body.
+/// Corners of one obstacle with their sectors for every speed.
 #[derive(Debug)]
 pub(crate) struct TangentEdges {
     obstacle: usize,
@@ -82,17 +83,18 @@ pub(crate) struct TangentEdges {
     speed_table: Vec<Pace>,
 }
 
-/// A [`Level`] from where own ship is.
+/// [`TangentDirection`] relative to own ship.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bearing {
-    /// Radians to it, to port positive.
+    /// Turn to it, radians, to port positive.
     turn: f64,
-    /// Metres from its plane now, and how many more after a turn to it to port, fewer after one to starboard.
+    /// Distance from its plane now, metres, and the increase after a turn to it to port; a turn to
+    /// starboard decreases it.
     straight: f64,
     turned: f64,
 }
 
-/// A way to a corner.
+/// Tangent edge: turn and line to a corner.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TangentEdge {
     pub kind: NodeKind,
@@ -102,7 +104,7 @@ pub(crate) struct TangentEdge {
 }
 
 impl TangentEdges {
-    /// `body` is that of the proxy, or stands for it.
+    /// Corners of `body`, the polytope of the proxy or its substitute.
     pub(crate) fn new(
         proxy: &Proxy,
         body: &PolytopeObstacle,
@@ -111,7 +113,7 @@ impl TangentEdges {
         Self::past(proxy, body, speeds, |_| true)
     }
 
-    /// The same of those corners alone that are `open` where they are at t = 0.
+    /// Corners that are `open` at their position at t = 0.
     pub(crate) fn past(
         proxy: &Proxy,
         body: &PolytopeObstacle,
@@ -147,7 +149,7 @@ impl TangentEdges {
         }
     }
 
-    /// When the clock of these corners starts, and how long they are in force, seconds.
+    /// Start of the clock of these corners, and how long they exist, seconds.
     pub(crate) fn window(&self) -> (f64, f64) {
         self.window
             .map_or((0.0, f64::INFINITY), |w| (w.start, w.end - w.start))
@@ -162,8 +164,8 @@ impl TangentEdges {
         }
     }
 
-    /// Every turn and line at one of the speeds that only just touches a corner. `chases` turn to the sides
-    /// of [`Side::BOTH`], at any speed.
+    /// Finds every turn and line at one of the speeds that is tangent to a corner. `interceptors`
+    /// turn to the sides of [`Side::BOTH`]; their speed is ignored.
     pub(crate) fn touched(
         &self,
         chases: &[Chase; 2],
@@ -202,7 +204,7 @@ impl TangentEdges {
                     let touches = touches & ((from >= -NO_SIGN_M) | (to >= -NO_SIGN_M));
                     let ahead = ((a >= -TURN_RAD) | (b >= -TURN_RAD))
                         & ((a <= limits.turn) | (b <= limits.turn));
-                    // one jump that is nearly always taken
+                    // one well-predicted branch
                     if !(wraps | (touches & ahead)) {
                         continue;
                     }
@@ -249,7 +251,7 @@ impl Pace {
             gaps: Vec::new(),
             others: Vec::new(),
         };
-        // levels `k` and `k + 1` of a face that has any
+        // directions `k` and `k + 1` belong to a face that has any
         let mut first = vec![None; faces.len()];
         for (first, f) in first.iter_mut().zip(faces) {
             let cosine = f.velocity_support / speed;
@@ -271,7 +273,7 @@ impl Pace {
                 around.iter().all(faster)
             };
             match around[..] {
-                // always approached, or always left
+                // own ship always approaches, or always recedes
                 _ if all(1.0) || all(-1.0) => {}
                 [a, b] => match (first[a], first[b]) {
                     (Some(a), Some(b)) => {
@@ -310,8 +312,8 @@ impl Pace {
         });
     }
 
-    /// Gaps from one level of a face to its other one: about its normal where the other face is always
-    /// approached, about the opposite where it is always left.
+    /// Sectors from one tangent direction of a face to the other: around its normal where own ship
+    /// always approaches the other face, around the opposite where it always recedes.
     fn fan(&mut self, index: usize, corner: &Corner, first: usize, other: &HalfSpace) {
         let own = self.levels[first].plane;
         let from = heading_of(self.levels[first].ahead);
@@ -341,7 +343,8 @@ impl Pace {
     }
 }
 
-/// The difference of two angles in `(-pi, pi]`, in that range too. Without a jump, unlike [`crate::frame::wrap`].
+/// Difference of two angles in `(-pi, pi]`, wrapped to the same range. Branch-free, unlike
+/// [`crate::frame::wrap`].
 fn nearer(apart: f64) -> f64 {
     let over = if apart > PI { TAU } else { 0.0 };
     let under = if apart <= -PI { TAU } else { 0.0 };
@@ -356,7 +359,7 @@ mod tests {
     use crate::planner::space_time::piece::{Body, Piece};
     use rand::{Rng, SeedableRng};
 
-    /// Every corner is sought one by one; what only just touches has to be among what is found.
+    /// Compares with the interceptions of every corner one by one.
     #[test]
     fn every_line_that_only_just_touches_is_found() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);

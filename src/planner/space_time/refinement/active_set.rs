@@ -1,5 +1,5 @@
-//! The dual active-set method: constraints are taken in one at a time, the most violated first, and those that are pushed
-//! away leave.
+//! Dual active-set method: adds the most violated constraint first and drops active constraints
+//! whose multipliers reach zero.
 
 use crate::planner::space_time::refinement::factor::{
     LANES, Padded, Square, Triangle, add, add_scaled, dot, inverse_transposed_factor, remove,
@@ -8,19 +8,19 @@ use crate::planner::space_time::refinement::quadratic::{
     Constraint, MAX_VARIABLES, Programme, Row, Solution, Unsolved,
 };
 
-/// Steps before giving up; a programme of this size needs about as many as it has constraints.
+/// Largest number of steps; a programme of this size needs about as many as it has constraints.
 const MAX_STEPS: usize = 1000;
 
-/// Rate below which a multiplier does not fall.
+/// Rates of a multiplier below this count as zero.
 const FALLING: f64 = 1e-14;
 
-/// Share of a normal, squared, that the active ones must not span: less is rounding.
+/// Least squared share of a normal that the active normals do not span; less is rounding.
 const INDEPENDENT: f64 = 1e-12;
 
-/// Violation, metres, at which the price of it has doubled: what keeps the Hessian definite.
+/// Violation in metres at which its price has doubled. This term keeps the Hessian definite.
 pub(crate) const SOFTENED_M: f64 = 1e3;
 
-/// Relative violation that is none.
+/// Relative violation that counts as none.
 const SATISFIED: f64 = 1e-9;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ enum Kind {
     Row(usize),
 }
 
-/// A row, with the reciprocal of what its violation is measured by.
+/// Row with the reciprocal of its scale.
 struct Scaled<const N: usize> {
     normal: Padded<N>,
     bound: f64,
@@ -43,10 +43,10 @@ impl<const N: usize> Scaled<N> {
     }
 }
 
-/// A programme in arrays just as long as it needs, for which loops are unrolled.
+/// Programme in arrays of exactly the size it needs, for which the compiler unrolls loops.
 pub(crate) struct Compact<const N: usize> {
     size: usize,
-    /// The last variable is the largest violation of a row.
+    /// True where the last variable is the largest violation of a row.
     elastic: bool,
     hessian: Square<N>,
     gradient: Padded<N>,
@@ -55,28 +55,28 @@ pub(crate) struct Compact<const N: usize> {
     rows: Vec<Scaled<N>>,
 }
 
-/// Where the dual method is: `x` is the minimum over the active constraints as equations.
+/// State of the dual method: `x` minimises the cost with the active constraints as equations.
 struct Point<const N: usize> {
     x: Padded<N>,
     j: Square<N>,
     r: Triangle<N>,
-    /// The first `count` are active, with their multipliers.
+    /// Active constraints (the first `count`) and their multipliers.
     active: [Kind; N],
     multipliers: Padded<N>,
     count: usize,
 }
 
-/// How a constraint is taken in.
+/// Result of adding a constraint.
 enum Entered {
     Active,
-    /// It contradicts those that are active.
+    /// It contradicts the active constraints.
     Contradicts,
     /// Too many steps, or a number that is not finite.
     Stopped,
 }
 
 impl<const N: usize> Point<N> {
-    /// The minimum over nothing; `None` when the Hessian is not positive definite.
+    /// Unconstrained minimum; `None` when the Hessian is not positive definite.
     fn free(of: &Compact<N>) -> Option<Self> {
         let j = inverse_transposed_factor(&of.hessian, of.size)?;
         let mut x = [0.0; N];
@@ -101,7 +101,7 @@ impl<const N: usize> Point<N> {
         dot(&self.x, &self.x).is_finite()
     }
 
-    /// How a constraint bears on the active ones.
+    /// Direction of a constraint relative to the active ones.
     fn bearing(&self, of: &Compact<N>, constraint: Kind) -> Bearing<N> {
         let (n, q) = (of.size, self.count);
         let mut d = [0.0; N];
@@ -120,7 +120,8 @@ impl<const N: usize> Point<N> {
         Bearing { d, z, back }
     }
 
-    /// The step along which the first multiplier, each falling at `rates`, is zero, and whose it is.
+    /// Step at which the first multiplier, each decreasing at its rate, is zero, and the index of
+    /// that multiplier.
     fn first_zero(&self, rates: &Padded<N>) -> (f64, Option<usize>) {
         let mut first = (f64::INFINITY, None);
         for (i, (multiplier, rate)) in self
@@ -145,7 +146,8 @@ impl<const N: usize> Point<N> {
         self.count -= 1;
     }
 
-    /// Goes to the minimum over the active constraints and this one; those it pushes away leave. `steps` counts down.
+    /// Moves to the minimum over the active constraints and this one, and drops constraints on the
+    /// way. `steps` counts down.
     fn enter(&mut self, of: &Compact<N>, entering: Kind, steps: &mut usize) -> Entered {
         let mut multiplier = 0.0;
         loop {
@@ -188,7 +190,7 @@ impl<const N: usize> Point<N> {
         }
     }
 
-    /// `x` and multipliers anew from the factors, without what rounding has left on the way.
+    /// Recomputes `x` and the multipliers from the factors, without accumulated rounding.
     fn settle(&mut self, of: &Compact<N>) {
         let mut bounds = [0.0; N];
         for (bound, kind) in bounds.iter_mut().zip(self.active()) {
@@ -211,8 +213,8 @@ impl<const N: usize> Point<N> {
     }
 }
 
-/// A constraint's normal as the factors see it: `J' normal`, what `x` moves by and what the multipliers fall by per unit
-/// of its own.
+/// Normal of a constraint in terms of the factors: `J' normal`, and the change of `x` and the
+/// decrease of the multipliers per unit of its own multiplier.
 struct Bearing<const N: usize> {
     d: Padded<N>,
     z: Padded<N>,
@@ -220,7 +222,7 @@ struct Bearing<const N: usize> {
 }
 
 impl<const N: usize> Compact<N> {
-    /// With a price the largest violation is a variable, the last.
+    /// With a price, the largest violation is the last variable.
     pub(crate) fn of(programme: &Programme, price: Option<f64>) -> Self {
         let n = programme.size;
         let head = |row: &Row| {
@@ -272,7 +274,7 @@ impl<const N: usize> Compact<N> {
         }
     }
 
-    /// The most violated constraint that is not active, each relative to its scale.
+    /// Most violated inactive constraint, relative to its scale.
     fn violated(&self, at: &Point<N>, boxes: &[Padded<N>; 2]) -> Option<Kind> {
         let mut worst = (-SATISFIED, None);
         let mut look = |kind: Kind, v: f64| {
@@ -280,7 +282,7 @@ impl<const N: usize> Compact<N> {
                 worst = (v, Some(kind));
             }
         };
-        // what is beyond the variables is zero and violates nothing
+        // entries beyond the variables are zero and violate nothing
         let x = &at.x;
         let lanes: [Padded<N>; 2] = [
             std::array::from_fn(|i| (x[i] - self.low[i]) * boxes[0][i]),
@@ -309,7 +311,7 @@ impl<const N: usize> Compact<N> {
         worst.1
     }
 
-    /// See [`Programme::solve`].
+    /// Solves the programme, see [`Programme::solve`].
     #[inline(never)]
     pub(crate) fn solve(self) -> Result<Solution, Unsolved> {
         let Some(mut at) = Point::free(&self) else {

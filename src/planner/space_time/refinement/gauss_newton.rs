@@ -1,20 +1,22 @@
-//! Gradient and Gauss-Newton Hessian of a manoeuvre's cost from moments of its points.
+//! Gradient and Gauss-Newton Hessian of a manoeuvre's cost, accumulated over its points.
 //!
-//! Lengthening segment variable `i` moves a later point `p` as a rigid body: `dp/dl = b + c J(p)` with the segment variable's own
-//! `b` (east, north, clock) and curvature `c`, and `J(p) = (-p.y, p.x, 0)`. A residual with rates `r` in
-//! (east, north, clock) and weight `w` adds `w (r . m_i)(r . m_j)` to the Hessian, so all that the points
-//! after a segment variable contribute is one symmetric 4 x 4 matrix, summed once from the end: no sum over the points
-//! per pair of segment variables.
+//! Lengthening segment variable `i` moves a later point `p` as a rigid body: `dp/dl = b + c J(p)`
+//! with the segment variable's own `b` (east, north, clock) and curvature `c`, and
+//! `J(p) = (-p.y, p.x, 0)`. A residual with rates `r` in (east, north, clock) and weight `w` adds
+//! `w (r . m_i)(r . m_j)` to the Hessian. So the points after a segment variable contribute one
+//! symmetric 4 x 4 matrix. It is summed once from the end; there is no sum over the points per pair
+//! of segment variables.
 
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 
-/// Columns of the upper triangle of a symmetric 3 x 3 matrix: ee, en, et, nn, nt, tt.
+/// Upper triangle of a symmetric 3 x 3 matrix: ee, en, et, nn, nt, tt.
 type Weight = [f64; 6];
 
-/// How a segment variable moves what follows it: `b` (east, north, clock) about the origin, and `c`.
+/// Twist of all that follows a segment variable: `b` (east, north, clock) about the origin, and
+/// `c`.
 pub(crate) type Twist = [f64; 4];
 
-/// The squared residuals of one point: the rates of each residual in (east, north, clock), summed.
+/// Squared residuals of one point: sums over the rates of each residual in (east, north, clock).
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Residuals {
     weight: Weight,
@@ -53,11 +55,11 @@ pub(crate) fn dot4(a: &Twist, b: &Twist) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// What the points of one segment variable, or of all segment variables after one, contribute.
+/// Contribution of the points of one segment variable, or of all segment variables after one.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Moment {
     weight: Weight,
-    /// `W J` summed, and `J W J`.
+    /// Sums of `W J` and of `J W J`.
     mixed: [f64; 3],
     square: f64,
     pull: [f64; 4],
@@ -77,12 +79,12 @@ impl Moment {
         }
     }
 
-    /// The gradient with a twist that moves all these points, as a linear form of it.
+    /// Gradient with respect to a twist that moves all these points, as a linear form of the twist.
     pub(crate) fn pull(&self) -> Twist {
         self.pull
     }
 
-    /// The second rate with such a twist.
+    /// Second derivative along such a twist.
     pub(crate) fn bend(&self, twist: &Twist) -> f64 {
         dot4(twist, &self.times(twist))
     }
@@ -103,7 +105,7 @@ impl Moment {
     }
 }
 
-/// What a segment variable's own points contribute with its own rate.
+/// Contribution of a segment variable's own points with its own rate.
 #[derive(Debug, Clone, Copy, Default)]
 struct Own {
     cross: [f64; 4],
@@ -111,7 +113,7 @@ struct Own {
     pull: f64,
 }
 
-/// The sums of one manoeuvre.
+/// Accumulated sums of one manoeuvre.
 #[derive(Debug)]
 pub(crate) struct GaussNewton {
     variables: Vec<Moment>,
@@ -119,7 +121,7 @@ pub(crate) struct GaussNewton {
 }
 
 impl GaussNewton {
-    /// Of no points, for so many segment variables.
+    /// Empty sums for the given number of segment variables.
     pub(crate) fn new(variables: usize) -> Self {
         Self {
             variables: vec![Moment::default(); variables],
@@ -127,8 +129,8 @@ impl GaussNewton {
         }
     }
 
-    /// Adds a point of segment variable `index` at `place` (east, north from the origin of the twists), which moves with
-    /// its own segment variable at `own` (east, north, clock).
+    /// Adds a point of segment variable `index` at `place` (east, north from the origin of the
+    /// twists). Its own segment variable moves it at `own` (east, north, clock).
     pub(crate) fn add(
         &mut self,
         index: usize,
@@ -160,7 +162,7 @@ impl GaussNewton {
         mine.pull += dot3(own, residuals.pull);
     }
 
-    /// Adds a point that each of the first segment variables moves at `rates` of its own.
+    /// Adds a point that each of the first segment variables moves at its own `rates`.
     pub(crate) fn add_directly(
         rates: &[[f64; 3]],
         residuals: &Residuals,
@@ -186,7 +188,7 @@ impl GaussNewton {
         sums
     }
 
-    /// Adds everything to the gradient and to the lower triangle of the Hessian.
+    /// Adds all contributions to the gradient and to the lower triangle of the Hessian.
     pub(crate) fn finish(&self, twists: &[Twist], gradient: &mut Row, lower: &mut [Row]) {
         let mut later = Moment::default();
         for (j, twist) in twists.iter().enumerate().rev() {
@@ -205,7 +207,8 @@ impl GaussNewton {
     }
 }
 
-/// A row in all segment variables as a row in the free ones; `solved` are the rates of the segment variables after the free ones.
+/// Reduces a row in all segment variables to the free ones. `solved` holds the rates of the
+/// dependent segment variables, which come last.
 pub(crate) fn reduce(row: &Row, solved: &[Row], free: usize) -> Row {
     let mut reduced = [0.0; MAX_VARIABLES];
     reduced[..free].copy_from_slice(&row[..free]);
@@ -217,7 +220,7 @@ pub(crate) fn reduce(row: &Row, solved: &[Row], free: usize) -> Row {
     reduced
 }
 
-/// A lower triangle in all segment variables as a symmetric matrix in the free ones.
+/// Reduces a lower triangle in all segment variables to a symmetric matrix in the free ones.
 pub(crate) fn reduce_matrix(mut lower: Vec<Row>, solved: &[Row], free: usize) -> Vec<Row> {
     let dependent = lower.split_off(free);
     for (d, rates) in solved.iter().enumerate() {
@@ -250,7 +253,7 @@ mod tests {
     use super::*;
     use rand::{Rng, SeedableRng};
 
-    /// The sum over points and pairs of segment variables that the moments stand for.
+    /// Compares with the explicit sum over points and pairs of segment variables.
     #[test]
     fn moments_give_the_sum_over_all_points_and_pairs() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
@@ -293,7 +296,8 @@ mod tests {
         }
     }
 
-    /// `T' H T` with the rates of the solved segment variables below the identity.
+    /// Compares with `T' H T`, where `T` is the identity above the rates of the solved segment
+    /// variables.
     #[test]
     fn a_reduced_matrix_is_the_product_with_the_rates() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(8);

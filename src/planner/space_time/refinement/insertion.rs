@@ -1,9 +1,10 @@
-//! What a manoeuvre lacks: segment variables whose first metre would lower the cost.
+//! Segment insertion: finds new segment variables whose first metre lowers the cost.
 //!
-//! A segment variable that is put in between two others moves all that follows as a rigid body, so the rate of the cost with
-//! its length, the price of the contacts included, is one linear form of its twist, the same for every kind of segment variable
-//! at that place (column generation, with the multipliers of the last quadratic programme). Where no rate is
-//! negative, no structure with more segment variables is cheaper, to first order.
+//! A segment variable that is inserted between two others moves all that follows as a rigid body.
+//! So the rate of the cost with its length, including the price of the contacts, is one linear form
+//! of its twist. This form is common to every kind of segment variable at that position (column
+//! generation, with the multipliers of the last quadratic programme). Where no rate is negative, no
+//! structure with more segment variables is cheaper, to first order.
 
 use crate::frame::{Side, Vector};
 use crate::planner::space_time::refinement::InitialGuess;
@@ -15,36 +16,36 @@ use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable,
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::selection::initial_guess::SpeedTable;
 
-/// Metres. Shorter segment variables are left out before new ones are put in.
+/// Metres. Shorter segment variables are removed before the insertion.
 const EMPTY_M: f64 = 0.5;
 
-/// Radians of turn, and turning radii of line, below which a segment variable is of no use.
+/// Least useful turn in radians, and least useful line in turning radii.
 const LEAST_TURN: f64 = 0.03;
 const LEAST_LINE: f64 = 0.05;
 
-/// Metres by which one step may change a length when the contacts are priced.
+/// Largest change of a length in the step that prices the contacts, metres.
 const PRICING_RADIUS_M: f64 = 20.0;
 
-/// m²/m. What a missing metre of slack is worth at most.
+/// Largest multiplier of a metre of slack, m²/m.
 const DEAREST: f64 = 1e5;
 
-/// Slots added at a time, the most promising.
+/// Largest number of insertions at a time.
 const MOST_ADDED: usize = 8;
 
-/// Share of the cost that the additions have to promise.
+/// Least predicted gain of the insertions, as a fraction of the cost.
 const WORTH_ADDING: f64 = 1e-3;
 
-/// A segment variable that could be put in before segment variable `gap`.
+/// Segment variable to be inserted before segment variable `gap`.
 #[derive(Debug, Clone, Copy)]
 struct Addition {
     gap: usize,
     variable: SegmentVariable,
-    /// m², to second order and alone.
+    /// Predicted gain to second order, on its own, m².
     gain: f64,
 }
 
-/// The manoeuvre with lines cut in two where they are longer than `uncut` metres, and with the segment variables that promise most,
-/// still empty. `None` when nothing is promised, or it does not fit.
+/// Divides lines longer than `uncut` metres in two and inserts the most promising segment
+/// variables, with zero length. `None` when nothing is promising, or when it does not fit.
 pub(crate) fn with_insertions(
     context: &Context,
     guess: &InitialGuess,
@@ -70,7 +71,7 @@ pub(crate) fn with_insertions(
     Some(with_insertions)
 }
 
-/// The manoeuvre without turns and lines too short to be of use; `None` when it has none.
+/// Removes turns and lines too short to be useful; `None` when there are none.
 pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
     let radius = context.problem.own.turning_radius;
     let is_of_use = |(variable, length): &(&SegmentVariable, &f64)| match variable {
@@ -96,7 +97,8 @@ pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialG
     })
 }
 
-/// Leaves out what is empty, and cuts long lines, the solved one of a return included.
+/// Removes empty segment variables and divides long lines, including the dependent line of a
+/// return.
 fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     let mut add = |variable: SegmentVariable, length: f64| {
@@ -125,7 +127,7 @@ fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGue
         }
     }
     let mut lengths: Row = [0.0; MAX_VARIABLES];
-    // one addition at least has to fit beside the two solved segment variables
+    // at least one insertion must fit beside the two dependent segment variables
     if pieces.len() + 3 > MAX_VARIABLES {
         return None;
     }
@@ -141,7 +143,7 @@ fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGue
     })
 }
 
-/// The most promising additions, or `None` where all together promise next to nothing.
+/// Most promising insertions; `None` where their total predicted gain is negligible.
 fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
     let free = base.structure.free();
     let trial = context.trial(&base.structure, &base.lengths)?;
@@ -179,8 +181,8 @@ fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
     (promised > WORTH_ADDING * full.trial.cost).then_some(found)
 }
 
-/// Where the first turn is, and to which side. Nothing turns to the other side before it: others have to see at once
-/// on which side own ship means to pass.
+/// Position and side of the first turn. No turn to the other side is inserted before it: other
+/// ships must see at once on which side own ship intends to pass.
 fn first_turn(structure: &Structure) -> Option<(usize, Side)> {
     let mut variables = structure.variables.iter().enumerate();
     variables.find_map(|(at, variable)| match variable {
@@ -200,7 +202,7 @@ fn kinds(context: &Context) -> impl Iterator<Item = SegmentVariable> + use<> {
     })
 }
 
-/// What a metre of slack is worth at each row, m²/m: the multipliers of one step.
+/// Multiplier of each row, m² per metre of slack, from one quadratic programme.
 fn multipliers(context: &Context, base: &InitialGuess) -> Option<Vec<f64>> {
     let free = base.structure.free();
     let model = context.model(&base.structure, &base.lengths)?;
@@ -216,7 +218,8 @@ fn multipliers(context: &Context, base: &InitialGuess) -> Option<Vec<f64>> {
     Some(programme.solve()?.multipliers)
 }
 
-/// What a change before each segment variable costs per metre, as a linear form of its twist about `origin`.
+/// Cost per metre of a change before each segment variable, as a linear form of its twist about
+/// `origin`.
 struct Prices {
     origin: Vector,
     forms: Vec<Twist>,
@@ -230,7 +233,7 @@ impl Prices {
         let origin = context.problem.own.pose.position;
         let moments = full.moments.sums_from_each();
         let joined_by = rollout.joined_by(origin);
-        // what every later change has in common: the return segments
+        // contribution of the return segments, common to all changes
         let mut common = [0.0; 4];
         let add_tail = |form: &mut Twist, by_distance: f64, by_time: f64| {
             add(form, &joined_by, by_distance);
@@ -282,7 +285,7 @@ impl Prices {
                 }
             }
         }
-        // rows after those of the approaches keep the solved segment variables from running out
+        // rows after those of the approaches keep the dependent segment variables positive
         for (price, multiplier) in of_solved
             .iter_mut()
             .zip(&multipliers[full.trial.approaches.len()..])
@@ -303,7 +306,8 @@ impl Prices {
         }
     }
 
-    /// The rate of the cost with the length of a segment variable put in before segment variable `gap`, m² per metre, and the second rate.
+    /// Rate of the cost with the length of a segment variable inserted before segment variable
+    /// `gap`, m² per metre, and the second rate.
     fn rate(
         &self,
         context: &Context,
@@ -338,7 +342,7 @@ impl Prices {
         ))
     }
 
-    /// What the segment variable alone would gain, m², to second order; zero when its first metre costs.
+    /// Predicted gain of one insertion, m², to second order; zero when its first metre costs.
     fn gain(&self, context: &Context, full: &Full, gap: usize, variable: SegmentVariable) -> f64 {
         let Some((rate, bend)) = self.rate(context, full, gap, variable) else {
             return 0.0;
@@ -362,7 +366,8 @@ mod tests {
     use super::*;
     use crate::planner::space_time::refinement::model::tests::at_manoeuvres;
 
-    /// Every price against the reduced gradient of the structure that has the segment variable, empty.
+    /// Compares every price with the reduced gradient of the structure with the inserted, empty
+    /// segment variable.
     #[test]
     fn prices_are_the_rates_of_the_larger_template() {
         at_manoeuvres(|context, guess| {

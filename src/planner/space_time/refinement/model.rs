@@ -1,5 +1,5 @@
-//! The refinement's view of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the
-//! contact rows, all in the free lengths.
+//! Local model of one manoeuvre: cost with gradient and Gauss-Newton Hessian, and the contact rows,
+//! all in the free lengths.
 
 use crate::frame::to_port;
 use crate::planner::space_time::refinement::approach::Approach;
@@ -11,50 +11,50 @@ use crate::planner::space_time::refinement::rollout::{Owner, Place};
 use crate::planner::space_time::refinement::structure::Structure;
 use crate::planner::space_time::refinement::trial::{Context, Trial, WeightedPoint};
 
-/// Metres that solved segment variables and the leg after the return keep, so that a step does not run out of them.
+/// Metres by which dependent segment variables and the leg after the return stay positive.
 const ROOM_M: f64 = 1.0;
 
-/// Metres kept from every set while refining, so that the exact test afterwards passes.
+/// Metres kept from every set during the refinement, so that the exact test afterwards passes.
 pub(crate) const MARGIN_M: f64 = 0.02;
 
-/// One manoeuvre, evaluated.
+/// Local model of one manoeuvre.
 #[derive(Debug)]
 pub(crate) struct Model {
     pub cost: f64,
     pub gradient: Row,
-    /// Positive definite, a row per variable.
+    /// Positive definite Hessian, one row per variable.
     pub hessian: Vec<Row>,
-    /// Contact rows and the signs of the solved segment variables, linearised: `row . step >= bound`.
+    /// Linearised contact rows and signs of the dependent segment variables: `row . step >= bound`.
     pub rows: Vec<Constraint>,
-    /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
-    /// splits in two must not make the merit jump.
+    /// Largest missing slack, metres; zero when clear with the margin. A sum would make the merit
+    /// function jump when one approach splits in two.
     pub violation: f64,
     /// Least slack of all contact rows, metres.
     pub least_slack: f64,
 }
 
-/// Share of the cost per square metre that is added to the Hessian's diagonal, and the least cost it is taken of, m²:
-/// Gauss-Newton leaves directions flat.
+/// Regularisation of the Hessian's diagonal as a fraction of the cost per square metre, and the
+/// least cost it refers to, m². Gauss-Newton leaves some directions flat.
 const REGULARISATION: f64 = 1e-5;
 const LEAST_REGULARISED: f64 = 20.0;
 
-/// One manoeuvre with its rates in all its segment variables, the solved ones included.
+/// Model of one manoeuvre in all its segment variables, including the dependent ones.
 #[derive(Debug)]
 pub(crate) struct Full {
     pub trial: Trial,
     pub gradient: Row,
-    /// The lower triangle.
+    /// Lower triangle.
     hessian: Vec<Row>,
     pub moments: GaussNewton,
 }
 
 impl Context<'_> {
-    /// Sails and evaluates; `None` when the manoeuvre's ending does not fit.
+    /// Rolls out and evaluates; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn model(&self, structure: &Structure, lengths: &Row) -> Option<Model> {
         Some(self.completed(structure, self.trial(structure, lengths)?))
     }
 
-    /// The rates of a manoeuvre that has been outlined.
+    /// Derivatives of an evaluated trial point.
     pub(crate) fn completed(&self, structure: &Structure, trial: Trial) -> Model {
         let full = self.full(structure, trial);
         let trial = &full.trial;
@@ -75,7 +75,7 @@ impl Context<'_> {
         }
     }
 
-    /// Contact rows and the signs of the solved segment variables, linearised.
+    /// Linearised contact rows and signs of the dependent segment variables.
     pub(crate) fn rows(&self, structure: &Structure, trial: &Trial) -> Vec<Constraint> {
         let (all, free) = (structure.all(), structure.free());
         let rollout = &trial.rollout;
@@ -105,7 +105,7 @@ impl Context<'_> {
         rows
     }
 
-    /// The rates before the solved segment variables are eliminated.
+    /// Model before the dependent segment variables are eliminated.
     pub(crate) fn full(&self, structure: &Structure, trial: Trial) -> Full {
         let all = structure.all();
         let mut full = Full {
@@ -166,7 +166,7 @@ impl Context<'_> {
         full
     }
 
-    /// The residuals of a point whose nearest desired place is `distance` along the path, on `leg`.
+    /// Residuals of a point whose nearest desired position is `distance` along the path, on `leg`.
     fn residuals(&self, place: &Place, leg: usize, distance: f64, weight: f64) -> Residuals {
         let l = &self.problem.desired.legs()[leg];
         let q = self.problem.time_weight;
@@ -233,7 +233,8 @@ pub(crate) mod tests {
     use crate::trajectory::DesiredTrajectory;
     use crate::vessel::{Hull, OwnShip};
 
-    /// Checks three manoeuvres with all segment variables open, two that return and one that steers for the goal, near a target.
+    /// Runs a check on three manoeuvres near a target with all segment variables in use: two that
+    /// return and one that ends at the goal.
     pub(crate) fn at_manoeuvres(check: impl Fn(&Context, &InitialGuess)) {
         let own = OwnShip {
             pose: Pose::new(Vector::new(0.0, 0.0), 0.0),
@@ -319,7 +320,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// Every rate against central differences.
+    /// Compares every rate with central differences.
     #[test]
     fn rates_match_differences() {
         at_manoeuvres(|context, guess| {

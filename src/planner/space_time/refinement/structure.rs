@@ -1,9 +1,10 @@
-//! A manoeuvre as a chain of segment variables with free lengths, and how it changes with them.
+//! Manoeuvre structure: a chain of segment variables with free lengths.
 //!
-//! The segment variables' kinds, sides and speeds are fixed; their lengths in metres are the variables of the
-//! refinement. Lengthening a segment variable moves everything after it as a rigid body: along a line, or about the
-//! centre of its circle. That gives every derivative in closed form. Two last segment variables, where there are
-//! any, are not free: they are solved so that the chain ends on the desired path or at its end.
+//! Kinds, sides and speeds are fixed; the lengths in metres are the variables of the refinement.
+//! Lengthening a segment variable moves everything after it as a rigid body: along a line, or about
+//! the centre of its circle. That gives every derivative in closed form. Up to two last segment
+//! variables are dependent: they are solved so that the chain ends on the desired path or at its
+//! end.
 
 use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
 use crate::planner::Problem;
@@ -13,17 +14,17 @@ use crate::planner::space_time::refinement::rollout::{Leg, Owner, Rigid, Rollout
 use crate::planner::space_time::route::{Route, Stretch};
 use crate::trajectory::Segment;
 
-/// Radians. A return flatter than this is not solvable.
+/// Smallest return angle that can be solved, radians.
 pub(crate) const FLATTEST_RETURN: f64 = 0.01;
 
-/// A part of a manoeuvre.
+/// Segment variable: kind, side and speed of a part of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SegmentVariable {
-    /// Along the route.
+    /// Follows the route.
     Run { speed: f64 },
-    /// A turn with the turning radius.
+    /// Turns with the turning radius.
     Arc { side: Side, speed: f64 },
-    /// Straight ahead.
+    /// Straight line.
     Line { speed: f64 },
 }
 
@@ -35,25 +36,25 @@ impl SegmentVariable {
     }
 }
 
-/// How a manoeuvre ends.
+/// Ending of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Ending {
-    /// It never left the route, and follows it.
+    /// Follows the route, which it never left.
     Follow,
-    /// A line and an arc back onto a leg, then the route.
+    /// Line and arc back onto a leg, then the route.
     Return { leg: usize, speed: f64 },
-    /// An arc and a line to the last waypoint.
+    /// Arc and line to the last waypoint.
     Goal { side: Side, speed: f64 },
 }
 
 impl Ending {
-    /// Slots that are solved, not free.
+    /// Number of dependent segment variables.
     fn dependents(self) -> usize {
         if self == Self::Follow { 0 } else { 2 }
     }
 }
 
-/// Slots with an ending: what is fixed of a manoeuvre.
+/// Segment variables and ending: the fixed part of a manoeuvre.
 #[derive(Debug, Clone)]
 pub(crate) struct Structure {
     pub variables: Vec<SegmentVariable>,
@@ -61,17 +62,17 @@ pub(crate) struct Structure {
 }
 
 impl Structure {
-    /// Free variables.
+    /// Number of free variables.
     pub(crate) fn free(&self) -> usize {
         self.variables.len()
     }
 
-    /// All segment variables, the solved ones included.
+    /// Number of all segment variables, including the dependent ones.
     pub(crate) fn all(&self) -> usize {
         self.variables.len() + self.ending.dependents()
     }
 
-    /// Sails the manoeuvre with the given lengths; `None` when its ending does not fit.
+    /// Rolls the manoeuvre out with the given lengths; `None` when its ending does not fit.
     pub(crate) fn sail(&self, problem: &Problem, route: &Route, lengths: &Row) -> Option<Rollout> {
         let radius = problem.own.turning_radius;
         let mut rollout = Rollout {
@@ -100,7 +101,7 @@ impl Structure {
                 at.sail(*variable, index, lengths[index], &mut rollout);
             }
         }
-        // runs move what follows them along the route where the last of them ends
+        // runs move what follows along the route at the end of the last run
         rollout.runs = runs;
         if runs > 0 {
             let (pose, curvature) = route.pose_at(lengths[..runs].iter().sum());
@@ -143,7 +144,7 @@ impl Structure {
         Some(rollout)
     }
 
-    /// Solves line and arc back onto a leg.
+    /// Solves the line and arc back onto a leg.
     fn return_to(
         &self,
         problem: &Problem,
@@ -202,7 +203,7 @@ impl Structure {
         Some(())
     }
 
-    /// Solves arc and line to the last waypoint.
+    /// Solves the arc and line to the last waypoint.
     fn approach(
         &self,
         problem: &Problem,
@@ -246,7 +247,7 @@ impl Structure {
     }
 }
 
-/// Where own ship is while a structure is sailed.
+/// Position, time and distance along the route during a rollout.
 struct Cursor {
     pose: Pose,
     ahead: Vector,
@@ -256,7 +257,7 @@ struct Cursor {
 }
 
 impl Cursor {
-    /// The unit vector ahead at the start of a motion that follows.
+    /// Unit vector ahead at the start of the next segment.
     fn ahead_of(&self, next: &Segment) -> Vector {
         if next.start.heading == self.pose.heading {
             self.ahead
@@ -265,7 +266,7 @@ impl Cursor {
         }
     }
 
-    /// Goes on to the end of a motion.
+    /// Advances to the end of a segment.
     fn pass(&mut self, segment: &Segment, ahead: Vector) {
         (self.pose, self.time) = (segment.end(), segment.end_time());
         self.ahead = if segment.is_arc() {

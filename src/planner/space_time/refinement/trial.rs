@@ -1,5 +1,5 @@
-//! One manoeuvre outlined: sailed, with its cost and where it comes near the sets. All that a step of the refinement is
-//! judged by; the rates are found for those that are taken.
+//! Trial point of the refinement: one rolled-out manoeuvre with its cost and closest approaches.
+//! This suffices to accept or reject a step; derivatives are computed for accepted ones only.
 
 use crate::planner::Problem;
 use crate::planner::cost::{GAUSS_2, GAUSS_4};
@@ -14,56 +14,56 @@ use crate::planner::space_time::refinement::structure::{Ending, Structure};
 use crate::planner::space_time::route::Route;
 use crate::trajectory::Nearest;
 
-/// Three Gauss-Legendre points on [0, 1], for short arcs.
+/// Nodes and weights of the 3-point Gauss-Legendre rule on [0, 1], for short arcs.
 const GAUSS_3: [(f64, f64); 3] = [
     (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
     (0.5, 0.444_444_444_444_444_4),
     (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
 ];
 
-/// What stays the same for every manoeuvre of a problem.
+/// Data that stay fixed for one problem.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context<'a> {
     pub problem: &'a Problem<'a>,
     pub route: &'a Route,
     pub proxies: &'a [Proxy<'a>],
-    /// The land, block by block.
+    /// Land blocks.
     pub blocks: &'a [Proxy<'a>],
-    /// Radians, of an approach.
+    /// Longest arc per chord in the search for approaches, radians.
     pub chord: f64,
 }
 
-/// A manoeuvre, outlined.
+/// Evaluated trial point.
 #[derive(Debug)]
 pub(crate) struct Trial {
     pub rollout: Rollout,
-    /// m².
+    /// Cost, m².
     pub cost: f64,
-    /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
-    /// splits in two must not make the merit jump.
+    /// Largest missing slack, metres; zero when clear with the margin. A sum would make the merit
+    /// function jump when one approach splits in two.
     pub violation: f64,
     /// Least slack of all approaches, metres.
     pub least_slack: f64,
     pub approaches: Vec<Approach>,
-    /// Where there is one.
+    /// Return segments, if any.
     pub return_segments: Option<ReturnSegments>,
-    /// Rates of the place and time at which the return segments begins.
+    /// Rates of the joining position and time.
     pub joining: (Row, Row),
-    /// What the cost before the return segments is the sum of.
+    /// Quadrature points of the cost before the return segments.
     pub points: Vec<Point>,
 }
 
-/// A Gauss point of a segment variable's cost.
+/// Quadrature point of a segment variable's cost.
 #[derive(Debug)]
 pub(crate) struct Point {
     pub variable: usize,
-    /// m² per metre of the segment variable: what it costs to stay longer.
+    /// Cost per metre of the segment variable, m².
     pub growth: f64,
     /// `None` where the segment variable is empty.
     pub weighed: Option<WeightedPoint>,
 }
 
-/// Where a Gauss point is, the desired place nearest to it, and its weight.
+/// Position of a quadrature point, its nearest desired position, and its weight.
 #[derive(Debug)]
 pub(crate) struct WeightedPoint {
     pub place: Place,
@@ -72,7 +72,7 @@ pub(crate) struct WeightedPoint {
 }
 
 impl Context<'_> {
-    /// Sails and prices; `None` when the manoeuvre's ending does not fit.
+    /// Rolls out and computes the cost; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn trial(&self, structure: &Structure, lengths: &Row) -> Option<Trial> {
         let rollout = structure.sail(self.problem, self.route, lengths)?;
         let mut points = Vec::with_capacity(GAUSS_4.len() * rollout.return_segments);
@@ -108,7 +108,7 @@ impl Context<'_> {
         })
     }
 
-    /// The Gauss points of a leg.
+    /// Quadrature points of a segment.
     fn add_points(&self, rollout: &Rollout, leg: usize, points: &mut Vec<Point>) {
         let Owner::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
             return;

@@ -1,4 +1,5 @@
-//! Whether a manoeuvre does what the rules of the road ask, toward targets on their nominal tracks.
+//! Compliance of a manoeuvre with the collision regulations, toward targets on their nominal
+//! tracks.
 
 use crate::colregs::{
     APPARENT_SPEED, APPARENT_TIME, Duty, Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN,
@@ -11,21 +12,22 @@ use crate::planner::space_time::selection::initial_guess::SpeedTable;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Instants of a segment at which the other ship is looked at.
+/// Samples per segment for the position relative to a target.
 const ARC_SAMPLES: u32 = 32;
 
-/// Seconds after the closest approach of the centres at which a target has passed: that of the hulls may be later.
+/// Seconds after the closest approach of the centres at which a target counts as passed: the hulls
+/// may be closest later.
 const PASSED_S: f64 = 2.0;
 
-/// m/s. Below this relative speed the distance does not change.
+/// m/s. Below this relative speed the distance counts as constant.
 const NO_RELATIVE_SPEED: f64 = 1e-9;
 
-/// m/s: at this speed or less own ship has visibly slowed down.
+/// Speed at or below which a speed reduction is readily apparent, m/s.
 pub(crate) fn slow(problem: &Problem) -> f64 {
     APPARENT_SPEED * SpeedTable::of(problem).normal * (1.0 + 1e-9)
 }
 
-/// Metres at the end of a motion along the route that are sailed at less speed, for the other to see.
+/// Length of the apparent speed reduction at the end of a motion along the route, metres.
 pub(crate) fn visibly_slow(problem: &Problem, motion: &[Segment]) -> f64 {
     if problem.duty().is_none() {
         return 0.0;
@@ -36,7 +38,8 @@ pub(crate) fn visibly_slow(problem: &Problem, motion: &[Segment]) -> f64 {
         .sum()
 }
 
-/// True when a motion complies with own ship's duty. `nominal_motion` is the route on schedule: who need not alter does not.
+/// True when a motion complies with own ship's duty. `nominal_motion` is the route on schedule,
+/// which a ship without a duty to give way keeps.
 pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[Segment]) -> bool {
     let problem = context.problem;
     let duty = problem.duty();
@@ -57,7 +60,8 @@ pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[
         })
 }
 
-/// Turns until a time that are too small to be seen; of turns to one side, one right after another, the sum.
+/// Number of turns until a time that are too small to be apparent. Consecutive turns to one side
+/// count as one.
 fn small_turns(motion: &[Segment], until: f64) -> usize {
     let turns = |a: &Segment, b: &Segment| a.turn_rate * b.turn_rate > 0.0;
     let before: Vec<Segment> = motion
@@ -72,7 +76,8 @@ fn small_turns(motion: &[Segment], until: f64) -> usize {
         .count()
 }
 
-/// True when a motion crosses the target's course line nowhere within [`Encountered::bow_room`] ahead of her.
+/// True when a motion never crosses the target's course line within [`Encountered::bow_room`] ahead
+/// of the target.
 fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
     let room = encountered.bow_room();
     if room <= 0.0 {
@@ -96,22 +101,22 @@ fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
                 return true;
             }
             let ahead = from.x + (here.x - from.x) * from.y / (from.y - here.y);
-            // a NaN is on the bow
+            // a NaN counts as ahead of the bow
             ahead <= 0.0 || ahead >= room
         })
     })
 }
 
-/// How a motion leaves the route.
+/// Departure of a motion from the route.
 #[derive(Debug)]
 struct Departure {
-    /// The first of its segments that is not on the route.
+    /// First segment that is not on the route.
     index: usize,
-    /// Her course before.
+    /// Own ship's course before.
     heading: f64,
-    /// Radians of the first turn from there, to port positive.
+    /// First turn after it, radians, to port positive.
     turn: f64,
-    /// Slowed down before it, visibly.
+    /// True where an apparent speed reduction precedes it.
     slowed: bool,
 }
 
@@ -172,7 +177,8 @@ impl Departure {
                 || self.turn.abs() >= duty.least_turn() - tolerance::JOINT_RAD)
     }
 
-    /// True when own ship heads nowhere to port of her course before, nor of the path's there, until a time.
+    /// True when own ship never heads to port of its course before the departure, nor of the path's
+    /// course there, until a time.
     fn keeps_off_port(&self, problem: &Problem, motion: &[Segment], until: f64) -> bool {
         let off = motion[self.index..].iter().filter(|s| s.start_time < until);
         off.map(|s| s.between(s.start_time, until)).all(|s| {
@@ -188,11 +194,11 @@ impl Departure {
     }
 }
 
-/// The closest approach of a motion to a target that holds course and speed.
+/// Closest approach of a motion to a target that holds course and speed.
 #[derive(Debug)]
 struct Nearest {
     time: f64,
-    /// Then the target goes from starboard to port, seen from own ship.
+    /// True when the target then moves from starboard to port as seen from own ship.
     drifts_to_port: bool,
 }
 

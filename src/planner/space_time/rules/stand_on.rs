@@ -1,8 +1,10 @@
-//! The stand-on policy (Rule 17): hold course and speed until the latest time at which a certified escape exists.
+//! Stand-on policy (Rule 17): hold course and speed until the latest time at which a certified
+//! escape exists.
 //!
-//! `E(t)` holds the nominal motion until `t`, then turns to starboard by 30° or more, or slows down to half the speed or less, and
-//! comes back to the route. The plan is the `E(t)` of the latest `t` that is clear of every set up to its arrival, by the
-//! exact contact test: at every instant before `t` own ship has a way out that is known to be clear, whatever the other does.
+//! `E(t)` holds the nominal motion until `t`. Then it turns to starboard by 30° or more, or slows
+//! down to half the speed or less, and returns to the route. The plan is the `E(t)` of the latest
+//! `t` that is clear of every set until its arrival, by the exact contact test. So at every instant
+//! before `t` own ship has an escape that is known to be clear, whatever the other ship does.
 
 use crate::colregs::{APPARENT_TIME, APPARENT_TURN};
 use crate::frame::{Side, heading_of};
@@ -17,27 +19,27 @@ use crate::planner::space_time::rules::compliance::{complies, slow};
 use crate::planner::{Escape, NoPlan, Outcome, Plan, Planned, Problem};
 use crate::trajectory::Segment;
 
-/// Turns of an escape, in multiples of the least that is readily apparent.
+/// Turns of an escape, as multiples of the least readily apparent turn.
 const TURNS: [f64; 6] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0];
 
-/// Seconds for which the course of an escape is held, and for which less speed is.
+/// Seconds for which the course, or the reduced speed, of an escape is held.
 const HOLDS_S: [f64; 7] = [10.0, 20.0, 40.0, 60.0, 90.0, 140.0, 220.0];
 
-/// Radians at which the route is met again.
+/// Angles between a return line and the route, radians.
 const RETURN_ANGLES: [f64; 3] = [0.3, 0.6, 1.0];
 
-/// Instants at which an escape is looked for before the first contact, latest first, and halvings after that.
+/// Sampled instants before the first contact, latest first, and bisection steps after that.
 const SCAN: usize = 40;
 const HALVINGS: usize = 7;
 
-/// Instants from which one is looked for that need not hold.
+/// Sampled instants for an escape that need not be the latest.
 const FEW: usize = 10;
 
-/// A motion that holds and escapes.
+/// Motion that holds and then escapes.
 #[derive(Debug, Clone)]
 pub(crate) struct Held {
     pub motion: Vec<Segment>,
-    /// m².
+    /// Cost, m².
     pub cost: f64,
     pub escape: Escape,
 }
@@ -53,8 +55,8 @@ impl Held {
     }
 }
 
-/// The motion that holds longest, where the nominal one meets something after `contact` seconds; `None` without any escape to
-/// starboard or by less speed, or when the time is up.
+/// Motion that holds longest, where the nominal motion meets an obstacle after `contact` seconds.
+/// `None` without any escape to starboard or by reduced speed, or after the deadline.
 pub(crate) fn hold(
     context: &Context,
     nominal_motion: &[Segment],
@@ -86,8 +88,8 @@ pub(crate) fn hold(
     search.from(latest).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
-/// The cheapest of such motions from a few times on, to any side that complies with the rules: where the graph and its refinement
-/// find none.
+/// Cheapest such motion from a few instants on, to any side that complies with the rules. Used
+/// where the graph and its refinement find none.
 pub(crate) fn cheapest(
     context: &Context,
     nominal_motion: &[Segment],
@@ -108,15 +110,15 @@ pub(crate) fn cheapest(
     best.map(|held| held.motion)
 }
 
-/// All escapes from a time on.
+/// Escapes from the nominal motion.
 struct Escapes<'s, 'a> {
     context: &'s Context<'a>,
     nominal_motion: &'s [Segment],
-    /// Of the first turn.
+    /// Permitted sides of the first turn.
     sides: &'static [Side],
 }
 
-/// Where and when own ship leaves the route.
+/// Position and time at which own ship leaves the route.
 struct Start {
     before: Vec<Segment>,
     time: f64,
@@ -127,7 +129,7 @@ impl<'s> Escapes<'s, '_> {
         self.context.problem
     }
 
-    /// Those that are clear up to the arrival.
+    /// Escapes from a time on that are clear until their arrival.
     fn from(&self, time: f64) -> impl Iterator<Item = Held> + '_ {
         let start = std::rc::Rc::new(Start {
             before: until(self.nominal_motion, time),
@@ -173,7 +175,7 @@ impl<'s> Escapes<'s, '_> {
         found
     }
 
-    /// Ways back onto the legs ahead, at the greatest speed.
+    /// Returns onto the legs ahead, at the greatest speed.
     fn returns(&self, start: &Start, out: &Chain, turn: f64) -> Vec<Held> {
         let (problem, route) = (self.problem(), self.context.route);
         let (desired, own) = (problem.desired, problem.own);
@@ -217,7 +219,7 @@ impl<'s> Escapes<'s, '_> {
         held.collect()
     }
 
-    /// The whole motion, where it is clear, in time and complies.
+    /// The complete motion, where it is clear, in time and complies with the rules.
     fn held(&self, start: &Start, escape: Vec<Segment>, turn: f64, speed: f64) -> Option<Held> {
         let problem = self.problem();
         let in_time = escape

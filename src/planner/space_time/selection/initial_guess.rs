@@ -1,4 +1,4 @@
-//! Manoeuvres from which the refinement begins: the graph's plans, and canonical ones on both sides.
+//! Initial guesses of the refinement: the graph's plans, and predefined manoeuvres on both sides.
 
 use crate::colregs::APPARENT_TIME;
 use crate::frame::{Side, to_port};
@@ -12,7 +12,7 @@ use crate::planner::space_time::route::Route;
 use crate::planner::space_time::rules::compliance::{slow, visibly_slow};
 use crate::trajectory::Segment;
 
-/// Speeds of the structures: the finite set's extremes, and the desired one.
+/// Speeds of the manoeuvres: least and greatest speed, and the desired one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SpeedTable {
     pub slow: f64,
@@ -21,7 +21,7 @@ pub(crate) struct SpeedTable {
 }
 
 impl SpeedTable {
-    /// The least and the greatest moving speed, and the one nearest to the desired.
+    /// Least and greatest moving speed, and the one nearest to the desired speed.
     pub(crate) fn of(problem: &Problem) -> Self {
         let moving: Vec<f64> = problem
             .own
@@ -44,39 +44,40 @@ impl SpeedTable {
     }
 }
 
-/// A stretch of the nominal motion inside a set, and what it takes to pass beside it.
+/// Stretch of the nominal motion inside a set, and the offsets that clear the set.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Conflict {
     /// Seconds at which the contact begins and ends.
     pub from: f64,
     pub to: f64,
-    /// Metres sailed between them.
+    /// Distance sailed inside, metres.
     pub through: f64,
-    /// Metres to starboard and to port that clear the set throughout.
+    /// Offsets to starboard and to port that clear the set throughout, metres.
     pub offsets: [f64; 2],
-    /// Metres astern that clear the set throughout, and the time at which so many are needed.
+    /// Offset astern that clears the set throughout, metres, and the time at which it is needed.
     pub astern: (f64, f64),
-    /// Metres ahead that clear the set throughout, and the time at which so many are needed.
+    /// Offset ahead that clears the set throughout, metres, and the time at which it is needed.
     pub ahead: (f64, f64),
 }
 
 impl Conflict {
-    /// Metres to a side.
+    /// Offset to a side, metres.
     pub(crate) fn offset(&self, side: Side) -> f64 {
         self.offsets[usize::from(side == Side::Port)]
     }
 
-    /// Metres sailed inside over the shortest way around.
+    /// Ratio of the distance sailed inside to the smaller offset.
     pub(crate) fn slenderness(&self) -> f64 {
         self.through / self.nearest_offset().max(1.0)
     }
 
-    /// Metres to the nearer side.
+    /// Smaller offset of the two sides, metres.
     pub(crate) fn nearest_offset(&self) -> f64 {
         self.offsets[0].min(self.offsets[1])
     }
 
-    /// The contact of one obstacle, given by its proxies, with the nominal motion, from first to last instant.
+    /// Contact of one obstacle, given by its proxies, with the nominal motion, from its first to
+    /// its last instant.
     pub(crate) fn of(proxies: &[Proxy], nominal_motion: &[Segment]) -> Option<Self> {
         let from = proxies
             .iter()
@@ -127,48 +128,47 @@ impl Conflict {
     }
 }
 
-/// Radians at which a canonical manoeuvre returns, the flattest that fits.
+/// Return angles of predefined manoeuvres, radians; the smallest that fits is used.
 const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 
-/// Radians.
+/// Turn of a waiting manoeuvre, radians.
 const WAITING_TURN: f64 = 0.6;
 
-/// Radians of the turns, and metres of the way out, of a manoeuvre that only slows down on the route.
+/// Turns (radians) and outbound line (metres) of a manoeuvre that only slows down on the route.
 const SLOWING_TURN: f64 = 0.2;
 const SLOWING_OUT_M: f64 = 20.0;
 
-/// Metres by which own ship goes on beyond the route behind a target that she let pass, and radians at which she
-/// comes back.
+/// Distance beyond the route behind a target that passed ahead, metres, and return angle, radians.
 const OVERSHOOT_M: f64 = 20.0;
 const OVERSHOOT_RETURN: f64 = 0.08;
 
-/// A manoeuvre that passes ahead: seconds of rushing over those there are, at most; its turn out, radians; the way back
-/// in, radians; its lines, metres.
+/// Manoeuvre that passes ahead: largest ratio of the fast time to the available time; outbound turn
+/// and return turn, radians; lines, metres.
 const MOST_RUSHING: f64 = 1.6;
 const AHEAD_TURN: f64 = 0.5;
 const AHEAD_RETURN: f64 = 0.3;
 const AHEAD_OUT_M: f64 = 40.0;
 
-/// Instants at which a conflict's width is taken.
+/// Samples of a conflict's width.
 const CONFLICT_SAMPLES: usize = 24;
 
-/// A canonical manoeuvre: turn, a line out to the offset that clears the set, turn back, a line until
-/// the set is passed, return.
+/// Predefined evasive manoeuvre: turn, a line out to the offset that clears the set, turn back, a
+/// line until the set is passed, return.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Canonical {
-    /// Radians.
+    /// Turn, radians.
     pub turn: f64,
-    /// Share of the way out that is to be sailed before the contact begins.
+    /// Fraction of the outbound part that precedes the contact.
     pub lead: f64,
-    /// Share of the offset that is aimed at.
+    /// Target offset as a fraction of the conflict's offset.
     pub reach: f64,
-    /// The turn out at the least speed, not at the greatest.
+    /// True where the outbound part uses the least speed, not the greatest.
     pub slow: bool,
-    /// Share of the time before it that is sailed at the greatest speed.
+    /// Fraction of the time before it that is sailed at the greatest speed.
     pub rush: f64,
 }
 
-/// Slots and lengths while they are put together.
+/// Initial guess under construction.
 #[derive(Debug, Default)]
 pub(crate) struct Draft {
     variables: Vec<SegmentVariable>,
@@ -237,7 +237,7 @@ impl Draft {
 }
 
 impl Canonical {
-    /// The initial guess on one side of the route.
+    /// Initial guess on one side of the route.
     pub(crate) fn guess(
         &self,
         problem: &Problem,
@@ -250,7 +250,7 @@ impl Canonical {
         let radius = problem.own.turning_radius;
         let (slow, fast) = (speed_table.slow, speed_table.fast);
         let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
-        // two arcs alone reach twice the versine
+        // two arcs alone reach an offset of twice the versine
         let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
         let turn = self
             .turn
@@ -261,7 +261,7 @@ impl Canonical {
         let way_out = (2.0 * arc + out) / if self.slow { speed_table.normal } else { fast };
         let departure = (conflict.from - self.lead * way_out).max(0.0);
         let lead = (departure * speed_table.normal).min(route.length());
-        // made good along the route on the way out, and on the way back at the flattest angle that fits
+        // progress along the route outbound, and on the return at the smallest angle that fits
         let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
         let room = route.length() - made_good;
         let way_back = |angle: f64| {
@@ -306,8 +306,9 @@ impl Canonical {
     }
 }
 
-/// A manoeuvre that lets the target pass ahead: as late as will do, own ship slows down and loses way by a
-/// turn of [`WAITING_TURN`] to the side, twice as far back, and on to the route.
+/// Waiting manoeuvre: lets the target pass ahead. As late as possible own ship slows down and loses
+/// distance by a turn of [`WAITING_TURN`] to the side, a turn back of twice that, and a turn onto
+/// the route.
 pub(crate) fn waiting(
     problem: &Problem,
     side: Side,
@@ -322,7 +323,7 @@ pub(crate) fn waiting(
     let begin = (due - needed).max(0.0);
     let arc = WAITING_TURN * problem.own.turning_radius;
     let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
-    // negated on purpose: a NaN is no initial guess
+    // negated on purpose: a NaN gives no initial guess
     if !(normal > slow && needed < 1.3 * due && lines.is_finite()) {
         return None;
     }
@@ -352,7 +353,8 @@ pub(crate) fn waiting(
     draft.guess(Ending::Return { leg, speed: fast })
 }
 
-/// A manoeuvre that slows down on the route until the target is past, then goes a little to the side and back, or not at all.
+/// Manoeuvre that slows down on the route until the target has passed, then moves slightly to the
+/// side and back.
 pub(crate) fn slowing(
     problem: &Problem,
     side: Side,
@@ -363,7 +365,7 @@ pub(crate) fn slowing(
     let (lag, due) = conflict.astern;
     let spell = (lag / (speed_table.normal - speed_table.slow)).max(APPARENT_TIME);
     let begin = (due - spell).max(0.0);
-    // negated on purpose: a NaN is no initial guess
+    // negated on purpose: a NaN gives no initial guess
     if !(problem.duty().may_slow && speed_table.slow <= slow(problem) && spell < 2.0 * due) {
         return None;
     }
@@ -388,8 +390,8 @@ pub(crate) fn slowing(
     })
 }
 
-/// A manoeuvre that passes ahead of the target: own ship rushes as early as will do, turns to the side halfway through
-/// the contact for what is missing, and loses her lead on a slow way back.
+/// Manoeuvre that passes ahead of the target. Own ship speeds up as early as needed, turns to the
+/// side halfway through the contact for the missing distance, and loses its lead on a slow return.
 pub(crate) fn ahead(
     problem: &Problem,
     side: Side,
@@ -402,7 +404,7 @@ pub(crate) fn ahead(
     let needed = lead / (fast - normal);
     let begin = (due - needed).max(0.0);
     let turn = 0.5 * (conflict.from + due);
-    // negated on purpose: a NaN is no initial guess
+    // negated on purpose: a NaN gives no initial guess
     if !(fast > normal && needed < MOST_RUSHING * due && turn > begin) {
         return None;
     }
@@ -420,8 +422,9 @@ pub(crate) fn ahead(
     draft.guess(Ending::Return { leg, speed: normal })
 }
 
-/// A plan of the graph as a initial guess: its arcs and lines in its own order, each with the other speeds beside
-/// it, and an empty turn back where it has one turn only. `way` are the states after the root.
+/// Graph plan as an initial guess. It keeps the order of arcs and lines, adds the other speeds
+/// beside each, and an empty turn back where it has only one turn. `way` holds the states after the
+/// root.
 pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGuess> {
     let speed_table = SpeedTable::of(problem);
     let (last, before) = way.split_last()?;
@@ -476,7 +479,7 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
     }
 }
 
-/// A turn and a line, with fewer speeds where there are many such groups.
+/// Turn and line, with fewer speeds where there are many such groups.
 fn group(
     draft: &mut Draft,
     speed_table: &SpeedTable,
@@ -489,7 +492,7 @@ fn group(
     let own = turn.or(line).map_or(fast, |s| s.speed);
     let (turns, lines): (&[f64], &[f64]) = match groups {
         0..=3 => (&[slow, fast], &[slow, normal, fast]),
-        // no more variables than there may be
+        // limits the number of variables
         4 => (&[own], &[slow, normal, fast]),
         _ => (&[own], &[slow, fast]),
     };
@@ -499,7 +502,7 @@ fn group(
     draft.line(&lines);
 }
 
-/// The speeds, without repetition, the nearest to the segment's own with its length.
+/// Speeds without repetition; the one nearest to the segment's speed gets its length.
 fn shared(segment: Option<&Segment>, speeds: &[f64]) -> Vec<(f64, f64)> {
     let mut lengths: Vec<(f64, f64)> = speeds.iter().map(|u| (*u, 0.0)).collect();
     lengths.dedup();

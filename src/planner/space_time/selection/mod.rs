@@ -1,4 +1,5 @@
-//! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
+//! Candidate selection: refines the graph's plans and predefined manoeuvres; the cheapest clear
+//! candidate wins.
 
 pub(crate) mod budget;
 pub(crate) mod initial_guess;
@@ -22,7 +23,7 @@ use crate::planner::space_time::selection::initial_guess::{
 };
 use crate::trajectory::Segment;
 
-/// Ahead of schedule first, then around the set: of use in every conflict.
+/// Ahead of schedule first, then around the set: useful in every conflict.
 const RUSH: Canonical = Canonical {
     turn: 0.5,
     lead: 0.3,
@@ -31,8 +32,9 @@ const RUSH: Canonical = Canonical {
     rush: 0.5,
 };
 
-/// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin. Chosen from
-/// 152 of all angles, leads and offsets, for 400 encounters: the set that together comes nearest to the best.
+/// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin
+/// of attraction. The best subset for 400 encounters of 152 combinations of angles, leads and
+/// offsets.
 const COMPACT: [Canonical; 4] = [
     Canonical {
         turn: 1.4,
@@ -58,7 +60,7 @@ const COMPACT: [Canonical; 4] = [
     RUSH,
 ];
 
-/// The same where the way through the set is long beside the way around it, as when overtaking.
+/// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
 const SLENDER: [Canonical; 5] = [
     Canonical {
         turn: 0.2,
@@ -91,54 +93,54 @@ const SLENDER: [Canonical; 5] = [
     RUSH,
 ];
 
-/// Way through over way around from which a conflict is slender.
+/// Slenderness from which a conflict uses [`SLENDER`].
 const SLENDER_FROM: f64 = 2.5;
 
-/// A side whose offset is this many times the other's gets one manoeuvre only.
+/// Ratio of the offsets of the two sides above which the farther side gets one manoeuvre only.
 const FAR_SIDE: f64 = 1.8;
 
-/// Way lost over way around below which waiting is tried as well.
+/// Ratio of the offset astern to the lateral one below which waiting is tried as well.
 const WORTH_WAITING: f64 = 1.2;
 
-/// Way won over way around below which rushing is tried as well.
+/// Ratio of the offset ahead to the lateral one below which passing ahead is tried as well.
 const WORTH_RUSHING: f64 = 1.2;
 
-/// Conflicts that get manoeuvres of their own, earliest first.
+/// Largest number of conflicts with manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
-/// Of manoeuvres that are enriched: the share of the cost by which one may be behind the best, and below which two are
-/// the same.
+/// Relative cost difference up to which a manoeuvre still gets insertions, and below which two
+/// manoeuvres count as the same.
 const BEHIND: f64 = 0.05;
 const ALIKE: f64 = 1e-3;
 
-/// Metres of line above which the leaders are cut for additions, and the best of them once more.
+/// Length above which lines are divided for the first and for the second insertion, metres.
 const UNCUT_M: [f64; 2] = [200.0, 80.0];
 
-/// Steps of a refinement after an enrichment, and of the last one, without scraps.
+/// Steps of a refinement after an insertion, and after the final pruning.
 const STEPS_ENRICHED: usize = 8;
 const STEPS_TIDY: usize = 6;
 
-/// Share of the cost that an enrichment has to gain for another to be tried.
+/// Relative gain of an insertion that justifies another.
 const WORTH_ANOTHER: f64 = 0.01;
 
-/// Share of the cost that a manoeuvre without scraps of turns and lines may cost more.
+/// Relative cost that pruning may add.
 const TIDINESS: f64 = 2e-3;
 
-/// Rounds after which arcs are cut into fine chords.
+/// Number of rounds after which arcs are divided into fine chords.
 const FINE_FROM: usize = 6;
 
-/// A clear trajectory.
+/// Clear trajectory.
 #[derive(Debug, Clone)]
 struct Candidate {
     motion: Vec<Segment>,
     cost: f64,
 }
 
-/// What is known so far.
+/// Candidates of one problem.
 #[derive(Debug)]
 pub(crate) struct Selection<'a> {
     context: Context<'a>,
-    /// The route on schedule.
+    /// Route on schedule.
     nominal_motion: &'a [Segment],
     search_budget: &'a SearchBudget,
     signatures: Vec<Vec<bool>>,
@@ -164,17 +166,18 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// Ways around the targets seen so far.
+    /// Number of distinct passing signatures seen so far.
     pub(crate) fn signatures(&self) -> usize {
         self.signatures.len()
     }
 
-    /// Takes a manoeuvre to refine.
+    /// Adds a manoeuvre to refine.
     pub(crate) fn begin_from(&mut self, guess: InitialGuess) {
         self.guesses.push(guess);
     }
 
-    /// Takes a plan of the graph, the states after the root, already tested; false where it does not comply with the rules.
+    /// Adds a tested plan of the graph, given by the states after the root; false where it violates
+    /// the rules.
     pub(crate) fn offer(&mut self, cost: f64, way: &[&State]) -> bool {
         let motion: Vec<Segment> = way.iter().flat_map(|s| s.motion.iter().copied()).collect();
         if !complies(&self.context, self.nominal_motion, &motion) {
@@ -191,8 +194,8 @@ impl<'a> Selection<'a> {
         true
     }
 
-    /// On which side each target is passed: the sign of its relative bearing rate at the least distance
-    /// of the middles.
+    /// Passing signature: the side on which each target is passed, as the sign of its relative
+    /// bearing rate at the least distance of the centres.
     fn signature(&self, motion: &[Segment]) -> Vec<bool> {
         by_obstacle(self.context.proxies)
             .map(|proxies| {
@@ -214,7 +217,7 @@ impl<'a> Selection<'a> {
             .collect()
     }
 
-    /// Refines the graph's plans and the canonical ones; true when the time ran out.
+    /// Refines the graph's plans and the predefined manoeuvres; true when the deadline was reached.
     pub(crate) fn refine(&mut self, conflicts: &[Conflict], clock: Clock) -> bool {
         let mut context = self.context;
         context.chord = COARSE_CHORD_RAD;
@@ -266,7 +269,7 @@ impl<'a> Selection<'a> {
         for round in 0..self.search_budget.steps {
             let decided = round >= self.search_budget.rounds
                 && running.iter().any(|r| r.best_cost().is_finite());
-            // nothing counts as clear before fine chords have seen it
+            // only manoeuvres checked with fine chords count as clear
             if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
@@ -297,8 +300,8 @@ impl<'a> Selection<'a> {
         clock.is_up()
     }
 
-    /// Adds what the leaders lack and refines them anew, and again what the best of them lacks; in the end without scraps,
-    /// where that costs next to nothing.
+    /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
+    /// them. In the end prunes short segments where that costs almost nothing.
     fn polish(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
         let leaders = leaders(running, self.search_budget.leaders);
         let mut least = leaders.first()?.1;
@@ -329,7 +332,8 @@ impl<'a> Selection<'a> {
         (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
     }
 
-    /// With what a manoeuvre lacks, refined anew; `None` where it lacks nothing or the time is up.
+    /// Manoeuvre with insertions, refined; `None` where nothing is inserted or the deadline was
+    /// reached.
     fn richer(&self, guess: &InitialGuess, uncut: f64, clock: Clock) -> Option<Refinement> {
         if clock.is_up() {
             return None;
@@ -341,7 +345,7 @@ impl<'a> Selection<'a> {
         )
     }
 
-    /// A refinement from beginning to end, of so many steps at most, and fewer where the time is up.
+    /// Refinement with at most `most` steps, and fewer after the deadline.
     fn refined(&self, guess: InitialGuess, most: usize, clock: Clock) -> Option<Refinement> {
         let mut refinement = Refinement::fitting(&self.context, guess)?;
         for _ in 0..most {
@@ -354,7 +358,7 @@ impl<'a> Selection<'a> {
         Some(refinement)
     }
 
-    /// Tests what the refinements found, in this order, until one passes.
+    /// Tests the refinements' results in the given order until one passes.
     fn collect<'r>(&mut self, found: impl Iterator<Item = &'r Refinement>) {
         for refinement in found {
             let Some(motion) = refinement.best_motion(&self.context) else {
@@ -366,7 +370,7 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// True once a motion was clear.
+    /// True once a candidate was clear.
     pub(crate) fn has_plan(&self) -> bool {
         self.best.is_some()
     }
@@ -392,7 +396,7 @@ impl<'a> Selection<'a> {
         clear
     }
 
-    /// The cheapest clear motion.
+    /// Cheapest clear motion.
     pub(crate) fn plan(self) -> Option<Plan> {
         let best = self.best?;
         Plan::measured(self.context.problem, best.motion, self.graph_cost)
@@ -404,15 +408,15 @@ fn best_of(running: &[Refinement]) -> Option<&Refinement> {
     running.iter().min_by(costs)
 }
 
-/// The cheapest of all and the next that is another, with their ranks: what a manoeuvre lacks can be worth more than the
-/// lead of one that lacks nothing. So many at most.
+/// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`.
+/// Insertions can gain more than the best manoeuvre's lead.
 fn leaders(running: &[Refinement], most: usize) -> Vec<(InitialGuess, f64)> {
     let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most);
     for refinement in ranked(running) {
         let rank = refinement.rank();
         let least = found.first().map_or(rank, |f| f.1);
         let alike = found.iter().any(|f| rank <= (1.0 + ALIKE) * f.1);
-        // negated on purpose: a NaN is behind
+        // negated on purpose: a NaN is too expensive
         if found.len() == most || !(rank <= (1.0 + BEHIND) * least) {
             break;
         }
@@ -423,15 +427,16 @@ fn leaders(running: &[Refinement], most: usize) -> Vec<(InitialGuess, f64)> {
     found
 }
 
-/// Cheapest first.
+/// Refinements by rank, cheapest first.
 fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
     let mut found: Vec<_> = running.iter().collect();
     found.sort_by(|a, b| a.rank().total_cmp(&b.rank()));
     found.into_iter()
 }
 
-/// Stops what has fallen behind after so many rounds, but never the first that is nearly clear. A missing metre costs at least the median of what it
-/// costs them: one that is stuck deep inside a set sees no price at all.
+/// Racing: stops refinements that have fallen behind after some rounds, but never the first that is
+/// nearly clear. A missing metre costs at least the median price, because a refinement stuck deep
+/// inside a set has no price.
 fn race(running: &mut [Refinement], rounds: usize, places: &[(usize, usize)]) {
     let places = places.iter().rev().find(|(from, _)| *from <= rounds);
     let places = places.map_or(running.len(), |p| p.1);

@@ -1,4 +1,4 @@
-//! A plan for other sets as a beginning: its turns and lines, refined for these. No search.
+//! Warm start: refines an earlier plan against new sets without a new search.
 
 use crate::frame::{Pose, Side, wrap};
 use crate::planner::clock::Clock;
@@ -17,17 +17,19 @@ use crate::planner::{NoPlan, Outcome, Planned, Problem};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
-/// Metres and radians. What is nearer to the route than this is on it.
+/// Distance (metres) and angle (radians) within which a pose is on the route.
 const ON_ROUTE_M: f64 = 1e-3;
 const ON_ROUTE_RAD: f64 = 1e-6;
 
-/// Slots beside those of turns and lines: the runs, and the two that are solved.
+/// Number of segment variables besides turns and lines: the runs and the dependent ones.
 const BESIDE: usize = 5;
 
-/// Plans one problem, beginning from a plan for other sets and with its turns in their order (numerical continuation).
+/// Plans one problem by a warm start from a plan for other sets, whose order of turns it keeps
+/// (numerical continuation).
 ///
-/// What [`crate::planner::space_time::plan`] says of its plans holds of this one, but that there may be none where `plan` has one, and the reverse. Some
-/// milliseconds: nothing is searched. Waits and motions of very many turns are no beginning: there is no plan then.
+/// The guarantees of [`crate::planner::space_time::plan`] hold. Either function may find a plan
+/// where the other finds none. Cost: some milliseconds, without a search. Plans with waits or with
+/// very many turns give no initial guess, and then no plan.
 pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
     let clock = Clock::new(problem.deadline);
     crate::planner::space_time::as_usual(problem, |problem, proxies, usual| match usual {
@@ -62,8 +64,9 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
     Planned::of(outcome)
 }
 
-/// A motion that runs along the route, leaves it, and comes back to it or to its end, as segment variables and lengths: sailed, it is the
-/// motion again. Lines get the other speeds beside theirs, empty, while there is room. `None` of any other motion.
+/// Initial guess from a motion that follows the route, leaves it, and returns to it or to its end.
+/// Its rollout is the motion again. Lines get the other speeds, with zero length, while there is
+/// room. `None` for any other motion.
 fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<InitialGuess> {
     let motion = merged(motion);
     if motion.iter().any(|s| s.speed <= 0.0) {
@@ -138,7 +141,7 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Initi
     draft.guess(ending)
 }
 
-/// Without what has no length; what goes on as it did before is one segment with it.
+/// Motion without segments of zero length and with equal neighbours merged.
 fn merged(motion: &[Segment]) -> Vec<Segment> {
     let mut merged: Vec<Segment> = Vec::with_capacity(motion.len());
     let of_use = |s: &&Segment| s.speed <= 0.0 || s.length() > tolerance::LENGTH_M;
@@ -159,7 +162,7 @@ fn is_at(route: &Route, distance: f64, pose: Pose) -> bool {
         && wrap(there.heading - pose.heading).abs() < ON_ROUTE_RAD
 }
 
-/// Which of three speeds is the nearest, the first of equals.
+/// Index of the nearest of three speeds, the first of equals.
 fn nearest(speed: f64, speeds: [f64; 3]) -> usize {
     let apart = |k: &usize| (speeds[*k] - speed).abs();
     (0..3)
@@ -179,7 +182,7 @@ mod tests {
     use crate::planner::space_time::refinement::structure::FLATTEST_RETURN;
     use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 
-    /// The problems of random encounters and traffic with the plans for them.
+    /// Runs a check on the problems of random encounters and traffic with their plans.
     fn at_plans(check: impl Fn(&Problem, &Trajectory, f64)) {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
             (0..6).map(move |guess| random_encounter(kind, guess, Placement::Random))
@@ -205,13 +208,13 @@ mod tests {
         at_plans(|problem, trajectory, _| {
             let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
             let Some(guess) = seed_of(problem, &route, trajectory.segments()) else {
-                // it only runs along the route
+                // it only follows the route
                 assert!(!trajectory.segments().iter().any(Segment::is_arc));
                 return;
             };
             let rollout = guess.structure.sail(problem, &route, &guess.lengths);
             let Some(rollout) = rollout else {
-                // the return is the flattest there may be, and a rounding flatter
+                // the return has the smallest angle, minus a rounding
                 let back = trajectory.segments().iter().rev().find(|s| s.is_arc());
                 let turn = back.map_or(0.0, |s| (s.turn_rate * s.duration).abs());
                 assert!((turn - FLATTEST_RETURN).abs() < 1e-9, "{turn} rad");
@@ -219,7 +222,7 @@ mod tests {
             };
             let again = Trajectory::new(rollout.motion()).expect("valid");
             assert!((again.end_time() - trajectory.end_time()).abs() < 1e-5);
-            // before that its runs along the route may be in another order
+            // before that, the runs along the route may be in another order
             let turn = trajectory.segments().iter().find(|s| s.is_arc());
             let leaves = turn.map_or(0.0, |s| s.start_time);
             for k in 0..=200 {
@@ -230,7 +233,8 @@ mod tests {
         });
     }
 
-    /// For its own sets, and for larger ones, judged by what the planner's own test has no part in.
+    /// Warm starts for the same sets and for larger ones, checked independently of the planner's
+    /// contact test.
     #[test]
     fn what_is_drawn_out_of_a_plan_is_clear_and_for_its_own_sets_no_dearer() {
         let (drawn, larger) = (std::cell::Cell::new(0), std::cell::Cell::new(0));

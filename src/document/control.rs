@@ -2,24 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::words;
 use crate::pipeline::Run;
-use crate::report::words;
 
 /// Ship, weights and grid; what every start led to; the homotopy classes.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{PlanDocument, ControlDocument};
-///
-/// let scenario = Scenario::read("scenarios/paper/figure_9.toml".as_ref())?;
-/// let plan = PlanDocument::of(&pipeline::run(scenario));
-/// let control: &ControlDocument = plan.optimal_control.as_ref().expect("planned by forces");
-/// assert_eq!((control.vessel.as_str(), control.start_intervals), ("cybership2", 50));
-/// assert!(control.starts.iter().any(|start| start.feasible));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(
     missing_docs,
@@ -44,17 +30,6 @@ pub struct ControlDocument {
 }
 
 /// To either side of zero.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::ForceLimitsDocument;
-///
-/// let text = r#"{ "surge_n": 2.0, "sway_n": 1.5, "yaw_nm": 1.5 }"#;
-/// let read: ForceLimitsDocument = serde_json::from_str(text)?;
-/// assert_eq!((read.surge_n, read.yaw_nm), (2.0, 1.5));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
 pub struct ForceLimitsDocument {
@@ -64,17 +39,6 @@ pub struct ForceLimitsDocument {
 }
 
 /// What one start led to.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::StartAttemptDocument;
-///
-/// let text = r#"{ "start": "lateral 1", "status": "solved", "feasible": true, "objective": 6.05, "iterations": 52 }"#;
-/// let read: StartAttemptDocument = serde_json::from_str(text)?;
-/// assert!(read.feasible && read.objective < Some(7.0));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct StartAttemptDocument {
@@ -86,18 +50,6 @@ pub struct StartAttemptDocument {
 }
 
 /// Plans that pass every set alike.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::HomotopyClassDocument;
-///
-/// let text = r#"{ "sides": ["starboard", "port", null], "objective": 6.05, "starts": 2 }"#;
-/// let read: HomotopyClassDocument = serde_json::from_str(text)?;
-/// // the third set is far away
-/// assert_eq!(read.sides[2], None);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct HomotopyClassDocument {

@@ -10,20 +10,6 @@ const SAME_SPEED: f64 = 0.05;
 const SAME_COURSE: f64 = std::f64::consts::PI / 900.0;
 
 /// How a scenario is like one before it.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::lint::{Likeness, likenesses};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let stand_on = Scenario::read("scenarios/colregs/stand-on.toml".as_ref())?;
-/// let found = likenesses(&[&scenario, &stand_on, &scenario]);
-/// // the one is the other in a mirror
-/// assert_eq!(found, [None, Some((0, Likeness::Mirrored)), Some((0, Likeness::Same))]);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Likeness {
     /// The same ships on the same courses, seen from own ship.

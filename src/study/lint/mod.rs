@@ -21,20 +21,6 @@ const INSTANTS: usize = 400;
 const ON_NO_SIDE: f64 = std::f64::consts::PI / 90.0;
 
 /// How much a target matters to own ship within the horizon, at sampled instants.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::lint::{Weight, lint};
-/// use searoom::scenario::formats::Declared;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let looked = lint(&scenario, &Declared::default());
-/// assert_eq!(looked.targets[0].weight, Weight::Meets);
-/// assert_eq!(Weight::Never.word(), "never");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Weight {
     /// Own ship, undisturbed, comes into her hard set.
@@ -57,20 +43,6 @@ impl Weight {
 }
 
 /// One target of a scenario, undisturbed.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::lint::{TargetLint, lint};
-/// use searoom::scenario::formats::Declared;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let ferry: TargetLint = lint(&scenario, &Declared::default()).targets.remove(0);
-/// assert_eq!((ferry.name.as_str(), ferry.role.name()), ("target", "give-way"));
-/// assert!(ferry.dcpa < 0.0 && (ferry.tcpa - 150.0).abs() < 1e-3);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetLint {
     /// Her name.
@@ -88,19 +60,6 @@ pub struct TargetLint {
 }
 
 /// What was found about one scenario.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::lint::{Lint, lint};
-/// use searoom::scenario::formats::Declared;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let Lint { targets, findings } = lint(&scenario, &Declared { ships: Some(2), ..Declared::default() });
-/// assert_eq!((targets.len(), findings.as_slice()), (1, ["ships are missing: 2 said, 1 found".to_owned()].as_slice()));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lint {
     /// In the scenario's order.

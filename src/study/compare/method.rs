@@ -5,19 +5,6 @@ use crate::scenario::{Compliance, Scenario};
 use crate::target::Representation;
 
 /// A planner with its settings, or a baseline.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Method, methods};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let names: Vec<String> = methods(&scenario).methods.iter().map(Method::to_string).collect();
-/// assert_eq!(names.first().map(String::as_str), Some("space-time, A*"));
-/// assert!(names.contains(&Method::HoldCourse.to_string()));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// A planner.

@@ -2,6 +2,7 @@
 //!
 //! A number that is not finite is written as null. Keys of what does not exist yet are absent.
 
+pub(crate) mod alteration;
 mod assessment;
 mod comparison;
 mod conduct;
@@ -13,6 +14,7 @@ mod plan;
 mod suite;
 mod targets;
 mod verification;
+pub(crate) mod words;
 
 pub use assessment::*;
 pub use comparison::{

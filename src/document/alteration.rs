@@ -1,7 +1,7 @@
 //! Alterations of course of any motion: the first one and the largest.
 
-use super::summary::Turn;
 use crate::frame::{Side, deg_from_radians, wrap};
+use crate::report::Turn;
 use crate::trajectory::Trajectory;
 
 /// Degrees. A smaller alteration of lines and arcs is no turn: nobody would see it.
@@ -9,7 +9,7 @@ const LEAST_TURN_DEG: f64 = 0.5;
 
 /// The first alteration of a trajectory: arcs that follow each other to one side are one turn. Under forces the first
 /// swing of the heading to one side.
-pub(super) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
+pub(crate) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
     if let Some(motion) = trajectory.steered() {
         return motion.swings().first().and_then(|swing| seen(swing.turned));
     }
@@ -34,7 +34,7 @@ pub(super) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
 
 /// The largest turn to one side without a straight stretch or a turn back in it, the one at the start from the course before,
 /// radians, included; under forces the largest swing of the heading to one side. `None` where all are too small to be seen.
-pub(super) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option<Turn> {
+pub(crate) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option<Turn> {
     if let Some(motion) = trajectory.steered() {
         let largest = motion
             .swings()

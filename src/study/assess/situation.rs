@@ -5,28 +5,6 @@ use crate::obstacle::Obstacle;
 use crate::trajectory::Segment;
 
 /// Own ship at t = 0 and the obstacles that she meets.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::assessment::Situation;
-/// use searoom::obstacle::Obstacle;
-/// use searoom::pipeline::sets;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
-/// let own = &scenario.own_ship;
-/// let situation = Situation {
-///     pose: own.pose,
-///     speed: own.speed,
-///     max_speed: own.max_speed(),
-///     horizon: scenario.horizon,
-///     obstacles: &obstacles,
-/// };
-/// assert_eq!((situation.held().end_time(), situation.velocity().norm()), (400.0, 5.0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Situation<'a> {
     /// Position, metres, and heading, radians; her course is her heading.

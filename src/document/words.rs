@@ -6,14 +6,14 @@ use crate::planner::{Escape, PlannerKind, SearchKind};
 use crate::scenario::Scenario;
 
 /// What the planner minimises.
-pub(super) fn objective(scenario: &Scenario) -> &'static str {
+pub(crate) fn objective(scenario: &Scenario) -> &'static str {
     match scenario.planner {
         PlannerKind::OptimalControl => "stage-cost",
         PlannerKind::SpaceTime | PlannerKind::PathTime => scenario.objective.word(),
     }
 }
 
-pub(super) fn search(kind: SearchKind) -> &'static str {
+pub(crate) fn search(kind: SearchKind) -> &'static str {
     match kind {
         SearchKind::AStar => "a-star",
         SearchKind::Dijkstra => "dijkstra",
@@ -21,7 +21,7 @@ pub(super) fn search(kind: SearchKind) -> &'static str {
 }
 
 /// Until when course and speed are held, and what then.
-pub(super) fn stand_on(escape: &Escape) -> String {
+pub(crate) fn stand_on(escape: &Escape) -> String {
     let until = format!(
         "course and speed are held until {:.1} s, the latest time at which an escape is known to be clear: ",
         escape.latest
@@ -39,7 +39,7 @@ pub(super) fn stand_on(escape: &Escape) -> String {
 }
 
 /// What a path is called: 0 is the main one.
-pub(super) fn path(index: usize) -> String {
+pub(crate) fn path(index: usize) -> String {
     match index {
         0 => "main".to_owned(),
         index => format!("alternative {index}"),
@@ -47,13 +47,13 @@ pub(super) fn path(index: usize) -> String {
 }
 
 /// The paths that are sailed, in their order.
-pub(super) fn paths(diagram: &PathTimeDiagram) -> String {
+pub(crate) fn paths(diagram: &PathTimeDiagram) -> String {
     let mut sailed: Vec<usize> = diagram.legs.iter().map(|leg| leg.path).collect();
     sailed.dedup();
     let names: Vec<String> = sailed.into_iter().map(path).collect();
     names.join(", ")
 }
-pub(super) fn side(side: Side) -> &'static str {
+pub(crate) fn side(side: Side) -> &'static str {
     match side {
         Side::Port => "port",
         Side::Starboard => "starboard",

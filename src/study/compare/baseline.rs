@@ -1,29 +1,15 @@
 //! Two motions that need no planner: hold course, and one velocity that is out of every velocity obstacle.
 
-use crate::assessment::{Situation, least_alteration};
 use crate::evaluation::Evaluation;
 use crate::frame::{Pose, direction};
 use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::pipeline::{self, TargetSets};
 use crate::scenario::{Compliance, Scenario};
+use crate::study::assess::{Situation, least_alteration};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
 /// One velocity from t = 0, to the last waypoint where it leads there, else to the horizon.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Baseline, constant_velocity, hold_course};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let held: Baseline = hold_course(&scenario);
-/// assert!(held.arrived && !held.evaluation.verified());
-/// let clear: Baseline = constant_velocity(&scenario).expect("a velocity out of every velocity obstacle");
-/// assert!(clear.evaluation.min_clearance > held.evaluation.min_clearance);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Baseline {
     /// The motion: one segment.

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
 use super::plan::{cost_of, finite, position, stats, timing};
-use crate::comparison::{Entry, Inapplicable, Sailed};
-use crate::report::comparison::ComparisonRow;
-use crate::report::words;
+use super::words;
+use crate::report::ComparisonRow;
+use crate::study::compare::{Entry, Inapplicable, Sailed};
 
 /// Seconds between two positions of a track, and how many there are at most beside the first: those of a longer motion are farther
 /// apart, evenly.
@@ -14,25 +14,6 @@ const TRACK_STEP: f64 = 5.0;
 const MOST_STEPS: f64 = 1000.0;
 
 /// Every scenario that was compared, in order.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Contender, Method};
-/// use searoom::report::ComparisonRow;
-/// use searoom::report::document::{ComparisonDocument, ScenarioComparisonDocument};
-/// use searoom::scenario::Scenario;
-///
-/// let file = "scenarios/colregs/give-way.toml";
-/// let scenario = Scenario::read(file.as_ref())?;
-/// let entries = [Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario)];
-/// let rows = [ComparisonRow::of(&scenario, &entries[0])];
-/// let compared = ScenarioComparisonDocument::of(file.to_owned(), &scenario.title, &entries, &rows, &[]);
-/// let document = ComparisonDocument { comparisons: vec![compared] };
-/// let text = serde_json::to_string(&document).expect("JSON");
-/// assert!(text.starts_with(r#"{"comparisons":[{"file":"scenarios/colregs/give-way.toml""#));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct ComparisonDocument {
@@ -40,25 +21,6 @@ pub struct ComparisonDocument {
 }
 
 /// One scenario. Where it could not be read `error` says why, and the rest is empty.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Contender, Method};
-/// use searoom::report::ComparisonRow;
-/// use searoom::report::document::{ScenarioComparisonDocument};
-/// use searoom::scenario::Scenario;
-///
-/// let file = "scenarios/colregs/give-way.toml";
-/// let scenario = Scenario::read(file.as_ref())?;
-/// let entries = [Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario)];
-/// let rows = [ComparisonRow::of(&scenario, &entries[0])];
-/// let compared = ScenarioComparisonDocument::of(file.to_owned(), &scenario.title, &entries, &rows, &[]);
-/// assert_eq!((compared.scenario.as_deref(), compared.entries.len()), (Some("Give-way"), 1));
-/// let failed = ScenarioComparisonDocument::failed("a.toml".to_owned(), "cannot be read".to_owned());
-/// assert!(failed.entries.is_empty() && failed.error.is_some());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/compare.md says what each key means")]
 pub struct ScenarioComparisonDocument {
@@ -70,25 +32,6 @@ pub struct ScenarioComparisonDocument {
 }
 
 /// One contender.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Contender, Method};
-/// use searoom::report::ComparisonRow;
-/// use searoom::report::document::{EntryDocument, ScenarioComparisonDocument};
-/// use searoom::scenario::Scenario;
-///
-/// let file = "scenarios/colregs/give-way.toml";
-/// let scenario = Scenario::read(file.as_ref())?;
-/// let entries = [Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario)];
-/// let rows = [ComparisonRow::of(&scenario, &entries[0])];
-/// let compared = ScenarioComparisonDocument::of(file.to_owned(), &scenario.title, &entries, &rows, &[]);
-/// let held: &EntryDocument = &compared.entries[0];
-/// assert!(!held.verified && !held.safe && held.search_stats.is_none());
-/// assert_eq!(held.cost.as_ref().map(|cost| cost.duration_s), Some(300.0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/compare.md says what each key means")]
 pub struct EntryDocument {
@@ -117,24 +60,6 @@ pub struct EntryDocument {
 }
 
 /// A place at a time.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Contender, Method};
-/// use searoom::report::ComparisonRow;
-/// use searoom::report::document::{ScenarioComparisonDocument, TrackPointDocument};
-/// use searoom::scenario::Scenario;
-///
-/// let file = "scenarios/colregs/give-way.toml";
-/// let scenario = Scenario::read(file.as_ref())?;
-/// let entries = [Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario)];
-/// let rows = [ComparisonRow::of(&scenario, &entries[0])];
-/// let compared = ScenarioComparisonDocument::of(file.to_owned(), &scenario.title, &entries, &rows, &[]);
-/// let end: &TrackPointDocument = compared.entries[0].track.last().expect("a way");
-/// assert_eq!((end.t_s, end.position.east_m), (300.0, 1500.0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
 pub struct TrackPointDocument {
@@ -144,17 +69,6 @@ pub struct TrackPointDocument {
 }
 
 /// A method that the scenario has no use for.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::InapplicableDocument;
-///
-/// let text = r#"{ "method": "optimal control", "reason": "own_ship.length_m: 30 m" }"#;
-/// let read: InapplicableDocument = serde_json::from_str(text)?;
-/// assert_eq!(read.method, "optimal control");
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct InapplicableDocument {
@@ -268,7 +182,7 @@ mod tests {
                 mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {way}, north_m = 0 }}] }}"#
             );
             let scenario = Scenario::parse(&text).expect("valid");
-            let entries = crate::comparison::compare(&scenario, &[0.0]);
+            let entries = crate::study::compare::compare(&scenario, &[0.0]);
             let tracks: Vec<_> = entries
                 .iter()
                 .map(track)

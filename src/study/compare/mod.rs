@@ -24,19 +24,6 @@ use crate::scenario::Scenario;
 use crate::trajectory::Trajectory;
 
 /// One method at one accepted risk, before it is run.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Contender, Method, contenders};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// // holding course asks for no risk: it runs once
-/// let all: Vec<Contender> = contenders(&[Method::HoldCourse], &[0.0, 0.1]);
-/// assert_eq!(all, [Contender { method: Method::HoldCourse, max_risk: 0.0 }]);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contender {
     /// Who.
@@ -46,25 +33,6 @@ pub struct Contender {
 }
 
 /// What one contender came to.
-///
-/// ```
-/// use searoom::comparison::{self, Contender, Entry, Inapplicable, Method, Methods, Sailed};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
-/// let Methods { methods, inapplicable } = comparison::methods(&scenario);
-/// assert!(methods.contains(&Method::HoldCourse));
-/// let reasons: Vec<&String> = inapplicable.iter().map(|i: &Inapplicable| &i.reason).collect();
-/// assert!(reasons.is_empty(), "every planner applies");
-///
-/// let contender = Contender { method: Method::HoldCourse, max_risk: 0.0 };
-/// let entry: Entry = contender.run(&scenario);
-/// let Sailed::Baseline(held) = &entry.result else {
-///     panic!("a baseline");
-/// };
-/// assert!(held.arrived && !held.evaluation.verified(), "she runs into the other");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Entry {
     /// Who, and at which risk.
@@ -74,22 +42,6 @@ pub struct Entry {
 }
 
 /// What is sailed.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Contender, Method, Sailed};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let held = Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario);
-/// match held.result {
-///     Sailed::Baseline(baseline) => assert!(baseline.arrived),
-///     Sailed::Planned(run) => panic!("planned: {}", run.scenario.title),
-///     Sailed::Nothing(why) => panic!("{why}"),
-/// }
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub enum Sailed {
     /// By a planner, or nothing.

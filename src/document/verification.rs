@@ -12,24 +12,6 @@ const UNREADABLE: &str = "unreadable";
 const UNPROVEN: &str = "unproven";
 
 /// Every document that was asked for, in order.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{PlanDocument, VerificationDocument, VerifiedPlanDocument};
-/// use searoom::verification::verify;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let text = serde_json::to_string(&PlanDocument::of(&run)).expect("JSON");
-/// let checked = verify(&text).expect("a plan document");
-/// let entry = VerifiedPlanDocument::of("plan.json".to_owned(), &checked);
-/// let broken = VerifiedPlanDocument::unreadable("b.json".to_owned(), "no plan".to_owned());
-/// let document = VerificationDocument::of(vec![entry, broken]);
-/// assert_eq!((document.plans.len(), document.verified), (2, 1));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct VerificationDocument {
@@ -39,23 +21,6 @@ pub struct VerificationDocument {
 }
 
 /// One document. What is unknown of one that is unreadable or unproven is null.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{PlanDocument, VerifiedPlanDocument};
-/// use searoom::verification::verify;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let text = serde_json::to_string(&PlanDocument::of(&run)).expect("JSON");
-/// let checked = verify(&text).expect("a plan document");
-/// let entry = VerifiedPlanDocument::of("plan.json".to_owned(), &checked);
-/// assert!(entry.verified && entry.safe && entry.violations.is_empty());
-/// assert_eq!(entry.planner.as_deref(), Some("space-time"));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/verify.md says what each key means")]
 pub struct VerifiedPlanDocument {
@@ -75,23 +40,6 @@ pub struct VerifiedPlanDocument {
 }
 
 /// How near a target is met.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{MarginDocument, PlanDocument, VerifiedPlanDocument};
-/// use searoom::verification::verify;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let text = serde_json::to_string(&PlanDocument::of(&run)).expect("JSON");
-/// let checked = verify(&text).expect("a plan document");
-/// let entry = VerifiedPlanDocument::of("plan.json".to_owned(), &checked);
-/// let ferry: &MarginDocument = &entry.targets[0];
-/// assert!(ferry.min_margin_m > Some(-1e-6) && ferry.min_clearance_m > Some(20.0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MarginDocument {
     /// Her name.

@@ -8,17 +8,6 @@ use crate::colregs::conduct::{Conduct, Measure};
 use crate::frame::deg_from_radians;
 
 /// A role and when own ship has it along the plan.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::RoleDocument;
-///
-/// let text = r#"{ "role": "give-way", "from_s": 0.0, "until_s": 98.0 }"#;
-/// let read: RoleDocument = serde_json::from_str(text)?;
-/// assert!(read.role == "give-way" && read.from_s < read.until_s);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct RoleDocument {
@@ -28,17 +17,6 @@ pub struct RoleDocument {
 }
 
 /// A rule that is broken.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::BreachDocument;
-///
-/// let text = r#"{ "rule": "17(c)", "what": "heads to port of her first course before she has passed", "t_s": 89.0 }"#;
-/// let read: BreachDocument = serde_json::from_str(text)?;
-/// assert_eq!((read.rule.as_str(), read.t_s), ("17(c)", 89.0));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct BreachDocument {
@@ -48,18 +26,6 @@ pub struct BreachDocument {
 }
 
 /// What a monitor found.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::MonitorDocument;
-///
-/// let text = r#"{ "monitor": "S", "verdict": "satisfied", "robustness": 218.9, "unit": "m", "t_s": 136.0 }"#;
-/// let read: MonitorDocument = serde_json::from_str(text)?;
-/// // never nearer than that, the moment at which it was so near
-/// assert_eq!((read.robustness, read.t_s), (Some(218.9), Some(136.0)));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct MonitorDocument {
@@ -71,19 +37,6 @@ pub struct MonitorDocument {
 }
 
 /// Own ship toward one target along the plan.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{PlanDocument, ConductDocument};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let plan = PlanDocument::of(&pipeline::run(scenario));
-/// let conduct: &ConductDocument = plan.encounters[0].conduct.as_ref().expect("a plan among ships");
-/// assert!(conduct.breaches.is_empty() && conduct.scores["safety"] > 0.9);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct ConductDocument {

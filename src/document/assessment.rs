@@ -2,27 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::assessment::{Approach, Assessment};
 use crate::frame::{Vector, deg_from_radians};
 use crate::geometry::ConvexSet;
+use crate::study::assess::{Approach, Assessment};
 
 /// What `assess` answers.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::AssessmentDocument;
-///
-/// let text = r#"{
-///     "scenario": "Give-way", "horizon_s": 400.0, "sets": "hard", "targets": [], "points": [], "velocities": [],
-///     "hold_course": { "targets": [{ "name": "ferry", "dcpa_m": 0.0, "tcpa_s": 129.5, "max_risk": 1.0 }] },
-///     "alteration": { "starboard_deg": 15.7, "port_deg": 20.3, "speed_mps": -1.4 }
-/// }"#;
-/// let read: AssessmentDocument = serde_json::from_str(text)?;
-/// assert_eq!(read.hold_course.targets[0].max_risk, 1.0);
-/// assert_eq!(read.alteration.starboard_deg, Some(15.7));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct AssessmentDocument {
@@ -38,18 +22,6 @@ pub struct AssessmentDocument {
 }
 
 /// Where a target may be.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::TargetSectionsDocument;
-///
-/// let text = r#"{ "name": "ferry", "representation": "polytope", "sections": [
-///     { "t_s": 60.0, "vertices_m": [[0.0, 0.0], [10.0, 0.0], [0.0, 10.0]] }] }"#;
-/// let read: TargetSectionsDocument = serde_json::from_str(text)?;
-/// assert_eq!((read.name.as_str(), read.sections.len()), ("ferry", 1));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct TargetSectionsDocument {
@@ -59,17 +31,6 @@ pub struct TargetSectionsDocument {
 }
 
 /// The set at one time, `[east, north]`.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::SectionDocument;
-///
-/// let text = r#"{ "t_s": 60.0, "center_m": [5.0, 0.0], "shape_m2": [[100.0, 0.0], [0.0, 25.0]] }"#;
-/// let read: SectionDocument = serde_json::from_str(text)?;
-/// assert!(matches!(read, SectionDocument::Ellipse { t_s: 60.0, .. }));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 #[expect(missing_docs, reason = "the names are the units")]
@@ -85,18 +46,6 @@ pub enum SectionDocument {
 }
 
 /// One point.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::PointDocument;
-///
-/// let text = r#"{ "east_m": 750.0, "north_m": 0.0, "t_s": 150.0, "targets": [
-///     { "name": "ferry", "inside": true, "alpha": 0.0, "risk": 1.0 }] }"#;
-/// let read: PointDocument = serde_json::from_str(text)?;
-/// assert!(read.targets.iter().all(|target| target.inside));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
 pub struct PointDocument {
@@ -107,18 +56,6 @@ pub struct PointDocument {
 }
 
 /// One point and one target.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::PointRiskDocument;
-///
-/// let text = r#"{ "name": "ferry", "inside": false, "alpha": 1.5, "risk": 0.0 }"#;
-/// let read: PointRiskDocument = serde_json::from_str(text)?;
-/// // the velocities would have to spread half as wide again
-/// assert_eq!((read.alpha, read.risk), (Some(1.5), 0.0));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct PointRiskDocument {
@@ -130,17 +67,6 @@ pub struct PointRiskDocument {
 }
 
 /// Course and speed held.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::HoldCourseDocument;
-///
-/// let text = r#"{ "targets": [{ "name": "ferry", "dcpa_m": 0.0, "tcpa_s": 129.5, "max_risk": 1.0 }] }"#;
-/// let read: HoldCourseDocument = serde_json::from_str(text)?;
-/// assert_eq!(read.targets.len(), 1);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the name says it")]
 pub struct HoldCourseDocument {
@@ -148,17 +74,6 @@ pub struct HoldCourseDocument {
 }
 
 /// Course and speed held, one target.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::HeldDocument;
-///
-/// let text = r#"{ "name": "ferry", "dcpa_m": 0.0, "tcpa_s": 129.5, "max_risk": 1.0 }"#;
-/// let read: HeldDocument = serde_json::from_str(text)?;
-/// assert!(read.dcpa_m <= 0.0 && read.tcpa_s < 130.0);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
 pub struct HeldDocument {
@@ -169,18 +84,6 @@ pub struct HeldDocument {
 }
 
 /// The least alterations that leave every velocity obstacle; null where none does.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::AlterationDocument;
-///
-/// let text = r#"{ "starboard_deg": 15.7, "port_deg": null, "speed_mps": -1.4 }"#;
-/// let read: AlterationDocument = serde_json::from_str(text)?;
-/// // no turn to port leaves every velocity obstacle
-/// assert!(read.port_deg.is_none());
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
 pub struct AlterationDocument {
@@ -191,18 +94,6 @@ pub struct AlterationDocument {
 }
 
 /// One velocity.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::VelocityDocument;
-///
-/// let text = r#"{ "east_mps": 4.8, "north_mps": -1.4, "targets": [
-///     { "name": "ferry", "dcpa_m": 5.8, "tcpa_s": 136.7, "in_velocity_obstacle": false }] }"#;
-/// let read: VelocityDocument = serde_json::from_str(text)?;
-/// assert!(read.targets.iter().all(|target| !target.in_velocity_obstacle));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
 pub struct VelocityDocument {
@@ -212,17 +103,6 @@ pub struct VelocityDocument {
 }
 
 /// One velocity and one target.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::ApproachDocument;
-///
-/// let text = r#"{ "name": "ferry", "dcpa_m": 5.8, "tcpa_s": 136.7, "in_velocity_obstacle": false }"#;
-/// let read: ApproachDocument = serde_json::from_str(text)?;
-/// assert_eq!((read.dcpa_m, read.in_velocity_obstacle), (5.8, false));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
 pub struct ApproachDocument {

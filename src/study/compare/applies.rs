@@ -6,19 +6,6 @@ use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, Target};
 
 /// A method that a scenario has no use for.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Inapplicable, methods};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/harbour/munkholmen.toml".as_ref())?;
-/// let left_out: Vec<Inapplicable> = methods(&scenario).inapplicable;
-/// // optimal control keeps off no land
-/// assert!(left_out.iter().any(|other| other.reason.starts_with("map: land")));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inapplicable {
     /// Which.
@@ -28,18 +15,6 @@ pub struct Inapplicable {
 }
 
 /// What applies, in the order of the rows, and what does not.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::comparison::{Method, Methods, methods};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let Methods { methods, inapplicable } = methods(&scenario);
-/// assert_eq!((methods.last(), inapplicable.len()), (Some(&Method::ConstantVelocity), 0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Methods {
     /// These can be run.

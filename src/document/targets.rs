@@ -9,20 +9,6 @@ use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{Motion, Representation, ShipTrack, Target};
 
 /// A tracked ship, or the sets of an explicit target, as the scenario gives them.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{PlanDocument, TargetDocument};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let plan = PlanDocument::of(&pipeline::run(scenario));
-/// let ferry: &TargetDocument = &plan.targets[0];
-/// assert_eq!((ferry.name.as_str(), ferry.representation.as_str()), ("target", "polytope"));
-/// assert!(ferry.ship.is_some() && ferry.velocity_sets.is_empty());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetDocument {
     /// Unique within a document.
@@ -41,20 +27,6 @@ pub struct TargetDocument {
 }
 
 /// A tracked ship, in the keys of the scenario file.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{PlanDocument, ShipDocument};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let plan = PlanDocument::of(&pipeline::run(scenario));
-/// let ferry: &ShipDocument = plan.targets[0].ship.as_ref().expect("a tracked ship");
-/// assert_eq!((ferry.course_deg, ferry.length_m), (0.0, 60.0));
-/// assert!((ferry.course_spread_deg - 5.0).abs() < 1e-9);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct ShipDocument {
@@ -70,17 +42,6 @@ pub struct ShipDocument {
 }
 
 /// A set of velocities and until when it holds.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::SpellDocument;
-///
-/// let text = r#"{ "until_s": 60.0, "vertices_mps": [[0.0, 4.0], [0.0, 6.0]] }"#;
-/// let read: SpellDocument = serde_json::from_str(text)?;
-/// assert_eq!(read.until_s, Some(60.0));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpellDocument {
     /// Null for the last.

@@ -3,25 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::plan::finite;
-use crate::lint::Lint;
+use crate::study::lint::Lint;
 
 /// Many scenarios, looked at without planning.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::lint::lint;
-/// use searoom::report::document::{LintDocument, LintScenarioDocument};
-/// use searoom::scenario::formats::Declared;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let looked = lint(&scenario, &Declared::default());
-/// let one = LintScenarioDocument::of("give-way.toml".to_owned(), scenario.title.clone(), &looked, Vec::new());
-/// let document = LintDocument::of(vec![one]);
-/// assert_eq!((document.summary.targets, document.summary.findings), (1, 0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/formats.md says what each key means")]
 pub struct LintDocument {
@@ -30,15 +14,6 @@ pub struct LintDocument {
 }
 
 /// One of them; of an unreadable file `error` says why.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::LintScenarioDocument;
-///
-/// let failed = LintScenarioDocument::failed("a.toml".to_owned(), "title: missing".to_owned());
-/// assert!(failed.targets.is_empty() && failed.error.as_deref() == Some("title: missing"));
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/formats.md says what each key means")]
 pub struct LintScenarioDocument {
@@ -51,17 +26,6 @@ pub struct LintScenarioDocument {
 }
 
 /// One target, undisturbed.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::LintTargetDocument;
-///
-/// let text = r#"{ "name": "ferry", "role": "give-way", "undisturbed_dcpa_m": -21.0, "undisturbed_tcpa_s": 150.0, "to_set_m": -110.0, "matters": "meets" }"#;
-/// let read: LintTargetDocument = serde_json::from_str(text)?;
-/// assert_eq!((read.matters.as_str(), read.undisturbed_tcpa_s), ("meets", Some(150.0)));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/formats.md says what each key means")]
 pub struct LintTargetDocument {
@@ -74,17 +38,6 @@ pub struct LintTargetDocument {
 }
 
 /// How many of which.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::LintSummaryDocument;
-///
-/// let text = r#"{ "scenarios": 22, "targets": 50, "findings": 4, "unreadable": 0 }"#;
-/// let read: LintSummaryDocument = serde_json::from_str(text)?;
-/// assert_eq!(read.targets, 50);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/formats.md says what each key means")]
 pub struct LintSummaryDocument {

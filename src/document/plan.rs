@@ -12,6 +12,7 @@ use super::parts::{
 };
 use super::path_time::{PathTimeDocument, path_time_document};
 use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
+use super::words;
 use crate::evaluation::Evaluation;
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
@@ -21,7 +22,6 @@ use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::Verdict;
 use crate::pipeline::{Relaxation, Run};
 use crate::planner::{Objective, Plan};
-use crate::report::words;
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
 
@@ -34,24 +34,6 @@ const SAMPLE_STEP: f64 = 1.0;
 const MOST_SAMPLES: u32 = 20_000;
 
 /// One plan, alone: everything that is needed to check it again.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::pipeline;
-/// use searoom::report::document::{PLAN_FORMAT, PlanDocument};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let plan = PlanDocument::of(&pipeline::run(scenario));
-/// assert_eq!((plan.format.as_str(), plan.outcome.as_str()), (PLAN_FORMAT, "solved"));
-/// assert!(plan.verified && plan.safe);
-/// // what is written can be read
-/// let text = serde_json::to_string(&plan).expect("JSON");
-/// let read: PlanDocument = serde_json::from_str(&text).expect("a plan");
-/// assert_eq!(read.encounters[0].role, "give-way");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct PlanDocument {

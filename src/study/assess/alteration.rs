@@ -15,30 +15,6 @@ use crate::tolerance;
 const MAX_ENDS: usize = 100_000;
 
 /// The least alterations, each alone. Zero where own velocity is out of every velocity obstacle already.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::assessment::{Alteration, Situation, least_alteration};
-/// use searoom::obstacle::Obstacle;
-/// use searoom::pipeline::sets;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let obstacles: Vec<Obstacle> = sets(&scenario).into_iter().map(|target| target.hard).collect();
-/// let own = &scenario.own_ship;
-/// let situation = Situation {
-///     pose: own.pose,
-///     speed: own.speed,
-///     max_speed: own.max_speed(),
-///     horizon: scenario.horizon,
-///     obstacles: &obstacles,
-/// };
-/// let Alteration { starboard, port, .. } = least_alteration(&situation);
-/// let (starboard, port) = (starboard.expect("a way"), port.expect("a way"));
-/// assert!(starboard < port && starboard.to_degrees() < 16.0, "the ferry comes from starboard");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Alteration {
     /// Turn to starboard at own speed, radians, in `[0, pi]`; `None` when no turn helps.

@@ -18,21 +18,6 @@ pub const INTERNAL_FAULT: &str = "internal-fault";
 pub const NOT_APPLICABLE: &str = "not-applicable";
 
 /// Many runs in one document.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{SuiteDocument, SuiteRunDocument, UNREADABLE};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let entry = SuiteRunDocument::of("give-way.toml".to_owned(), &run, Vec::new());
-/// let broken = SuiteRunDocument::failed("a.toml".to_owned(), UNREADABLE, "title: missing".to_owned());
-/// let suite = SuiteDocument::of(vec![entry, broken]);
-/// assert_eq!(suite.summary.to_string(), "2 scenarios: 1 solved, 1 unreadable; 1 verified, 1 safe");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct SuiteDocument {
@@ -42,21 +27,6 @@ pub struct SuiteDocument {
 
 /// One run of a suite. Where there was none, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`], and `error` says why, or
 /// [`NOT_APPLICABLE`], and `reason` does; the keys that have no meaning are null.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::report::document::{SuiteRunDocument, UNREADABLE};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// let entry = SuiteRunDocument::of("give-way.toml".to_owned(), &run, Vec::new());
-/// let broken = SuiteRunDocument::failed("a.toml".to_owned(), UNREADABLE, "title: missing".to_owned());
-/// assert_eq!((entry.outcome.as_str(), entry.targets), ("solved", Some(1)));
-/// assert!(broken.cost.is_none() && !broken.verified);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct SuiteRunDocument {
@@ -82,20 +52,6 @@ pub struct SuiteRunDocument {
 }
 
 /// How many of which.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::report::document::SuiteSummaryDocument;
-///
-/// let text = r#"{
-///     "scenarios": 4, "solved": 4, "relaxed": 0, "infeasible": 0, "deadline": 0,
-///     "not_applicable": 0, "unreadable": 0, "internal_faults": 0, "verified": 4, "safe": 4, "not_safe": 0
-/// }"#;
-/// let read: SuiteSummaryDocument = serde_json::from_str(text)?;
-/// assert_eq!(read.to_string(), "4 scenarios: 4 solved; 4 verified, 4 safe");
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SuiteSummaryDocument {
     /// All of them: the sum of the seven outcomes below.

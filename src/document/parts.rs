@@ -1,0 +1,241 @@
+//! What documents are made of: mirrors of what is written, nothing more.
+
+use serde::{Deserialize, Serialize};
+
+use super::conduct::ConductDocument;
+
+/// A point of the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct PositionDocument {
+    pub east_m: f64,
+    pub north_m: f64,
+}
+
+/// Own ship and her limits, in the keys of the scenario file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct OwnShipDocument {
+    pub position: PositionDocument,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+    pub length_m: f64,
+    pub beam_m: f64,
+    pub turning_radius_m: f64,
+    pub speeds_mps: Vec<f64>,
+    pub safety_margin_m: f64,
+    /// 0 without land.
+    pub land_margin_m: f64,
+}
+
+/// The desired trajectory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct MissionDocument {
+    pub waypoints: Vec<PositionDocument>,
+    pub leg_speeds_mps: Vec<f64>,
+    /// Desired end.
+    pub duration_s: f64,
+    pub length_m: f64,
+    /// Other paths that may be sailed; absent where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alternatives: Vec<Vec<PositionDocument>>,
+}
+
+/// Something that was given up.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct RelaxationDocument {
+    pub kind: String,
+    pub target: String,
+    pub amount: f64,
+    pub unit: String,
+    /// Of a set that is entered and left: nothing is claimed before. Absent elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until_s: Option<f64>,
+}
+
+/// How the hold of a ship that stands on ends.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct EscapeDocument {
+    pub policy: String,
+    pub latest_s: f64,
+    pub first_segment: usize,
+    pub turn_deg: f64,
+    pub speed_mps: f64,
+}
+
+/// Something that the independent checker found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct ViolationDocument {
+    pub what: String,
+    pub t_s: Option<f64>,
+}
+
+/// The figures of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct CostDocument {
+    pub objective: f64,
+    pub space_time_error_m2: f64,
+    /// Until when that is counted.
+    pub space_time_error_until_s: f64,
+    pub space_time_error_arc_length_m2: f64,
+    pub arrived: bool,
+    pub duration_s: f64,
+    pub length_m: f64,
+    /// Null for a plan that never arrives.
+    pub delay_s: Option<f64>,
+    /// Against the sets of which `obstacles` are the level sets.
+    pub max_risk: f64,
+    /// Null without targets.
+    pub min_clearance_m: Option<f64>,
+    /// The same over `arrival_hold_s` after the end of the motion, own ship lying where it ends.
+    #[serde(default)]
+    pub hold_clearance_m: Option<f64>,
+    #[serde(default)]
+    pub arrival_hold_s: f64,
+    /// Least distance between own hull and land; null without land.
+    pub min_land_distance_m: Option<f64>,
+}
+
+/// What the search did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct SearchStatsDocument {
+    pub expanded: usize,
+    pub generated: usize,
+    pub edges_checked: usize,
+}
+
+/// The only figure that differs between two runs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the name says it")]
+pub struct TimingDocument {
+    pub plan_s: f64,
+}
+
+/// A pose at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct StartDocument {
+    pub t_s: f64,
+    pub east_m: f64,
+    pub north_m: f64,
+    pub course_deg: f64,
+}
+
+/// A line or an arc; starboard turns are positive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct SegmentDocument {
+    pub start: StartDocument,
+    pub duration_s: f64,
+    pub speed_mps: f64,
+    pub turn_rate_deg_per_s: f64,
+}
+
+/// A pose at a time, with the speed from then on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct SampleDocument {
+    pub t_s: f64,
+    pub east_m: f64,
+    pub north_m: f64,
+    pub course_deg: f64,
+    pub speed_mps: f64,
+    /// At the nodes of a motion under forces.
+    #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
+    pub node: Option<NodeDocument>,
+}
+
+/// The state at a node, and the forces held until the next one; starboard and clockwise are positive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names are the units")]
+pub struct NodeDocument {
+    pub heading_deg: f64,
+    pub surge_mps: f64,
+    pub sway_mps: f64,
+    pub yaw_rate_deg_per_s: f64,
+    pub surge_n: f64,
+    pub sway_n: f64,
+    pub yaw_nm: f64,
+}
+
+/// A trajectory, exact and sampled: every second, or every 20,000th part of a longer one, and
+/// wherever a segment starts or ends or a node is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct TrajectoryDocument {
+    /// Null for a motion under forces.
+    pub segments: Option<Vec<SegmentDocument>>,
+    pub samples: Vec<SampleDocument>,
+}
+
+/// A convex set of positions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum InitialSetDocument {
+    /// Its vertices.
+    Polygon {
+        /// `[east, north]`, counter-clockwise.
+        vertices_m: Vec<[f64; 2]>,
+    },
+    /// An ellipse.
+    Ellipse {
+        /// `[east, north]`.
+        center_m: [f64; 2],
+        /// The rows of the shape matrix.
+        shape_m2: [[f64; 2]; 2],
+    },
+}
+
+/// A convex set of velocities.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum VelocitySetDocument {
+    /// Its vertices.
+    Polygon {
+        /// `[east, north]`, counter-clockwise.
+        vertices_mps: Vec<[f64; 2]>,
+    },
+    /// An ellipse.
+    Ellipse {
+        /// `[east, north]`.
+        center_mps: [f64; 2],
+        /// The rows of the shape matrix.
+        shape_m2_per_s2: [[f64; 2]; 2],
+    },
+}
+
+/// A space-time obstacle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct ObstacleDocument {
+    pub name: String,
+    pub valid_s: [f64; 2],
+    pub initial_set: InitialSetDocument,
+    pub velocity_set: VelocitySetDocument,
+}
+
+/// A target as it is met. Figures of the plan are null without one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct EncounterDocument {
+    pub target: String,
+    pub role: String,
+    pub dcpa_m: Option<f64>,
+    pub tcpa_s: Option<f64>,
+    pub undisturbed_dcpa_m: Option<f64>,
+    pub undisturbed_tcpa_s: Option<f64>,
+    pub passing_side: Option<String>,
+    /// The largest risk along the plan.
+    pub max_risk: Option<f64>,
+    /// When; null where the risk is 0.
+    pub max_risk_t_s: Option<f64>,
+    /// What the judges say; absent without a plan and where the target is no ship on a nominal track.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub conduct: Option<ConductDocument>,
+}
