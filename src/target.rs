@@ -9,7 +9,7 @@ use crate::vessel::Hull;
 const TANGENT_SPACING: f64 = std::f64::consts::PI / 36.0;
 
 /// Turn within one time interval of a turning target, radians: 5°.
-const TURN_OF_A_SPELL: f64 = std::f64::consts::PI / 36.0;
+const TURN_PER_INTERVAL: f64 = std::f64::consts::PI / 36.0;
 
 /// Sides of a turned hull's outer polygon shorter than this fraction of the half-diagonal are
 /// omitted.
@@ -56,7 +56,7 @@ pub struct ShipTrack {
     pub pose: Pose,
     /// Estimated speed, m/s, not negative.
     pub speed: f64,
-    /// Her hull.
+    /// Hull.
     pub hull: Hull,
     /// Standard deviation of the position, metres per axis.
     pub position_std: f64,
@@ -158,17 +158,17 @@ impl ShipTrack {
     /// `horizon` seconds on, or earlier where they are. A rate of 0 gives one set; a rate that is
     /// not finite gives every course at once.
     pub fn outer_velocity_spells(&self, turn_rate: f64, horizon: f64) -> Vec<VelocitySpell> {
-        let spell = |until, spread| VelocitySpell {
+        let timed = |until, spread| VelocitySpell {
             until,
             velocities: self.outer_velocities_within(spread),
         };
         let rate = turn_rate.abs();
         if rate == 0.0 {
-            return vec![spell(f64::INFINITY, self.course_spread)];
+            return vec![timed(f64::INFINITY, self.course_spread)];
         }
         let all = std::f64::consts::PI;
-        let duration = TURN_OF_A_SPELL / rate;
-        let mut spells = Vec::new();
+        let duration = TURN_PER_INTERVAL / rate;
+        let mut sets = Vec::new();
         let mut start = 0.0;
         while start < horizon && rate.is_finite() {
             let until = f64::min(start + duration, horizon);
@@ -176,11 +176,11 @@ impl ShipTrack {
             if !(spread < all && until > start) {
                 break;
             }
-            spells.push(spell(until, spread));
+            sets.push(timed(until, spread));
             start = until;
         }
-        spells.push(spell(f64::INFINITY, all));
-        spells
+        sets.push(timed(f64::INFINITY, all));
+        sets
     }
 
     fn outer_velocities_within(&self, course_spread: f64) -> ConvexPolygon {
@@ -297,7 +297,7 @@ impl Target {
             Motion::Ship(ship) => ship.pose_at(time).position,
             Motion::Sets { initial, velocity } => initial.centroid() + velocity.centroid() * time,
             Motion::Ellipses { initial, velocity } => initial.center() + velocity.center() * time,
-            Motion::Spells { initial, spells } => stretches(spells, time)
+            Motion::Spells { initial, spells } => durations(spells, time)
                 .fold(initial.centroid(), |at, (duration, velocities)| {
                     at + velocities.centroid() * duration
                 }),
@@ -319,7 +319,7 @@ impl Target {
                 Some(initial.minkowski_sum(&velocity.scaled(time)))
             }
             Motion::Spells { initial, spells } => Some(
-                stretches(spells, time).fold(initial.clone(), |set, (duration, velocities)| {
+                durations(spells, time).fold(initial.clone(), |set, (duration, velocities)| {
                     set.minkowski_sum(&velocities.scaled(duration))
                 }),
             ),
@@ -344,10 +344,10 @@ impl Target {
 }
 
 /// Duration of each velocity set until `time`, seconds.
-fn stretches(spells: &[VelocitySpell], time: f64) -> impl Iterator<Item = (f64, &ConvexPolygon)> {
-    let starts = std::iter::once(0.0).chain(spells.iter().map(|s| s.until));
+fn durations(sets: &[VelocitySpell], time: f64) -> impl Iterator<Item = (f64, &ConvexPolygon)> {
+    let starts = std::iter::once(0.0).chain(sets.iter().map(|s| s.until));
     starts
-        .zip(spells)
+        .zip(sets)
         .map(move |(start, s)| (s.until.min(time) - start, &s.velocities))
         .filter(|(duration, _)| *duration > 0.0)
 }

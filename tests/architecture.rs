@@ -236,7 +236,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("parry2d_f64", &["geometry/", "map.rs", "obstacle/index.rs"]),
     ("rstar", &["map/", "geometry/boxes.rs"]),
     ("geojson", &["map/"]),
-    ("spade", &["geometry/decomposition.rs"]),
+    ("spade", &["geometry/polygon/decomposition.rs"]),
     ("robust", &["geometry/"]),
     ("roxmltree", &["scenario/formats/"]),
     ("kuva", &["report/figure/"]),

@@ -15,7 +15,9 @@ impl Obstacle {
         match self {
             Self::Polytope(o) => widened(o).into(),
             Self::Slabs(o) => outer_grown(o.initial())
-                .and_then(|grown| SlabObstacle::new(o.name(), grown, o.spells().to_vec()).ok())
+                .and_then(|grown| {
+                    SlabObstacle::new(o.name(), grown, o.velocity_sets().to_vec()).ok()
+                })
                 .unwrap_or_else(|| o.clone())
                 .into(),
             Self::Ellipsoid(o) => match o.flat() {
@@ -42,7 +44,7 @@ impl Obstacle {
         match self {
             Self::Polytope(o) => flat(o.initial(), o.velocity()),
             // sections do not become flat again
-            Self::Slabs(o) => flat(o.initial(), &o.spells()[0].velocities),
+            Self::Slabs(o) => flat(o.initial(), &o.velocity_sets()[0].velocities),
             Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
         }
     }

@@ -21,26 +21,26 @@ pub const LAND: &str = "land";
 /// ```
 /// use searoom::frame::Vector;
 /// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::Coast;
+/// use searoom::obstacle::LandObstacle;
 ///
 /// let quay = [(0.0, 0.0), (100.0, 0.0), (100.0, 20.0), (0.0, 20.0)];
 /// let quay = ConvexPolygon::hull(&quay.map(|(x, y)| Vector::new(x, y)))?;
-/// let coast = Coast::around([&quay], 15.0);
-/// assert!(coast.depth(Vector::new(50.0, 30.0)).is_some(), "5 m too near");
-/// assert!(coast.depth(Vector::new(50.0, 40.0)).is_none());
-/// assert!(Coast::none().is_empty());
+/// let land = LandObstacle::around([&quay], 15.0);
+/// assert!(land.depth(Vector::new(50.0, 30.0)).is_some(), "5 m too near");
+/// assert!(land.depth(Vector::new(50.0, 40.0)).is_none());
+/// assert!(LandObstacle::none().is_empty());
 /// # Ok::<(), searoom::geometry::GeometryError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Coast {
+pub struct LandObstacle {
     blocks: Vec<PolytopeObstacle>,
     index: BoxIndex,
 }
 
-impl Coast {
+impl LandObstacle {
     /// No land.
     pub fn none() -> &'static Self {
-        static NONE: LazyLock<Coast> = LazyLock::new(|| Coast::around([], 0.0));
+        static NONE: LazyLock<LandObstacle> = LazyLock::new(|| LandObstacle::around([], 0.0));
         &NONE
     }
 
@@ -51,7 +51,7 @@ impl Coast {
         Self::of(pieces.into_iter().map(|p| p.minkowski_sum(&disc)))
     }
 
-    /// The same land with every block mapped.
+    /// A copy with every block mapped.
     pub(crate) fn mapped(&self, to: impl Fn(&ConvexPolygon) -> ConvexPolygon) -> Self {
         Self::of(self.blocks.iter().map(|b| to(b.initial())))
     }
@@ -178,7 +178,7 @@ mod tests {
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    fn random_coast(rng: &mut ChaCha8Rng) -> (Vec<ConvexPolygon>, f64, Coast) {
+    fn random_land(rng: &mut ChaCha8Rng) -> (Vec<ConvexPolygon>, f64, LandObstacle) {
         let pieces: Vec<ConvexPolygon> = (0..rng.random_range(1..25))
             .map(|_| {
                 let centre = Vector::new(
@@ -192,8 +192,8 @@ mod tests {
             })
             .collect();
         let radius = rng.random_range(0.1..30.0);
-        let coast = Coast::around(&pieces, radius);
-        (pieces, radius, coast)
+        let land = LandObstacle::around(&pieces, radius);
+        (pieces, radius, land)
     }
 
     /// Outer and tight, compared with the distance from the pieces themselves.
@@ -201,7 +201,7 @@ mod tests {
     fn blocks_hold_every_place_within_the_radius_and_little_more() {
         let mut rng = ChaCha8Rng::seed_from_u64(81);
         for _ in 0..100 {
-            let (pieces, radius, coast) = random_coast(&mut rng);
+            let (pieces, radius, land) = random_land(&mut rng);
             for _ in 0..200 {
                 let p = Vector::new(
                     rng.random_range(-400.0..400.0),
@@ -211,13 +211,12 @@ mod tests {
                     .iter()
                     .map(|c| c.signed_distance(p))
                     .fold(f64::INFINITY, f64::min);
-                let inside = coast.depth(p).is_some();
+                let inside = land.depth(p).is_some();
                 assert!(inside || distance > radius - 1e-9);
                 assert!(!inside || distance < 1.02 * radius + 1e-9);
             }
             assert!(
-                coast
-                    .depth(Vector::new(f64::NAN, 0.0))
+                land.depth(Vector::new(f64::NAN, 0.0))
                     .is_none_or(|d| d.is_nan())
             );
         }
@@ -229,7 +228,7 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(82);
         let (mut met, mut clear) = (0, 0);
         for _ in 0..200 {
-            let (_, _, coast) = random_coast(&mut rng);
+            let (_, _, land) = random_land(&mut rng);
             for _ in 0..20 {
                 let segment = Segment {
                     start: Pose::new(
@@ -244,13 +243,13 @@ mod tests {
                     speed: 5.0,
                     turn_rate: [0.0, 0.05, -0.1][rng.random_range(0..3)],
                 };
-                let first = coast
+                let first = land
                     .blocks()
                     .iter()
                     .filter_map(|b| contact::first_contact(b, &segment, 1e-7))
                     .min_by(f64::total_cmp);
-                assert_eq!(coast.first_contact(&segment, 1e-7), first, "{segment:?}");
-                assert_eq!(coast.meets(&segment, 1e-7), first.is_some());
+                assert_eq!(land.first_contact(&segment, 1e-7), first, "{segment:?}");
+                assert_eq!(land.meets(&segment, 1e-7), first.is_some());
                 met += usize::from(first.is_some());
                 clear += usize::from(first.is_none());
             }
@@ -263,8 +262,8 @@ mod tests {
             speed: 5.0,
             turn_rate: 0.0,
         };
-        let (_, _, coast) = random_coast(&mut rng);
-        assert!(coast.meets(&lost, 1e-7));
+        let (_, _, land) = random_land(&mut rng);
+        assert!(land.meets(&lost, 1e-7));
     }
 
     /// Small steps along the ray.
@@ -273,16 +272,19 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(83);
         let mut through_several = 0;
         for _ in 0..300 {
-            let (_, _, coast) = random_coast(&mut rng);
-            let block = coast.blocks()[0].initial().centroid();
+            let (_, _, land) = random_land(&mut rng);
+            let block = land.blocks()[0].initial().centroid();
             let toward = direction(rng.random_range(-3.0..3.0));
-            let out = coast.way_out(block, toward);
-            assert!(coast.depth(block + toward * (out + 1e-6)).is_none());
-            let inside = |gone: f64| coast.depth(block + toward * gone).is_some();
+            let out = land.way_out(block, toward);
+            assert!(land.depth(block + toward * (out + 1e-6)).is_none());
+            let inside = |gone: f64| land.depth(block + toward * gone).is_some();
             assert!((0..=200).all(|k| inside(out * f64::from(k) / 200.0 * (1.0 - 1e-9))));
-            through_several += usize::from(out > exit(&coast.blocks()[0], block, toward) + 1.0);
+            through_several += usize::from(out > exit(&land.blocks()[0], block, toward) + 1.0);
         }
         assert!(through_several > 20, "{through_several}");
-        assert_eq!(Coast::none().way_out(Vector::zeros(), direction(1.0)), 0.0);
+        assert_eq!(
+            LandObstacle::none().way_out(Vector::zeros(), direction(1.0)),
+            0.0
+        );
     }
 }

@@ -83,14 +83,14 @@ impl Obstacle {
                 EllipsoidObstacle::new(o.name(), o.outer_section(time), *o.velocity()).into()
             }
             Self::Slabs(o) => {
-                let ends = o.slabs().iter().map(Slab::end).zip(o.spells());
+                let ends = o.slabs().iter().map(Slab::end).zip(o.velocity_sets());
                 let later = ends.filter(|(end, _)| *end > time);
-                let spells = later.map(|(end, spell)| VelocitySpell {
+                let sets = later.map(|(end, set)| VelocitySpell {
                     until: end - time,
-                    velocities: spell.velocities.clone(),
+                    velocities: set.velocities.clone(),
                 });
                 // the last slab never ends, so one remains, and the ends increase
-                match SlabObstacle::new(o.name(), o.section(time), spells.collect()) {
+                match SlabObstacle::new(o.name(), o.section(time), sets.collect()) {
                     Ok(rest) => rest.into(),
                     Err(_) => self.clone(),
                 }

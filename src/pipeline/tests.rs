@@ -89,7 +89,7 @@ fn compliance_chooses_the_sets() {
 }
 
 #[test]
-fn a_shape_over_the_start_is_drawn_back_and_said_so() {
+fn a_domain_over_the_start_is_reduced_and_reported() {
     let target = track(100.0, -50.0, FRAC_PI_2, 5.0);
     let relaxed = run(scenario(target.clone(), Compliance::Shape));
     assert!(matches!(
@@ -107,7 +107,7 @@ fn a_shape_over_the_start_is_drawn_back_and_said_so() {
 }
 
 #[test]
-fn the_judge_sees_the_undisturbed_trajectory_hit_the_set() {
+fn the_evaluation_finds_the_nominal_trajectory_in_the_set() {
     let scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
     let sets = sets(&scenario);
     let straight = Trajectory::new(vec![Segment {
@@ -139,7 +139,7 @@ fn the_judge_sees_the_undisturbed_trajectory_hit_the_set() {
 /// one is clear of the reduced domain, which contains the hard set, and the run reports the
 /// reduction.
 #[test]
-fn where_no_plan_clears_the_shapes_they_are_drawn_back_as_far_as_the_plan_needs() {
+fn domains_that_no_plan_clears_are_reduced_as_far_as_the_plan_needs() {
     use crate::simulation::{EncounterKind, Placement, random_encounter};
     let drawn = random_encounter(EncounterKind::GiveWay, 104, Placement::Origin);
     let run = run(drawn.expect("drawn").scenario);
@@ -200,7 +200,7 @@ fn in_a_channel(spread: f64) -> Scenario {
 /// The ship ahead may drift across the channel, so passing it takes a risk. It is the least to one
 /// step: the planner finds a plan at this risk, and none at two steps less.
 #[test]
-fn without_a_way_clear_of_the_hard_sets_the_least_risk_is_taken_and_said() {
+fn without_a_plan_clear_of_the_hard_sets_the_least_risk_is_taken_and_reported() {
     assert_eq!(run(in_a_channel(0.1)).level, RelaxationLevel::Compliant);
     let scenario = in_a_channel(2.0);
     let run = run(scenario.clone());
@@ -248,7 +248,7 @@ fn changes_of_speed(trajectory: &Trajectory) -> usize {
 /// nominal track it crosses ahead: own ship rams it at full speed and passes astern of it at low
 /// speed.
 #[test]
-fn where_no_way_leads_out_own_ship_slows_and_meets_no_nominal_hull() {
+fn where_no_motion_leaves_the_sets_own_ship_slows_and_meets_no_nominal_hull() {
     for deadline in [60.0, 0.0] {
         let scenario = Scenario {
             deadline,
@@ -343,7 +343,7 @@ fn from_within_a_hard_set_own_ship_slows_and_turns_away_and_claims_begin_outside
 /// The last level: own ship is enclosed for ever and continues; nothing is claimed of what it runs
 /// into.
 #[test]
-fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
+fn where_no_motion_leaves_the_sets_own_ship_continues_and_reports_it() {
     let mut scenario = in_a_channel(0.0);
     let around = [
         (-900.0, -900.0),
@@ -392,7 +392,7 @@ fn out_of_time_there_is_still_an_answer() {
 
 /// Three ships leave no way near the path: a wide detour is found, clear of every hard set.
 #[test]
-fn a_wide_way_is_found_where_there_is_none_near_the_path() {
+fn a_wide_detour_is_found_where_no_plan_stays_near_the_path() {
     use crate::scenario::formats::{Assumed, Contents};
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenarios/dnv/traffic_situation_47.json");
@@ -424,7 +424,7 @@ fn the_time_of_no_return_is_between_the_start_and_the_first_contact() {
 /// The hard set contains, for every course of the target, its hull on that heading and own hull on
 /// any heading a margin away.
 #[test]
-fn the_hard_set_holds_the_hull_as_it_turns_with_the_course() {
+fn the_hard_set_contains_the_hull_at_every_heading() {
     let mut rng = ChaCha8Rng::seed_from_u64(41);
     for case in 0..200 {
         let mut within = |a: f64, b: f64| rng.random_range(a..b);

@@ -9,7 +9,7 @@ use super::recorder::Recorder;
 use super::scene::{Stage, flat};
 use super::style;
 use crate::frame::Vector;
-use crate::obstacle::{Coast, SpaceTimeObstacle};
+use crate::obstacle::{LandObstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
 use crate::tolerance;
@@ -97,14 +97,14 @@ pub fn log_explored(
 struct Judge<'a> {
     run: &'a Run,
     /// Made for the first edge that runs aground.
-    coast: OnceCell<Coast>,
+    land_obstacle: OnceCell<LandObstacle>,
 }
 
 impl<'a> Judge<'a> {
     fn new(run: &'a Run) -> Self {
         Self {
             run,
-            coast: OnceCell::new(),
+            land_obstacle: OnceCell::new(),
         }
     }
 
@@ -112,11 +112,13 @@ impl<'a> Judge<'a> {
     /// land.
     fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
         let Some(set) = self.run.obstacles.get(obstacle) else {
-            let coast = self
-                .coast
-                .get_or_init(|| pipeline::coast(&self.run.scenario, &self.run.land));
+            let land_obstacle = self
+                .land_obstacle
+                .get_or_init(|| pipeline::land_obstacle(&self.run.scenario, &self.run.land));
             let depth = tolerance::GRAZE_M;
-            let met = edge.iter().find_map(|s| coast.first_contact(s, depth));
+            let met = edge
+                .iter()
+                .find_map(|s| land_obstacle.first_contact(s, depth));
             return said("land", met, "nearer than the hull and the margin allow");
         };
         let enters = |set: &dyn Fn(&Segment) -> Option<f64>| edge.iter().find_map(set);

@@ -58,7 +58,7 @@ pub trait Space {
     ///
     /// It is evaluated once per node, when the node would be expanded next. A node whose bound
     /// increases returns to the queue.
-    fn closer_bound(&mut self, _: &Self::State) -> f64 {
+    fn tight_bound(&mut self, _: &Self::State) -> f64 {
         0.0
     }
 
@@ -221,7 +221,7 @@ impl<S> Search<S> {
         self.nodes
     }
 
-    /// What was done so far.
+    /// Counters of the search so far.
     pub fn counts(&self) -> Counts {
         self.counts
     }
@@ -268,7 +268,7 @@ impl<S> Search<S> {
                 return Stop::Goal(index);
             }
             if !entry.ready {
-                let to_go = space.closer_bound(&self.nodes[index].state);
+                let to_go = space.tight_bound(&self.nodes[index].state);
                 let estimate = entry.cost + self.weight * to_go;
                 if estimate > entry.estimate {
                     if estimate.is_finite() {

@@ -29,7 +29,7 @@ impl Space for Grid {
             0.0
         }
     }
-    fn closer_bound(&mut self, &(x, y): &(i32, i32)) -> f64 {
+    fn tight_bound(&mut self, &(x, y): &(i32, i32)) -> f64 {
         if self.closer {
             let steps = 2 * self.size - 2 - x - y;
             f64::from(steps)

@@ -61,7 +61,7 @@ fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
             let v = direction(course) * speed;
             assert!(now.velocities.signed_distance(v) <= 1e-9, "{ship:?} {t}");
             if t < horizon {
-                let widest = ship.outer_velocities_within(turned + TURN_OF_A_SPELL + 1e-9);
+                let widest = ship.outer_velocities_within(turned + TURN_PER_INTERVAL + 1e-9);
                 for v in now.velocities.vertices() {
                     assert!(widest.signed_distance(*v) <= 0.005 * v.norm() + 1e-9);
                 }

@@ -23,7 +23,7 @@ pub enum NetworkError {
     },
     /// An alternative none of whose legs leads from the first waypoint to the last.
     #[error(
-        "alternative {alternative} is on no way from the first waypoint to the last: it has to be left again where another path goes on"
+        "alternative {alternative} lies on no route from the first waypoint to the last; another path must continue where it ends"
     )]
     NoWayThrough {
         /// Index of the alternative, from 0.

@@ -36,7 +36,7 @@ pub struct CyberShip2 {
 }
 
 impl CyberShip2 {
-    /// As published: the damping has kinks in its second derivative at rest.
+    /// The published model. Its damping has kinks in the second derivative at rest.
     pub const EXACT: Self = Self { rounded: 0.0 };
 
     /// With `sqrt(speed² + (1 mm/s)²)` for `|speed|`: twice differentiable everywhere.

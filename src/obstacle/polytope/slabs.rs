@@ -87,13 +87,17 @@ struct SlabFace {
 /// use searoom::obstacle::SlabObstacle;
 /// use searoom::target::VelocitySpell;
 ///
-/// let heading_north = |spread: f64| ConvexPolygon::hull(&[(-spread, 4.0), (spread, 4.0), (0.0, 6.0)].map(|(x, y)| Vector::new(x, y)));
-/// // little is unknown of her for a minute, more from then on
-/// let spells = vec![
+/// let heading_north = |spread: f64| {
+///     let corners = [(-spread, 4.0), (spread, 4.0), (0.0, 6.0)];
+///     ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))
+/// };
+/// // little uncertainty for a minute, more from then on
+/// let velocity_sets = vec![
 ///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
 ///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
 /// ];
-/// let target = SlabObstacle::new("ferry", ConvexPolygon::point(Vector::zeros()), spells).expect("in order");
+/// let start = ConvexPolygon::point(Vector::zeros());
+/// let target = SlabObstacle::new("ferry", start, velocity_sets).expect("in order");
 /// let beside = |time| target.section(time).support(Vector::new(1.0, 0.0));
 /// assert!((beside(60.0) - 6.0).abs() < 1e-6);
 /// assert!((beside(90.0) - 66.0).abs() < 1e-6);
@@ -109,7 +113,7 @@ pub struct SlabObstacle {
 struct Shared {
     name: String,
     initial: ConvexPolygon,
-    spells: Vec<VelocitySpell>,
+    velocity_sets: Vec<VelocitySpell>,
     slabs: Vec<Slab>,
 }
 
@@ -120,7 +124,7 @@ impl PartialEq for SlabObstacle {
             (
                 o.name().to_owned(),
                 o.initial().clone(),
-                o.spells().to_vec(),
+                o.velocity_sets().to_vec(),
             )
         };
         key(self) == key(other)
@@ -133,14 +137,14 @@ impl SlabObstacle {
     pub fn new(
         name: impl Into<String>,
         initial: ConvexPolygon,
-        spells: Vec<VelocitySpell>,
+        velocity_sets: Vec<VelocitySpell>,
     ) -> Result<Self, SlabError> {
-        if spells.is_empty() {
+        if velocity_sets.is_empty() {
             return Err(SlabError::Empty);
         }
         let mut after = 0.0;
-        for (index, spell) in spells[..spells.len() - 1].iter().enumerate() {
-            let found = spell.until;
+        for (index, set) in velocity_sets[..velocity_sets.len() - 1].iter().enumerate() {
+            let found = set.until;
             if !(found > after && found.is_finite()) {
                 return Err(SlabError::NotIncreasing {
                     index,
@@ -150,20 +154,24 @@ impl SlabObstacle {
             }
             after = found;
         }
-        Ok(Self::from_spells(name.into(), initial, spells))
+        Ok(Self::from_sequence(name.into(), initial, velocity_sets))
     }
 
-    fn from_spells(name: String, initial: ConvexPolygon, spells: Vec<VelocitySpell>) -> Self {
-        let mut slabs: Vec<Slab> = Vec::with_capacity(spells.len());
+    fn from_sequence(
+        name: String,
+        initial: ConvexPolygon,
+        velocity_sets: Vec<VelocitySpell>,
+    ) -> Self {
+        let mut slabs: Vec<Slab> = Vec::with_capacity(velocity_sets.len());
         let (mut start, mut section, mut nominal) = (0.0, initial.clone(), Vector::zeros());
-        for (index, spell) in spells.iter().enumerate() {
-            let end = if index + 1 == spells.len() {
+        for (index, set) in velocity_sets.iter().enumerate() {
+            let end = if index + 1 == velocity_sets.len() {
                 f64::INFINITY
             } else {
-                spell.until
+                set.until
             };
-            let obstacle = PolytopeObstacle::new(name.clone(), section, spell.velocities.clone());
-            let centroid = spell.velocities.centroid();
+            let obstacle = PolytopeObstacle::new(name.clone(), section, set.velocities.clone());
+            let centroid = set.velocities.centroid();
             section = if end.is_finite() {
                 obstacle.section(end - start)
             } else {
@@ -185,7 +193,7 @@ impl SlabObstacle {
             shared: Arc::new(Shared {
                 name,
                 initial,
-                spells,
+                velocity_sets,
                 slabs,
             }),
         }
@@ -213,20 +221,20 @@ impl SlabObstacle {
 
     /// A polytope as a single slab.
     pub fn unchanging(polytope: &PolytopeObstacle) -> Self {
-        let spell = VelocitySpell {
+        let set = VelocitySpell {
             until: f64::INFINITY,
             velocities: polytope.velocity().clone(),
         };
         let (name, initial) = (polytope.name().to_owned(), polytope.initial().clone());
-        Self::from_spells(name, initial, vec![spell])
+        Self::from_sequence(name, initial, vec![set])
     }
 
     /// These velocity sets with another set at t = 0, metres.
     pub fn with_initial(&self, initial: ConvexPolygon) -> Self {
-        Self::from_spells(
+        Self::from_sequence(
             self.shared.name.clone(),
             initial,
-            self.shared.spells.clone(),
+            self.shared.velocity_sets.clone(),
         )
     }
 
@@ -236,8 +244,8 @@ impl SlabObstacle {
     }
 
     /// The velocity sets in order of time, m/s.
-    pub fn spells(&self) -> &[VelocitySpell] {
-        &self.shared.spells
+    pub fn velocity_sets(&self) -> &[VelocitySpell] {
+        &self.shared.velocity_sets
     }
 
     /// The slabs in order of time; the first starts at 0, the last has no end.
@@ -362,18 +370,18 @@ impl SpaceTimeObstacle for SlabObstacle {
         if alpha == 1.0 {
             return self.clone();
         }
-        let spells = self
-            .spells()
+        let velocity_sets = self
+            .velocity_sets()
             .iter()
-            .map(|spell| VelocitySpell {
-                until: spell.until,
-                velocities: scaled_velocities(&spell.velocities, alpha),
+            .map(|set| VelocitySpell {
+                until: set.until,
+                velocities: scaled_velocities(&set.velocities, alpha),
             })
             .collect();
-        Self::from_spells(
+        Self::from_sequence(
             self.shared.name.clone(),
             self.shared.initial.clone(),
-            spells,
+            velocity_sets,
         )
     }
 

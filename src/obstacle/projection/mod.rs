@@ -347,11 +347,14 @@ pub fn along_path(
 /// use searoom::obstacle::{PolytopeObstacle, Track, along_track_from};
 ///
 /// let square = |half: f64| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Vector::new(x, y)))
+///     let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+///     ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))
 /// };
-/// let target = PolytopeObstacle::new("anchored", square(10.0)?, ConvexPolygon::point(Vector::new(1.0, 0.0)));
-/// // a path to the north, 100 m east: the target is on it from 90 to 110 s, and own ship starts at 60 s
-/// let track = Track { start: Vector::new(100.0, -50.0), direction: Vector::new(0.0, 1.0), length: 100.0 };
+/// let velocity = ConvexPolygon::point(Vector::new(1.0, 0.0));
+/// let target = PolytopeObstacle::new("drifting", square(10.0)?, velocity);
+/// // a path to the north, 100 m east; the target is on it from 90 to 110 s, own ship starts at 60 s
+/// let start = Vector::new(100.0, -50.0);
+/// let track = Track { start, direction: Vector::new(0.0, 1.0), length: 100.0 };
 /// let corners = along_track_from(&target, &track, 60.0, 200.0);
 /// let first = corners.iter().map(|c| c.time).fold(f64::INFINITY, f64::min);
 /// assert!((first - 30.0).abs() < 1e-9, "{first} s after the start");

@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::{ConvexPolygon, Ellipse};
+use super::Ellipse;
 use crate::frame::{Vector, to_port};
+use crate::geometry::ConvexPolygon;
 use crate::tolerance;
 
 /// Bound on the steps; some hundred are usual.

@@ -1,9 +1,15 @@
 //! Polygons with holes, convex or not: land as a map draws it.
 
+mod crossing;
+mod decomposition;
+
+pub use crossing::{Crossing, EdgeIndex};
+pub use decomposition::{DecompositionError, convex_pieces};
+
 use robust::{Coord, orient2d};
 
-use super::crossing::{Crossing, first_crossing};
 use crate::frame::{Vector, cross};
+use crossing::first_crossing;
 
 /// Why rings are not a polygon. Rings count from 0, the outer one first; vertices of a ring count
 /// from 0.

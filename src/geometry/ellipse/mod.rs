@@ -1,5 +1,9 @@
 //! Ellipses, including points (no semi-axis) and segments (one).
 
+mod enclosing;
+
+pub use enclosing::outer_enclosing_ellipse;
+
 use nalgebra::{Matrix2, SymmetricEigen};
 
 use super::{ConvexPolygon, rounded};

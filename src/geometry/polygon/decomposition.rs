@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-use super::polygon::turn;
-use super::{ConvexPolygon, Polygon};
+use super::{Polygon, turn};
 use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
 
 type Mesh = ConstrainedDelaunayTriangulation<Point2<f64>>;
 

@@ -1,6 +1,6 @@
 //! Crossings between the edges of a polygon.
 
-use super::polygon::turn;
+use super::turn;
 use crate::frame::{Vector, cross};
 
 /// Index of an edge: it starts at this vertex and ends at the next one of its ring.
