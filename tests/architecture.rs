@@ -235,7 +235,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
     ("parry2d_f64", &["geometry/parry"]),
     ("geojson", &["map/"]),
-    ("spade", &["geometry/decomposition.rs"]),
+    ("spade", &["geometry/polygon/decomposition.rs"]),
     ("robust", &["geometry/"]),
     ("roxmltree", &["scenario/formats/"]),
     ("kuva", &["report/figure/"]),

@@ -89,7 +89,9 @@ fn broken(conduct: &ComplianceReport) -> Vec<Broken> {
 }
 
 /// The targets toward which own ship has a role or breaks a rule, with their index and name.
-fn judged<'a>(model: &'a ViewModel) -> impl Iterator<Item = (usize, &'a str, &'a ComplianceReport)> {
+fn judged<'a>(
+    model: &'a ViewModel,
+) -> impl Iterator<Item = (usize, &'a str, &'a ComplianceReport)> {
     let both = model.scenario.targets.iter().zip(&model.conduct);
     both.enumerate().filter_map(|(index, (target, conduct))| {
         let conduct = conduct.as_ref()?;

@@ -178,7 +178,7 @@ fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment
         (motion.last()?.end_time() <= problem.horizon).then_some(motion)
     };
     let motion = arrives(nearest).or_else(|| arrives(own.max_speed()))?;
-    (!crate::planner::space_time::land::meets(problem.coast, &motion)).then_some(motion)
+    (!crate::planner::space_time::land::meets(problem.land_obstacle, &motion)).then_some(motion)
 }
 
 /// Motion along the path that ignores other ships; `None` where it does not arrive within the
@@ -253,7 +253,9 @@ fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -
             // own ship may enter a growing set again: then it has not left for good
             if meets(&others, &before)
                 || meets(&held, &after(&motion, out))
-                || before.iter().any(|s| problem.coast.meets(s, TOUCH_M))
+                || before
+                    .iter()
+                    .any(|s| problem.land_obstacle.meets(s, TOUCH_M))
             {
                 continue;
             }
@@ -412,7 +414,7 @@ fn onward(
     away: &[Segment],
     follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
 ) -> Option<Vec<Segment>> {
-    if crate::planner::space_time::land::meets(problem.coast, away) {
+    if crate::planner::space_time::land::meets(problem.land_obstacle, away) {
         return None;
     }
     let begun = away.last().map_or(0.0, Segment::end_time);

@@ -2,19 +2,21 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::{ConvexPolygon, Ellipse};
+use super::Ellipse;
 use crate::frame::{Vector, to_port};
+use crate::geometry::ConvexPolygon;
 use crate::tolerance;
 
 /// Bound on the steps; some hundred are usual.
 const MAX_STEPS: usize = 20_000;
 
-/// The smallest ellipse by area that contains `set` (its Loewner ellipse), as an outer approximation: every
-/// vertex passes [`Ellipse::contains`] after rounding, and the area exceeds the least one by at most 1e-8 of
-/// it. A point is exact; a segment becomes an ellipse some roundings wide.
+/// The smallest ellipse by area that contains `set` (its Loewner ellipse), as an outer
+/// approximation.
 ///
-/// Khachiyan's ascent with the away steps of Wolfe and Atwood (Todd and Yıldırım 2007,
-/// doi:10.1016/j.dam.2007.02.013), O(vertices) a step and linear convergence.
+/// Every vertex passes [`Ellipse::contains`] after rounding, and the area exceeds the minimum by at
+/// most 1e-8 of it. A point is exact; a segment becomes an ellipse some roundings wide. Khachiyan's
+/// ascent with the away steps of Wolfe and Atwood (Todd and Yıldırım 2007,
+/// doi:10.1016/j.dam.2007.02.013), O(vertices) per step and linear convergence.
 pub fn outer_enclosing_ellipse(set: &ConvexPolygon) -> Ellipse {
     let vertices = set.vertices();
     let ellipse = match vertices {
@@ -32,7 +34,7 @@ pub fn outer_enclosing_ellipse(set: &ConvexPolygon) -> Ellipse {
 fn loewner(vertices: &[Vector]) -> Ellipse {
     let count = vertices.len() as f64;
     let mean = vertices.iter().sum::<Vector>() / count;
-    // in the frame of the covariance the problem is well conditioned, whatever the shape
+    // the problem is well conditioned in the frame of the covariance, whatever the shape
     let covariance = vertices
         .iter()
         .map(|p| (p - mean) * (p - mean).transpose())
@@ -62,7 +64,7 @@ fn loewner(vertices: &[Vector]) -> Ellipse {
     let moment = weighted_moment(&lifted);
     let c = Vector::new(moment[(0, 2)], moment[(1, 2)]);
     let shape = 2.0 * (moment.fixed_view::<2, 2>(0, 0) - c * c.transpose());
-    // Cholesky, by hand: two by two, and a set thinner than rounding must not fail
+    // explicit 2 × 2 Cholesky factorisation that cannot fail for a set thinner than rounding
     let l00 = shape[(0, 0)].max(0.0).sqrt();
     let l10 = if l00 > 0.0 { shape[(1, 0)] / l00 } else { 0.0 };
     let l11 = (shape[(1, 1)] - l10 * l10).max(0.0).sqrt();
@@ -120,7 +122,8 @@ fn weighted_moment(points: &[Vector3<f64>]) -> Matrix3<f64> {
     moment(&weights)
 }
 
-/// The ellipse scaled about its centre by the least factor that takes in every point after rounding.
+/// The ellipse scaled about its centre by the least factor that contains every point after
+/// rounding.
 fn grown_to_contain(ellipse: Ellipse, points: &[Vector]) -> Ellipse {
     let [a, b] = ellipse.semi_axes();
     let reach = points
@@ -172,7 +175,7 @@ mod tests {
             for p in set.vertices() {
                 assert!(ellipse.contains(*p), "{set:?} {ellipse:?}");
             }
-            // John: the ellipse shrunk to a half lies within the set, so it is never far too large
+            // John's theorem: the ellipse scaled by one half lies within the set
             let half = ellipse.scaled_about_center(0.5);
             for i in 0..32 {
                 let n = direction(f64::from(i) * 0.2);

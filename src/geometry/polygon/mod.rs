@@ -1,49 +1,57 @@
 //! Polygons with holes, convex or not: land as a map draws it.
 
+mod crossing;
+mod decomposition;
+
+pub use crossing::{Crossing, EdgeIndex};
+pub use decomposition::{DecompositionError, convex_pieces};
+
 use robust::{Coord, orient2d};
 
-use super::crossing::{Crossing, first_crossing};
 use crate::frame::{Vector, cross};
+use crossing::first_crossing;
 
-/// Why rings do not make a polygon. Rings count from 0, the outer one first; so do the vertices of a ring.
+/// Why rings are not a polygon. Rings count from 0, the outer one first; vertices of a ring count
+/// from 0.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PolygonError {
-    /// A ring of fewer than three different vertices.
+    /// A ring with fewer than three different vertices.
     #[error("ring {ring} has {found} different vertices; at least 3 are needed")]
     TooFewVertices {
-        /// Which ring.
+        /// Index of the ring.
         ring: usize,
-        /// How many it has.
+        /// Number of different vertices.
         found: usize,
     },
     /// A coordinate that is not a finite number.
     #[error("vertex {vertex} of ring {ring} is not finite")]
     NotFinite {
-        /// Which ring.
+        /// Index of the ring.
         ring: usize,
-        /// Which vertex of it.
+        /// Index of the vertex.
         vertex: usize,
     },
-    /// Two edges cross or lie on one another.
+    /// Two edges that cross or overlap.
     #[error(
         "edge {} of ring {} crosses edge {} of ring {}",
         crossing.edges[0].vertex, crossing.edges[0].ring, crossing.edges[1].vertex, crossing.edges[1].ring
     )]
     Crosses {
-        /// Which, and where.
+        /// The edges, and a common point.
         crossing: Crossing,
     },
     /// A hole that is not inside the outer ring, or inside another hole.
     #[error("hole {ring} is not inside the outer ring, or is inside another hole")]
     HoleOutside {
-        /// Which ring.
+        /// Index of the ring.
         ring: usize,
     },
 }
 
-/// A closed region between an outer ring and its holes. Rings may touch themselves and one another in points,
-/// nothing else; the outer one is counter-clockwise, the holes are clockwise, so that the inside is to port of
-/// every edge.
+/// A closed region between an outer ring and its holes.
+///
+/// Rings may touch themselves and one another in points only. The outer ring is counter-clockwise
+/// and holes are clockwise, so the inside is to port of every edge.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -66,8 +74,10 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// From the outer ring and the holes, each an open list of vertices in either order of turning. Repeated
-    /// vertices are dropped. Crossings are found with exact predicates, by a sweep: O(n log n) for a coast.
+    /// From the outer ring and the holes, each an open list of vertices in either orientation.
+    ///
+    /// Repeated vertices are dropped. A sweep with exact predicates finds crossings, usually in O(n
+    /// log n).
     pub fn new(rings: &[Vec<Vector>]) -> Result<Self, PolygonError> {
         let mut kept = Vec::with_capacity(rings.len().max(1));
         for (ring, points) in rings.iter().enumerate() {
@@ -93,7 +103,7 @@ impl Polygon {
             return Err(PolygonError::Crosses { crossing });
         }
         for (ring, points) in kept.iter_mut().enumerate() {
-            // a ring without area has edges on one another, so it was found above
+            // a ring without area has overlapping edges and was rejected above
             if (signed_area(points) > 0.0) != (ring == 0) {
                 points.reverse();
             }
@@ -112,7 +122,7 @@ impl Polygon {
         &self.rings
     }
 
-    /// Vertices of all rings.
+    /// Number of vertices of all rings.
     pub fn vertex_count(&self) -> usize {
         self.rings.iter().map(Vec::len).sum()
     }
@@ -130,7 +140,7 @@ impl Polygon {
         self.rings.iter().map(|ring| signed_area(ring)).sum()
     }
 
-    /// True when `p` is inside; on the boundary either. Exact; NaN is inside. O(vertices).
+    /// True when `p` is inside; either value on the boundary. Exact; NaN is inside. O(vertices).
     pub fn contains(&self, p: Vector) -> bool {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return true;
@@ -150,8 +160,8 @@ fn winds(edges: impl Iterator<Item = (Vector, Vector)>, p: Vector) -> bool {
     inside
 }
 
-/// True when a ring that crosses neither contains the other, which may touch it in points: by majority of the
-/// other's vertices, of which all but those that touch say the same.
+/// True when a ring contains another that it does not cross, by majority of the other's vertices:
+/// all but those that touch agree.
 fn surrounds(ring: &[Vector], other: &[Vector]) -> bool {
     let within = |p: &Vector| {
         let next = ring.iter().cycle().skip(1);
@@ -160,7 +170,7 @@ fn surrounds(ring: &[Vector], other: &[Vector]) -> bool {
     let free = |p: &&Vector| !ring.contains(p);
     match other.iter().find(free) {
         Some(p) => within(p),
-        // all vertices are shared: the middle of an edge is not
+        // all vertices are shared, but the middle of an edge is not
         None => within(&((other[0] + other[1]) * 0.5)),
     }
 }

@@ -1,4 +1,8 @@
-//! Ellipses, flat ones included: a point has no semi-axis, a segment has one.
+//! Ellipses, including points (no semi-axis) and segments (one).
+
+mod enclosing;
+
+pub use enclosing::outer_enclosing_ellipse;
 
 use nalgebra::{Matrix2, SymmetricEigen};
 
@@ -6,31 +10,31 @@ use super::{ConvexPolygon, rounded};
 use crate::frame::{Vector, cross, direction, to_port};
 use crate::tolerance;
 
-/// Largest number of Newton steps to the nearest point; four are usual, and each adds digits.
+/// Bound on the Newton steps to the nearest point; four are usual, and each adds digits.
 const MAX_STEPS: usize = 60;
 
-/// Why a centre and a matrix do not make an ellipse.
+/// Why a centre and a matrix are not an ellipse.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ShapeError {
-    /// A number of the centre that is not finite.
+    /// A coordinate of the centre that is not finite.
     #[error("center coordinate {index} is {found}; it must be a finite number")]
     CenterNotFinite {
-        /// Which coordinate, from 0.
+        /// Index of the coordinate, from 0.
         index: usize,
-        /// What stands there.
+        /// The value found.
         found: f64,
     },
-    /// A number of the matrix that is not finite.
+    /// An entry of the matrix that is not finite.
     #[error("shape matrix entry [{row}][{column}] is {found}; it must be a finite number")]
     NotFinite {
-        /// From 0.
+        /// Row, from 0.
         row: usize,
-        /// From 0.
+        /// Column, from 0.
         column: usize,
-        /// What stands there.
+        /// The value found.
         found: f64,
     },
-    /// The two entries off the diagonal differ.
+    /// The off-diagonal entries differ.
     #[error("a shape matrix that is not symmetric: [0][1] is {upper}, [1][0] is {lower}")]
     NotSymmetric {
         /// Entry `[0][1]`.
@@ -44,12 +48,12 @@ pub enum ShapeError {
         rounded(*eigenvalue)
     )]
     NotPositiveSemidefinite {
-        /// The least eigenvalue.
+        /// The smaller eigenvalue.
         eigenvalue: f64,
     },
 }
 
-/// How far a point is from a set, and which way.
+/// Distance of a point from a set, and the direction to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignedDistance {
     /// Euclidean distance, negative inside: minus the distance to the boundary.
@@ -58,11 +62,11 @@ pub struct SignedDistance {
     pub normal: Vector,
 }
 
-/// `E(p, Q) = {x : (x - p)' Q^-1 (x - p) <= 1}`, paper eq. (12), for a positive semidefinite `Q`: where
-/// `Q` is singular, `{x : n . (x - p) <= sqrt(n' Q n) for all n}`.
+/// `E(p, Q) = {x : (x - p)' Q^-1 (x - p) <= 1}`, paper eq. (12), for a positive semidefinite `Q`. A
+/// singular `Q` gives `{x : n . (x - p) <= sqrt(n' Q n) for all n}`.
 ///
-/// Kept as the centre and two orthogonal semi-axes, of which one or both may be zero, so that a thin
-/// ellipse loses no digits.
+/// Stored as the centre and two orthogonal semi-axes, of which one or both may be zero, so that a
+/// thin ellipse loses no digits.
 ///
 /// ```
 /// use nalgebra::Matrix2;
@@ -81,8 +85,10 @@ pub struct Ellipse {
 }
 
 impl Ellipse {
-    /// From a centre and a shape matrix in squared units of it. The matrix has to be symmetric and
-    /// positive semidefinite to [`tolerance::SHAPE`] of its largest entry.
+    /// From a centre and a shape matrix in its squared unit.
+    ///
+    /// The matrix must be symmetric and positive semidefinite to [`tolerance::SHAPE`] of its
+    /// largest entry.
     pub fn new(center: Vector, shape: Matrix2<f64>) -> Result<Self, ShapeError> {
         if let Some(index) = (0..2).find(|&i| !center[i].is_finite()) {
             let found = center[index];
@@ -99,7 +105,7 @@ impl Ellipse {
         if (upper - lower).abs() > allowed {
             return Err(ShapeError::NotSymmetric { upper, lower });
         }
-        // scaled, so that squares neither overflow nor vanish
+        // scaled, so that squares neither overflow nor underflow
         let scale = shape.amax();
         if scale == 0.0 {
             return Ok(Self::point(center));
@@ -111,7 +117,7 @@ impl Ellipse {
         }
         let axis = |i: usize| {
             let value = eigen.eigenvalues[i];
-            // rounding of the entries alone moves an eigenvalue by this much
+            // rounding of the entries alone changes an eigenvalue by this much
             let value = if value <= 4.0 * f64::EPSILON {
                 0.0
             } else {
@@ -122,7 +128,7 @@ impl Ellipse {
         Ok(Self::from_axes(center, [axis(0), axis(1)]))
     }
 
-    /// The point alone, `Q = 0`.
+    /// A single point, `Q = 0`.
     pub fn point(center: Vector) -> Self {
         Self {
             center,
@@ -130,8 +136,9 @@ impl Ellipse {
         }
     }
 
-    /// `{p + F z : |z| <= 1}` for the two columns of `F`, in any position to one another. They are made
-    /// orthogonal by one Jacobi rotation, which keeps the digits of a small semi-axis.
+    /// `{p + F z : |z| <= 1}` for the two columns of `F`.
+    ///
+    /// One Jacobi rotation makes them orthogonal and preserves the digits of a small semi-axis.
     pub(crate) fn from_axes(center: Vector, columns: [Vector; 2]) -> Self {
         let [f, g] = columns;
         let angle = 0.5 * (2.0 * f.dot(&g)).atan2(f.norm_squared() - g.norm_squared());
@@ -150,7 +157,7 @@ impl Ellipse {
         self.center
     }
 
-    /// The two semi-axes, the longer first, orthogonal.
+    /// The two orthogonal semi-axes, the longer first.
     pub fn semi_axes(&self) -> [Vector; 2] {
         self.axes
     }
@@ -161,7 +168,7 @@ impl Ellipse {
         a * a.transpose() + b * b.transpose()
     }
 
-    /// `pi a b`.
+    /// The area, `pi a b`.
     pub fn area(&self) -> f64 {
         std::f64::consts::PI * self.axes[0].norm() * self.axes[1].norm()
     }
@@ -176,8 +183,8 @@ impl Ellipse {
         n.dot(&self.axes[0]).hypot(n.dot(&self.axes[1]))
     }
 
-    /// A point of the boundary that reaches farthest in the direction of the unit vector `n`; the centre where the
-    /// ellipse has no width that way.
+    /// A boundary point farthest along the unit vector `n`; the centre where the ellipse has no
+    /// width.
     pub fn boundary_point(&self, n: Vector) -> Vector {
         let [a, b] = self.axes;
         let (along, across) = (n.dot(&a), n.dot(&b));
@@ -189,23 +196,25 @@ impl Ellipse {
         }
     }
 
-    /// True when `p` is in the closed set. NaN is inside: what is not known to be clear is not. O(1).
+    /// True when `p` is in the closed set. NaN is inside. O(1).
     pub fn contains(&self, p: Vector) -> bool {
         let y = p - self.center;
         let [a, b] = self.axes;
-        // the first alone would let a segment go on for ever; with an interior it holds the second
+        // the first condition alone would extend a segment for ever; it implies the second for an
+        // interior
         let across = cross(y, a).powi(2) + cross(y, b).powi(2);
         !(across > (a.norm() * b.norm()).powi(2))
             && !(y.norm_squared() > a.norm_squared() + b.norm_squared())
     }
 
-    /// The signed distance of `p`; a segment and a point have no inside. NaN in, NaN out. Newton on the
-    /// secular equation `sum q_i z_i² / (q_i + s)² = 1` (docs/theory.md section 5.2), in the form in which every
-    /// step falls short of the root, to rounding.
+    /// The signed distance of `p`; NaN for a NaN. A segment and a point have no inside.
+    ///
+    /// Newton's method on the secular equation `sum q_i z_i² / (q_i + s)² = 1` (docs/theory.md
+    /// section 5.2), in the form in which every step stays below the root, to rounding.
     pub fn signed_distance(&self, p: Vector) -> SignedDistance {
         let [a, b] = self.axes;
         let (major, minor) = (a.norm(), b.norm());
-        // any unit vector serves where the major axis is zero
+        // any unit vector serves for a point
         let along = if major > 0.0 {
             a / major
         } else {
@@ -214,7 +223,7 @@ impl Ellipse {
         distance_in_frame(p - self.center, along, major, minor)
     }
 
-    /// The set moved by `shift`.
+    /// The set translated by `shift`.
     pub fn translated(&self, shift: Vector) -> Self {
         Self {
             center: self.center + shift,
@@ -222,7 +231,7 @@ impl Ellipse {
         }
     }
 
-    /// The set turned by `angle` radians about the origin.
+    /// The set rotated by `angle` radians about the origin.
     pub fn rotated(&self, angle: f64) -> Self {
         let (s, c) = angle.sin_cos();
         let turn = |p: Vector| Vector::new(c * p.x - s * p.y, s * p.x + c * p.y);
@@ -240,7 +249,7 @@ impl Ellipse {
         }
     }
 
-    /// Points of the boundary, `count` of them, counter-clockwise; for pictures.
+    /// `count` points of the boundary, counter-clockwise; for figures.
     pub fn sampled_boundary(&self, count: usize) -> Vec<Vector> {
         let [a, b] = self.axes;
         let b = if cross(a, b) < 0.0 { -b } else { b };
@@ -252,9 +261,11 @@ impl Ellipse {
             .collect()
     }
 
-    /// An outer polygon with `sides >= 3` edges: the image of the circumscribed regular polygon, so it
-    /// touches the ellipse at the middle of every edge and its area is `(k / pi) tan(pi / k)` times that
-    /// of the ellipse, 1.3 % more for 16 edges. A segment and a point are exact.
+    /// An outer polygon with `sides >= 3` edges: the image of the circumscribed regular polygon. A
+    /// segment and a point are exact.
+    ///
+    /// It touches the ellipse at the middle of every edge. Its area is `(k / pi) tan(pi / k)` times
+    /// that of the ellipse, 1.3 % more for 16 edges.
     pub fn outer_polygon(&self, sides: usize) -> ConvexPolygon {
         let [a, b] = self.axes;
         if b == Vector::zeros() {
@@ -263,7 +274,7 @@ impl Ellipse {
         }
         let b = if cross(a, b) < 0.0 { -b } else { b };
         let half = std::f64::consts::PI / sides.max(3) as f64;
-        // a few roundings of the corners
+        // allows for the rounding of the corners
         let reach = (1.0 + 4.0 * f64::EPSILON) / half.cos();
         let corners = (0..sides.max(3))
             .map(|k| {
@@ -275,8 +286,8 @@ impl Ellipse {
     }
 }
 
-/// The signed distance of `y` from the ellipse about the origin with semi-axes `major` along the unit
-/// vector `along` and `minor` across it.
+/// The signed distance of `y` from the ellipse about the origin with semi-axes `major` along the
+/// unit vector `along` and `minor` across it.
 pub(crate) fn distance_in_frame(
     y: Vector,
     along: Vector,
@@ -292,7 +303,7 @@ pub(crate) fn distance_in_frame(
     }
 }
 
-/// The same in the quadrant of positive coordinates: distance and normal.
+/// [`distance_in_frame`] in the quadrant of positive coordinates: distance and normal.
 fn distance_in_quadrant(z0: f64, z1: f64, e0: f64, e1: f64) -> (f64, [f64; 2]) {
     if !(z0.is_finite() && z1.is_finite()) {
         return (f64::NAN, [f64::NAN; 2]);
@@ -312,7 +323,7 @@ fn distance_in_quadrant(z0: f64, z1: f64, e0: f64, e1: f64) -> (f64, [f64; 2]) {
     // sigma = q1 + s; each term of the sum is at most 1
     let mut sigma = p1.max(p0 - gap);
     if sigma <= 0.0 {
-        // on the major axis, between the centres of curvature: the nearest points are beside it
+        // on the major axis between the centres of curvature: the nearest points are beside it
         let x = if gap > 0.0 { e0 * p0 / gap } else { 0.0 };
         let height = e1 * (1.0 - (x / e0).powi(2)).max(0.0).sqrt();
         let normal = Vector::new(x * q1, height * e0 * e0).normalize();

@@ -1,27 +1,29 @@
-//! A polygon cut into convex pieces.
+//! Decomposition of a polygon into convex pieces.
 
 use std::collections::BTreeMap;
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-use super::polygon::turn;
-use super::{ConvexPolygon, Polygon};
+use super::{Polygon, turn};
 use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
 
 type Mesh = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
-/// Why a polygon could not be cut.
+/// Why a polygon could not be decomposed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum DecompositionError {
-    /// Its coordinates are beyond what the triangulation takes.
+    /// A coordinate outside the range of the triangulation.
     #[error("a coordinate is too large or too small to be triangulated")]
     OutOfRange,
 }
 
-/// Convex pieces that tile a polygon: none overlap, together they are the polygon. The constrained Delaunay
-/// triangulation of it, of which the longest inner edges are taken out while both sides together stay convex
-/// (Hertel & Mehlhorn, doi:10.1007/3-540-12689-9_105): at most four times as many pieces as the fewest
-/// possible. Exact predicates; every vertex of a piece is one of the polygon. O(n log n).
+/// Convex pieces that tile a polygon without overlap, in O(n log n).
+///
+/// Computes the constrained Delaunay triangulation and removes inner edges, the longest first,
+/// while the pieces remain convex (Hertel & Mehlhorn, doi:10.1007/3-540-12689-9_105). Gives at most
+/// four times the minimum number of pieces. Exact predicates; every vertex of a piece is a vertex
+/// of the polygon.
 pub fn convex_pieces(polygon: &Polygon) -> Result<Vec<ConvexPolygon>, DecompositionError> {
     let mut index_of: BTreeMap<[u64; 2], usize> = BTreeMap::new();
     let mut points: Vec<Vector> = Vec::new();
@@ -38,7 +40,7 @@ pub fn convex_pieces(polygon: &Polygon) -> Result<Vec<ConvexPolygon>, Decomposit
     let mut crossed = false;
     let mesh = Mesh::try_bulk_load_cdt(sites, edges, |_| crossed = true)
         .map_err(|_| DecompositionError::OutOfRange)?;
-    // a polygon has no crossings; should one appear, a triangulation without it would lose land
+    // a polygon has no crossings; fail rather than lose land if one appears
     if crossed {
         return Err(DecompositionError::OutOfRange);
     }
@@ -46,7 +48,7 @@ pub fn convex_pieces(polygon: &Polygon) -> Result<Vec<ConvexPolygon>, Decomposit
     Ok(merged(&mesh, &inside))
 }
 
-/// Which faces are inside: every edge of the polygon leads from the one to the other.
+/// The faces inside the polygon: every edge of the polygon separates inside from outside.
 fn inner_faces(mesh: &Mesh) -> Vec<bool> {
     let mut beyond: Vec<Vec<(usize, bool)>> = vec![Vec::new(); mesh.num_all_faces()];
     for edge in mesh.undirected_edges() {
@@ -74,10 +76,10 @@ fn inner_faces(mesh: &Mesh) -> Vec<bool> {
     inside.into_iter().map(|i| i == Some(true)).collect()
 }
 
-/// A piece while it grows: its vertices, counter-clockwise.
+/// Vertices of a growing piece, counter-clockwise.
 type Loop = Vec<usize>;
 
-/// The inner triangles with the longest edges between them taken out, as far as the pieces stay convex.
+/// The inner triangles, merged across their longest common edges while the pieces remain convex.
 fn merged(mesh: &Mesh, inside: &[bool]) -> Vec<ConvexPolygon> {
     let at: Vec<Vector> = mesh
         .vertices()
@@ -104,7 +106,7 @@ fn merged(mesh: &Mesh, inside: &[bool]) -> Vec<ConvexPolygon> {
     }
     let length = |e: &[usize; 4]| (at[e[0]] - at[e[1]]).norm_squared();
     inner.sort_by(|e, f| length(f).total_cmp(&length(e)).then(e.cmp(f)));
-    // which piece a triangle has become part of
+    // index of the piece that contains each triangle
     let mut part_of: Vec<usize> = (0..inside.len()).collect();
     for [u, v, a, b] in inner {
         let (a, b) = (whole(&mut part_of, a), whole(&mut part_of, b));
@@ -129,10 +131,10 @@ fn whole(part_of: &mut [usize], mut face: usize) -> usize {
     face
 }
 
-/// Two convex loops without the edge that they share, `from` to `to` in the first; `None` when that is not
-/// convex.
+/// Two convex loops merged across their common edge, which runs `from` → `to` in the first; `None`
+/// if the result is not convex.
 fn joined(a: &Loop, b: &Loop, [from, to]: [usize; 2], at: &[Vector]) -> Option<Loop> {
-    // the first from `to` round to `from`, the second from `from` round to `to`
+    // the first loop from `to` around to `from`, the second from `from` around to `to`
     let round = |l: &Loop, start: usize| -> Option<Loop> {
         let first = l.iter().position(|v| *v == start)?;
         Some(l[first..].iter().chain(&l[..first]).copied().collect())
@@ -157,7 +159,7 @@ mod tests {
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    /// A star-shaped ring about a centre.
+    /// A star-shaped ring around a centre.
     fn star(rng: &mut ChaCha8Rng, centre: Vector, least: f64, most: f64) -> Vec<Vector> {
         let count = rng.random_range(3..20);
         let grid = rng.random_bool(0.3);
@@ -170,7 +172,7 @@ mod tests {
             .collect()
     }
 
-    /// The definition: every point is in as many pieces as the polygon says, and the areas add up.
+    /// Reference: each point is in as many pieces as in the polygon, and the areas add up.
     fn assert_tiles(polygon: &Polygon, rng: &mut ChaCha8Rng) -> usize {
         let pieces = convex_pieces(polygon).expect("in range");
         let area: f64 = pieces.iter().map(ConvexPolygon::area).sum();
@@ -250,7 +252,7 @@ mod tests {
             at(2.0, 2.0),
         ];
         assert_tiles(&Polygon::new(&[pinched.to_vec()]).expect("valid"), &mut rng);
-        // collinear vertices, and the line on which a hole stands
+        // collinear vertices, and the line on which a hole lies
         let straight = vec![
             at(0.0, 0.0),
             at(2.0, 0.0),

@@ -1,23 +1,23 @@
-//! Where the edges of a polygon cross one another.
+//! Crossings between the edges of a polygon.
 
-use super::polygon::turn;
+use super::turn;
 use crate::frame::{Vector, cross};
 
-/// An edge: it leads from this vertex to the next one of its ring.
+/// Index of an edge: it starts at this vertex and ends at the next one of its ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct EdgeIndex {
-    /// Which ring, from 0.
+    /// Index of the ring, from 0.
     pub ring: usize,
-    /// Which vertex of it, from 0.
+    /// Index of the vertex in the ring, from 0.
     pub vertex: usize,
 }
 
-/// Two edges that cross, or lie on one another.
+/// Two edges that cross or overlap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
-    /// Which edges, in order.
+    /// The edges, in order.
     pub edges: [EdgeIndex; 2],
-    /// A point that they share.
+    /// A common point.
     pub at: Vector,
 }
 
@@ -38,9 +38,10 @@ impl Edge {
     }
 }
 
-/// The first pair of edges, in the order of their indices, that share more than an end or a point in which
-/// one only touches the other. Exact predicates; a sweep from west to east, O(n log n) and the pairs that
-/// overlap in east.
+/// The first pair of edges, in index order, that share more than an end or a touching point.
+///
+/// Exact predicates. A sweep from west to east: O(n log n) plus the pairs whose east ranges
+/// overlap.
 pub(super) fn first_crossing(rings: &[Vec<Vector>]) -> Option<Crossing> {
     let mut edges: Vec<Edge> = Vec::new();
     for (ring, points) in rings.iter().enumerate() {
@@ -81,7 +82,7 @@ fn shared(e: &Edge, f: &Edge) -> Option<Vector> {
     }
     let (a, b) = (turn(e.from, e.to, f.from), turn(e.from, e.to, f.to));
     if a == 0.0 && b == 0.0 {
-        // on one line: they may share a point, not a length
+        // collinear edges may share a point, but not a length
         let along = e.to - e.from;
         let place = |p: Vector| along.dot(&(p - e.from)) / along.norm_squared();
         let (s, t) = (place(f.from), place(f.to));
@@ -101,7 +102,7 @@ mod tests {
     use super::*;
     use rand::{Rng, SeedableRng};
 
-    /// Every pair of edges, one by one.
+    /// Compares with a test of every pair of edges.
     #[test]
     fn the_sweep_finds_what_every_pair_finds() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(71);
