@@ -1,7 +1,6 @@
 //! The time of no return: the last moment from which a plan clear of every hard set was found.
 
-use super::sets::TargetSets;
-use super::{Run, coast, problem};
+use super::{Run, land_obstacle, problem};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::{PlannerKind, space_time};
 
@@ -43,9 +42,9 @@ impl Run {
         if scenario.planner != PlannerKind::SpaceTime {
             return None;
         }
-        let hard: Vec<Obstacle> = self.sets.iter().map(TargetSets::hard_set).collect();
-        let coast = coast(scenario, &self.land);
-        let asked = problem(scenario, &hard, &coast);
+        let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
+        let land_obstacle = land_obstacle(scenario, &self.land);
+        let asked = problem(scenario, &hard, &land_obstacle);
         let held = space_time::nominal_motion(&asked)?;
         let contacts = hard.iter().filter_map(|set| {
             held.iter()

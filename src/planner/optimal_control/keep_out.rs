@@ -43,7 +43,7 @@ impl KeepOut {
             Obstacle::Polytope(o) => (EllipsoidObstacle::outer_of(o), true),
             Obstacle::Slabs(o) => {
                 let velocities: Vec<Vector> = o
-                    .spells()
+                    .velocity_sets()
                     .iter()
                     .flat_map(|s| s.velocities.vertices().iter().copied())
                     .collect();

@@ -114,7 +114,7 @@ fn plan_transformed(
     let planned = similarity.restored(planned, problem.horizon);
     let touches = |plan: &Plan| {
         let segments = plan.trajectory.segments();
-        first_met(proxies, segments).is_some() || land::meets(problem.coast, segments)
+        first_met(proxies, segments).is_some() || land::meets(problem.land_obstacle, segments)
     };
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
@@ -153,7 +153,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
             });
         }
     }
-    if let Some(depth) = problem.coast.depth(own.pose.position)
+    if let Some(depth) = problem.land_obstacle.depth(own.pose.position)
         // negated on purpose: a NaN is on land
         && !(depth <= tolerance::TOUCH_M)
     {
@@ -185,7 +185,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         chord: FINE_CHORD_RAD,
     };
     let contact = first_contact(proxies, &nominal_motion);
-    let grounding = land::first_contact(problem.coast, &nominal_motion);
+    let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
     if problem.duty().stands_on
@@ -234,9 +234,9 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     if contact.is_some() || grounding.is_some() {
         conflicts = by_obstacle(proxies)
             .filter_map(|h| Conflict::of(h, &nominal_motion))
-            .map(|conflict| land::beyond_land(problem.coast, conflict, &nominal_motion))
+            .map(|conflict| land::beyond_land(problem.land_obstacle, conflict, &nominal_motion))
             .collect();
-        conflicts.extend(land::conflicts(problem.coast, &nominal_motion));
+        conflicts.extend(land::conflicts(problem.land_obstacle, &nominal_motion));
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, clock);
     }

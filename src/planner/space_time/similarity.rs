@@ -12,7 +12,7 @@ use crate::colregs::{Encountered, SteadyShip};
 use crate::frame::{Pose, Vector, cross, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{
-    Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    EllipsoidObstacle, LandObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use crate::planner::space_time::proxy::{Proxy, by_obstacle};
 use crate::planner::{EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem};
@@ -98,7 +98,7 @@ pub(crate) struct NormalisedProblem {
     own: OwnShip,
     desired: DesiredTrajectory,
     obstacles: Vec<Obstacle>,
-    coast: Option<Coast>,
+    land_obstacle: Option<LandObstacle>,
     encountered: Vec<Encountered>,
     horizon: f64,
     time_weight: f64,
@@ -119,7 +119,7 @@ impl Similarity {
             within: by_obstacle(proxies).map(|h| h[0].obstacle).collect(),
             all: problem.obstacles.len(),
         };
-        if !problem.coast.is_empty() || !problem.encountered.is_empty() {
+        if !problem.land_obstacle.is_empty() || !problem.encountered.is_empty() {
             return of;
         }
         (of.length, of.time) = size(problem, proxies);
@@ -240,8 +240,11 @@ impl Similarity {
             },
             desired: DesiredTrajectory::new(&self.waypoints(problem), &speeds).ok()?,
             obstacles: obstacles.collect::<Option<_>>()?,
-            coast: (!problem.coast.is_empty())
-                .then(|| problem.coast.mapped(|block| self.places(block, horizon))),
+            land_obstacle: (!problem.land_obstacle.is_empty()).then(|| {
+                problem
+                    .land_obstacle
+                    .mapped(|block| self.places(block, horizon))
+            }),
             encountered: problem.encountered.iter().map(ship).collect(),
             horizon: rounded(horizon / self.time) * (1.0 - 2.0_f64.powi(-DIGITS)),
             time_weight: rounded(problem.time_weight / (speed * speed)),
@@ -292,7 +295,7 @@ impl Similarity {
                 .into()
             }
             Obstacle::Slabs(o) => {
-                let spells = o.spells().iter().map(|s| VelocitySpell {
+                let spells = o.velocity_sets().iter().map(|s| VelocitySpell {
                     until: number_on_grid(s.until / self.time, TIME_GRID_S),
                     velocities: self.velocities(&s.velocities),
                 });
@@ -418,7 +421,7 @@ impl NormalisedProblem {
             own: &self.own,
             desired: &self.desired,
             obstacles: &self.obstacles,
-            coast: self.coast.as_ref().unwrap_or(of.coast),
+            land_obstacle: self.land_obstacle.as_ref().unwrap_or(of.land_obstacle),
             encountered: &self.encountered,
             horizon: self.horizon,
             time_weight: self.time_weight,

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::super::defect::largest_defect;
 use super::*;
-use crate::obstacle::Coast;
+use crate::obstacle::LandObstacle;
 use crate::pipeline;
 use crate::scenario::Scenario;
 
@@ -17,7 +17,7 @@ fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
     let obstacles: Vec<Obstacle> = sets.into_iter().map(|s| s.hard).collect();
     let problem = Problem {
         deadline: Duration::ZERO,
-        ..pipeline::problem(&scenario, &obstacles, Coast::none())
+        ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
     };
     let exact = CyberShip2::EXACT;
     let planner = Planner::new(&problem, &scenario.control, CyberShip2::SMOOTH, exact);

@@ -254,7 +254,7 @@ impl<'a> TightBound<'a> {
 mod tests {
     use std::time::Duration;
 
-    use crate::obstacle::Coast;
+    use crate::obstacle::LandObstacle;
     use crate::pipeline;
     use crate::planner::clock::Clock;
     use crate::planner::cost::space_time_error;
@@ -336,7 +336,7 @@ mod tests {
         }
         let mut tightest_ratio = 0.0_f64;
         for (state, to_go) in joints {
-            let (bound, tight_bound) = (graph.bound(&state), graph.closer_bound(&state));
+            let (bound, tight_bound) = (graph.bound(&state), graph.tight_bound(&state));
             let limit = to_go * (1.0 + 1e-9) + 1e-6;
             assert!(bound <= limit, "{bound} > {to_go} at {state:?}");
             assert!(
@@ -381,7 +381,7 @@ mod tests {
                 greatest = greatest.max(tightest_ratio(&Problem {
                     search: SearchKind::AStar,
                     deadline: Duration::from_secs(60),
-                    ..pipeline::problem(&scenario, &obstacles, Coast::none())
+                    ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
                 }));
             }
         }

@@ -178,7 +178,7 @@ fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Se
         (motion.last()?.end_time() <= problem.horizon).then_some(motion)
     };
     let motion = arrives(nearest).or_else(|| arrives(own.max_speed()))?;
-    (!crate::planner::space_time::land::meets(problem.coast, &motion)).then_some(motion)
+    (!crate::planner::space_time::land::meets(problem.land_obstacle, &motion)).then_some(motion)
 }
 
 /// Motion along the path that ignores other ships; `None` where it does not arrive within the
@@ -258,7 +258,9 @@ fn exits(
             // own ship may enter a growing set again: then it has not left for good
             if meets(&others, &before)
                 || meets(&held, &after(&motion, out))
-                || before.iter().any(|s| problem.coast.meets(s, TOUCH_M))
+                || before
+                    .iter()
+                    .any(|s| problem.land_obstacle.meets(s, TOUCH_M))
             {
                 continue;
             }
@@ -414,7 +416,11 @@ fn append(
     beginning: &[Segment],
     follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
 ) -> Option<Vec<Segment>> {
+<<<<<<< HEAD
     if crate::planner::space_time::land::meets(problem.coast, beginning) {
+=======
+    if crate::planner::space_time::land::meets(problem.land_obstacle, away) {
+>>>>>>> main
         return None;
     }
     let start = beginning.last().map_or(0.0, Segment::end_time);

@@ -235,7 +235,8 @@ impl HybridAStar<'_> {
     /// True where the primitive that leads to a node is clear.
     fn admits(&self, index: usize) -> bool {
         let motion = self.motion_to(index);
-        first_met(self.proxies, &motion).is_none() && !land::meets(self.problem.coast, &motion)
+        first_met(self.proxies, &motion).is_none()
+            && !land::meets(self.problem.land_obstacle, &motion)
     }
 
     /// Adds a successor where it is in time and can still reach the end.

@@ -94,6 +94,6 @@ fn first_conflict(problem: &Problem, proxies: &[Proxy], motion: &[Segment]) -> O
         contacts.min_by(f64::total_cmp)
     };
     let target = motion.iter().find_map(met);
-    let land = land::first_contact(problem.coast, motion);
+    let land = land::first_contact(problem.land_obstacle, motion);
     target.into_iter().chain(land).min_by(f64::total_cmp)
 }

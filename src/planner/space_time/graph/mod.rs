@@ -89,7 +89,7 @@ impl<'a> Graph<'a> {
         let mut contacts: Vec<f64> = by_obstacle(proxies)
             .filter_map(|parts| parts.iter().filter_map(first).min_by(f64::total_cmp))
             .chain(
-                land::conflicts(problem.coast, nominal_motion)
+                land::conflicts(problem.land_obstacle, nominal_motion)
                     .iter()
                     .map(|c| c.from),
             )
@@ -477,7 +477,7 @@ impl Space for Graph<'_> {
         }
     }
 
-    fn closer_bound(&mut self, state: &State) -> f64 {
+    fn tight_bound(&mut self, state: &State) -> f64 {
         match (&self.heuristic, state.kind) {
             (None, _) | (_, NodeKind::End) => 0.0,
             (Some(heuristic), _) => heuristic.tight_cost_to_go(&state.pose, state.time),
@@ -493,10 +493,10 @@ impl Space for Graph<'_> {
             let soon = checked_part(&state.motion, until);
             let met = first_met(self.proxies, &soon);
             state.met.set(met);
-            return met.is_none() && !land::meets(self.problem.coast, &soon);
+            return met.is_none() && !land::meets(self.problem.land_obstacle, &soon);
         }
         let met = first_met(self.proxies, &state.motion).or_else(|| {
-            let ashore = land::meets(self.problem.coast, &state.motion);
+            let ashore = land::meets(self.problem.land_obstacle, &state.motion);
             ashore.then_some(self.problem.obstacles.len())
         });
         state.met.set(met);

@@ -222,7 +222,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
-    use crate::obstacle::{Coast, PolytopeObstacle};
+    use crate::obstacle::{LandObstacle, PolytopeObstacle};
     use crate::planner::clock::Clock;
     use crate::planner::space_time::piece::pieces;
     use crate::planner::space_time::proxy::Proxy;
@@ -268,7 +268,7 @@ pub(crate) mod tests {
             alternatives: &[],
             objective: crate::planner::Objective::SpaceTimeError,
             obstacles: &obstacles,
-            coast: Coast::none(),
+            land_obstacle: LandObstacle::none(),
             horizon: 900.0,
             time_weight: 25.0,
             search: SearchKind::AStar,

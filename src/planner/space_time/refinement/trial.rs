@@ -78,7 +78,7 @@ impl Context<'_> {
             .then(|| self.return_segments(rollout.joined.0, rollout.joined.1));
         cost += return_segments.as_ref().map_or(0.0, |t| t.cost);
         let sails = rollout.legs.iter().map(|l| &l.segment);
-        let land = land::near(self.problem.coast, sails, NEAR_M);
+        let land = land::near(self.problem.land_obstacle, sails, NEAR_M);
         let middles = rollout.middles();
         let mut approaches = Vec::new();
         let near_land = land.into_iter().map(|b| &self.blocks[b]);

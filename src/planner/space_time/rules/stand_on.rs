@@ -253,6 +253,6 @@ impl<'s> Escapes<'s, '_> {
         first_met(self.context.proxies, motion).is_none()
             && !motion
                 .iter()
-                .any(|s| self.context.problem.coast.meets(s, TOUCH_M))
+                .any(|s| self.context.problem.land_obstacle.meets(s, TOUCH_M))
     }
 }

@@ -396,7 +396,7 @@ impl<'a> Selection<'a> {
             && cost.is_finite()
             && complies(&self.context, self.nominal_motion, &motion)
             && first_met(self.context.proxies, &motion).is_none()
-            && !land::meets(problem.coast, &motion);
+            && !land::meets(problem.land_obstacle, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }

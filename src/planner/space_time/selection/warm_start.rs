@@ -180,7 +180,7 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::obstacle::{Coast, Obstacle};
+    use crate::obstacle::{LandObstacle, Obstacle};
     use crate::pipeline;
     use crate::planner::SearchKind;
     use crate::planner::space_time::plan;
@@ -200,7 +200,7 @@ mod tests {
             let problem = Problem {
                 search: SearchKind::AStar,
                 deadline: Duration::from_secs(60),
-                ..pipeline::problem(&scenario, &obstacles, Coast::none())
+                ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
             };
             if let Some(found) = plan(&problem).outcome.plan() {
                 check(&problem, &found.trajectory, found.cost);
