@@ -20,10 +20,10 @@ pub fn passing_sides(motion: &Steered, keep_outs: &[KeepOut]) -> Vec<Option<Side
 
 fn side(motion: &Steered, keep: &KeepOut) -> Option<Side> {
     let mut nearest = (f64::INFINITY, 0.0);
-    let looks = SAMPLES.div_ceil(motion.nodes().len() - 1);
+    let samples = SAMPLES.div_ceil(motion.nodes().len() - 1);
     for piece in motion.pieces() {
-        for look in 0..=looks {
-            let part = look as f64 / looks as f64;
+        for sample in 0..=samples {
+            let part = sample as f64 / samples as f64;
             let at = keep.at(piece.start_time + part * piece.duration);
             let level = at.level(piece.position(part));
             if level < nearest.0 {

@@ -482,8 +482,8 @@ fn rounded(x: f64) -> f64 {
 
 /// Radius of the disc around the section that first contains own ship on schedule, metres.
 fn radius_met(desired: &DesiredTrajectory, proxies: &[Proxy]) -> Option<f64> {
-    (0..=SAMPLES).find_map(|look| {
-        let time = desired.duration() * look as f64 / SAMPLES as f64;
+    (0..=SAMPLES).find_map(|index| {
+        let time = desired.duration() * index as f64 / SAMPLES as f64;
         let place = desired.position_at(time);
         let met = proxies.iter().filter_map(|h| {
             let (centre, radius) = h.disc_at(time)?;

@@ -416,11 +416,7 @@ fn append(
     beginning: &[Segment],
     follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
 ) -> Option<Vec<Segment>> {
-<<<<<<< HEAD
-    if crate::planner::space_time::land::meets(problem.coast, beginning) {
-=======
-    if crate::planner::space_time::land::meets(problem.land_obstacle, away) {
->>>>>>> main
+    if crate::planner::space_time::land::meets(problem.land_obstacle, beginning) {
         return None;
     }
     let start = beginning.last().map_or(0.0, Segment::end_time);
@@ -488,14 +484,14 @@ mod tests {
     #[test]
     fn a_set_that_is_never_left_costs_few_samples() {
         let own = own_ship(vec![5.0]);
-        let (growing, looks) = (8.0, Cell::new(0));
+        let (growing, samples) = (8.0, Cell::new(0));
         let depth = |pose: &Pose, time: f64| {
-            looks.set(looks.get() + 1);
+            samples.set(samples.get() + 1);
             60.0 + growing * time - pose.position.norm()
         };
         let motion = turned(&own, 5.0, 0.0, 86_400.0);
         assert_eq!(exit_time(&motion, 86_400.0, 5.0 + growing, depth), None);
-        assert!(looks.get() < 100, "{}", looks.get());
+        assert!(samples.get() < 100, "{}", samples.get());
         // a set that grows more slowly is left when own ship reaches its edge
         let depth = |pose: &Pose, time: f64| 60.0 + 3.0 * time - pose.position.norm();
         let out = exit_time(&motion, 86_400.0, 8.0, depth).expect("out");

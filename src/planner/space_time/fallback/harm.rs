@@ -53,8 +53,8 @@ impl Harm {
         let steps = |metres: f64| (metres / step).ceil();
         let start = depth(&own.pose, 0.0);
         let mut deepest = start;
-        for look in 1..SAMPLES {
-            let time = out * f64::from(look) / f64::from(SAMPLES);
+        for sample in 1..SAMPLES {
+            let time = out * f64::from(sample) / f64::from(SAMPLES);
             if let Some(s) = motion.iter().find(|s| time <= s.end_time()) {
                 deepest = deepest.max(depth(&s.pose_at(time), time));
             }
@@ -106,14 +106,14 @@ impl<'a> NominalHulls<'a> {
         let mut deepest: f64 = 0.0;
         for (proxy, hull) in &self.hulls {
             let mut least = SAMPLE_BEAMS * own.hull.beam.max(LEAST_STEP_M);
-            let (mut time, mut at, mut looks): (f64, _, u32) = (0.0, 0, 0);
+            let (mut time, mut at, mut samples): (f64, _, u32) = (0.0, 0, 0);
             while let Some(segment) = motion.get(at) {
                 if segment.end_time() < time {
                     at += 1;
                     continue;
                 }
-                looks += 1;
-                if looks.is_multiple_of(MANY) {
+                samples += 1;
+                if samples.is_multiple_of(MANY) {
                     least *= 2.0;
                 }
                 let turning = segment.turn_rate.abs() * hull.half_diagonal();

@@ -281,7 +281,7 @@ impl<const N: usize> Compact<N> {
     /// Most violated inactive constraint, relative to its scale.
     fn violated(&self, at: &Point<N>, boxes: &[Padded<N>; 2]) -> Option<Kind> {
         let mut worst = (-VIOLATION_TOLERANCE, None);
-        let mut look = |kind: Kind, v: f64| {
+        let mut examine = |kind: Kind, v: f64| {
             if v < worst.0 && !at.active().contains(&kind) {
                 worst = (v, Some(kind));
             }
@@ -305,12 +305,12 @@ impl<const N: usize> Compact<N> {
         for (lane, kind) in lanes.iter().zip(kinds) {
             if least(lane) < -VIOLATION_TOLERANCE {
                 for (i, v) in lane.iter().enumerate() {
-                    look(kind(i), *v);
+                    examine(kind(i), *v);
                 }
             }
         }
         for (r, row) in self.rows.iter().enumerate() {
-            look(Kind::Row(r), row.value(x) * row.scale);
+            examine(Kind::Row(r), row.value(x) * row.scale);
         }
         worst.1
     }

@@ -209,7 +209,7 @@ impl Nearest {
             time: 0.0,
             drifts_to_port: false,
         };
-        let mut look = |s: &Segment, time: f64| {
+        let mut examine = |s: &Segment, time: f64| {
             let target = ship.pose.position + ship.velocity() * time;
             let offset = s.pose_at(time).position - target;
             let relative = s.velocity_at(time) - ship.velocity();
@@ -223,17 +223,17 @@ impl Nearest {
             (offset, relative)
         };
         for s in motion {
-            let (offset, relative) = look(s, s.start_time);
+            let (offset, relative) = examine(s, s.start_time);
             if s.is_arc() {
                 for k in 1..ARC_SAMPLES {
                     let share = f64::from(k) / f64::from(ARC_SAMPLES);
-                    look(s, s.start_time + s.duration * share);
+                    examine(s, s.start_time + s.duration * share);
                 }
             } else if relative.norm() > NO_RELATIVE_SPEED {
                 let ahead = -offset.dot(&relative) / relative.norm_squared();
-                look(s, s.start_time + ahead.clamp(0.0, s.duration));
+                examine(s, s.start_time + ahead.clamp(0.0, s.duration));
             }
-            look(s, s.end_time());
+            examine(s, s.end_time());
         }
         nearest
     }
