@@ -120,10 +120,10 @@ pub(crate) fn conflicts(land_obstacle: &LandObstacle, nominal_motion: &[Segment]
         }
     }
     for conflict in &mut found {
-        let rollout = nominal_motion
+        let lengths = nominal_motion
             .iter()
             .map(|s| s.between(conflict.from, conflict.to).length());
-        conflict.through = rollout.sum();
+        conflict.through = lengths.sum();
     }
     found
 }
