@@ -11,8 +11,8 @@ use searoom::report::printable_lines;
 use searoom::scenario::formats::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
 
-use super::products::Wanted;
-use super::rows;
+use super::input::rows;
+use super::output::products::Wanted;
 
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///

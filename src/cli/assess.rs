@@ -10,12 +10,12 @@ use searoom::scenario::Scenario;
 use searoom::study::assess::{Query, Situation, SpaceTimePoint, assess as answer};
 
 use super::args::AssessArgs;
-use super::figure;
+use super::input::rows;
+use super::input::scenes::scenario_file;
 use super::output::Output;
-use super::rows;
+use super::output::products::prepare_figure;
+use super::output::status::Status;
 use super::runner::guarded;
-use super::scenes::scenario_file;
-use super::status::Status;
 
 /// Assesses one file.
 pub fn assess(args: &AssessArgs, output: &Output) -> Status {
@@ -29,7 +29,7 @@ pub fn assess(args: &AssessArgs, output: &Output) -> Status {
     }
     // before anything is computed
     if let Some(path) = &args.figure
-        && let Err(error) = figure::prepare(path)
+        && let Err(error) = prepare_figure(path)
     {
         output.error(&format_args!("{error:#}"));
         return Status::BadInput;

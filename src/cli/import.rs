@@ -7,11 +7,11 @@ use searoom::report::write_atomically;
 use searoom::scenario::formats::Assumed;
 
 use super::args::ImportArgs;
-use super::files::refuse_clashes;
+use super::input::files::refuse_clashes;
+use super::input::scenes::Scene;
+use super::input::{files, scenes};
 use super::output::Output;
-use super::scenes::Scene;
-use super::status::Status;
-use super::{files, scenes};
+use super::output::status::Status;
 
 /// Writes one scenario file per situation; every fault of the others. A scenario file is left as it is.
 pub fn import(args: &ImportArgs, output: &Output) -> Status {

@@ -7,10 +7,10 @@ use searoom::scenario::formats::Assumed;
 use searoom::study::lint::{Likeness, Lint, likenesses, lint};
 
 use super::args::SuiteArgs;
+use super::input::scenes::{Scene, Unread};
 use super::output::Output;
+use super::output::status::Status;
 use super::runner::guarded;
-use super::scenes::{Scene, Unread};
-use super::status::Status;
 
 /// A scenario that was read, and what is said of it.
 struct Looked {

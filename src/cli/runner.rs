@@ -11,7 +11,7 @@ use searoom::scenario::ScenarioError;
 use searoom::scenario::formats::Assumed;
 
 use super::args::Shared;
-use super::scenes::{Made, Scene};
+use super::input::scenes::{Made, Scene};
 
 thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };

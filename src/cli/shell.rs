@@ -6,7 +6,7 @@ use clap_mangen::Man;
 
 use super::args::{Arguments, CompletionsArgs};
 use super::output::Output;
-use super::status::Status;
+use super::output::status::Status;
 
 /// Prints the completions of a shell.
 pub fn completions(args: &CompletionsArgs, output: &Output) -> Status {

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::words;
 use crate::pipeline::Run;
 
 /// Ship, weights and grid; what every start led to; the homotopy classes.
@@ -95,7 +94,7 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
                 sides: class
                     .sides
                     .iter()
-                    .map(|side| side.map(words::side).map(str::to_owned))
+                    .map(|side| side.map(|side| side.to_string()))
                     .collect(),
                 objective: class.objective,
                 starts: class.starts,

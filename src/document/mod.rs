@@ -2,11 +2,11 @@
 //!
 //! A number that is not finite is written as null. Keys of what does not exist yet are absent.
 
-pub(crate) mod alteration;
+mod alteration;
 mod assessment;
 mod comparison;
-mod conduct;
 mod control;
+mod encounter;
 mod lint;
 mod parts;
 mod path_time;
@@ -14,19 +14,21 @@ mod plan;
 mod suite;
 mod targets;
 mod verification;
-pub(crate) mod words;
 
 pub use assessment::*;
 pub use comparison::{
     ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
     TrackPointDocument,
 };
-pub use conduct::{BreachDocument, ConductDocument, MonitorDocument, RoleDocument};
 pub use control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };
+pub use encounter::{
+    BreachDocument, ConductDocument, EncounterDocument, MonitorDocument, RoleDocument,
+};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use parts::*;
+pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
 pub use plan::{PLAN_FORMAT, PlanDocument};
 pub use suite::{

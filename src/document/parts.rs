@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::conduct::ConductDocument;
-
 /// A point of the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are the units")]
@@ -88,6 +86,9 @@ pub struct CostDocument {
     pub length_m: f64,
     /// Null for a plan that never arrives.
     pub delay_s: Option<f64>,
+    /// The first alteration of course; null where there is none.
+    #[serde(default)]
+    pub first_turn: Option<TurnDocument>,
     /// Against the sets of which `obstacles` are the level sets.
     pub max_risk: f64,
     /// Null without targets.
@@ -99,6 +100,17 @@ pub struct CostDocument {
     pub arrival_hold_s: f64,
     /// Least distance between own hull and land; null without land.
     pub min_land_distance_m: Option<f64>,
+}
+
+/// An alteration of course to one side.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
+pub struct TurnDocument {
+    pub side: String,
+    /// Positive to either side.
+    pub turn_deg: f64,
+    /// When it begins.
+    pub t_s: f64,
 }
 
 /// What the search did.
@@ -218,24 +230,4 @@ pub struct ObstacleDocument {
     pub valid_s: [f64; 2],
     pub initial_set: InitialSetDocument,
     pub velocity_set: VelocitySetDocument,
-}
-
-/// A target as it is met. Figures of the plan are null without one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
-pub struct EncounterDocument {
-    pub target: String,
-    pub role: String,
-    pub dcpa_m: Option<f64>,
-    pub tcpa_s: Option<f64>,
-    pub undisturbed_dcpa_m: Option<f64>,
-    pub undisturbed_tcpa_s: Option<f64>,
-    pub passing_side: Option<String>,
-    /// The largest risk along the plan.
-    pub max_risk: Option<f64>,
-    /// When; null where the risk is 0.
-    pub max_risk_t_s: Option<f64>,
-    /// What the judges say; absent without a plan and where the target is no ship on a nominal track.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub conduct: Option<ConductDocument>,
 }

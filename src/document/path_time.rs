@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::words;
 use crate::frame::clockwise_deg;
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::pipeline::Run;
@@ -54,14 +53,14 @@ pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTi
     // +0.0 turns a negative zero into zero
     let plain = |p: &PathTime| [p.distance + 0.0, p.time + 0.0];
     PathTimeDocument {
-        path: words::paths(diagram),
+        path: paths(diagram),
         legs: diagram
             .legs
             .iter()
             .map(|leg| PathLegDocument {
                 start_m: leg.begin,
                 end_m: leg.begin + leg.track.length,
-                path: words::path(leg.path),
+                path: path(leg.path),
             })
             .collect(),
         obstacles: diagram
@@ -83,4 +82,20 @@ pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTi
             .collect(),
         profile: diagram.profile.iter().map(plain).collect(),
     }
+}
+
+/// The name of a path: 0 is the main one.
+fn path(index: usize) -> String {
+    match index {
+        0 => "main".to_owned(),
+        index => format!("alternative {index}"),
+    }
+}
+
+/// The paths of a plan in order.
+pub(crate) fn paths(diagram: &PathTimeDiagram) -> String {
+    let mut paths: Vec<usize> = diagram.legs.iter().map(|leg| leg.path).collect();
+    paths.dedup();
+    let names: Vec<String> = paths.into_iter().map(path).collect();
+    names.join(", ")
 }

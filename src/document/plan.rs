@@ -2,26 +2,26 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::conduct::ConductDocument;
+use super::alteration::{Turn, first_alteration};
 use super::control::{ControlDocument, control};
+use super::encounter::{EncounterDocument, encounters};
 use super::parts::{
-    CostDocument, EncounterDocument, EscapeDocument, InitialSetDocument, MissionDocument,
-    NodeDocument, ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument,
-    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument,
-    TrajectoryDocument, VelocitySetDocument, ViolationDocument,
+    CostDocument, EscapeDocument, InitialSetDocument, MissionDocument, NodeDocument,
+    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
+    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
+    TurnDocument, VelocitySetDocument, ViolationDocument,
 };
 use super::path_time::{PathTimeDocument, path_time_document};
 use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
-use super::words;
 use crate::evaluation::Evaluation;
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
 };
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
-use crate::pipeline::Verdict;
-use crate::pipeline::{Relaxation, Run};
-use crate::planner::{Objective, Plan};
+use crate::pipeline::{Relaxation, Run, Verdict};
+use crate::planner::{Objective, Plan, PlannerKind, SearchKind};
+use crate::scenario::Scenario;
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
 
@@ -101,12 +101,12 @@ impl PlanDocument {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
             planner: scenario.planner.word().to_owned(),
-            search: words::search(scenario.search).to_owned(),
+            search: search(scenario.search).to_owned(),
             compliance: scenario.compliance.word().to_owned(),
             thresholds: scenario
                 .judged_by()
                 .map_or_else(String::new, |t| t.name.clone()),
-            objective: words::objective(scenario).to_owned(),
+            objective: objective(scenario).to_owned(),
             risk_weight_m: match scenario.objective {
                 Objective::LengthRisk { weight } => Some(weight),
                 _ => None,
@@ -154,11 +154,26 @@ impl PlanDocument {
     }
 }
 
+/// The word for what the planner minimises.
+pub(super) fn objective(scenario: &Scenario) -> &'static str {
+    match scenario.planner {
+        PlannerKind::OptimalControl => "stage-cost",
+        PlannerKind::SpaceTime | PlannerKind::PathTime => scenario.objective.word(),
+    }
+}
+
+fn search(kind: SearchKind) -> &'static str {
+    match kind {
+        SearchKind::AStar => "a-star",
+        SearchKind::Dijkstra => "dijkstra",
+    }
+}
+
 fn plan(run: &Run) -> Option<&Plan> {
     run.planned.outcome.plan()
 }
 
-pub(super) fn verified(run: &Run) -> bool {
+fn verified(run: &Run) -> bool {
     run.evaluation.as_ref().is_some_and(|e| e.verified())
 }
 
@@ -184,7 +199,7 @@ pub(super) fn timing(run: &Run) -> TimingDocument {
     }
 }
 
-pub(super) fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
+fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
     match given_up {
         Relaxation::Domain { target, amount } => RelaxationDocument {
             kind: "domain".to_owned(),
@@ -261,18 +276,18 @@ fn mission(run: &Run) -> MissionDocument {
     }
 }
 
-pub(super) fn cost(run: &Run) -> Option<CostDocument> {
+fn cost(run: &Run) -> Option<CostDocument> {
     let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
+    let arrived = run.control.is_none() && plan.to_go == 0.0;
+    let trajectory = &plan.trajectory;
     Some(cost_of(
-        evaluation,
-        plan.cost,
-        run.control.is_none() && plan.to_go == 0.0,
-        &run.risks,
+        trajectory, evaluation, plan.cost, arrived, &run.risks,
     ))
 }
 
-/// Of any motion.
+/// The figures of any motion.
 pub(super) fn cost_of(
+    trajectory: &Trajectory,
     evaluation: &Evaluation,
     objective: f64,
     arrived: bool,
@@ -287,11 +302,20 @@ pub(super) fn cost_of(
         duration_s: evaluation.duration,
         length_m: evaluation.length,
         delay_s: finite(evaluation.delay),
+        first_turn: first_alteration(trajectory).map(turn),
         max_risk: risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
         hold_clearance_m: finite(evaluation.hold_clearance),
         arrival_hold_s: evaluation.arrival_hold,
         min_land_distance_m: finite(evaluation.min_land_distance),
+    }
+}
+
+fn turn(turn: Turn) -> TurnDocument {
+    TurnDocument {
+        side: turn.side.to_string(),
+        turn_deg: turn.degrees,
+        t_s: turn.start,
     }
 }
 
@@ -418,37 +442,4 @@ pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
         plain(Vector::new(q[(0, 0)], q[(0, 1)])),
         plain(Vector::new(q[(1, 0)], q[(1, 1)])),
     ]
-}
-
-pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
-    let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
-    let conduct = run.judged_conduct();
-    run.scenario
-        .targets
-        .iter()
-        .zip(&run.sets)
-        .enumerate()
-        .map(|(index, (target, sets))| {
-            let passage = passages.and_then(|passages| passages.get(index));
-            EncounterDocument {
-                target: target.name.clone(),
-                role: sets.encounter.role.name().to_owned(),
-                dcpa_m: passage.and_then(|p| finite(p.dcpa)),
-                tcpa_s: passage.and_then(|p| finite(p.tcpa)),
-                undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
-                undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
-                passing_side: passage.map(|p| p.passing_side.to_string()),
-                max_risk: run.risks.get(index).map(|peak| peak.risk),
-                max_risk_t_s: run
-                    .risks
-                    .get(index)
-                    .filter(|peak| peak.risk > 0.0)
-                    .map(|peak| peak.time),
-                conduct: conduct
-                    .get(index)
-                    .and_then(Option::as_ref)
-                    .map(ConductDocument::of),
-            }
-        })
-        .collect()
 }

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{CostDocument, EncounterDocument, RelaxationDocument, TimingDocument};
-use super::plan::{cost, encounters, relaxation, timing, verified};
+use super::encounter::EncounterDocument;
+use super::parts::{CostDocument, RelaxationDocument, SearchStatsDocument, TimingDocument};
+use super::plan::PlanDocument;
 use crate::evaluation::outcome_word;
-use crate::pipeline::Run;
 use crate::pipeline::Verdict;
 
 /// The outcome of a file that is no scenario.
@@ -46,6 +46,8 @@ pub struct SuiteRunDocument {
     pub cost: Option<CostDocument>,
     pub encounters: Vec<EncounterDocument>,
     pub targets: Option<usize>,
+    #[serde(default)]
+    pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
@@ -129,23 +131,24 @@ impl std::fmt::Display for SuiteSummaryDocument {
 }
 
 impl SuiteRunDocument {
-    /// The entry of a run; the notes say what was assumed or not used of a foreign file.
-    pub fn of(file: String, run: &Run, notes: Vec<String>) -> Self {
+    /// The entry of a plan. The notes say what was assumed or not used of an imported file.
+    pub fn of(file: String, plan: &PlanDocument, notes: Vec<String>) -> Self {
         Self {
             file,
-            scenario: Some(run.scenario.title.clone()),
-            planner: Some(run.scenario.planner.word().to_owned()),
-            outcome: Verdict::of(run).word().to_owned(),
-            verdict: run.word(),
+            scenario: Some(plan.scenario.clone()),
+            planner: Some(plan.planner.clone()),
+            outcome: plan.outcome.clone(),
+            verdict: plan.verdict.clone(),
             error: None,
-            reason: run.reason(),
-            relaxations: run.relaxations.iter().map(relaxation).collect(),
-            verified: verified(run),
-            safe: run.safe(),
-            cost: cost(run),
-            encounters: encounters(run),
-            targets: Some(run.scenario.targets.len()),
-            timing: Some(timing(run)),
+            reason: plan.reason.clone(),
+            relaxations: plan.relaxations.clone(),
+            verified: plan.verified,
+            safe: plan.safe,
+            cost: plan.cost.clone(),
+            encounters: plan.encounters.clone(),
+            targets: Some(plan.targets.len()),
+            search_stats: Some(plan.search_stats),
+            timing: Some(plan.timing),
             notes,
         }
     }
@@ -176,6 +179,7 @@ impl SuiteRunDocument {
             cost: None,
             encounters: Vec::new(),
             targets: None,
+            search_stats: None,
             timing: None,
             notes: Vec::new(),
         }

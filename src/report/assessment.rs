@@ -1,12 +1,12 @@
-//! An assessment for the eye.
+//! An assessment as text.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Table, presets};
-
+use super::table::{Grid, plain};
 use crate::frame::{Vector, course_deg_from_heading, deg_from_radians};
 use crate::obstacle::Section;
 use crate::study::assess::{Assessment, Situation};
 
-/// The title and the sets, holding course, the least alteration, and one table for what else was asked.
+/// The title and the sets, holding course, the least alteration, and a table for every other
+/// question.
 pub fn assessment_text(
     title: &str,
     shaped: bool,
@@ -43,27 +43,28 @@ fn course(heading: f64) -> String {
 }
 
 fn held(situation: &Situation, assessment: &Assessment) -> String {
-    let mut table = Tabular::new(&["target", "dCPA\n[m]", "tCPA\n[s]", "largest\nrisk"], 1);
-    for (target, held) in assessment.targets.iter().zip(&assessment.hold_course) {
-        table.row(vec![
+    let all = assessment.targets.iter().zip(&assessment.hold_course);
+    let rows = all.map(|(target, held)| {
+        vec![
             target.name.clone(),
             format!("{:.1}", held.approach.dcpa),
             format!("{:.1}", held.approach.tcpa),
             format!("{:.3}", held.max_risk),
-        ]);
-    }
+        ]
+    });
+    let header = ["target", "dCPA\n[m]", "tCPA\n[s]", "largest\nrisk"];
     format!(
         "Holding course {} at {:.2} m/s\n{}",
         course(situation.pose.heading),
         situation.speed,
-        table.text()
+        table(&header, 1..4, rows)
     )
 }
 
 fn alteration(situation: &Situation, assessment: &Assessment) -> String {
     let found = &assessment.alteration;
     if found.speed == Some(0.0) {
-        return "Alteration: none needed, her velocity is in no velocity obstacle".to_owned();
+        return "Alteration: none needed, own velocity is in no velocity obstacle".to_owned();
     }
     let mut ways = Vec::new();
     for (side, turn) in [("starboard", found.starboard), ("port", found.port)] {
@@ -85,67 +86,64 @@ fn alteration(situation: &Situation, assessment: &Assessment) -> String {
     format!("{alone}{}", ways.join("; "))
 }
 
-/// To the next hundredth above: what is read off must still be clear.
+/// Rounded up to hundredths, so that the printed value is still clear.
 fn up(value: f64) -> f64 {
     (value * 100.0 - 1e-6).ceil() / 100.0
 }
 
 fn points(assessment: &Assessment) -> String {
     let header = [
+        "target",
         "east\n[m]",
         "north\n[m]",
         "t\n[s]",
-        "target",
-        "inside",
         "alpha",
         "risk",
+        "inside",
     ];
-    let mut table = Tabular::new(&header, 0);
-    table.left(3);
-    for asked in &assessment.points {
-        for (target, risk) in assessment.targets.iter().zip(&asked.targets) {
-            table.row(vec![
-                number(asked.point.position.x),
-                number(asked.point.position.y),
-                number(asked.point.time),
+    let rows = assessment.points.iter().flat_map(|asked| {
+        let point = asked.point;
+        let all = assessment.targets.iter().zip(&asked.targets);
+        all.map(move |(target, risk)| {
+            let alpha = Some(risk.alpha).filter(|alpha| alpha.is_finite());
+            vec![
                 target.name.clone(),
-                yes(risk.inside),
-                if risk.alpha.is_finite() {
-                    format!("{:.3}", risk.alpha)
-                } else {
-                    "–".to_owned()
-                },
+                number(point.position.x),
+                number(point.position.y),
+                number(point.time),
+                alpha.map_or("–".to_owned(), |alpha| format!("{alpha:.3}")),
                 format!("{:.3}", risk.risk),
-            ]);
-        }
-    }
-    format!("Points\n{}", table.text())
+                yes(risk.inside),
+            ]
+        })
+    });
+    format!("Points\n{}", table(&header, 1..6, rows))
 }
 
 fn velocities(assessment: &Assessment) -> String {
     let header = [
+        "target",
         "east\n[m/s]",
         "north\n[m/s]",
-        "target",
         "dCPA\n[m]",
         "tCPA\n[s]",
         "in velocity\nobstacle",
     ];
-    let mut table = Tabular::new(&header, 0);
-    table.left(2);
-    for asked in &assessment.velocities {
-        for (target, nearest) in assessment.targets.iter().zip(&asked.targets) {
-            table.row(vec![
-                number(asked.velocity.x),
-                number(asked.velocity.y),
+    let rows = assessment.velocities.iter().flat_map(|asked| {
+        let velocity = asked.velocity;
+        let all = assessment.targets.iter().zip(&asked.targets);
+        all.map(move |(target, approach)| {
+            vec![
                 target.name.clone(),
-                format!("{:.1}", nearest.dcpa),
-                format!("{:.1}", nearest.tcpa),
-                yes(nearest.in_velocity_obstacle),
-            ]);
-        }
-    }
-    format!("Velocities, from t = 0 on\n{}", table.text())
+                number(velocity.x),
+                number(velocity.y),
+                format!("{:.1}", approach.dcpa),
+                format!("{:.1}", approach.tcpa),
+                yes(approach.in_velocity_obstacle),
+            ]
+        })
+    });
+    format!("Velocities, from t = 0 on\n{}", table(&header, 1..5, rows))
 }
 
 fn sections_asked(assessment: &Assessment) -> usize {
@@ -162,12 +160,10 @@ fn sections(assessment: &Assessment) -> String {
         "north\n[m]",
         "made of",
     ];
-    let mut table = Tabular::new(&header, 1);
-    table.left(6);
-    for target in &assessment.targets {
-        for (time, section) in &target.sections {
+    let rows = assessment.targets.iter().flat_map(|target| {
+        target.sections.iter().map(|(time, section)| {
             let reach = |x: f64, y: f64| section.support(Vector::new(x, y));
-            table.row(vec![
+            vec![
                 target.name.clone(),
                 number(*time),
                 format!("{:.1}", -reach(-1.0, 0.0)),
@@ -178,53 +174,33 @@ fn sections(assessment: &Assessment) -> String {
                     Section::Polygon(polygon) => format!("{} vertices", polygon.vertices().len()),
                     Section::Ellipse(_) => "an ellipse".to_owned(),
                 },
-            ]);
-        }
-    }
-    format!("Sections, how far they reach\n{}", table.text())
+            ]
+        })
+    });
+    format!("Extent of the sections\n{}", table(&header, 1..6, rows))
+}
+
+/// A table without colours.
+fn table(
+    header: &[&'static str],
+    numbers: std::ops::Range<usize>,
+    rows: impl Iterator<Item = Vec<String>>,
+) -> String {
+    let grid = Grid {
+        header: header.to_vec(),
+        numbers,
+        rows: rows
+            .map(|row| row.into_iter().map(plain).collect())
+            .collect(),
+    };
+    grid.text(false)
 }
 
 fn yes(value: bool) -> String {
     if value { "yes" } else { "no" }.to_owned()
 }
 
-/// As it was given, without a negative zero.
+/// Without a negative zero.
 fn number(value: f64) -> String {
     (value + 0.0).to_string()
-}
-
-/// A table without colours: names to the left, numbers to the right.
-struct Tabular(Table);
-
-impl Tabular {
-    /// The first `names` columns are text.
-    fn new(header: &[&str], names: usize) -> Self {
-        let mut table = Table::new();
-        table
-            .load_style(presets::UTF8_HORIZONTAL_ONLY)
-            .set_content_arrangement(ContentArrangement::Disabled)
-            .set_header(header);
-        table.style_mut().row_separator = presets::NOTHING.row_separator;
-        table.force_no_tty();
-        for index in names..header.len() {
-            if let Some(column) = table.column_mut(index) {
-                column.set_cell_alignment(CellAlignment::Right);
-            }
-        }
-        Self(table)
-    }
-
-    fn left(&mut self, index: usize) {
-        if let Some(column) = self.0.column_mut(index) {
-            column.set_cell_alignment(CellAlignment::Left);
-        }
-    }
-
-    fn row(&mut self, cells: Vec<String>) {
-        self.0.add_row(cells.into_iter().map(Cell::new));
-    }
-
-    fn text(&self) -> String {
-        self.0.trim_fmt()
-    }
 }

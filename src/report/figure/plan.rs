@@ -7,7 +7,7 @@ use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
 use super::{Figure, Panel, Window};
-use crate::document::words;
+use crate::document;
 use crate::evaluation::Safety;
 use crate::frame::Vector;
 use crate::geometry::{self, ConvexPolygon};
@@ -93,7 +93,7 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
         let title = if scenario.alternatives.is_empty() {
             "Path and time".to_owned()
         } else {
-            format!("Path and time: {}", words::paths(diagram))
+            format!("Path and time: {}", document::paths(diagram))
         };
         panels.push(path_time_panel(&title, &names, &[line]));
     }

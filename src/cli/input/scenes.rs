@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use searoom::scenario::formats::{Assumed, Contents, Declared, Format, Imported, Situation};
 use searoom::scenario::{Scenario, ScenarioError};
 
+use super::super::output::Output;
 use super::files::{self, Found};
-use super::output::Output;
 
 /// A scenario that was asked for, not made yet.
 #[derive(Debug)]

@@ -6,10 +6,10 @@ use searoom::recording::Recorded;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::args::InspectArgs;
-use super::inspect::read;
-use super::output::Output;
-use super::status::Status;
+use super::super::args::InspectArgs;
+use super::super::output::Output;
+use super::super::output::status::Status;
+use super::read;
 
 /// Differences of two plan documents that are listed; the rest is counted.
 const LISTED: usize = 20;

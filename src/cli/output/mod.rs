@@ -1,5 +1,8 @@
 //! The only place that prints: results to standard output, everything else to standard error.
 
+pub mod products;
+pub mod status;
+
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
@@ -9,7 +12,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use searoom::report::printable_lines;
 use serde::Serialize;
 
-use super::status::Status;
+use status::Status;
 
 /// Red, green, yellow, and the end of each, as tables have them.
 const COLOURS: [&str; 5] = [

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 
-use super::output::Output;
+use super::super::output::Output;
 
 /// A scenario file that was asked for.
 #[derive(Debug, Clone, PartialEq, Eq)]
