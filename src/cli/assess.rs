@@ -1,6 +1,5 @@
 //! `searoom assess`: risk, closest approach and velocity obstacle, no planning.
 
-use searoom::document::AssessmentDocument;
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
@@ -106,14 +105,11 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
         horizon: scenario.horizon,
         obstacles: &obstacles,
     };
-    let assessment = answer(&situation, query);
+    let sets = if args.shaped { "shaped" } else { "hard" };
+    let assessment = answer(&scenario.title, sets, &situation, query);
     let drawn = match &args.figure {
         Some(path) => match assessment_figure(&situation, &query.sections)
-            .titled(&format!(
-                "{}, {} sets",
-                scenario.title,
-                if args.shaped { "shaped" } else { "hard" }
-            ))
+            .titled(&format!("{}, {sets} sets", scenario.title))
             .write(path)
         {
             Ok(()) => Status::Good,
@@ -125,14 +121,8 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
         None => Status::Good,
     };
     drawn.max(if args.json {
-        output.document(&AssessmentDocument::of(
-            &scenario.title,
-            scenario.horizon,
-            args.shaped,
-            &assessment,
-        ))
+        output.document(&assessment)
     } else {
-        let text = assessment_text(&scenario.title, args.shaped, &situation, &assessment);
-        output.result(&text)
+        output.result(&assessment_text(&situation, &assessment))
     })
 }

@@ -14,7 +14,7 @@ use searoom::report::{
 };
 use searoom::scenario::Scenario;
 use searoom::study::compare::{
-    Contender, Entry, Inapplicable, Method, Sailed, contenders, methods,
+    Candidate, Entry, EntryResult, Inapplicable, Method, candidates, methods,
 };
 
 use super::args::CompareArgs;
@@ -25,23 +25,24 @@ use super::output::products::{Failure, Products, ScenarioCompared, Wanted, prepa
 use super::output::status::Status;
 use super::runner::guarded;
 
-/// A scenario and who is to sail it, or why it is none.
+/// A scenario with its candidates, or why there is none.
 struct Asked {
     file: String,
     stem: String,
     scenario: Result<Scenario, String>,
-    contenders: Vec<Contender>,
+    candidates: Vec<Candidate>,
     inapplicable: Vec<Inapplicable>,
 }
 
-/// A scenario with its entries, or with the faults of the program that came instead.
+/// A scenario with its entries and the faults of the program.
 struct Compared {
     asked: Asked,
     entries: Vec<Entry>,
     faults: Vec<String>,
 }
 
-/// Compares every scenario. Contenders of all of them run at the same time, and are shown in a fixed order.
+/// Compares every scenario. Candidates of all of them run at the same time, and are shown in a
+/// fixed order.
 pub fn compare(args: &CompareArgs, output: &Output) -> Status {
     // before anything is computed
     if let Some(path) = &args.written.figure
@@ -117,7 +118,7 @@ impl Asked {
             file,
             stem: String::new(),
             scenario: Err(error),
-            contenders: Vec::new(),
+            candidates: Vec::new(),
             inapplicable: Vec::new(),
         }
     }
@@ -146,7 +147,7 @@ fn ask(found: &Found, args: &CompareArgs) -> Asked {
     Asked {
         file: name,
         stem,
-        contenders: contenders(&found.methods, &risks),
+        candidates: candidates(&found.methods, &risks),
         inapplicable: found.inapplicable,
         scenario: Ok(scenario),
     }
@@ -162,20 +163,20 @@ fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     }
 }
 
-/// Runs all contenders of all scenarios at once.
+/// Runs all candidates of all scenarios at once.
 fn run(asked: Vec<Asked>, output: &Output) -> Vec<Compared> {
-    let jobs: Vec<(usize, &Scenario, Contender)> = asked
+    let jobs: Vec<(usize, &Scenario, Candidate)> = asked
         .iter()
         .enumerate()
-        .filter_map(|(index, a)| Some((index, a.scenario.as_ref().ok()?, &a.contenders)))
+        .filter_map(|(index, a)| Some((index, a.scenario.as_ref().ok()?, &a.candidates)))
         .flat_map(|(index, scenario, all)| all.iter().map(move |c| (index, scenario, *c)))
         .collect();
     let bar = output.progress(jobs.len());
     let results: Vec<(usize, Result<Entry, String>)> = jobs
         .into_par_iter()
-        .map(|(index, scenario, contender)| {
-            let entry = guarded(|| contender.run(scenario))
-                .map_err(|fault| format!("{}, {}: {fault}", asked[index].file, contender.method));
+        .map(|(index, scenario, candidate)| {
+            let entry = guarded(|| candidate.run(scenario))
+                .map_err(|fault| format!("{}, {}: {fault}", asked[index].file, candidate.method));
             bar.inc(1);
             (index, entry)
         })
@@ -213,7 +214,8 @@ impl Compared {
         }
     }
 
-    /// Good when some planner has a plan that is clear; a plan that fails its check is a fault of the program.
+    /// Good when some planner has a plan that is clear; a plan that fails its check is a fault of
+    /// the program.
     fn status(&self) -> Status {
         if self.asked.scenario.is_err() {
             return Status::BadInput;
@@ -225,8 +227,8 @@ impl Compared {
             .entries
             .iter()
             .filter_map(|entry| match &entry.result {
-                Sailed::Planned(run) => Some(Status::of(run)),
-                Sailed::Baseline(_) | Sailed::Nothing(_) => None,
+                EntryResult::Planned(run) => Some(Status::of(run)),
+                EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
             })
             .collect();
         if of_planners.contains(&Status::InternalFault) {

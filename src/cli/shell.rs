@@ -1,4 +1,5 @@
-//! `searoom completions` and `searoom man`: what shells and readers of manuals need, from the arguments themselves.
+//! `searoom completions` and `searoom man`: what shells and readers of manuals need, from the
+//! arguments themselves.
 
 use clap::CommandFactory;
 use clap_complete::generate;

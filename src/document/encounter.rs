@@ -18,7 +18,6 @@ const MOST_CROSSINGS: u32 = 1_000_000;
 
 /// How a target is met. Figures of the plan are null without one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct EncounterDocument {
     pub target: String,
     pub role: String,
@@ -41,7 +40,6 @@ pub struct EncounterDocument {
 
 /// A role and when own ship has it along the plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct RoleDocument {
     pub role: String,
     pub from_s: f64,
@@ -50,7 +48,6 @@ pub struct RoleDocument {
 
 /// A rule violation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct BreachDocument {
     pub rule: String,
     pub what: String,
@@ -59,7 +56,6 @@ pub struct BreachDocument {
 
 /// The verdict of a compliance monitor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct MonitorDocument {
     pub monitor: String,
     pub verdict: String,
@@ -70,7 +66,6 @@ pub struct MonitorDocument {
 
 /// Own ship's behaviour toward one target along the plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct ConductDocument {
     pub roles: Vec<RoleDocument>,
     pub scores: BTreeMap<String, f64>,

@@ -1,6 +1,8 @@
-//! The JSON documents, docs/documents.md.
+//! The published JSON documents: the one description of a result. Text, pages and `inspect` render
+//! them, and `verify` checks a [`PlanDocument`] alone.
 //!
-//! A number that is not finite is written as null. Keys of what does not exist yet are absent.
+//! A number that is not finite is written as null.
+#![expect(missing_docs, reason = "docs/documents.md says what each key means")]
 
 mod alteration;
 mod assessment;
@@ -30,6 +32,7 @@ pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTarg
 pub use parts::*;
 pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
+pub(crate) use plan::finite;
 pub use plan::{PLAN_FORMAT, PlanDocument};
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,

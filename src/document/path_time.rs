@@ -9,7 +9,6 @@ use crate::planner::path_time::PathTimeDiagram;
 
 /// Distance along the path and time; points are `[s_m, t_s]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct PathTimeDocument {
     /// `"main"`, `"alternative 1"` …; where own ship changes, one after another.
     pub path: String,
@@ -20,19 +19,17 @@ pub struct PathTimeDocument {
     pub profile: Vec<[f64; 2]>,
 }
 
-/// A leg that is sailed.
+/// A leg of the planned path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct PathLegDocument {
     pub start_m: f64,
     pub end_m: f64,
-    /// Which path it is of.
+    /// The path that it belongs to.
     pub path: String,
 }
 
 /// An obstacle on a leg, clipped to the leg and the horizon.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct PathObstacleDocument {
     pub target: String,
     pub leg: usize,
@@ -41,7 +38,6 @@ pub struct PathObstacleDocument {
 
 /// A corner of the path: exempt from the turning radius, the hull over both headings there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct PathCornerDocument {
     pub s_m: f64,
     /// To starboard positive.

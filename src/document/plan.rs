@@ -28,25 +28,23 @@ use crate::trajectory::{Segment, Steered, Trajectory};
 /// The name of the plan document's format.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
 
-/// Seconds between two samples of a trajectory, and how many there are at most beside those where it changes: a day's way
-/// is not written second by second.
+/// Seconds between two samples of a trajectory, and how many there are at most beside its joints.
 const SAMPLE_STEP: f64 = 1.0;
 const MOST_SAMPLES: u32 = 20_000;
 
 /// One plan, alone: everything that is needed to check it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct PlanDocument {
     pub format: String,
     pub scenario: String,
     pub planner: String,
     pub search: String,
     pub compliance: String,
-    /// The name of what own ship's behaviour is judged by.
+    /// The name of the thresholds of rule compliance.
     #[serde(default)]
     pub thresholds: String,
     pub objective: String,
-    /// Of the objective that weighs risk; absent elsewhere.
+    /// Weight of the objective with risk; absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub risk_weight_m: Option<f64>,
     pub time_weight_m2_per_s2: f64,
@@ -57,36 +55,37 @@ pub struct PlanDocument {
     pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
     pub outcome: String,
-    /// The word that people see for it, by what happens to hulls.
+    /// The outcome in the word that people see, by what happens to hulls.
     pub verdict: String,
-    /// Why there is no plan, or none that was finished or keeps all that was asked.
+    /// Why there is no plan, or one that is unfinished or relaxed.
     pub reason: Option<String>,
     pub relaxation: Option<RelaxationDocument>,
-    /// All of what was given up, the most important first.
+    /// All relaxations, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
     /// No hard set, hull or land is entered from start to arrival.
     pub safe: bool,
-    /// Where it was asked for: null where nothing is met, or nothing was found even from the start.
+    /// Absent unless asked for. Null where nothing is met, or no clear plan exists even at the
+    /// start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_of_no_return_s: Option<Option<f64>>,
-    /// What the independent checker found wrong.
+    /// Found by the independent checker.
     pub violations: Vec<ViolationDocument>,
     pub cost: Option<CostDocument>,
     pub search_stats: SearchStatsDocument,
     pub timing: TimingDocument,
     pub trajectory: Option<TrajectoryDocument>,
-    /// Where own ship stands on; absent elsewhere.
+    /// Absent where own ship does not stand on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub escape: Option<EscapeDocument>,
-    /// As the scenario has them: what the sets have to contain.
+    /// As in the scenario: `obstacles` have to contain them.
     pub targets: Vec<TargetDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
-    /// Of a path-time plan; absent elsewhere.
+    /// Absent for other planners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path_time: Option<PathTimeDocument>,
-    /// Of a plan of forces alone.
+    /// Absent for other planners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimal_control: Option<ControlDocument>,
 }
@@ -177,7 +176,7 @@ fn verified(run: &Run) -> bool {
     run.evaluation.as_ref().is_some_and(|e| e.verified())
 }
 
-pub(super) fn finite(value: f64) -> Option<f64> {
+pub(crate) fn finite(value: f64) -> Option<f64> {
     // +0.0 turns a negative zero into zero
     value.is_finite().then_some(value + 0.0)
 }
@@ -378,7 +377,7 @@ fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
     })
 }
 
-/// The direction of the way made good, radians; the heading where no way is made.
+/// The direction of motion over ground, radians; the heading where there is no motion.
 fn course(motion: &Steered, time: f64) -> f64 {
     let piece = motion.piece_at(time);
     let velocity = piece.velocity(piece.part(time));
@@ -389,8 +388,8 @@ fn course(motion: &Steered, time: f64) -> f64 {
     }
 }
 
-/// One entry, or one per slab: its initial set is the section at its start, and its time counts from there. Of a set that the
-/// plan enters, what is left of it from when it has left it.
+/// One entry, or one per slab: its initial set is the section at its start, and its time counts
+/// from there. A set that the plan enters appears from when the plan has left it.
 fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
     let from = from.min(horizon);
     let set = &set.remainder(from);

@@ -14,32 +14,30 @@ pub const UNREADABLE: &str = "unreadable";
 /// The outcome of a run that ended in a fault of the program.
 pub const INTERNAL_FAULT: &str = "internal-fault";
 
-/// The outcome of a scenario that is sound, but of no use to the planner or the rules that the command line asks for.
+/// The outcome of a valid scenario that the planner or the rules asked for cannot use.
 pub const NOT_APPLICABLE: &str = "not-applicable";
 
 /// Many runs in one document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct SuiteDocument {
     pub runs: Vec<SuiteRunDocument>,
     pub summary: SuiteSummaryDocument,
 }
 
-/// One run of a suite. Where there was none, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`], and `error` says why, or
-/// [`NOT_APPLICABLE`], and `reason` does; the keys that have no meaning are null.
+/// One run of a suite. Without a run, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`] with an
+/// `error`, or [`NOT_APPLICABLE`] with a `reason`; keys without meaning are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct SuiteRunDocument {
     pub file: String,
     pub scenario: Option<String>,
     pub planner: Option<String>,
     pub outcome: String,
-    /// The word that people see for it.
+    /// The outcome in the word that people see.
     pub verdict: String,
     pub error: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// All of what was given up, the most important first.
+    /// All relaxations, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
     pub safe: bool,
@@ -53,7 +51,7 @@ pub struct SuiteRunDocument {
     pub notes: Vec<String>,
 }
 
-/// How many of which.
+/// Counts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SuiteSummaryDocument {
     /// All of them: the sum of the seven outcomes below.
@@ -66,7 +64,7 @@ pub struct SuiteSummaryDocument {
     pub infeasible: usize,
     /// Budget ran out.
     pub deadline: usize,
-    /// Scenarios of no use to the planner or the rules that were asked for.
+    /// Valid scenarios that the planner or the rules asked for cannot use.
     pub not_applicable: usize,
     /// Files that are no scenario.
     pub unreadable: usize,
@@ -76,7 +74,7 @@ pub struct SuiteSummaryDocument {
     pub verified: usize,
     /// Plans that enter no hard set, hull or land.
     pub safe: usize,
-    /// Of the relaxed plans, those that are not safe.
+    /// Relaxed plans that are not safe.
     pub not_safe: usize,
 }
 
@@ -153,7 +151,7 @@ impl SuiteRunDocument {
         }
     }
 
-    /// The entry of a scenario that is of no use to what was asked for.
+    /// The entry of a valid scenario that cannot be used as asked.
     pub fn not_applicable(file: String, title: String, reason: String) -> Self {
         Self {
             scenario: Some(title),

@@ -169,7 +169,7 @@ pub(super) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// What was given up, in one sentence.
+/// The relaxation as a sentence, and the name of its line.
 fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static str, String) {
     let RelaxationDocument { target, amount, .. } = relaxation;
     match relaxation.kind.as_str() {

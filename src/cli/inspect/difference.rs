@@ -1,4 +1,4 @@
-//! What two recordings differ in.
+//! The differences of two recordings.
 
 use std::path::Path;
 
@@ -17,12 +17,12 @@ const LISTED: usize = 20;
 /// When a recording was made, and its title: no part of what it shows.
 const PROPERTIES: &str = "/__properties";
 
-/// What two recordings differ in.
+/// The differences of two recordings.
 #[derive(Debug, Default, Serialize)]
 struct Difference {
     files: Vec<String>,
     equal: bool,
-    /// Of the plan documents, their times aside: where, and what stands there in each.
+    /// Fields in which the plan documents differ, timing aside.
     plan: Vec<PlanDifference>,
     /// In the first alone.
     only_first: Vec<String>,

@@ -1,4 +1,4 @@
-//! `searoom inspect`: what a recording holds, read offline.
+//! `searoom inspect`: the contents of a recording.
 
 mod difference;
 
@@ -21,7 +21,7 @@ use difference::two;
 /// Entities of a similar name that are offered for one that is not there.
 const OFFERED: usize = 3;
 
-/// Shows one recording, what of it is asked for, or what two differ in.
+/// Shows one recording, a part of it, or the differences of two.
 pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
     let asked = || match &args.other {
         None => one(args, output),
@@ -165,14 +165,14 @@ impl EntityDocument {
     }
 }
 
-/// What a recording holds.
+/// The contents of a recording.
 #[derive(Debug, Serialize)]
 struct Contents {
     file: String,
     bytes: u64,
     application: String,
     rerun_version: Option<String>,
-    /// Of the plan document; null without one.
+    /// This and the next ones are from the plan document; null without one.
     scenario: Value,
     planner: Value,
     search: Value,
@@ -184,7 +184,7 @@ struct Contents {
     /// Where own ship stands on; else null.
     escape: Value,
     targets: Vec<Value>,
-    /// Of a comparison: its part of `compare --json`; else null.
+    /// The entry of `compare --json`; null for a plan.
     comparison: Value,
     #[serde(skip)]
     plan: Option<PlanDocument>,

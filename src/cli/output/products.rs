@@ -26,7 +26,7 @@ pub struct Products {
     report: Option<PathBuf>,
 }
 
-/// What is asked for.
+/// The paths asked for.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted<'a> {
     pub recordings: Option<&'a Path>,
@@ -42,8 +42,9 @@ enum Place {
 }
 
 impl Products {
-    /// Makes the folders, before anything is planned. A path means a file when it ends as such files do and is no folder;
-    /// one with another ending is no new folder, unless it says so with a slash.
+    /// Makes the folders, before anything is planned. A path is a file where its name has such an
+    /// ending and no folder has it. A new folder whose name has another ending needs a slash at its
+    /// end.
     pub fn prepare(found: &[Found], wanted: Wanted) -> anyhow::Result<Self> {
         let Wanted {
             recordings,
@@ -115,7 +116,7 @@ impl Products {
         })
     }
 
-    /// What a report says of a scenario besides what came of it: call it when all else is written.
+    /// Names and links of a scenario in a report. Call it when all other results are written.
     pub fn subject(&self, stem: &str, file: String) -> Subject {
         let recording = self.recordings.as_ref().map(|p| p.file(stem, "rrd"));
         let plan = self.plans.as_ref().map(|f| f.join(format!("{stem}.json")));

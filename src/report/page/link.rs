@@ -4,7 +4,7 @@ use std::path::Path;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
-/// What stays as it is in the address of a file.
+/// Characters that are not escaped in an address.
 const PLAIN: AsciiSet = NON_ALPHANUMERIC
     .remove(b'-')
     .remove(b'_')
@@ -18,8 +18,8 @@ pub(super) fn address(name: &str) -> String {
     format!("./{}", utf8_percent_encode(name, &PLAIN))
 }
 
-/// The address of `file` for a page in `folder`: how to get from one to the other. Both have to exist; the file's own path
-/// where they do not, or where there is no way.
+/// The relative address of `file` for a page in `folder`. Both have to exist; otherwise, or where
+/// there is no relative path, it is the file's own path.
 pub fn link_from(folder: &Path, file: &Path) -> String {
     let both = folder
         .canonicalize()

@@ -24,17 +24,17 @@ pub use link::link_from;
 /// The page.
 const INDEX: &str = "index.html";
 
-/// How it looks.
+/// Its style sheet.
 const STYLE: &str = include_str!("style.css");
 
-/// One scenario of a report: what its files are called, where it came from, and what else was written of it.
+/// One scenario of a report: the names of its files and links to other results.
 #[derive(Debug, Clone, Default)]
 pub struct Subject {
     /// Begins the names of its figures.
     pub stem: String,
     /// The scenario file.
     pub file: String,
-    /// What is linked, with its address: a recording, a plan document.
+    /// Names and addresses of linked files: a recording, a plan document.
     pub links: Vec<(String, String)>,
 }
 
@@ -89,7 +89,7 @@ impl Report {
         scenario: &Scenario,
         entries: &[Entry],
     ) {
-        let sweep = (entries.iter()).any(|e| e.contender.max_risk != entries[0].contender.max_risk);
+        let sweep = (entries.iter()).any(|e| e.candidate.max_risk != entries[0].candidate.max_risk);
         let mut panels = comparison_panels(scenario, entries, sweep);
         panels.extend(diagram_panels(entries));
         let figures = self.draw(subject, panels);
@@ -149,8 +149,8 @@ impl Report {
         page.into_string()
     }
 
-    /// Writes the figures and then the page into `folder`, which is made: each file is whole or not there, and the page never
-    /// shows a figure that is not. Files of an earlier report that this one has not are left.
+    /// Writes the figures and then the page into `folder`, which is made. Each file is whole or
+    /// absent, and the page never shows a missing figure. Files of an earlier report stay.
     pub fn write(&self, folder: &Path, title: &str, lead: &str) -> Result<(), WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError {
             file: folder.to_owned(),
@@ -164,7 +164,7 @@ impl Report {
     }
 }
 
-/// Where a scenario came from, and what was written of it.
+/// The file of a scenario, and links to other results.
 fn origin(subject: &Subject) -> Markup {
     html! {
         p.quiet {

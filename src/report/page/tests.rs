@@ -37,7 +37,7 @@ fn add(report: &mut Report, stem: &str, kind: &str) {
     report.add_run(&subject(stem), &PlanDocument::of(&run), &run);
 }
 
-/// What is text stays text, every figure that is shown is there, and nothing comes from elsewhere.
+/// Texts are escaped, every figure on the page exists, and nothing is loaded from elsewhere.
 fn assert_sound(report: &Report, page: &str) {
     assert!(!page.contains("<script") && !page.contains("alert(\"x\")"));
     assert!(page.contains("&lt;script&gt;"));
