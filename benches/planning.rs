@@ -146,7 +146,7 @@ fn random_scenes(_: &mut Criterion) {
     }
 }
 
-/// Each vessel under way in New York harbour among all others: the whole ladder, sets and verdict apart. With the same traffic again
+/// Each vessel under way in New York harbour among all others: all relaxation levels, without sets and verdict. With the same traffic again
 /// nine times, beyond anybody's reach, the plans are the same.
 fn new_york_harbour(_: &mut Criterion) {
     let scenes = new_york::scenes().expect("the data");

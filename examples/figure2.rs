@@ -7,9 +7,7 @@
 
 mod shared;
 
-use searoom::report::figure::{
-    Figure, FigureError, extent_panel, sections_panel, set_panel,
-};
+use searoom::report::figure::{Figure, FigureError, extent_panel, sections_panel, set_panel};
 
 fn main() -> Result<(), FigureError> {
     let target = shared::figure_2();

@@ -17,18 +17,6 @@ pub const NAUTICAL_MILE_M: f64 = 1852.0;
 pub const KNOT_MPS: f64 = NAUTICAL_MILE_M / 3600.0;
 
 /// Where a ship is and where she points.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Pose, Vector, heading_from_course_deg};
-///
-/// let ship = Pose::new(Vector::new(100.0, 0.0), heading_from_course_deg(0.0));
-/// // 50 m ahead of a ship on course north, 10 m to her port side
-/// let there = ship.world_coordinates(Vector::new(50.0, 10.0));
-/// assert!((there - Vector::new(90.0, 50.0)).norm() < 1e-9);
-/// assert!((ship.body_coordinates(there) - Vector::new(50.0, 10.0)).norm() < 1e-9);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Hull centre, metres.
@@ -63,17 +51,6 @@ impl Pose {
 }
 
 /// A side of a ship.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Side;
-///
-/// // counter-clockwise is positive in this program: to port
-/// assert_eq!(Side::of_turn(0.01), Some(Side::Port));
-/// assert_eq!(Side::Port.opposite(), Side::Starboard);
-/// assert_eq!(Side::of_turn(0.0), None);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Side {
     /// Left, looking ahead.
@@ -204,7 +181,7 @@ pub fn clockwise_deg_per_s(turn_rate: f64) -> f64 {
 }
 
 /// Radians from degrees: a spread or a half-width, which has no direction.
-pub fn radians_from_deg(degrees: f64) -> f64 {
+pub const fn radians_from_deg(degrees: f64) -> f64 {
     degrees.to_radians()
 }
 
@@ -224,17 +201,6 @@ pub fn knots_from_mps(speed: f64) -> f64 {
 }
 
 /// A place on the WGS84 ellipsoid.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Geographic;
-///
-/// let munkholmen = Geographic { lat_deg: 63.4512, lon_deg: 10.3833 };
-/// assert!(munkholmen.is_on_earth());
-/// // degrees times ten to the fifth, as some files have them
-/// assert!(!Geographic { lat_deg: 6_345_120.0, lon_deg: 1_038_330.0 }.is_on_earth());
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geographic {
     /// Degrees north of the equator.

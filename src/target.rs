@@ -17,16 +17,6 @@ const SHORT_SIDE: f64 = 1e-3;
 const SET_SIDES: usize = 64;
 
 /// How the initial set of a target is shaped for the rules of the road.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::target::DomainKind;
-///
-/// // metres from the hull's edge
-/// let around_a_dredger = DomainKind::Custom { fore: 100.0, aft: 100.0, port: 50.0, starboard: 50.0 };
-/// assert_ne!(around_a_dredger, DomainKind::Hull);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DomainKind {
     /// A symmetric base swept to the side that the encounter forbids.
@@ -49,18 +39,6 @@ pub enum DomainKind {
 }
 
 /// A set of velocities and until when it holds: one of several, one after another.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::target::VelocitySpell;
-///
-/// // at rest until she is under way, ten minutes from now
-/// let moored = VelocitySpell { until: 600.0, velocities: ConvexPolygon::point(Vector::zeros()) };
-/// assert!(moored.velocities.contains(Vector::zeros()) && moored.until.is_finite());
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocitySpell {
     /// Seconds from the scenario's start; infinite for the last.
@@ -70,29 +48,6 @@ pub struct VelocitySpell {
 }
 
 /// A tracked ship: nominal motion and what is not known of it.
-///
-/// # Examples
-///
-/// ```
-/// use std::f64::consts::PI;
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::vessel::Hull;
-/// use searoom::target::{DomainKind, ShipTrack};
-///
-/// let ferry = ShipTrack {
-///     pose: Pose::new(Vector::new(1000.0, 0.0), PI), // westwards
-///     speed: 5.0,
-///     hull: Hull { length: 60.0, beam: 12.0 },
-///     position_std: 0.0,
-///     speed_spread: 0.5,
-///     course_spread: 0.1,
-///     turn_rate: 0.0,
-///     domain: DomainKind::Colregs,
-/// };
-/// assert!((ferry.pose_at(60.0).position - Vector::new(700.0, 0.0)).norm() < 1e-9);
-/// let velocities = ferry.outer_velocity_set();
-/// assert!(velocities.contains(Vector::new(-5.4, 0.2)) && !velocities.contains(Vector::new(-4.0, 0.0)));
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShipTrack {
     /// Estimated hull centre and heading at t = 0. Course and heading are one: no drift.
@@ -256,29 +211,6 @@ fn everything() -> ConvexPolygon {
 }
 
 /// What is known of a target's motion.
-///
-/// # Examples
-///
-/// ```
-/// use std::f64::consts::PI;
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::vessel::Hull;
-/// use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
-///
-/// let ferry = ShipTrack {
-///     pose: Pose::new(Vector::new(1000.0, 0.0), PI), // westwards
-///     speed: 5.0,
-///     hull: Hull { length: 60.0, beam: 12.0 },
-///     position_std: 0.0,
-///     speed_spread: 0.5,
-///     course_spread: 0.1,
-///     turn_rate: 0.0,
-///     domain: DomainKind::Colregs,
-/// };
-/// let known = Target { name: "ferry".into(), motion: Motion::Ship(ferry), representation: Representation::Polytope };
-/// assert_eq!(known.ship().map(|ship| ship.speed), Some(5.0));
-/// assert_eq!(known.changes().len(), 0, "one velocity set, for ever");
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Motion {
     /// A tracked ship.
@@ -307,15 +239,6 @@ pub enum Motion {
 }
 
 /// What the sets of a target are made of.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::target::Representation;
-///
-/// // half-spaces, or one quadratic form
-/// assert_ne!(Representation::Polytope, Representation::Ellipsoid);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Representation {
     /// Polygons as they are.

@@ -310,7 +310,7 @@ fn degenerate_sets_are_left_too() {
         s.pose.position = vector(&mut rng, 150.0 * far);
         s.horizon *= far;
         // straight at one of them, as a rule
-        if let searoom::obstacle::Section::Polygon(section) = obstacles[0].section(100.0 * far) {
+        if let searoom::geometry::ConvexSet::Polygon(section) = obstacles[0].section(100.0 * far) {
             let relative = section.vertices()[0] - s.pose.position;
             s.pose.heading = relative.y.atan2(relative.x);
             s.speed = (relative.norm() / (100.0 * far)).clamp(0.1, 9.0);

@@ -81,12 +81,6 @@ fn the_readme_shows_the_table_of_the_suite() {
     let table = searoom(&["suite", "scenarios/colregs"]);
     if std::env::var_os("SEAROOM_UPDATE_README").is_some() {
         let text = format!("{before}{BEGIN}{table}{END}{after}");
-        let (before, rest) = text
-            .split_once(ASSESS_BEGIN)
-            .expect("the assessment's begin");
-        let (_, after) = rest.split_once(ASSESS_END).expect("the assessment's end");
-        let assessment = searoom(ASSESS);
-        let text = format!("{before}{ASSESS_BEGIN}{assessment}{ASSESS_END}{after}");
         std::fs::write(file("README.md"), text).expect("written");
         return;
     }
@@ -98,28 +92,29 @@ fn the_readme_shows_the_table_of_the_suite() {
 }
 
 #[test]
-fn the_readme_shows_an_assessment() {
-    let readme = read("README.md");
-    let (_, rest) = readme
-        .split_once(ASSESS_BEGIN)
-        .expect("the assessment's begin");
-    let (shown, _) = rest.split_once(ASSESS_END).expect("the assessment's end");
-    assert!(readme.contains(&format!("searoom {}\n", ASSESS.join(" "))));
-    if std::env::var_os("SEAROOM_UPDATE_README").is_none() {
-        assert_eq!(shown, searoom(ASSESS));
+fn the_guide_shows_an_assessment() {
+    let guide = read("docs/assess.md");
+    let (before, rest) = guide.split_once(ASSESS_BEGIN).expect("the begin");
+    let (shown, after) = rest.split_once(ASSESS_END).expect("the end");
+    assert!(guide.contains(&format!("searoom {}\n", ASSESS.join(" "))));
+    let printed = searoom(ASSESS);
+    if std::env::var_os("SEAROOM_UPDATE_README").is_some() {
+        let text = format!("{before}{ASSESS_BEGIN}{printed}{ASSESS_END}{after}");
+        std::fs::write(file("docs/assess.md"), text).expect("written");
+        return;
     }
+    assert_eq!(shown, printed);
 }
 
 #[test]
 fn the_scenarios_in_the_documents_are_sound() {
-    let readme = read("README.md");
-    let whole = blocks(&readme, "toml");
-    assert_eq!(whole.len(), 1);
-    let scenario = Scenario::parse(whole[0]).expect("no faults");
     let guide = read("docs/scenario.md");
-    let targets = blocks(&guide, "toml");
-    assert_eq!(targets.len(), 1);
-    let both = Scenario::parse(&format!("{}\n{}", whole[0], targets[0])).expect("no faults");
+    let shown = blocks(&guide, "toml");
+    let [whole, targets] = shown[..] else {
+        panic!("two blocks: {shown:?}");
+    };
+    let scenario = Scenario::parse(whole).expect("no faults");
+    let both = Scenario::parse(&format!("{whole}\n{targets}")).expect("no faults");
     assert_eq!(both.targets.len(), scenario.targets.len() + 3);
 }
 

@@ -7,7 +7,7 @@ use searoom::document::{
 };
 use searoom::report::page::Report;
 use searoom::report::{printable, suite_table};
-use searoom::scenario::formats::Assumed;
+use searoom::scenario::import::Assumed;
 
 use super::args::SuiteArgs;
 use super::input::files::{self, Found, shown};

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::finite;
 use crate::colregs::Role;
-use crate::colregs::conduct::{Conduct, Measure};
+use crate::colregs::compliance::{ComplianceReport, Measure};
 use crate::frame::deg_from_radians;
 use crate::pipeline::Run;
 use crate::target::{ShipTrack, Target};
@@ -136,18 +136,18 @@ fn crosses_astern(trajectory: &Trajectory, target: &Target, tcpa: f64) -> Option
 
 impl ConductDocument {
     /// Angles in degrees.
-    fn of(conduct: &Conduct) -> Self {
+    fn of(conduct: &ComplianceReport) -> Self {
         let roles = conduct.roles.iter().map(|interval| RoleDocument {
             role: interval.role.name().to_owned(),
             from_s: interval.from,
             until_s: interval.until,
         });
-        let breaches = conduct.breaches.iter().map(|breach| BreachDocument {
+        let breaches = conduct.violations.iter().map(|breach| BreachDocument {
             rule: breach.rule.to_owned(),
             what: breach.what.clone(),
             t_s: breach.time,
         });
-        let monitors = conduct.findings.iter().map(|finding| {
+        let monitors = conduct.monitors.iter().map(|finding| {
             let (unit, scale): (_, fn(f64) -> f64) = match finding.measure {
                 Measure::Distance => ("m", |metres| metres),
                 Measure::Angle => ("deg", deg_from_radians),

@@ -5,22 +5,6 @@ use crate::frame::{Vector, cross, to_starboard};
 use crate::tolerance;
 
 /// Why points do not make a convex polygon.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{ConvexPolygon, GeometryError};
-///
-/// let arrow = [(0.0, 0.0), (4.0, 0.0), (1.0, 1.0), (0.0, 4.0)].map(|(x, y)| Vector::new(x, y));
-/// let Err(GeometryError::NotConvex { index, depth }) = ConvexPolygon::from_vertices(&arrow) else {
-///     panic!("the third vertex is a notch");
-/// };
-/// assert!(index == 2 && (depth - 1.0).abs() < 1e-9);
-/// // the hull of the same points is a triangle
-/// assert_eq!(ConvexPolygon::hull(&arrow)?.vertices().len(), 3);
-/// # Ok::<(), GeometryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeometryError {
     /// No points at all.

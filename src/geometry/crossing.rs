@@ -4,19 +4,6 @@ use super::polygon::turn;
 use crate::frame::{Vector, cross};
 
 /// An edge: it leads from this vertex to the next one of its ring.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{EdgeIndex, Polygon, PolygonError};
-///
-/// let bow_tie = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)].map(|(x, y)| Vector::new(x, y));
-/// let Err(PolygonError::Crosses { crossing }) = Polygon::new(&[bow_tie.to_vec()]) else {
-///     panic!("two edges cross");
-/// };
-/// assert_eq!(crossing.edges[1], EdgeIndex { ring: 0, vertex: 2 });
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct EdgeIndex {
     /// Which ring, from 0.
@@ -26,21 +13,6 @@ pub struct EdgeIndex {
 }
 
 /// Two edges that cross, or lie on one another.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{Crossing, EdgeIndex, Polygon, PolygonError};
-///
-/// let bow_tie = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)].map(|(x, y)| Vector::new(x, y));
-/// let Err(PolygonError::Crosses { crossing }) = Polygon::new(&[bow_tie.to_vec()]) else {
-///     panic!("two edges cross");
-/// };
-/// let Crossing { edges: [first, second], at } = crossing;
-/// assert_eq!((first, second), (EdgeIndex { ring: 0, vertex: 0 }, EdgeIndex { ring: 0, vertex: 2 }));
-/// assert!((at - Vector::new(1.0, 1.0)).norm() < 1e-9);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// Which edges, in order.

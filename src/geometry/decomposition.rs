@@ -11,23 +11,6 @@ use crate::frame::Vector;
 type Mesh = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 /// Why a polygon could not be cut.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{DecompositionError, Polygon, convex_pieces};
-///
-/// let corners = |size: f64| [(0.0, 0.0), (size, 0.0), (size, size), (size / 2.0, size / 4.0), (0.0, size)]
-///     .map(|(x, y)| Vector::new(x, y));
-/// let bay = Polygon::new(&[corners(100.0).to_vec()]).expect("a polygon");
-/// let pieces = convex_pieces(&bay)?;
-/// let area: f64 = pieces.iter().map(|piece| piece.area()).sum();
-/// assert!(pieces.len() > 1 && (area - 6250.0).abs() < 1e-6);
-/// let vast = Polygon::new(&[corners(1e80).to_vec()]).expect("a polygon");
-/// assert!(matches!(convex_pieces(&vast), Err(DecompositionError::OutOfRange)));
-/// # Ok::<(), DecompositionError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum DecompositionError {
     /// Its coordinates are beyond what the triangulation takes.

@@ -10,18 +10,6 @@ use crate::tolerance;
 const MAX_STEPS: usize = 60;
 
 /// Why a centre and a matrix do not make an ellipse.
-///
-/// # Examples
-///
-/// ```
-/// use nalgebra::Matrix2;
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{Ellipse, ShapeError};
-///
-/// let saddle = Matrix2::new(1.0, 0.0, 0.0, -1.0);
-/// let refused = Ellipse::new(Vector::zeros(), saddle);
-/// assert!(matches!(refused, Err(ShapeError::NotPositiveSemidefinite { eigenvalue }) if eigenvalue < 0.0));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// A number of the centre that is not finite.
@@ -62,20 +50,6 @@ pub enum ShapeError {
 }
 
 /// How far a point is from a set, and which way.
-///
-/// # Examples
-///
-/// ```
-/// use nalgebra::Matrix2;
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{Ellipse, ShapeError, SignedDistance};
-///
-/// let ellipse = Ellipse::new(Vector::zeros(), Matrix2::new(9.0, 0.0, 0.0, 4.0))?;
-/// let SignedDistance { distance, normal } = ellipse.signed_distance(Vector::new(5.0, 0.0));
-/// assert!((distance - 2.0).abs() < 1e-9 && (normal - Vector::new(1.0, 0.0)).norm() < 1e-9);
-/// assert!(ellipse.signed_distance(Vector::zeros()).distance < -1.9);
-/// # Ok::<(), ShapeError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignedDistance {
     /// Euclidean distance, negative inside: minus the distance to the boundary.

@@ -6,18 +6,6 @@ use super::crossing::{Crossing, first_crossing};
 use crate::frame::{Vector, cross};
 
 /// Why rings do not make a polygon. Rings count from 0, the outer one first; so do the vertices of a ring.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::{Polygon, PolygonError};
-///
-/// let line = [Vector::zeros(), Vector::new(1.0, 0.0)];
-/// let error = Polygon::new(&[line.to_vec()]).expect_err("no area");
-/// assert_eq!(error, PolygonError::TooFewVertices { ring: 0, found: 2 });
-/// assert_eq!(error.to_string(), "ring 0 has 2 different vertices; at least 3 are needed");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PolygonError {
     /// A ring of fewer than three different vertices.

@@ -1,14 +1,13 @@
 //! An obstacle in any of the representations.
 
-use super::cpa::ClosestApproach;
+use super::closest_approach::ClosestApproach;
+use super::polytope::slabs::Slab;
 use super::risk::PeakRisk;
-use super::slabs::Slab;
 use super::{
-    EllipsoidObstacle, PolytopeObstacle, Section, SlabObstacle, SpaceTimeObstacle, Support,
-    VelocityObstacle,
+    EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle, Support, VelocityObstacle,
 };
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::geometry::{ConvexPolygon, ConvexSet, SignedDistance};
 use crate::target::VelocitySpell;
 use crate::trajectory::{Segment, Trajectory};
 
@@ -17,26 +16,6 @@ const SECTION_SIDES: usize = 64;
 
 /// One of the representations. An enum and not a trait object: the set is closed, a planner takes each apart in
 /// its own way, a document writes each with its own keys, and a level set is of its obstacle's own kind.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{Obstacle, PathTime, PolytopeObstacle, SpaceTimeObstacle, along_path};
-///
-/// let corners = [(90.0, 40.0), (110.0, 40.0), (110.0, 60.0), (90.0, 60.0)];
-/// let initial = ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))?;
-/// let south = ConvexPolygon::point(Vector::new(0.0, -2.0));
-/// let crossing = PolytopeObstacle::new("crossing", initial, south);
-/// // on the path to the east from 90 m to 110 m, between 20 s and 30 s
-/// let seen: Vec<PathTime> = along_path(&crossing, Vector::zeros(), Vector::new(1.0, 0.0), 200.0, 100.0);
-/// assert_eq!(seen.len(), 4);
-/// assert!(seen.iter().all(|c| (20.0 - 1e-9..30.0 + 1e-9).contains(&c.time)));
-/// assert!(seen.iter().all(|c| (90.0 - 1e-9..110.0 + 1e-9).contains(&c.distance)));
-/// // whatever its representation, it is asked the same
-/// let any = Obstacle::Polytope(crossing);
-/// assert!(any.contains(Vector::new(100.0, 0.0), 25.0));
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Obstacle {
     /// Paper eqs. (2)-(9).
@@ -73,21 +52,18 @@ impl Obstacle {
     }
 
     /// The section `O_t`, `time >= 0`.
-    pub fn section(&self, time: f64) -> Section {
+    pub fn section(&self, time: f64) -> ConvexSet {
         match self {
-            Self::Polytope(o) => Section::Polygon(o.section(time)),
-            Self::Ellipsoid(o) => Section::Ellipse(o.outer_section(time)),
-            Self::Slabs(o) => Section::Polygon(o.section(time)),
+            Self::Polytope(o) => ConvexSet::Polygon(o.section(time)),
+            Self::Ellipsoid(o) => ConvexSet::Ellipse(o.outer_section(time)),
+            Self::Slabs(o) => ConvexSet::Polygon(o.section(time)),
         }
     }
 
     /// The section as a polygon, metres: exact for polytopes and slabs, the circumscribed 64-gon for an
     /// ellipse.
     pub fn outer_section(&self, time: f64) -> ConvexPolygon {
-        match self.section(time) {
-            Section::Polygon(polygon) => polygon,
-            Section::Ellipse(ellipse) => ellipse.outer_polygon(SECTION_SIDES),
-        }
+        self.section(time).outer_polygon(SECTION_SIDES)
     }
 
     /// The same set from a time in seconds on, by a clock that starts then: exact for polytopes and slabs; the ellipses

@@ -8,28 +8,6 @@ use crate::tolerance;
 use crate::trajectory::Segment;
 
 /// The largest risk along a motion.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::frame::Pose;
-/// use searoom::obstacle::{PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
-/// use searoom::trajectory::Segment;
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// let start = Pose::new(Vector::new(100.0, 0.0), 0.0);
-/// let wait = Segment { start, start_time: 0.0, duration: 60.0, speed: 0.0, turn_rate: 0.0 };
-/// // even a ferry that keeps the centre of her velocities comes through
-/// let PeakRisk { risk, time } = target.peak_risk(&wait);
-/// assert!((risk - 1.0).abs() < 1e-9 && (18.0..=22.0).contains(&time));
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakRisk {
     /// In `[0, 1]`. Where it is found by bisection it errs to the high side, by at most

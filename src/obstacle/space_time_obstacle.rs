@@ -1,6 +1,6 @@
 //! What every obstacle answers, whatever its sets are made of.
 
-use super::cpa::ClosestApproach;
+use super::closest_approach::ClosestApproach;
 use super::risk::{PeakRisk, risk_of};
 use crate::frame::Vector;
 use crate::geometry::SignedDistance;
@@ -11,24 +11,6 @@ use crate::trajectory::{Segment, Trajectory};
 const LOOKS: usize = 32;
 
 /// The support function of a section and how it changes.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{PolytopeObstacle, SpaceTimeObstacle, Support};
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// let Support { value, rate } = target.support(Vector::new(1.0, 0.0), 10.0);
-/// // 70 m east of the origin, moving on at 6 m/s
-/// assert!((value - 70.0).abs() < 1e-9 && (rate - 6.0).abs() < 1e-9);
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support {
     /// `h(n, t) = max over O_t of n . x`, metres.

@@ -5,24 +5,6 @@ use crate::frame::{Vector, cross, to_port, to_starboard};
 use crate::geometry::ConvexPolygon;
 
 /// `normal . v <= offset` in the plane of velocities, with a unit normal.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::{HalfPlane, PolytopeObstacle};
-///
-/// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
-/// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
-/// let region = target.velocity_obstacle(Vector::new(300.0, 0.0), f64::INFINITY);
-/// let sides: &[HalfPlane] = region.half_planes();
-/// assert!(!sides.is_empty() && sides.iter().all(|s| (s.normal.norm() - 1.0).abs() < 1e-9));
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfPlane {
     /// Outward unit normal.

@@ -1,40 +1,27 @@
-//! The last moment at which a plan that is clear of every hard set still exists.
+//! The time of no return: the last moment from which a plan clear of every hard set was found.
 
 use super::sets::TargetSets;
 use super::{Run, coast, problem};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::{PlannerKind, space_time};
 
-/// Seconds to which the time of no return is sought.
+/// Accuracy of the time of no return, seconds.
 pub const NO_RETURN_STEP_S: f64 = 1.0;
 
-/// How long own ship may hold on.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, scenario::Scenario};
-/// use searoom::pipeline::NoReturn;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let run = pipeline::run(scenario);
-/// // how long she may go on as if nobody were there
-/// let NoReturn::At(time) = run.no_return().expect("a space-time plan") else { panic!("the ferry is in the way") };
-/// assert!((60.0..150.0).contains(&time), "{time} s");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// How long own ship can hold its course and speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoReturn {
-    /// On the desired trajectory she meets no hard set.
+    /// The desired trajectory meets no hard set.
     Never,
-    /// Held so long, seconds, there still is a plan that is clear of every hard set; [`NO_RETURN_STEP_S`] later none was found.
+    /// Seconds. After holding until then a plan clear of every hard set exists; none was found
+    /// [`NO_RETURN_STEP_S`] later.
     At(f64),
-    /// None was found even from the start.
+    /// No such plan was found even from the start.
     Past,
 }
 
 impl NoReturn {
-    /// Seconds, where there is such a time.
+    /// The time in seconds, where there is one.
     pub fn time(self) -> Option<f64> {
         match self {
             Self::At(time) => Some(time),
@@ -44,12 +31,13 @@ impl NoReturn {
 }
 
 impl Run {
-    /// How long own ship can follow the desired trajectory as if nobody were there and still have a plan that is clear of every hard
-    /// set, whatever the plan of this run is. `None` for planners other than space-time, and where the trajectory cannot be
-    /// followed at all.
+    /// How long own ship can follow the desired trajectory and still have a plan clear of every hard
+    /// set, independent of the plan of this run.
     ///
-    /// Whoever may still leave later may leave now, so it is sought by bisection between the start and the first contact. What was
-    /// found exists; the planner may have missed a later one. Some ten plans.
+    /// `None` for planners other than space-time, and where the trajectory cannot be followed.
+    /// Bisection between the start and the first contact: a plan from a later time is also a plan
+    /// now. The plan that was found exists; the planner may have missed a later one. About ten
+    /// plans.
     pub fn no_return(&self) -> Option<NoReturn> {
         let scenario = &self.scenario;
         if scenario.planner != PlannerKind::SpaceTime {
@@ -58,10 +46,10 @@ impl Run {
         let hard: Vec<Obstacle> = self.sets.iter().map(TargetSets::hard_set).collect();
         let coast = coast(scenario, &self.land);
         let asked = problem(scenario, &hard, &coast);
-        let held = space_time::undisturbed(&asked)?;
+        let held = space_time::nominal_motion(&asked)?;
         let contacts = hard.iter().filter_map(|set| {
             held.iter()
-                .find_map(|s| set.first_contact(s, super::ladder::TOUCH_M))
+                .find_map(|s| set.first_contact(s, super::relaxation::TOUCH_M))
         });
         let Some(met) = contacts.min_by(f64::total_cmp) else {
             return Some(NoReturn::Never);

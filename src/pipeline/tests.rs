@@ -14,8 +14,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+mod land;
 mod last_moments;
-mod shore;
 
 fn polytope(o: &Obstacle) -> &PolytopeObstacle {
     o.as_polytope().expect("a polytope")
@@ -143,7 +143,7 @@ fn where_no_plan_clears_the_shapes_they_are_drawn_back_as_far_as_the_plan_needs(
     let drawn = random_encounter(EncounterKind::GiveWay, 104, Placement::Origin);
     let run = run(drawn.expect("drawn").scenario);
     let sets = &run.sets[0];
-    assert!(sets.shape_reduced > 0.0 && run.rung == Rung::Domains);
+    assert!(sets.shape_reduced > 0.0 && run.level == RelaxationLevel::ReducedDomains);
     let initial = |set: &Obstacle| polytope(set).initial().clone();
     let (kept, hard) = (initial(&run.obstacles[0]), initial(&sets.hard));
     for corner in hard.vertices() {
@@ -200,10 +200,10 @@ fn in_a_channel(spread: f64) -> Scenario {
 /// two steps less the planner finds none, and at what was found it does.
 #[test]
 fn without_a_way_clear_of_the_hard_sets_the_least_risk_is_taken_and_said() {
-    assert_eq!(run(in_a_channel(0.1)).rung, Rung::Compliant);
+    assert_eq!(run(in_a_channel(0.1)).level, RelaxationLevel::Compliant);
     let scenario = in_a_channel(2.0);
     let run = run(scenario.clone());
-    assert_eq!(run.rung, Rung::Risk);
+    assert_eq!(run.level, RelaxationLevel::Risk);
     assert!(
         run.max_risk > 2.0 * RISK_STEP && run.evaluation.as_ref().is_some_and(|e| e.verified())
     );
@@ -225,10 +225,10 @@ fn without_a_way_clear_of_the_hard_sets_the_least_risk_is_taken_and_said() {
             max_risk,
             ..scenario.clone()
         })
-        .rung
+        .level
     };
-    assert_eq!(at(run.max_risk - 2.0 * RISK_STEP), Rung::Risk);
-    assert_eq!(at(run.max_risk), Rung::Compliant);
+    assert_eq!(at(run.max_risk - 2.0 * RISK_STEP), RelaxationLevel::Risk);
+    assert_eq!(at(run.max_risk), RelaxationLevel::Compliant);
 }
 
 fn fault(name: &str) -> Scenario {
@@ -253,7 +253,7 @@ fn where_no_way_leads_out_own_ship_slows_and_meets_no_nominal_hull() {
             ..fault("deadline-escape.toml")
         };
         let run = run(scenario);
-        assert_eq!(run.rung, Rung::Inside);
+        assert_eq!(run.level, RelaxationLevel::Inside);
         let is_late = matches!(run.planned.outcome, Outcome::Deadline(_));
         assert_eq!(is_late, deadline == 0.0);
         let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
@@ -274,7 +274,7 @@ fn out_of_time_own_ship_still_meets_no_nominal_hull() {
         ..fault("deadline-without-relaxation.toml")
     };
     let run = run(scenario);
-    assert_eq!(run.rung, Rung::Inside);
+    assert_eq!(run.level, RelaxationLevel::Inside);
     let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
     assert!(changes_of_speed(trajectory) <= 2);
     let judged = run.evaluation.expect("judged");
@@ -285,7 +285,7 @@ fn out_of_time_own_ship_still_meets_no_nominal_hull() {
 #[test]
 fn at_the_goal_inside_a_set_own_ship_has_arrived() {
     let run = run(fault("infeasible-at-goal.toml"));
-    assert_eq!(run.rung, Rung::Inside);
+    assert_eq!(run.level, RelaxationLevel::Inside);
     assert_eq!(run.released, [Some(run.scenario.horizon)]);
     let trajectory = &run.planned.outcome.plan().expect("a plan").trajectory;
     assert_eq!(trajectory.end_time(), 0.0);
@@ -307,7 +307,7 @@ fn from_within_a_hard_set_own_ship_slows_and_turns_away_and_claims_begin_outside
     beside.motion = Motion::Ship(track(0.0, -260.0, 0.0, 4.0));
     scenario.targets.push(beside);
     let run = run(scenario);
-    assert_eq!(run.rung, Rung::Inside);
+    assert_eq!(run.level, RelaxationLevel::Inside);
     let [Some(until), None] = run.released[..] else {
         panic!("{:?}", run.released);
     };
@@ -336,7 +336,7 @@ fn from_within_a_hard_set_own_ship_slows_and_turns_away_and_claims_begin_outside
     assert!(judged.min_clearance > start - 1.0, "{start}");
 }
 
-/// One end of the ladder: boxed in for good, she holds on, and nothing is claimed of what she runs into.
+/// One end of the relaxation levels: boxed in for good, own ship holds on, and nothing is claimed of what it runs into.
 #[test]
 fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
     let mut scenario = in_a_channel(0.0);
@@ -351,7 +351,7 @@ fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
         velocity: ConvexPolygon::point(Vector::new(5.0, 0.0)),
     };
     let off_paths = run(scenario.clone());
-    assert_eq!(off_paths.rung, Rung::Inside);
+    assert_eq!(off_paths.level, RelaxationLevel::Inside);
     let plan = off_paths.planned.outcome.plan().expect("a plan");
     let end = plan.trajectory.end_time();
     assert_eq!(off_paths.released, [Some(end), None, None]);
@@ -361,7 +361,7 @@ fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
         planner: PlannerKind::PathTime,
         ..scenario
     });
-    assert_eq!(along.rung, Rung::Inside);
+    assert_eq!(along.level, RelaxationLevel::Inside);
     let [Some(until), None, None] = along.released[..] else {
         panic!("{:?}", along.released);
     };
@@ -388,7 +388,7 @@ fn out_of_time_there_is_still_an_answer() {
 /// Three ships leave no way that stays near the path: a wide one is found, clear of every hard set.
 #[test]
 fn a_wide_way_is_found_where_there_is_none_near_the_path() {
-    use crate::scenario::formats::{Assumed, Contents};
+    use crate::scenario::import::{Assumed, Contents};
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenarios/dnv/traffic_situation_47.json");
     let assumed = Assumed::default();
@@ -400,7 +400,7 @@ fn a_wide_way_is_found_where_there_is_none_near_the_path() {
     let mut scenario = situation.scenario(&assumed).expect("no faults").scenario;
     scenario.deadline = 60.0;
     let run = run(scenario);
-    assert!(run.rung < Rung::Risk && run.max_risk == 0.0);
+    assert!(run.level < RelaxationLevel::Risk && run.max_risk == 0.0);
     assert!(run.risks.iter().all(|peak| peak.risk == 0.0));
     assert!(run.evaluation.is_some_and(|e| e.verified()));
 }

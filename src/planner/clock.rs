@@ -1,8 +1,8 @@
-//! When an answer is due.
+//! Wall-clock budget of one plan.
 
 use std::time::{Duration, Instant};
 
-/// A budget of wall-clock time, counted from when it was made.
+/// Wall-clock budget, counted from its construction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Clock {
     begun: Instant,
@@ -17,12 +17,12 @@ impl Clock {
         }
     }
 
-    /// What is left of the budget.
+    /// Time left in the budget.
     pub(crate) fn left(&self) -> Duration {
         self.budget.saturating_sub(self.begun.elapsed())
     }
 
-    /// True once the time is up, and ever after.
+    /// True from the end of the budget on.
     pub(crate) fn is_up(&self) -> bool {
         self.begun.elapsed() >= self.budget
     }

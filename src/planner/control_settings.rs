@@ -1,33 +1,17 @@
-//! What a scenario says to the optimal-control planner.
+//! Settings of the optimal-control planner.
 
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 /// Ship, grid and weights of the stage cost `(x - r)' Q (x - r) + tau' R tau`.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::ControlSettings;
-/// use searoom::vessel::VesselKind;
-///
-/// let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// let finer = ControlSettings { intervals: 100, ..usual.clone() };
-/// assert_eq!(usual.intervals, 50);
-/// assert_eq!((usual.length, usual.force_limits.x), (1.255, 2.0));
-/// // 24 times as long: 24³ times the force
-/// let ship = ControlSettings::at_length(VesselKind::CyberShip2, 24.0 * 1.255);
-/// assert!((ship.force_limits.x / (2.0 * 24.0_f64.powi(3)) - 1.0).abs() < 1e-12);
-/// assert_eq!(finer.force_limits, usual.force_limits);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlSettings {
-    /// Whose forces.
+    /// Ship model.
     pub vessel: VesselKind,
-    /// Of the ship, metres: the vessel is scaled to it by Froude's law.
+    /// Length of the ship, metres. The model is scaled to it by Froude's law.
     pub length: f64,
-    /// To either side of zero, positive: newtons, newtons, newton metres.
+    /// Largest forces to either side of zero, positive: newtons, newtons, newton metres.
     pub force_limits: ForceVector,
-    /// Of the horizon, at least one; more are taken where these are too coarse.
+    /// Intervals of the horizon, at least one. The planner takes more where these are too coarse.
     pub intervals: usize,
     /// The diagonal of `Q`, not negative: per squared metre, radian, m/s and rad/s, and per second.
     pub state_weights: StateVector,
@@ -36,12 +20,13 @@ pub struct ControlSettings {
 }
 
 impl ControlSettings {
-    /// Of a vessel at the size of its model, with the defaults of docs/scenario.md.
+    /// Settings of a vessel at model size, with the defaults of docs/scenario.md.
     pub fn of(vessel: VesselKind) -> Self {
         Self::at_length(vessel, vessel.length())
     }
 
-    /// The same of a ship of this length, metres. Plans of the same scene at another size are the same by Froude's law.
+    /// Settings of a ship of the given length, metres. By Froude's law a scene scaled with the ship
+    /// has the scaled plan.
     pub fn at_length(vessel: VesselKind, length: f64) -> Self {
         Self {
             vessel,

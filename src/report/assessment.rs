@@ -66,10 +66,7 @@ fn alteration(situation: &Situation, assessment: &AssessmentDocument) -> String 
         return "Alteration: none needed, own velocity is in no velocity obstacle".to_owned();
     }
     let mut ways = Vec::new();
-    for (side, turn) in [
-        ("starboard", found.starboard_deg),
-        ("port", found.port_deg),
-    ] {
+    for (side, turn) in [("starboard", found.starboard_deg), ("port", found.port_deg)] {
         ways.push(match turn {
             Some(turn) => format!("{:.2}° to {side}", up(turn)),
             None => format!("no turn to {side}"),

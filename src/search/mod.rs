@@ -74,35 +74,6 @@ pub trait Space {
 }
 
 /// What became of a node.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::search::{Fate, Search, Space};
-///
-/// # struct Numbers;
-/// # impl Space for Numbers {
-/// #     type State = u32;
-/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
-/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
-/// #     }
-/// #     fn bound(&mut self, _: &u32) -> f64 {
-/// #         0.0
-/// #     }
-/// #     fn is_goal(&self, state: &u32) -> bool {
-/// #         *state == 10
-/// #     }
-/// #     fn admits(&mut self, state: &u32) -> bool {
-/// #         *state <= 10
-/// #     }
-/// # }
-/// // `Numbers` is the space of the example of `Space`: from 1 to 10
-/// let mut search = Search::new(1);
-/// search.next_goal(&mut Numbers, 1000);
-/// let fates = search.nodes().iter().map(|node| node.fate);
-/// assert_eq!(fates.filter(|&fate| fate == Fate::Goal).count(), 1);
-/// assert!(search.nodes().iter().all(|n| n.state <= 10 || n.fate != Fate::Expanded));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
     /// Still in the queue; its edge is not tested, or the closer bound put it back.
@@ -116,34 +87,6 @@ pub enum Fate {
 }
 
 /// A node of the search tree.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::search::{Node, Search, Space};
-///
-/// # struct Numbers;
-/// # impl Space for Numbers {
-/// #     type State = u32;
-/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
-/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
-/// #     }
-/// #     fn bound(&mut self, _: &u32) -> f64 {
-/// #         0.0
-/// #     }
-/// #     fn is_goal(&self, state: &u32) -> bool {
-/// #         *state == 10
-/// #     }
-/// #     fn admits(&mut self, state: &u32) -> bool {
-/// #         *state <= 10
-/// #     }
-/// # }
-/// // `Numbers` is the space of the example of `Space`: from 1 to 10
-/// let mut search = Search::new(1);
-/// search.next_goal(&mut Numbers, 1000);
-/// let root: &Node<u32> = &search.nodes()[0];
-/// assert_eq!((root.state, root.parent, root.cost), (1, None, 0.0));
-/// ```
 #[derive(Debug, Clone)]
 pub struct Node<S> {
     /// What it is.
@@ -157,33 +100,6 @@ pub struct Node<S> {
 }
 
 /// Why a search stopped.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::search::{Search, Space, Stop};
-///
-/// # struct Numbers;
-/// # impl Space for Numbers {
-/// #     type State = u32;
-/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
-/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
-/// #     }
-/// #     fn bound(&mut self, _: &u32) -> f64 {
-/// #         0.0
-/// #     }
-/// #     fn is_goal(&self, state: &u32) -> bool {
-/// #         *state == 10
-/// #     }
-/// #     fn admits(&mut self, state: &u32) -> bool {
-/// #         *state <= 10
-/// #     }
-/// # }
-/// // `Numbers` is the space of the example of `Space`: from 1 to 10
-/// let mut search = Search::new(1);
-/// assert_eq!(search.next_goal(&mut Numbers, 0), Stop::Budget);
-/// assert!(matches!(search.next_goal(&mut Numbers, 1000), Stop::Goal(_)));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
     /// The cheapest goal not yet reported; its node.
@@ -197,35 +113,6 @@ pub enum Stop {
 }
 
 /// Counts of a search.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::search::{Counts, Search, Space};
-///
-/// # struct Numbers;
-/// # impl Space for Numbers {
-/// #     type State = u32;
-/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
-/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
-/// #     }
-/// #     fn bound(&mut self, _: &u32) -> f64 {
-/// #         0.0
-/// #     }
-/// #     fn is_goal(&self, state: &u32) -> bool {
-/// #         *state == 10
-/// #     }
-/// #     fn admits(&mut self, state: &u32) -> bool {
-/// #         *state <= 10
-/// #     }
-/// # }
-/// // `Numbers` is the space of the example of `Space`: from 1 to 10
-/// let mut search = Search::new(1);
-/// assert_eq!(search.counts(), Counts { generated: 1, ..Counts::default() });
-/// search.next_goal(&mut Numbers, 1000);
-/// let Counts { expanded, generated, tested } = search.counts();
-/// assert!(0 < expanded && expanded <= tested && tested <= generated);
-/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Nodes whose successors were made.
@@ -238,35 +125,6 @@ pub struct Counts {
 
 /// A best-first search that can be resumed: each [`Search::next_goal`] gives the next cheapest goal.
 /// Ties: less cost plus bound first, then the greater cost (nearer the goal), then the older node.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::search::{Search, Space, Stop};
-///
-/// # struct Numbers;
-/// # impl Space for Numbers {
-/// #     type State = u32;
-/// #     fn successors(&mut self, state: &u32, out: &mut Vec<(u32, f64)>) {
-/// #         out.extend([(state + 1, 1.0), (state * 2, 1.5)]);
-/// #     }
-/// #     fn bound(&mut self, _: &u32) -> f64 {
-/// #         0.0
-/// #     }
-/// #     fn is_goal(&self, state: &u32) -> bool {
-/// #         *state == 10
-/// #     }
-/// #     fn admits(&mut self, state: &u32) -> bool {
-/// #         *state <= 10
-/// #     }
-/// # }
-/// // `Numbers` is the space of the example of `Space`: from 1 to 10
-/// let mut search = Search::new(1);
-/// let Stop::Goal(first) = search.next_goal(&mut Numbers, 1000) else { panic!("a way") };
-/// // the next cheapest way is found by going on
-/// let Stop::Goal(second) = search.next_goal(&mut Numbers, 1000) else { panic!("another way") };
-/// assert!(search.nodes()[first].cost <= search.nodes()[second].cost);
-/// ```
 #[derive(Debug)]
 pub struct Search<S> {
     nodes: Vec<Node<S>>,

@@ -11,19 +11,6 @@ const ROUNDING: f64 = 1e-12;
 const LAST_STRETCH_M: f64 = 1.0;
 
 /// One leg of the desired trajectory.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::trajectory::{DesiredLeg, DesiredTrajectory};
-///
-/// let waypoints = [(0.0, 0.0), (1000.0, 0.0), (1000.0, 500.0)].map(|(x, y)| Vector::new(x, y));
-/// let desired = DesiredTrajectory::new(&waypoints, &[5.0, 2.5])?;
-/// let second: &DesiredLeg = &desired.legs()[1];
-/// assert_eq!((second.start_time, second.end_time(), second.length), (200.0, 400.0, 500.0));
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesiredLeg {
     /// First end, metres.
@@ -65,20 +52,6 @@ impl DesiredLeg {
 }
 
 /// The point of the desired trajectory nearest in space-time.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::trajectory::{DesiredTrajectory, Nearest};
-///
-/// let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(1000.0, 0.0)], &[5.0])?;
-/// // on the path, 10 s late: a second weighs as 5 m, and the nearest point is half-way
-/// let Nearest { error, distance, leg } = desired.nearest(Vector::new(500.0, 0.0), 110.0, 25.0);
-/// assert_eq!(leg, 0);
-/// assert!((distance - 525.0).abs() < 1e-9 && (error - 1250.0).abs() < 1e-6);
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
     /// Squared space-time distance, m².

@@ -17,19 +17,6 @@ use crate::frame::{Pose, wrap};
 use crate::tolerance;
 
 /// Why segments or waypoints do not make a trajectory.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::trajectory::{Segment, Trajectory, TrajectoryError};
-///
-/// let line = Segment { start: Pose::new(Vector::zeros(), 0.0), start_time: 0.0, duration: 10.0, speed: 5.0, turn_rate: 0.0 };
-/// // it ends 50 m to the east, where the same line does not begin
-/// let again = Segment { start_time: 10.0, ..line };
-/// let error = Trajectory::new(vec![line, again]).expect_err("a gap");
-/// assert!(matches!(error, TrajectoryError::Gap { index: 1, gap } if (gap - 50.0).abs() < 1e-9));
-/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrajectoryError {
     /// No segment at all.

@@ -4,18 +4,6 @@ use crate::frame::{Vector, cross};
 use crate::tolerance;
 
 /// Why alternatives do not make a network with the main path.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::trajectory::{NetworkError, PathNetwork};
-///
-/// let main = [Vector::zeros(), Vector::new(1000.0, 0.0)];
-/// let elsewhere = vec![Vector::new(0.0, 300.0), Vector::new(1000.0, 300.0)];
-/// let error = PathNetwork::new(&main, &[elsewhere]).expect_err("it is never reached");
-/// assert_eq!(error, NetworkError::NoSharedPoint { alternative: 0 });
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NetworkError {
     /// A path with fewer than two points, a leg of no length, or a number that is none.
@@ -43,20 +31,6 @@ pub enum NetworkError {
 }
 
 /// A straight piece of a path between two points at which paths begin, bend, end or meet.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::trajectory::{NetworkLeg, PathNetwork};
-///
-/// let main = [Vector::zeros(), Vector::new(1000.0, 0.0)];
-/// let around = vec![Vector::zeros(), Vector::new(500.0, 200.0), Vector::new(1000.0, 0.0)];
-/// let network = PathNetwork::new(&main, &[around])?;
-/// let longest: f64 = network.legs().iter().map(|leg: &NetworkLeg| leg.length).fold(0.0, f64::max);
-/// assert_eq!((network.legs().len(), longest), (3, 1000.0));
-/// # Ok::<(), searoom::trajectory::NetworkError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetworkLeg {
     /// Metres.

@@ -4,21 +4,6 @@ use crate::frame::{Pose, Vector, direction};
 
 /// Motion at constant speed and constant turn rate: a straight line (turn rate 0), a circular arc,
 /// or a wait (speed 0). Exact at every instant.
-///
-/// # Examples
-///
-/// ```
-/// use std::f64::consts::PI;
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::trajectory::Segment;
-///
-/// // half a circle to port, 100 m in radius, at 5 m/s
-/// let turn_rate = 5.0 / 100.0;
-/// let start = Pose::new(Vector::zeros(), 0.0);
-/// let arc = Segment { start, start_time: 10.0, duration: PI / turn_rate, speed: 5.0, turn_rate };
-/// assert!((arc.end().position - Vector::new(0.0, 200.0)).norm() < 1e-9);
-/// assert!((arc.length() - 100.0 * PI).abs() < 1e-9 && (arc.radius() - 100.0).abs() < 1e-9);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
     /// Pose at `start_time`.

@@ -4,25 +4,6 @@ use super::TrajectoryError;
 use crate::frame::{Pose, Vector, direction, to_port};
 
 /// The state of a ship at an instant, and the forces on her from then on.
-///
-/// # Examples
-///
-/// ```
-/// use std::f64::consts::FRAC_PI_2;
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::trajectory::Node;
-///
-/// let node = Node {
-///     time: 0.0,
-///     pose: Pose::new(Vector::zeros(), FRAC_PI_2),
-///     velocity: Vector::new(2.0, 0.5), // ahead and to port, m/s
-///     yaw_rate: 0.0,
-///     force: Vector::new(1.0, 0.0),
-///     moment: 0.0,
-/// };
-/// // she points north: ahead is north, and port is west
-/// assert!((node.ground_velocity() - Vector::new(-0.5, 2.0)).norm() < 1e-12);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
     /// Seconds.
@@ -69,27 +50,6 @@ impl Node {
 const LEAST_SWING: f64 = std::f64::consts::PI / 36.0;
 
 /// From one extreme of the heading to the next.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::trajectory::{Node, Steered, Swing};
-///
-/// let at = |time: f64, east: f64, heading: f64| Node {
-///     time,
-///     pose: Pose::new(Vector::new(east, 0.0), heading),
-///     velocity: Vector::new(2.0, 0.0),
-///     yaw_rate: 0.0,
-///     force: Vector::zeros(),
-///     moment: 0.0,
-/// };
-/// let motion = Steered::new(vec![at(0.0, 0.0, 0.0), at(1.0, 2.0, 0.2), at(2.0, 4.0, 0.3)])?;
-/// let swings: Vec<Swing> = motion.swings();
-/// assert_eq!((swings.len(), swings[0].start_time), (1, 0.0));
-/// assert!((swings[0].turned - 0.3).abs() < 1e-9, "radians, to port positive");
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
     /// At the extreme that it begins with, seconds.
@@ -100,27 +60,6 @@ pub struct Swing {
 
 /// A motion given at nodes. Between two of them position and heading are the cubics through both with both rates: what a
 /// plan of forces claims to sail. How near the ship comes to that is for a check to say.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::trajectory::{Node, Steered, Trajectory};
-///
-/// let at = |time: f64, east: f64, heading: f64| Node {
-///     time,
-///     pose: Pose::new(Vector::new(east, 0.0), heading),
-///     velocity: Vector::new(2.0, 0.0),
-///     yaw_rate: 0.0,
-///     force: Vector::zeros(),
-///     moment: 0.0,
-/// };
-/// let motion = Steered::new(vec![at(0.0, 0.0, 0.0), at(1.0, 2.0, 0.0)])?;
-/// assert!((motion.length() - 2.0).abs() < 1e-3);
-/// let trajectory = Trajectory::from(motion);
-/// assert!((trajectory.pose_at(0.5).position.x - 1.0).abs() < 1e-9);
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Steered {
     nodes: Vec<Node>,
@@ -225,26 +164,6 @@ impl Steered {
 }
 
 /// Motion between two instants: position and heading are cubics of time.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::trajectory::{Cubic, Node};
-///
-/// let at = |time: f64, east: f64, heading: f64| Node {
-///     time,
-///     pose: Pose::new(Vector::new(east, 0.0), heading),
-///     velocity: Vector::new(2.0, 0.0),
-///     yaw_rate: 0.0,
-///     force: Vector::zeros(),
-///     moment: 0.0,
-/// };
-/// let piece = Cubic::from_nodes(&at(4.0, 0.0, 0.0), &at(6.0, 4.0, 0.0));
-/// assert_eq!(piece.end_time(), 6.0);
-/// assert!((piece.position(0.5) - Vector::new(2.0, 0.0)).norm() < 1e-12);
-/// assert!((piece.velocity(0.5) - Vector::new(2.0, 0.0)).norm() < 1e-12);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic {
     /// Seconds.

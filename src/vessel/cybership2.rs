@@ -29,19 +29,6 @@ const ROUNDED_MPS: f64 = 1e-3;
 /// millionfold in 100 s.
 ///
 /// Length 1.255 m; forces within 2 N ahead and astern, 1.5 N abeam, 1.5 Nm.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::vessel::{CyberShip2, ForceVector, Manoeuvring, StateVector};
-///
-/// let ship = CyberShip2::EXACT;
-/// let steady = StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0);
-/// let force: ForceVector = ship.steady(0.2);
-/// assert!(force.x > 0.0, "newtons against the drag at 0.2 m/s");
-/// let rates = ship.rates(&steady, &force);
-/// assert!((rates[0] - 0.2).abs() < 1e-12 && rates[3].abs() < 1e-9, "east at 0.2 m/s, not accelerated");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyberShip2 {
     rounded: f64,

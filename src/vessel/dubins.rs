@@ -17,20 +17,6 @@ const SAME_CIRCLE_M: f64 = 1e-7;
 const ROUNDING: f64 = 1e-12;
 
 /// A piece of a path: an arc to a side, or a line.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::vessel::dubins::{Piece, shortest};
-///
-/// let (from, to) = (Pose::new(Vector::zeros(), 0.0), Pose::new(Vector::new(500.0, 0.0), 0.0));
-/// let path = shortest(&from, &to, 100.0).expect("finite");
-/// let sailed: Vec<Piece> = path.pieces.into_iter().filter(|piece| piece.length > 1e-6).collect();
-/// // straight ahead is one line
-/// assert_eq!(sailed.len(), 1);
-/// assert!(sailed[0].turn.is_none() && (sailed[0].length - 500.0).abs() < 1e-6);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Side of the turn, `None` on a line.

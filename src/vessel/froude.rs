@@ -6,17 +6,6 @@ use super::manoeuvring::{ForceVector, Manoeuvring, Scales, StateVector};
 
 /// The ship of which another is the model, `scale` times as long: times and speeds grow with its root, masses
 /// with its cube (the water is the same), forces with its cube and moments with its fourth power.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::vessel::{CyberShip2, FroudeScaled, Manoeuvring};
-///
-/// let ship = FroudeScaled::new(CyberShip2::EXACT, 70.0);
-/// // speeds grow with the root of the scale, forces with its cube
-/// let (model, full) = (CyberShip2::EXACT.steady(0.2), ship.steady(0.2 * 70.0_f64.sqrt()));
-/// assert!((full.x / model.x / 70.0_f64.powi(3) - 1.0).abs() < 1e-9);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FroudeScaled<V> {
     model: V,

@@ -14,21 +14,6 @@ const MODEL_STATE_WEIGHTS: StateVector = StateVector::new(0.05, 0.05, 0.0, 1.0, 
 const MODEL_FORCE_WEIGHTS: ForceVector = ForceVector::new(0.1, 0.1, 0.1);
 
 /// A model of a ship's motion under forces. By Froude's law it stands for a ship of any length.
-///
-/// ```
-/// use searoom::vessel::{ForceVector, StateVector, VesselKind};
-///
-/// let vessel = VesselKind::CyberShip2;
-/// let (model, ship) = (vessel.exact(vessel.length()), vessel.exact(30.0));
-/// // at rest without force it stays
-/// let rest = StateVector::zeros();
-/// assert_eq!(ship.rates(&rest, &ForceVector::zeros()), rest);
-/// // `scale` times the length: `scale³` times the force at the same Froude number
-/// let scale = 30.0 / vessel.length();
-/// let ratio = ship.steady(0.2 * scale.sqrt()).x / model.steady(0.2).x;
-/// assert!((ratio / scale.powi(3) - 1.0).abs() < 1e-9);
-/// assert!((vessel.force_limits(30.0).x / (2.0 * scale.powi(3)) - 1.0).abs() < 1e-12);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VesselKind {
     /// CyberShip II, 1.255 m long.

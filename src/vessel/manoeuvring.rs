@@ -10,15 +10,6 @@ pub type StateVector = Vector6<f64>;
 pub type ForceVector = Vector3<f64>;
 
 /// What is one of each component for this ship: a solver works in these units.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::vessel::{CyberShip2, Manoeuvring, Scales};
-///
-/// let Scales { state, force } = CyberShip2::EXACT.scales();
-/// assert!(state.iter().chain(force.iter()).all(|unit| *unit > 0.0));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
     /// In the units of [`StateVector`].

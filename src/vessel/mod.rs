@@ -15,16 +15,6 @@ use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
 
 /// A rectangular hull about its centre.
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::vessel::Hull;
-///
-/// let hull = Hull { length: 30.0, beam: 8.0 };
-/// let drawn = hull.polygon(&Pose::new(Vector::new(100.0, 0.0), 0.0));
-/// assert!((drawn.support(Vector::new(1.0, 0.0)) - 115.0).abs() < 1e-9);
-/// assert!(hull.half_diagonal() < 16.0);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hull {
     /// Metres.
@@ -53,21 +43,6 @@ impl Hull {
 }
 
 /// Own ship as the planners see her. Speeds change instantaneously.
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::vessel::{Hull, OwnShip};
-///
-/// let own = OwnShip {
-///     pose: Pose::new(Vector::zeros(), 0.0),
-///     speed: 5.0,
-///     hull: Hull { length: 30.0, beam: 8.0 },
-///     turning_radius: 100.0,
-///     speeds: vec![2.5, 5.0, 6.0],
-///     safety_margin: 20.0,
-/// };
-/// assert_eq!((own.min_speed(), own.max_speed()), (2.5, 6.0));
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnShip {
     /// Where she is at t = 0.

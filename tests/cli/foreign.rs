@@ -304,7 +304,9 @@ fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
     assert_eq!(found["summary"]["unreadable"], 1);
     searoom(&["suite", "--lint", text(folder.path())])
         .code(2)
-        .stdout(contains("CR-SO, HO: ships are missing: 2 declared, 1 found"))
+        .stdout(contains(
+            "CR-SO, HO: ships are missing: 2 declared, 1 found",
+        ))
         .stdout(contains("4 scenarios, 3 targets"));
     searoom(&["suite", "--lint", "--plans", "x", "scenarios"]).code(2);
     // the same traffic met at three speeds is three encounters, give-way and stand-on are one in a mirror

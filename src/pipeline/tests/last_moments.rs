@@ -62,7 +62,7 @@ fn until_the_time_of_no_return_there_is_a_way_out_and_then_mostly_none() {
         let hard: Vec<Obstacle> = run.sets.iter().map(|s| s.hard.clone()).collect();
         let coast = coast(&run.scenario, &run.land);
         let asked = problem(&run.scenario, &hard, &coast);
-        let held = space_time::undisturbed(&asked).expect("a straight path");
+        let held = space_time::nominal_motion(&asked).expect("a straight path");
         // to either side, every half degree
         let turns = degrees(-360..=360);
         let may_leave = |time: f64| escapes(&hard, &held, time, &turns);
@@ -84,7 +84,7 @@ fn a_ship_that_stands_on_escapes_at_the_latest_time() {
         let told = run.planned.escape.expect("she stands on").latest;
         let coast = coast(&run.scenario, &run.land);
         let asked = problem(&run.scenario, &run.obstacles, &coast);
-        let held = space_time::undisturbed(&asked).expect("a straight path");
+        let held = space_time::nominal_motion(&asked).expect("a straight path");
         let mut met = held
             .iter()
             .filter_map(|s| run.obstacles[0].first_contact(s, 0.0));

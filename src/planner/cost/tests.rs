@@ -42,7 +42,8 @@ fn matches_a_dense_sum_on_lines_arcs_corners_and_clamped_ends() {
     }
 }
 
-/// Arcs over corners and beyond both ends. Of many the one is looked at of which a search thinks least as it is.
+/// Arcs over corners and beyond both ends. Of many arcs, the test takes the one whose cost in the
+/// search is most underestimated.
 #[test]
 fn what_is_told_of_a_plan_is_a_dense_sum_where_that_of_a_search_is_not() {
     let points = [(0.0, 0.0), (500.0, 0.0), (700.0, 400.0), (660.0, 500.0)];
@@ -84,7 +85,7 @@ fn what_is_told_of_a_plan_is_a_dense_sum_where_that_of_a_search_is_not() {
     );
 }
 
-/// Long turns, short ones, slow and fast legs, weights of time from small to large.
+/// Long and short turns, slow and fast legs, small and large time weights.
 #[test]
 fn one_leg_in_closed_form_is_the_sum_by_halves() {
     let mut closed = 0;
@@ -128,7 +129,7 @@ fn one_leg_in_closed_form_is_the_sum_by_halves() {
     assert!(closed > 2500, "{closed}");
 }
 
-/// Round trips, legs in line, sharp corners, waits, motions on the legs and off them.
+/// Round trips, collinear legs, sharp corners, waits, motions on and off the legs.
 #[test]
 fn lines_near_several_legs_are_the_dense_sum() {
     let mut closed = 0;
@@ -189,7 +190,7 @@ fn the_desired_motion_costs_nothing_and_a_constant_lag_its_square() {
     assert!((lag - 0.5 * 1600.0 * 150.0 / 300.0).abs() < 1e-9);
 }
 
-/// Along a path that winds, the legs that are left out are never the nearest.
+/// Along a winding path, the legs that are left out are never nearest.
 #[test]
 fn of_many_legs_those_left_out_are_not_the_nearest() {
     let place = |k: usize| {

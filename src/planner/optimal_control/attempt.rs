@@ -1,5 +1,5 @@
-//! One solve from one guess: the problem with rows at nodes and midpoints, then again with rows where the motion is
-//! deepest between them, until it is clear everywhere.
+//! Solution from one initial guess: rows at nodes and midpoints first, then more rows where the
+//! motion is deepest between them, until it is clear everywhere.
 
 use super::between::low_points;
 use super::solver::{Iterate, Matrix, Report, RowPoint, Settings, Status, Workspace, solve};
@@ -8,102 +8,63 @@ use super::transcription::Transcription;
 use crate::trajectory::Cubic;
 use crate::vessel::Manoeuvring;
 
-/// Rounds of rows between the nodes, at most. One or two are usual.
+/// Largest number of rounds that add rows between the nodes; one or two are usual.
 const ROUNDS: usize = 12;
 
-/// The barrier to go on with after rows were added.
+/// Initial barrier parameter after rows were added.
 const WARM_BARRIER: f64 = 1e-4;
 
-/// Tolerance of the solver as long as rows are still to be found.
+/// Solver tolerance while rows are still being added.
 const LOOSE: f64 = 1e-3;
 
-/// Of the level of a set. A row that falls short by more is not the tolerance's doing.
+/// Largest constraint violation explained by the solver's tolerance, as a fraction of the set's
+/// level.
 const SHORT: f64 = 1e-4;
 
-/// The penalty is raised by this, once.
+/// Factor by which the penalty is raised, once.
 const DEARER: f64 = 10.0;
 
-/// Rows nearer than this in an interval are one, as a fraction.
+/// Rows within this fraction of an interval from one another are the same row.
 const SAME: f64 = 1e-4;
 
-/// A place where a motion is in a set.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::optimal_control::Inside;
-///
-/// // half-way between the middle of the second set and its edge, where the level is one
-/// let deepest = Inside { obstacle: 1, time: 42.0, level: 0.25 };
-/// assert!(deepest.level < 1.0);
-/// ```
+/// Point of a motion inside a set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inside {
     /// Index of the set.
     pub obstacle: usize,
-    /// Seconds.
+    /// Time, seconds.
     pub time: f64,
-    /// `(x - p_t)' Q_t^-1 (x - p_t)`, below 1.
+    /// Level `(x - p_t)' Q_t^-1 (x - p_t)`, below 1.
     pub level: f64,
 }
 
-/// What came of one guess.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Attempt, Controls, Settings, Task, Weights, attempt, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let (_, guess) = family(&task).swap_remove(0);
-/// let found: Attempt = attempt(&task, &guess, &Settings::default(), &|| true);
-/// assert!(found.is_feasible() && found.inside.is_none());
-/// assert_eq!(found.profile.states[0], task.first);
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
+/// Result of one initial guess.
 #[derive(Debug, Clone)]
 pub struct Attempt {
     /// The motion.
     pub profile: Profile,
-    /// How the last solve ended.
+    /// Report of the last solve.
     pub report: Report,
-    /// Steps of all solves.
+    /// Iterations of all solves.
     pub iterations: usize,
-    /// Solves after the first, for rows between the nodes.
+    /// Number of solves after the first, for rows between the nodes.
     pub rounds: usize,
-    /// The integral of the stage cost, in the units of the weights.
+    /// Integral of the stage cost, in the units of the weights.
     pub objective: f64,
-    /// The deepest place; `None` where the motion is clear of every set at all times.
+    /// Deepest point inside a set; `None` where the motion is clear of every set at all times.
     pub inside: Option<Inside>,
-    /// True where rows fell short and no solution was found at a higher price: the motion is that at the lower one.
+    /// True where rows were violated and no solution was found with a higher penalty: the motion is
+    /// the one with the lower penalty.
     pub priced_out: bool,
-    /// Where later solves may go on from.
+    /// Iterate for later warm starts.
     pub(super) iterate: Iterate<6, 3>,
-    /// Fractions and sets of the rows, per interval.
+    /// Rows of each interval: `(set, fraction)`.
     pub(super) rows: Vec<Vec<(usize, f64)>>,
 }
 
 impl Attempt {
-    /// True where the solver got nowhere. Exact second derivatives alone may: Gauss–Newton steps are poor where the weights
-    /// of the states are small beside those of the forces.
+    /// True where the solver made no progress. Exact second derivatives alone may succeed:
+    /// Gauss–Newton steps are poor where the state weights are small relative to the force weights.
     pub fn is_lost(&self) -> bool {
         got_nowhere(self.report.status) || self.priced_out
     }
@@ -114,7 +75,7 @@ impl Attempt {
     }
 }
 
-/// Solves from a guess. `settings` are those of the first solve.
+/// Solves from a guess; `settings` apply to the first solve.
 pub fn attempt<V: Manoeuvring>(
     task: &Task<V>,
     guess: &Profile,
@@ -137,7 +98,8 @@ pub fn attempt<V: Manoeuvring>(
     go_on(task, problem, iterate, work, settings, keep_going)
 }
 
-/// Solves from an iterate, warm or not, of a problem whose rows may already be more than the base ones.
+/// Solves from an iterate, with or without multipliers. The problem may already have more rows than
+/// the base ones.
 pub(super) fn go_on<V: Manoeuvring>(
     task: &Task<V>,
     mut problem: Transcription<V>,
@@ -148,13 +110,13 @@ pub(super) fn go_on<V: Manoeuvring>(
 ) -> Attempt {
     let tight = settings.tolerance;
     let mut settings = *settings;
-    // multipliers come with rows that were found already
+    // the multipliers include those of rows added earlier
     if iterate.multipliers.is_empty() {
         settings.tolerance = tight.max(LOOSE);
     }
     let mut report = solve(&problem, &mut iterate, &mut work, &settings, keep_going);
     let (mut iterations, mut rounds, mut raised) = (report.iterations, 0, false);
-    // solved but short of rows, before the price was raised
+    // solved but with violated rows, before the penalty was raised
     let mut cheaper: Option<Attempt> = None;
     loop {
         let (deepest, added) = deepest(task, &problem, &iterate);
@@ -180,7 +142,8 @@ pub(super) fn go_on<V: Manoeuvring>(
         }
         settings.barrier = WARM_BARRIER;
         if short {
-            // maybe the price was too low: locally infeasible only if a higher one does not help
+            // the penalty may be too low: the problem is locally infeasible only if a higher one
+            // does not help
             cheaper = Some(found.attempt(&problem, iterate.clone()));
             raised = true;
             settings.penalty *= DEARER;
@@ -202,7 +165,7 @@ pub(super) fn go_on<V: Manoeuvring>(
     }
 }
 
-/// What the solves so far came to.
+/// Result of the solves so far.
 #[derive(Debug, Clone, Copy)]
 struct Found {
     report: Report,
@@ -243,7 +206,7 @@ fn got_nowhere(status: Status) -> bool {
     matches!(status, Status::Iterations | Status::Stalled)
 }
 
-/// A row to be added.
+/// Row to be added.
 #[derive(Debug, Clone, Copy)]
 struct Added {
     interval: usize,
@@ -251,7 +214,7 @@ struct Added {
     fraction: f64,
 }
 
-/// The deepest place of all, and every local minimum within a set.
+/// Deepest point of all, and every local minimum inside a set.
 fn deepest<V: Manoeuvring>(
     task: &Task<V>,
     problem: &Transcription<V>,
@@ -291,7 +254,7 @@ fn deepest<V: Manoeuvring>(
     (deepest, added)
 }
 
-/// False where all of them were there already.
+/// Adds rows; false where all of them exist already.
 fn add_rows<V: Manoeuvring>(
     task: &Task<V>,
     problem: &mut Transcription<V>,
@@ -308,7 +271,7 @@ fn add_rows<V: Manoeuvring>(
             let known = rows
                 .iter()
                 .any(|r| r.obstacle == new.obstacle && (r.fraction - fraction).abs() < SAME);
-            // at the very start nothing can be moved
+            // at the start no state can be changed
             if known || (interval == 0 && fraction < SAME) {
                 continue;
             }

@@ -1,4 +1,5 @@
-//! From a motion on one grid to the same one on a grid on which it is the ship's.
+//! Grid refinement: from a solution on one grid to a solution on a grid fine enough for the ship's
+//! dynamics.
 
 use super::attempt::{Attempt, attempt};
 use super::defect::largest_defect;
@@ -8,41 +9,41 @@ use crate::tolerance;
 use crate::trajectory::hermite;
 use crate::vessel::Manoeuvring;
 
-/// Grids that are tried after the first one, at most.
+/// Largest number of grids after the first one.
 const REFINEMENTS: usize = 6;
 
-/// A finer grid has so many times the intervals, at least and at most.
+/// Least and greatest ratio of intervals between two grids.
 const LEAST_FACTOR: f64 = 1.5;
 const MOST_FACTOR: f64 = 4.0;
 
-/// Deviations at the end of an interval fall with this power of its duration.
+/// Deviations at the end of an interval decrease with this power of its duration.
 const ORDER: f64 = 5.0;
 
-/// The barrier to begin with on a finer grid.
+/// Initial barrier parameter on a finer grid.
 const REFINED_BARRIER: f64 = 1e-2;
 
-/// How the search for a grid ended.
+/// Result of the grid refinement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ended {
-    /// With one that is fine enough.
+    /// The grid is fine enough.
     Fine,
-    /// The last one that was tried, or that there was time for, is too coarse.
+    /// The last grid that was tried, or that time allowed, is too coarse.
     Coarse,
-    /// On the last one no plan was found any more.
+    /// No plan was found on the last grid.
     Lost,
 }
 
-/// A motion on the last grid that was tried.
+/// Solution on the last grid.
 #[derive(Debug)]
 pub(super) struct Refined {
     pub found: Attempt,
     pub intervals: usize,
-    /// The largest deviation of the ship at the end of an interval, in her units.
+    /// Largest deviation of the ship at the end of an interval, in its own units.
     pub defect: f64,
     pub ended: Ended,
 }
 
-/// Brings a feasible motion to a grid on which `exact` follows it to [`tolerance::DEFECT`].
+/// Refines the grid of a feasible motion until `exact` follows it to [`tolerance::DEFECT`].
 pub(super) fn brought_to<V: Manoeuvring>(
     coarse: &Task<V>,
     found: &Attempt,
@@ -93,7 +94,7 @@ pub(super) fn brought_to<V: Manoeuvring>(
     }
 }
 
-/// Intervals with which a deviation should be small enough; a NaN takes the most.
+/// Number of intervals for which a deviation should be small enough; the greatest one for a NaN.
 fn finer(intervals: usize, defect: f64) -> usize {
     let factor = (defect / tolerance::DEFECT).powf(1.0 / ORDER);
     let factor = if factor < MOST_FACTOR {
@@ -104,7 +105,7 @@ fn finer(intervals: usize, defect: f64) -> usize {
     (intervals as f64 * factor).ceil() as usize
 }
 
-/// The same motion on another grid: states on the cubics, forces as they are at the middle of each interval.
+/// Motion on another grid: states on the cubics, forces of the middle of each interval.
 fn resampled<V: Manoeuvring>(task: &Task<V>, profile: &Profile, to: &Task<V>) -> Profile {
     let h = task.step();
     let at = |time: f64| {

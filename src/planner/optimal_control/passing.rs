@@ -1,18 +1,19 @@
-//! On which side each set is passed: what tells one homotopy class of plans from another.
+//! Passing sides: the homotopy class of a plan.
 
 use super::keep_out::KeepOut;
 use crate::frame::{Side, cross};
 use crate::trajectory::Steered;
 
-/// Looks over the whole motion, at least; one per piece at least.
+/// Least number of samples over the whole motion; every piece gets at least one.
 const LOOKS: usize = 400;
 
-/// `(x - p_t)' Q_t^-1 (x - p_t)`: a set that never comes nearer than five times its size is not passed at all.
+/// Level `(x - p_t)' Q_t^-1 (x - p_t)` of five times the set's size; a set that stays farther away
+/// is not passed.
 const FAR: f64 = 25.0;
 
-/// Of every set the side, seen along the motion relative to its centre, on which it lies when it is nearest; `None` where
-/// it stays far away. Two plans with the same sides pass everything alike: a set that lies to starboard has own ship
-/// pass ahead of it or astern according to its motion.
+/// Side of every set at its closest approach, seen along the motion relative to its centre; `None`
+/// where it stays far away. Plans with equal sides pass every set in the same manner. For a set to
+/// starboard, its motion decides whether own ship passes ahead or astern.
 pub fn passing_sides(motion: &Steered, keep_outs: &[KeepOut]) -> Vec<Option<Side>> {
     keep_outs.iter().map(|keep| side(motion, keep)).collect()
 }

@@ -1,4 +1,4 @@
-//! The same plan a moment later: solved again from where it was, for a controller that looks ahead.
+//! Receding-horizon control: repeats the optimisation as the ship moves, with a warm start.
 
 use super::attempt::{Attempt, attempt, go_on};
 use super::keep_out::KeepOut;
@@ -6,73 +6,28 @@ use super::solver::{Iterate, RowPoint, Settings, Workspace};
 use super::task::{Profile, Task};
 use crate::vessel::{Manoeuvring, StateVector};
 
-/// The barrier to begin with after one interval.
+/// Initial barrier parameter after one interval.
 const BARRIER: f64 = 1e-4;
 
-/// A plan that moves on with the ship: each step drops the first interval, adds one at the end and solves again from the
-/// states, forces and multipliers at hand.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::frame::Vector;
-/// # use searoom::planner::ControlSettings;
-/// # use searoom::trajectory::DesiredTrajectory;
-/// # use searoom::vessel::{CyberShip2, StateVector, VesselKind};
-/// use searoom::planner::optimal_control::{Controls, Measured, RecedingHorizon, Settings, Task, Weights, family};
-///
-/// # let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(20.0, 10.0)], &[0.2236])?;
-/// # let usual = ControlSettings::of(VesselKind::CyberShip2);
-/// # let weights = Weights { state: usual.state_weights, force: usual.force_weights };
-/// # let controls = Controls { force_limits: usual.force_limits, weights };
-/// # let task = Task {
-/// #     vessel: &CyberShip2::SMOOTH,
-/// #     controls,
-/// #     desired: &desired,
-/// #     keep_outs: &[],
-/// #     first: StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0),
-/// #     start_time: 0.0,
-/// #     duration: 100.0,
-/// #     intervals: 20,
-/// # };
-/// // `task` is that of the example of `Task`: 20 intervals of 5 s
-/// let (_, guess) = family(&task).swap_remove(0);
-/// let mut horizon = RecedingHorizon::new(&task, &guess, Settings::default(), &|| true);
-/// // an interval later she is a little beside her plan
-/// let state = horizon.plan().profile.states[1].add_scalar(0.001);
-/// let next = horizon.step(&task, Measured { state, keep_outs: &[] }, &|| true);
-/// assert_eq!((next.start_time, next.first), (5.0, state));
-/// assert!(horizon.plan().is_feasible());
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
+/// Plan that moves with the ship. Each step drops the first interval, adds one at the end, and
+/// solves again from the current states, forces and multipliers.
 #[derive(Debug, Clone)]
 pub struct RecedingHorizon {
     attempt: Attempt,
     settings: Settings,
 }
 
-/// What is new after an interval.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::planner::optimal_control::Measured;
-/// use searoom::vessel::StateVector;
-///
-/// let under_way = StateVector::new(1.0, 0.0, 0.0, 0.2, 0.0, 0.0);
-/// let measured = Measured { state: under_way, keep_outs: &[] };
-/// assert!(measured.keep_outs.is_empty() && measured.state[3] == 0.2);
-/// ```
+/// Measurements after an interval.
 #[derive(Debug, Clone, Copy)]
 pub struct Measured<'a> {
-    /// Where the ship is.
+    /// Measured state.
     pub state: StateVector,
-    /// The sets, as many as before and in the same order, on the clock of the task.
+    /// Sets in the same number and order as before, in the clock of the task.
     pub keep_outs: &'a [KeepOut],
 }
 
 impl RecedingHorizon {
-    /// The first plan, from a guess.
+    /// First plan, from a guess.
     pub fn new<V: Manoeuvring>(
         task: &Task<V>,
         guess: &Profile,
@@ -85,13 +40,13 @@ impl RecedingHorizon {
         }
     }
 
-    /// The plan at hand.
+    /// Current plan.
     pub fn plan(&self) -> &Attempt {
         &self.attempt
     }
 
-    /// Moves `task` on by one interval and solves again. A plan with another number of sets than the rows know is
-    /// solved without their multipliers.
+    /// Moves `task` on by one interval and solves again. With another number of sets, the
+    /// multipliers of the rows are discarded.
     pub fn step<'a, V: Manoeuvring>(
         &mut self,
         task: &Task<'a, V>,
@@ -107,7 +62,7 @@ impl RecedingHorizon {
         let mut problem = next.transcription();
         let mut iterate = shifted(&self.attempt.iterate);
         let known = measured.keep_outs.len();
-        // rows between the nodes stay where they are in their interval
+        // rows between the nodes keep their fraction of the interval
         let mut rows = Vec::new();
         let mut taken = 0;
         for (k, old) in self.attempt.rows.iter().enumerate() {
@@ -145,7 +100,7 @@ impl RecedingHorizon {
     }
 }
 
-/// One interval on: the last one twice.
+/// Iterate moved on by one interval; the last one is repeated.
 fn shifted(old: &Iterate<6, 3>) -> Iterate<6, 3> {
     fn on<T: Clone>(values: &[T]) -> Vec<T> {
         values

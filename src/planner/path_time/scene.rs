@@ -8,7 +8,7 @@ use crate::obstacle::{
     HalfSpace, PathTime, PathTimeObstacle, SpaceTimeObstacle, Track, outer_faces_along,
 };
 use crate::planner::Problem;
-use crate::planner::space_time::part::{Body, Part, parts};
+use crate::planner::space_time::piece::{Body, Piece, pieces};
 use crate::tolerance;
 use crate::trajectory::PathNetwork;
 
@@ -64,7 +64,7 @@ impl<'a> Scene<'a> {
             .map(|t| Extent::of(&[t.start, t.at(t.length)]))
             .collect();
         let mut seen: Vec<Vec<Seen>> = vec![Vec::new(); tracks.len()];
-        for part in parts(problem.obstacles, problem.horizon) {
+        for part in pieces(problem.obstacles, problem.horizon) {
             let times = match part.window {
                 Some(window) => [window.start, window.end.min(problem.horizon)],
                 None => [0.0, problem.horizon],
@@ -246,7 +246,7 @@ impl Extent {
 }
 
 /// A rectangle around every position of a part within `duration` seconds from its clock's start.
-fn covered(part: &Part, duration: f64) -> Extent {
+fn covered(part: &Piece, duration: f64) -> Extent {
     let reach = |normal: Vector| match &part.body {
         // linear in time
         Body::Polytope(o) => {

@@ -1,58 +1,30 @@
-//! The space-time planner: a graph of Dubins segments that hug the bodies' edges, searched for the
-//! least space-time error, then refined.
+//! Space-time planner: searches a graph of Dubins segments tangent to the obstacles for the least
+//! space-time error, then refines the result.
 //!
 //! ```text
-//! route ─► undisturbed motion ─► graph (A*, k best) ─► seeds ─► refinement (SQP) ─► exact contact test ─► plan
+//! route ─► nominal motion ─► graph (A*, k best) ─► initial guesses ─► SQP ─► exact test ─► plan
 //! ```
 //!
-//! The graph decides the side, the order and whether to wait; the refinement finds the numbers, speeds
-//! staying in the finite set. The cheapest candidate that passes the exact test wins; the graph's own best
-//! plan is one of the candidates.
+//! The graph decides the sides, the order and whether to wait. The refinement optimises the
+//! lengths; speeds stay in the finite set. The cheapest candidate that passes the exact contact
+//! test wins. The graph's own best plan is one of the candidates.
 
-mod active_set;
-mod addition;
-mod aims;
-mod apparent;
-mod approach;
-mod ashore;
+mod bound;
 mod chain;
-mod closer;
-mod compliance;
-mod continuation;
-mod departure;
-mod detour;
-mod effort;
-mod escape;
-mod factor;
-mod future;
+mod fallback;
 mod graph;
-mod harm;
-mod hazard;
-mod heuristic;
-mod interception;
-mod keep_out;
-mod model;
-mod moments;
-mod node;
-mod outline;
-mod outside;
-pub(super) mod part;
-mod quadratic;
+mod land;
+pub(super) mod piece;
+mod proxy;
 mod refinement;
-mod returning;
 mod route;
-mod sailed;
-mod seeds;
+mod rules;
 mod selection;
 mod similarity;
-mod stages;
-mod stand_on;
-mod tail;
-mod template;
 
-pub use continuation::continued;
-pub(crate) use escape::{NominalTarget, escape};
-pub use escape::{after_holding, undisturbed};
+pub(crate) use fallback::escape::{NominalTarget, escape};
+pub use fallback::escape::{after_holding, nominal_motion};
+pub use selection::warm_start::warm_started;
 
 use super::clock::Clock;
 use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
@@ -60,94 +32,97 @@ use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
 use crate::tolerance;
 use crate::trajectory::Segment;
-use approach::FINE_CHORD_RAD;
-use effort::Effort;
-use graph::Graph;
-use hazard::{Hazard, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
-use outline::Scene;
-use part::parts;
+use fallback::{hybrid_a_star, sequential};
+use graph::{Graph, node};
+use piece::pieces;
+use proxy::{Proxy, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
+use refinement::approach::FINE_CHORD_RAD;
+use refinement::trial::Context;
 use route::Route;
-use seeds::Conflict;
+use rules::stand_on;
 use selection::Selection;
+use selection::budget::SearchBudget;
+use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
-/// Plans of the graph that are refined, each passing the targets on other sides.
+/// Largest number of graph plans that are refined; each passes the targets on other sides.
 const MAX_SIGNATURES: usize = 4;
 
-/// Expansions beyond the graph's best plan, to find such others.
+/// Expansions beyond the graph's best plan, in search of such plans.
 const FURTHER_EXPANDED: usize = 4;
 
 /// Plans one problem.
 ///
-/// The plan is clear of every obstacle to rounding (deeper than 1e-7 m nowhere), keeps the turning
-/// radius, sails only at the given speeds, and ends at the last waypoint before the horizon. It is the
-/// cheapest of the candidates, not proven the cheapest of all: see the docs on its quality. The same
-/// problem gives the same plan unless the deadline strikes. Waypoints on a line change nothing.
+/// The plan is clear of every obstacle to rounding (never deeper than 1e-7 m), keeps the turning
+/// radius, uses only the given speeds, and ends at the last waypoint before the horizon. It is the
+/// cheapest of the candidates, not proven to be globally optimal. The same problem gives the same
+/// plan unless the deadline is reached. Waypoints on a straight line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
     let clock = Clock::new(problem.deadline);
-    as_usual(problem, |problem, hazards, _| {
-        plan_clear_of(problem, hazards, clock)
+    as_usual(problem, |problem, proxies, _| {
+        plan_clear_of(problem, proxies, clock)
     })
 }
 
-/// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
-/// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
-pub fn detour(problem: &Problem) -> Option<Plan> {
+/// Plan by hybrid A* that is clear of every set and of land; `None` where none was found within the
+/// budget. The plan is not refined: use it only where nothing else is found. Ten to several hundred
+/// milliseconds.
+pub fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     let planned = as_usual(problem, |problem, _, _| {
-        let wide = detour::detour(problem);
+        let wide = hybrid_a_star::hybrid_a_star(problem);
         Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
     });
     planned.outcome.into_plan()
 }
 
-/// Planned at the usual place and size; where the plan, brought back, touches a set, at the usual place alone, and where that does too,
-/// as it is.
+/// Plans a problem in normalised coordinates. Where the restored plan touches a set, plans it
+/// without scaling; where that touches too, plans the original problem.
 fn as_usual(
     problem: &Problem,
-    plan: impl Fn(&Problem, &[Hazard], Option<&Similarity>) -> Planned,
+    plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
 ) -> Planned {
     let desired = problem.desired.straightened();
     let problem = &Problem {
         desired: &desired,
         ..*problem
     };
-    let parts = parts(problem.obstacles, problem.horizon);
-    let hazards = within_reach(problem, &parts);
-    let usual = Similarity::of(problem, &hazards);
-    let found = brought_back(problem, &hazards, &usual, &plan).or_else(|| {
+    let pieces = pieces(problem.obstacles, problem.horizon);
+    let proxies = within_reach(problem, &pieces);
+    let usual = Similarity::of(problem, &proxies);
+    let found = brought_back(problem, &proxies, &usual, &plan).or_else(|| {
         let usual = usual.of_its_own_size()?;
-        brought_back(problem, &hazards, &usual, &plan)
+        brought_back(problem, &proxies, &usual, &plan)
     });
-    found.unwrap_or_else(|| plan(problem, &hazards, None))
+    found.unwrap_or_else(|| plan(problem, &proxies, None))
 }
 
 fn brought_back(
     problem: &Problem,
-    hazards: &[Hazard],
+    proxies: &[Proxy],
     usual: &Similarity,
-    plan: impl Fn(&Problem, &[Hazard], Option<&Similarity>) -> Planned,
+    plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
 ) -> Option<Planned> {
     let alike = usual.alike(problem)?;
     let alike = alike.problem(problem);
-    let parts = parts(alike.obstacles, alike.horizon);
-    let planned = plan(&alike, &within_reach(&alike, &parts), Some(usual));
+    let pieces = pieces(alike.obstacles, alike.horizon);
+    let planned = plan(&alike, &within_reach(&alike, &pieces), Some(usual));
     let planned = usual.restored(planned, problem.horizon);
     let touches = |plan: &Plan| {
         let segments = plan.trajectory.segments();
-        first_met(hazards, segments).is_some() || ashore::meets(problem.coast, segments)
+        first_met(proxies, segments).is_some() || land::meets(problem.coast, segments)
     };
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
 
-/// True where own ship starts at the last waypoint; a round trip ends where it begins, and is to be sailed.
+/// True where own ship starts at the last waypoint and the path is not a round trip.
 fn has_arrived(problem: &Problem) -> bool {
     let here = problem.own.pose.position;
     let at_end = (problem.desired.end() - here).norm() <= tolerance::LENGTH_M;
-    // a path that comes by there before, as a round trip does, is to be sailed
+    // a path that passes own ship's position earlier, as a round trip does, remains to be followed
     at_end && !problem.desired.comes_by(here)
 }
 
-/// The plan of a ship that has arrived.
+/// Plan of a ship that has arrived.
 fn stay(problem: &Problem) -> Option<Plan> {
     let stay = Segment {
         start: problem.own.pose,
@@ -159,22 +134,22 @@ fn stay(problem: &Problem) -> Option<Plan> {
     Plan::measured(problem, vec![stay], None)
 }
 
-fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned {
+fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let own = problem.own;
-    for hazard in hazards {
-        if let Some(slack) = hazard.slack(own.pose.position, 0.0)
+    for proxy in proxies {
+        if let Some(slack) = proxy.slack(own.pose.position, 0.0)
             // negated on purpose: a NaN is inside
             && !(slack >= -TOUCH_M)
         {
             return refuse(NoPlan::StartInside {
-                target: problem.obstacles[hazard.obstacle].name().to_owned(),
+                target: problem.obstacles[proxy.obstacle].name().to_owned(),
                 depth: -slack,
             });
         }
     }
     if let Some(depth) = problem.coast.depth(own.pose.position)
-        // negated on purpose: a NaN is ashore
+        // negated on purpose: a NaN is on land
         && !(depth <= TOUCH_M)
     {
         return refuse(NoPlan::StartAshore { depth });
@@ -186,9 +161,9 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     let Some(route) = Route::new(problem, clock) else {
         return refuse(NoPlan::NoRoute);
     };
-    let mut undisturbed = Vec::new();
-    route.follow(0.0, 0.0, &mut undisturbed);
-    let arrival = undisturbed.last().map_or(0.0, Segment::end_time);
+    let mut nominal_motion = Vec::new();
+    route.follow(0.0, 0.0, &mut nominal_motion);
+    let arrival = nominal_motion.last().map_or(0.0, Segment::end_time);
     // negated on purpose: a NaN is too late
     if !(arrival <= problem.horizon) {
         return refuse(NoPlan::HorizonTooShort {
@@ -196,29 +171,29 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
             horizon: problem.horizon,
         });
     }
-    let blocks = ashore::hazards(problem);
-    let scene = Scene {
+    let blocks = land::proxies(problem);
+    let context = Context {
         problem,
         route: &route,
-        hazards,
+        proxies,
         blocks: &blocks,
         chord: FINE_CHORD_RAD,
     };
-    let contact = first_contact(hazards, &undisturbed);
-    let grounding = ashore::first_contact(problem.coast, &undisturbed);
+    let contact = first_contact(proxies, &nominal_motion);
+    let grounding = land::first_contact(problem.coast, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
     if problem.duty().stands_on
         && let Some(end) = first_conflict
-        && let Some(held) = stand_on::hold(&scene, &undisturbed, end, clock)
+        && let Some(held) = stand_on::hold(&context, &nominal_motion, end, clock)
     {
         return held.planned(problem);
     }
-    let mut graph = Graph::new(problem, hazards, &route, &undisturbed, clock);
+    let mut graph = Graph::new(problem, proxies, &route, &nominal_motion, clock);
     let mut search = Search::new(graph.root());
-    let effort = Effort::of(by_obstacle(hazards).count());
-    let mut selection = Selection::new(scene, &undisturbed, effort);
-    let mut stages = effort.stages.iter();
+    let search_budget = SearchBudget::of(by_obstacle(proxies).count());
+    let mut selection = Selection::new(context, &nominal_motion, search_budget);
+    let mut stages = search_budget.stages.iter();
     let mut budget = 0;
     let mut timed_out = false;
     let mut optimum = None;
@@ -252,20 +227,20 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     }
     let mut conflicts: Vec<Conflict> = Vec::new();
     if contact.is_some() || grounding.is_some() {
-        conflicts = by_obstacle(hazards)
-            .filter_map(|h| Conflict::of(h, &undisturbed))
-            .map(|conflict| ashore::beyond_land(problem.coast, conflict, &undisturbed))
+        conflicts = by_obstacle(proxies)
+            .filter_map(|h| Conflict::of(h, &nominal_motion))
+            .map(|conflict| land::beyond_land(problem.coast, conflict, &nominal_motion))
             .collect();
-        conflicts.extend(ashore::conflicts(problem.coast, &undisturbed));
+        conflicts.extend(land::conflicts(problem.coast, &nominal_motion));
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, clock);
     }
-    // one manoeuvre around conflicts that are far apart is long and dear, if there is one
+    // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
     let is_bent = problem.desired.legs().len() > 1;
     if !timed_out
-        && (stages::are_several(&conflicts) || is_bent && !selection.has_plan())
+        && (sequential::are_several(&conflicts) || is_bent && !selection.has_plan())
         && let Some(motion) =
-            stages::one_after_another(problem, hazards, &route, &undisturbed, clock)
+            sequential::one_after_another(problem, proxies, &route, &nominal_motion, clock)
     {
         selection.consider(motion);
         timed_out = clock.is_up();
@@ -274,7 +249,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
         && !selection.has_plan()
         && !problem.duty().is_none()
         && let Some(end) = first_conflict
-        && let Some(motion) = stand_on::cheapest(&scene, &undisturbed, end, clock)
+        && let Some(motion) = stand_on::cheapest(&context, &nominal_motion, end, clock)
     {
         selection.consider(motion);
         timed_out = clock.is_up();
@@ -301,7 +276,7 @@ fn plan_clear_of(problem: &Problem, hazards: &[Hazard], clock: Clock) -> Planned
     }
 }
 
-/// What the undisturbed motion meets first, the land or the set of a target.
+/// Reason that names the first contact of the nominal motion, with land or with a target's set.
 fn no_candidate(
     problem: &Problem,
     contact: Option<(usize, f64)>,

@@ -4,8 +4,8 @@ use kuva::plot::{BandPlot, LinePlot, MarkerShape, ScatterPlot};
 use kuva::render::plots::Plot;
 
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::obstacle::{Obstacle, PolytopeObstacle, Section};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
+use crate::obstacle::{Obstacle, PolytopeObstacle};
 
 /// Points of an ellipse's boundary.
 const ELLIPSE_POINTS: usize = 96;
@@ -26,10 +26,10 @@ pub struct Stroke {
 }
 
 /// The boundary of a section, counter-clockwise; of an ellipse some points of it.
-pub fn sampled_boundary(section: &Section) -> Vec<Vector> {
+pub fn sampled_boundary(section: &ConvexSet) -> Vec<Vector> {
     match section {
-        Section::Polygon(polygon) => polygon.vertices().to_vec(),
-        Section::Ellipse(ellipse) => ellipse.sampled_boundary(ELLIPSE_POINTS),
+        ConvexSet::Polygon(polygon) => polygon.vertices().to_vec(),
+        ConvexSet::Ellipse(ellipse) => ellipse.sampled_boundary(ELLIPSE_POINTS),
     }
 }
 

@@ -3,8 +3,8 @@
 use super::outline::{Stroke, area, curve, sampled_boundary};
 use super::{Panel, Window};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
-use crate::obstacle::{Obstacle, Section};
+use crate::geometry::{ConvexPolygon, ConvexSet};
+use crate::obstacle::Obstacle;
 
 /// The names of a plan's axes.
 pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
@@ -41,7 +41,7 @@ const SIDE: usize = 25;
 const MARGIN: f64 = 0.1;
 
 /// One set alone: `O_0` or `V`, with its unit in `axes`.
-pub fn set_panel(title: &str, axes: [&str; 2], set: &Section) -> Panel {
+pub fn set_panel(title: &str, axes: [&str; 2], set: &ConvexSet) -> Panel {
     let boundary = sampled_boundary(set);
     let window = Window::around(boundary.iter().copied(), 0.25);
     let mut panel = Panel::plan(title.to_owned(), axes, window);

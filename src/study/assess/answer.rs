@@ -6,7 +6,8 @@ use crate::document::{
     PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument, VelocityDocument,
 };
 use crate::frame::{Vector, deg_from_radians};
-use crate::obstacle::{Obstacle, Section, SpaceTimeObstacle};
+use crate::geometry::ConvexSet;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
 /// A position at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,12 +32,7 @@ pub struct Query {
 /// Answers a query about the scenario `title`. `sets` is `"hard"` or `"shaped"`. Per target: a point
 /// O(n + m), a velocity O(n + m), the largest risk of holding course O((n + m)²) at worst; for the
 /// alteration see [`least_alteration`].
-pub fn assess(
-    title: &str,
-    sets: &str,
-    situation: &Situation,
-    query: &Query,
-) -> AssessmentDocument {
+pub fn assess(title: &str, sets: &str, situation: &Situation, query: &Query) -> AssessmentDocument {
     let obstacles = situation.obstacles;
     let held = situation.held();
     let alteration = least_alteration(situation);
@@ -108,14 +104,14 @@ fn approach(situation: &Situation, target: &Obstacle, velocity: Vector) -> Appro
     }
 }
 
-fn section(time: f64, section: &Section) -> SectionDocument {
+fn section(time: f64, section: &ConvexSet) -> SectionDocument {
     let pair = |p: &Vector| [p.x, p.y];
     match section {
-        Section::Polygon(polygon) => SectionDocument::Polygon {
+        ConvexSet::Polygon(polygon) => SectionDocument::Polygon {
             t_s: time,
             vertices_m: polygon.vertices().iter().map(pair).collect(),
         },
-        Section::Ellipse(ellipse) => {
+        ConvexSet::Ellipse(ellipse) => {
             let q = ellipse.shape();
             SectionDocument::Ellipse {
                 t_s: time,

@@ -14,7 +14,7 @@ pub use baseline::{Baseline, constant_velocity, hold_course};
 pub(crate) use line_style::LineStyle;
 pub use method::Method;
 
-use crate::colregs::conduct::{Conduct, Meeting};
+use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::evaluation::{Evaluation, Safety, counted_error};
 use crate::frame::Vector;
 use crate::obstacle::{Obstacle, PeakRisk};
@@ -165,14 +165,16 @@ impl Entry {
 
     /// Rule violations and monitors toward each target that is a ship, by the thresholds of the
     /// scenario; empty without a motion. Targets follow their nominal motion. O(targets × seconds).
-    pub fn conduct(&self, scenario: &Scenario) -> Vec<Conduct> {
-        let (Some(trajectory), Some(thresholds)) = (self.trajectory(), scenario.judged_by()) else {
+    pub fn conduct(&self, scenario: &Scenario) -> Vec<ComplianceReport> {
+        let Some(trajectory) = self.trajectory() else {
             return Vec::new();
         };
+        let thresholds = scenario.judged_by();
         let ships = scenario.targets.iter().filter_map(|target| target.ship());
-        let meetings = ships.map(|ship| Meeting::along(trajectory, scenario.own_ship.hull, ship));
-        meetings
-            .map(|meeting| Conduct::judge(&meeting, thresholds))
+        let samples =
+            ships.map(|ship| EncounterSamples::along(trajectory, scenario.own_ship.hull, ship));
+        samples
+            .map(|samples| ComplianceReport::judge(&samples, thresholds))
             .collect()
     }
 

@@ -1,4 +1,4 @@
-//! What is answered once the time is up.
+//! Results after the deadline.
 
 use std::time::Duration;
 
@@ -37,7 +37,7 @@ fn once_the_time_is_up_a_dearer_plan_whose_grid_is_fine_enough_is_the_answer() {
     };
     assert_eq!(plan.cost, fine.objective);
     assert!(report.intervals == planner.intervals && report.defect <= tolerance::DEFECT);
-    // that one has to be brought to a finer grid, and there is no time
+    // this one needs a finer grid, and there is no time
     let coarse: Vec<Attempt> = ordered.into_iter().take(1).cloned().collect();
     assert!(matches!(
         planner.finest(&coarse, &mut report),

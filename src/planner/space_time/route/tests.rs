@@ -3,7 +3,7 @@
 use super::*;
 use crate::frame::Vector;
 
-/// A ship that may stop, on a line that is due earlier at its end than at its start, or at no speed at all.
+/// A ship that may stop, on a line whose end is due before its start, or at zero speed.
 #[test]
 fn what_is_due_before_it_can_be_reached_is_not_waited_for() {
     for (slowness, fastest) in [(-0.1, true), (0.0, true), (f64::INFINITY, false)] {

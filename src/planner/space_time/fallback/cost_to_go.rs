@@ -1,0 +1,164 @@
+//! Cost-to-go grid over east, north and time: where the end can still be reached, and at what cost.
+//!
+//! The grid guides a search and proves nothing. In it own ship is a point that turns instantly, and
+//! sets are sampled at cell centres and discrete instants.
+
+use crate::frame::Vector;
+use crate::geometry::ConvexPolygon;
+use crate::planner::Problem;
+use crate::planner::space_time::proxy::Proxy;
+
+/// Cells along either axis.
+const CELLS: usize = 80;
+
+/// Cells that own ship travels per time step at its greatest speed.
+const REACH: i32 = 2;
+
+/// Cells of a padded row. Nothing can be reached from the padding beyond the edges.
+const WIDE: usize = CELLS + 2 * REACH as usize;
+
+/// Cost to go, m², from cell centres at evenly spaced instants.
+#[derive(Debug)]
+pub(crate) struct CostToGoGrid {
+    corner: Vector,
+    /// Cell size, metres.
+    pub cell: f64,
+    /// Time step, seconds.
+    pub step: f64,
+    layers: usize,
+    to_go: Vec<f32>,
+}
+
+impl CostToGoGrid {
+    /// Backward recursion from the horizon over all positions that lie on some path within the
+    /// horizon. O(cells x instants x (moves + legs)); about ten milliseconds.
+    pub(crate) fn of(problem: &Problem, proxies: &[Proxy]) -> Option<Self> {
+        let (start, end) = (problem.own.pose.position, problem.desired.end());
+        let top = problem.own.max_speed();
+        let half = 0.5 * top * problem.horizon;
+        let cell = 2.0 * half / (CELLS as f64 - 1.0);
+        let step = f64::from(REACH) * cell / top;
+        let layers = (problem.horizon / step).floor() as usize + 1;
+        // negated on purpose: a NaN has no grid
+        if !(cell > 0.0 && step > 0.0 && cell.is_finite()) {
+            return None;
+        }
+        let middle = (start + end) * 0.5;
+        let mut grid = Self {
+            corner: middle - Vector::new(half, half),
+            cell,
+            step,
+            layers,
+            to_go: vec![f32::INFINITY; WIDE * WIDE * layers],
+        };
+        let ashore: Vec<bool> = (0..CELLS * CELLS)
+            .map(|k| {
+                let depth = problem.coast.depth(grid.middle(k));
+                depth.is_some_and(|depth| depth > 0.0)
+            })
+            .collect();
+        let mut moves = Vec::new();
+        for dx in -REACH..=REACH {
+            for dy in -REACH..=REACH {
+                if dx * dx + dy * dy <= REACH * REACH {
+                    moves.push((dy * WIDE as i32 + dx) as isize);
+                }
+            }
+        }
+        let per_second = 1.0 / problem.desired.duration();
+        let mut later = [f32::INFINITY; CELLS];
+        for layer in (0..layers).rev() {
+            let time = step * layer as f64;
+            let mut blocked = ashore.clone();
+            for proxy in proxies {
+                grid.block(&mut blocked, proxy, time);
+            }
+            for row in 0..CELLS {
+                if layer + 1 < layers {
+                    grid.best_after(layer, row, &moves, &mut later);
+                }
+                for (column, later) in later.iter().enumerate() {
+                    let k = row * CELLS + column;
+                    let (here, at) = (grid.middle(k), grid.index(layer, column, row));
+                    if blocked[k] {
+                        continue;
+                    }
+                    if (here - end).norm() <= cell {
+                        grid.to_go[at] = 0.0;
+                    } else if later.is_finite() {
+                        let nearest = problem.desired.nearest(here, time, problem.time_weight);
+                        let error = nearest.error * step * per_second;
+                        grid.to_go[at] = later + error as f32;
+                    }
+                }
+            }
+        }
+        Some(grid)
+    }
+
+    fn middle(&self, k: usize) -> Vector {
+        let (column, row) = ((k % CELLS) as f64, (k / CELLS) as f64);
+        self.corner + Vector::new(column, row) * self.cell
+    }
+
+    fn index(&self, layer: usize, column: usize, row: usize) -> usize {
+        let edge = REACH as usize;
+        (layer * WIDE + row + edge) * WIDE + column + edge
+    }
+
+    /// Least cost to go one time step later over the moves from each cell of a row.
+    fn best_after(&self, layer: usize, row: usize, moves: &[isize], least: &mut [f32; CELLS]) {
+        least.fill(f32::INFINITY);
+        for by in moves {
+            let first = self.index(layer + 1, 0, row).saturating_add_signed(*by);
+            for (least, there) in least.iter_mut().zip(&self.to_go[first..first + CELLS]) {
+                // one instruction, unlike `f32::min`; a NaN is unreachable
+                *least = if *there < *least { *there } else { *least };
+            }
+        }
+    }
+
+    /// Marks the cells whose centres are in a set.
+    fn block(&self, blocked: &mut [bool], proxy: &Proxy, time: f64) {
+        if let Some(window) = &proxy.window
+            && !(time >= window.start && time <= window.end)
+        {
+            return;
+        }
+        let section: ConvexPolygon = proxy.body.section(time - proxy.start());
+        let range = |along: Vector, corner: f64| {
+            let (low, high) = (-section.support(-along), section.support(along));
+            let low = ((low - corner) / self.cell).ceil().max(0.0) as usize;
+            let high = ((high - corner) / self.cell).floor();
+            low..(high + 1.0).clamp(0.0, CELLS as f64) as usize
+        };
+        for row in range(Vector::new(0.0, 1.0), self.corner.y) {
+            for column in range(Vector::new(1.0, 0.0), self.corner.x) {
+                let k = row * CELLS + column;
+                if !blocked[k] && section.contains(self.middle(k)) {
+                    blocked[k] = true;
+                }
+            }
+        }
+    }
+
+    /// Cost to go from a position and time, m²; infinite where the end is out of reach.
+    pub(crate) fn from(&self, place: Vector, time: f64) -> f64 {
+        let at = (place - self.corner) / self.cell;
+        let layer = (time / self.step).floor();
+        let mut least = f32::INFINITY;
+        for dx in [0.0, 1.0] {
+            for dy in [0.0, 1.0] {
+                for dt in [0.0, 1.0] {
+                    let (x, y, t) = (at.x.floor() + dx, at.y.floor() + dy, layer + dt);
+                    let within = |v: f64, most: usize| v >= 0.0 && v < most as f64;
+                    if within(x, CELLS) && within(y, CELLS) && within(t, self.layers) {
+                        let at = self.index(t as usize, x as usize, y as usize);
+                        least = least.min(self.to_go[at]);
+                    }
+                }
+            }
+        }
+        f64::from(least)
+    }
+}

@@ -1,0 +1,496 @@
+//! Escape from the sets that own ship starts in, then a motion to the end of the path.
+//!
+//! ```text
+//! turns x speeds ─► outside the sets? ─► least harm first ─► plan from there, else along the path
+//! ```
+//!
+//! An exit is one turn and a straight line at one speed. The exit with the least [`Harm`] is taken.
+//! Where every exit meets a nominal hull, or none exists, the sets of the nominal tracks are used
+//! instead.
+
+use crate::frame::{Pose, Side};
+use crate::obstacle::Obstacle;
+use crate::planner::clock::Clock;
+use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, Watch};
+use crate::planner::space_time::piece::pieces as parts_of;
+use crate::planner::space_time::proxy::{Proxy, TOUCH_M, within_reach};
+use crate::planner::space_time::route::Route;
+use crate::planner::{Plan, Problem};
+use crate::trajectory::{DesiredTrajectory, Segment};
+use crate::vessel::{Hull, OwnShip};
+
+/// Radians between two candidate turns, up to a half circle. Coarse turns are tried first, each
+/// turn once.
+const TURN_RAD: f64 = std::f64::consts::PI / 36.0;
+const STEPS: [u32; 4] = [18, 9, 3, 1];
+const TURNS: u32 = 36;
+
+/// Largest number of candidate speeds: the least, the greatest and some between.
+const MOST_SPEEDS: usize = 4;
+
+/// Least interval in seconds between two samples of the exit test, and largest number of samples.
+const LOOK_S: f64 = 1.0;
+const MOST_LOOKS: usize = 400;
+
+/// Bisection steps for the exit time: to a microsecond.
+const HALVINGS: usize = 20;
+
+/// Exits from which plans are sought, least harm first.
+const MOST_WAYS: usize = 4;
+
+/// Seconds for which an exit is held before the planner takes over. At the very edge of a growing
+/// set every turn leads back into it.
+const HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
+
+/// Seconds for which a turn is held where own ship is in no set and there is no plan.
+const DETOURS_S: [f64; 3] = [30.0, 60.0, 120.0];
+
+/// Motions that are compared even after the deadline.
+const LEAST_COMPARED: usize = 12;
+
+/// Target on its nominal track, without uncertainty.
+#[derive(Debug, Clone)]
+pub(crate) struct NominalTarget {
+    /// Hull of the target; for a target without one, its set.
+    pub hull: Obstacle,
+    /// Hard set of the target.
+    pub set: Obstacle,
+    /// Own hull; of zero size where the set already contains it.
+    pub own: Hull,
+}
+
+/// Motion from own ship's start to the last waypoint within the horizon that leaves the sets it
+/// starts in.
+///
+/// The motion leaves the sets with the least harm by one turn at one speed. A plan that is clear of
+/// every set follows. Where none is found, the path follows at one speed. `None` where the sailable
+/// path is too long for the horizon or leads onto land. The caller determines from when on the
+/// motion is clear of which sets.
+///
+/// Cost: some milliseconds and up to twenty plans. A few motions are compared even after the
+/// deadline.
+pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Option<Plan> {
+    let clock = Clock::new(problem.deadline);
+    if crate::planner::space_time::has_arrived(problem) {
+        return crate::planner::space_time::stay(problem);
+    }
+    let pieces = parts_of(problem.obstacles, problem.horizon);
+    let proxies = within_reach(problem, &pieces);
+    let mut near: Vec<usize> = proxies.iter().map(|h| h.obstacle).collect();
+    near.dedup();
+    let targets: Vec<NominalTarget> = near.into_iter().map(nominal).collect();
+    let (hulls, own): (Vec<_>, Vec<_>) = targets.iter().map(|t| (t.hull.clone(), t.own)).unzip();
+    let sets: Vec<Obstacle> = targets.into_iter().map(|t| t.set).collect();
+    let hulls = parts_of(&hulls, problem.horizon);
+    let watch = Watch::new(&hulls, &own);
+    let nominal = Problem {
+        obstacles: &sets,
+        ..problem.clone()
+    };
+    let mut sought = (problem, ways_out(problem, &proxies, &watch, clock));
+    if !sought.1.first().is_some_and(|way| way.harm.is_clear()) {
+        let pieces = parts_of(&sets, problem.horizon);
+        let ways = ways_out(
+            &nominal,
+            &pieces.iter().map(Proxy::new).collect::<Vec<_>>(),
+            &watch,
+            clock,
+        );
+        if sought.1.is_empty() || ways.first().is_some_and(|way| way.harm.is_clear()) {
+            sought = (&nominal, ways);
+        }
+    }
+    let (sought, ways) = sought;
+    let mut aways = aways(&ways);
+    for away in &aways {
+        if clock.is_up() {
+            break;
+        }
+        if let Some(motion) = onward(sought, away, |rest| planned(rest, clock)) {
+            return Plan::measured(problem, motion, None);
+        }
+    }
+    if ways.is_empty() {
+        aways.extend(detours(problem.own, problem.horizon));
+    } else {
+        // used where every exit is too long for the horizon
+        aways.push(Vec::new());
+    }
+    let motion = on_to_the_end(problem, &aways, &watch, clock)?;
+    Plan::measured(problem, motion, None)
+}
+
+/// Continues a few initial motions along the path, or straight to its end, at one speed. Returns
+/// the first that meets no nominal hull, or else the one with the least depth in one.
+fn on_to_the_end(
+    problem: &Problem,
+    aways: &[Vec<Segment>],
+    watch: &Watch,
+    clock: Clock,
+) -> Option<Vec<Segment>> {
+    let problem = &Problem {
+        obstacles: &[],
+        ..problem.clone()
+    };
+    let mut best: Option<(f64, Vec<Segment>)> = None;
+    let ends = aways.iter().flat_map(|away| [(away, false), (away, true)]);
+    for (compared, (away, straight)) in ends.enumerate() {
+        if clock.is_up() && compared >= LEAST_COMPARED && best.is_some() {
+            break;
+        }
+        let Some(found) = onward(problem, away, |rest| afloat(rest, straight, clock)) else {
+            continue;
+        };
+        let deep = watch.depth(problem.own, &found, f64::INFINITY);
+        if best
+            .as_ref()
+            .is_none_or(|(least, _)| deep < least - LEAST_STEP_M)
+        {
+            best = Some((deep, found));
+        }
+        if deep == 0.0 {
+            break;
+        }
+    }
+    best.map(|(_, motion)| motion)
+}
+
+/// Motion along the path, or straight to its end, at one speed: the speed nearest to the desired
+/// one, or the greatest where the horizon requires it. `None` where it meets land.
+fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
+    let (own, desired) = (problem.own, problem.desired);
+    let mean = desired.length() / desired.duration();
+    let speeds = own.speeds.iter().copied().filter(|u| *u > 0.0);
+    let nearest = speeds.min_by(|a, b| (a - mean).abs().total_cmp(&(b - mean).abs()))?;
+    let direct = [own.pose.position, desired.end()];
+    let direct = DesiredTrajectory::new(&direct, &[nearest]).ok();
+    let desired = if straight { direct.as_ref()? } else { desired };
+    let route = Route::new(
+        &Problem {
+            desired,
+            ..problem.clone()
+        },
+        clock,
+    )?;
+    let arrives = |speed: f64| {
+        let mut motion = Vec::new();
+        route.run(0.0, 0.0, route.length(), speed, &mut motion);
+        (motion.last()?.end_time() <= problem.horizon).then_some(motion)
+    };
+    let motion = arrives(nearest).or_else(|| arrives(own.max_speed()))?;
+    (!crate::planner::space_time::land::meets(problem.coast, &motion)).then_some(motion)
+}
+
+/// Motion along the path that ignores other ships; `None` where it does not arrive within the
+/// horizon.
+pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
+    let route = Route::new(problem, Clock::new(problem.deadline))?;
+    let mut motion = Vec::new();
+    route.follow(0.0, 0.0, &mut motion);
+    let arrival = motion.last()?.end_time();
+    (arrival <= problem.horizon).then_some(motion)
+}
+
+/// Plan that holds a motion until a time and is clear of every set from then on.
+pub fn after_holding(problem: &Problem, motion: &[Segment], until: f64) -> Option<Plan> {
+    let clock = Clock::new(problem.deadline);
+    let motion = onward(problem, &cut(motion, until), |rest| planned(rest, clock))?;
+    Plan::measured(problem, motion, None)
+}
+
+/// Runs the planner in the remaining time.
+fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
+    let planned = crate::planner::space_time::plan(&Problem {
+        deadline: clock.left(),
+        ..problem.clone()
+    });
+    let plan = planned.outcome.plan()?;
+    Some(plan.trajectory.segments().to_vec())
+}
+
+/// Motion that is outside the sets from a time on, for as long as it is held.
+struct WayOut {
+    motion: Vec<Segment>,
+    out: f64,
+    harm: Harm,
+}
+
+/// Exits from the sets that own ship starts in, least harm first. After the deadline only coarse
+/// turns are tried.
+fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -> Vec<WayOut> {
+    let own = problem.own;
+    let inside = |h: &&Proxy| {
+        h.slack(own.pose.position, 0.0)
+            // negated on purpose: a NaN is inside
+            .is_some_and(|slack| !(slack >= -TOUCH_M))
+    };
+    let held: Vec<usize> = proxies.iter().filter(inside).map(|h| h.obstacle).collect();
+    if held.is_empty() {
+        return Vec::new();
+    }
+    let (held, others): (Vec<&Proxy>, Vec<&Proxy>) =
+        proxies.iter().partition(|h| held.contains(&h.obstacle));
+    let depth = |pose: &Pose, time: f64| {
+        let slacks = held.iter().filter_map(|h| h.slack(pose.position, time));
+        -slacks.fold(f64::INFINITY, f64::min)
+    };
+    let fastest = held.iter().map(|h| h.speed()).fold(0.0, f64::max);
+    let meets = |any: &[&Proxy], motion: &[Segment]| {
+        let mut pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
+        pairs.any(|(h, s)| h.first_contact(s).is_some())
+    };
+    let mut ways = Vec::new();
+    for (turn, is_coarse) in turns() {
+        for speed in speeds(own) {
+            if clock.is_up() && !is_coarse || speed == 0.0 && turn != 0.0 {
+                continue;
+            }
+            let motion = turned(own, speed, turn, problem.horizon);
+            let Some(out) = out_at(&motion, problem.horizon, speed + fastest, depth) else {
+                continue;
+            };
+            let before = cut(&motion, out);
+            // own ship may enter a growing set again: then it has not left for good
+            if meets(&others, &before)
+                || meets(&held, &after(&motion, out))
+                || before.iter().any(|s| problem.coast.meets(s, TOUCH_M))
+            {
+                continue;
+            }
+            let harm = Harm::of(own, watch, &motion, out, depth);
+            ways.push((harm, out, turn, speed));
+        }
+    }
+    ways.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ways.truncate(MOST_WAYS);
+    ways.into_iter()
+        .map(|(harm, out, turn, speed)| WayOut {
+            motion: turned(own, speed, turn, problem.horizon),
+            out,
+            harm,
+        })
+        .collect()
+}
+
+/// Candidate turns, radians, to port positive, each once, and whether it is one of the coarsest.
+/// Starboard comes first among equal turns.
+fn turns() -> impl Iterator<Item = (f64, bool)> {
+    let levels = STEPS.iter().enumerate().flat_map(|(level, by)| {
+        let is_new = move |k: &u32| {
+            !STEPS[..level]
+                .iter()
+                .any(|coarser| k.is_multiple_of(*coarser))
+        };
+        (0..=TURNS)
+            .step_by(*by as usize)
+            .filter(is_new)
+            .map(move |k| (k, level == 0))
+    });
+    levels.flat_map(|(k, is_coarse)| {
+        let sides = [Side::Starboard, Side::Port].into_iter();
+        sides
+            .take(if k == 0 { 1 } else { 2 })
+            .map(move |side| (side.turn_sign() * TURN_RAD * f64::from(k), is_coarse))
+    })
+}
+
+/// Candidate speeds of own ship, the least first.
+fn speeds(own: &OwnShip) -> Vec<f64> {
+    let (count, most) = (own.speeds.len(), MOST_SPEEDS.min(own.speeds.len()));
+    (0..most)
+        .map(|k| {
+            own.speeds[if most > 1 {
+                k * (count - 1) / (most - 1)
+            } else {
+                0
+            }]
+        })
+        .collect()
+}
+
+/// Initial motions: every exit held for a while; none where own ship is in no set.
+fn aways(ways: &[WayOut]) -> Vec<Vec<Segment>> {
+    if ways.is_empty() {
+        return vec![Vec::new()];
+    }
+    let held = ways.iter().flat_map(|way| HOLDS_S.map(|hold| (way, hold)));
+    held.map(|(way, hold)| cut(&way.motion, way.out + hold))
+        .collect()
+}
+
+/// Turns to either side at a low and at the greatest speed, held for a while.
+fn detours(own: &OwnShip, horizon: f64) -> Vec<Vec<Segment>> {
+    let low = own.speeds.iter().copied().find(|u| *u > 0.0);
+    let mut detours = Vec::new();
+    for hold in DETOURS_S {
+        for turn in [-6.0, 6.0, -12.0, 12.0, -18.0, 18.0].map(|steps| steps * TURN_RAD) {
+            for speed in low.into_iter().chain([own.max_speed()]) {
+                detours.push(cut(&turned(own, speed, turn, horizon), hold));
+            }
+        }
+    }
+    detours
+}
+
+/// Arc and line until the horizon; a wait where the speed is zero.
+fn turned(own: &OwnShip, speed: f64, turn: f64, horizon: f64) -> Vec<Segment> {
+    let line = |start, start_time: f64| Segment {
+        start,
+        start_time,
+        duration: (horizon - start_time).max(0.0),
+        speed,
+        turn_rate: 0.0,
+    };
+    if turn == 0.0 || speed == 0.0 {
+        return vec![line(own.pose, 0.0)];
+    }
+    let arc = Segment {
+        duration: turn.abs() * own.turning_radius / speed,
+        turn_rate: turn.signum() * speed / own.turning_radius,
+        ..line(own.pose, 0.0)
+    };
+    vec![arc, line(arc.end(), arc.end_time())]
+}
+
+/// First instant from which a motion stays clear. `depth` is own ship's depth inside, metres; it
+/// changes by at most `rate` metres per second.
+fn out_at(
+    motion: &[Segment],
+    horizon: f64,
+    rate: f64,
+    depth: impl Fn(&Pose, f64) -> f64,
+) -> Option<f64> {
+    let at = |time: f64| {
+        let segment = motion.iter().find(|s| time <= s.end_time());
+        segment.or(motion.last()).map(|s| s.pose_at(time))
+    };
+    // negated on purpose: a NaN is inside
+    let is_in = |deep: f64| !(deep <= TOUCH_M);
+    let depth = |time: f64| at(time).map_or(f64::NAN, |pose| depth(&pose, time));
+    let (mut inside, mut deep) = (0.0, depth(0.0));
+    let mut found = None;
+    for _ in 0..MOST_LOOKS {
+        // not outside before
+        let time: f64 = inside + (deep / rate).max(LOOK_S);
+        if !(time <= horizon) {
+            return None;
+        }
+        deep = depth(time);
+        if !is_in(deep) {
+            found = Some(time);
+            break;
+        }
+        inside = time;
+    }
+    let (mut low, mut high) = (inside, found?);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if is_in(depth(middle)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(high)
+}
+
+/// Motion until a time.
+fn cut(motion: &[Segment], until: f64) -> Vec<Segment> {
+    let rollout = motion.iter().filter(|s| s.start_time < until);
+    rollout.map(|s| s.between(s.start_time, until)).collect()
+}
+
+/// Motion from a time on.
+fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
+    let later = motion.iter().filter(|s| s.end_time() > from);
+    later.map(|s| s.between(from, s.end_time())).collect()
+}
+
+/// Appends to a motion another one, whose clock starts at the first one's end.
+fn onward(
+    problem: &Problem,
+    away: &[Segment],
+    follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
+) -> Option<Vec<Segment>> {
+    if crate::planner::space_time::land::meets(problem.coast, away) {
+        return None;
+    }
+    let begun = away.last().map_or(0.0, Segment::end_time);
+    let own = OwnShip {
+        pose: away.last().map_or(problem.own.pose, Segment::end),
+        ..problem.own.clone()
+    };
+    let desired = problem.desired.remaining(begun);
+    let later: Vec<Obstacle> = (problem.obstacles.iter())
+        .map(|set| set.remainder(begun))
+        .collect();
+    let rest = Problem {
+        own: &own,
+        desired: &desired,
+        obstacles: &later,
+        horizon: problem.horizon - begun,
+        ..problem.clone()
+    };
+    let mut motion = away.to_vec();
+    motion.extend(follow(&rest)?.into_iter().map(|s| Segment {
+        start_time: s.start_time + begun,
+        ..s
+    }));
+    Some(motion)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Vector;
+    use std::cell::Cell;
+
+    fn own_ship(speeds: Vec<f64>) -> OwnShip {
+        OwnShip {
+            pose: Pose::new(Vector::zeros(), 0.0),
+            speed: 5.0,
+            hull: Hull {
+                length: 30.0,
+                beam: 8.0,
+            },
+            turning_radius: 100.0,
+            speeds,
+            safety_margin: 20.0,
+        }
+    }
+
+    #[test]
+    fn every_turn_is_tried_once_and_few_when_the_time_is_up() {
+        let mut all: Vec<(f64, bool)> = turns().collect();
+        assert_eq!(all.len(), 73);
+        assert_eq!(all.iter().filter(|(_, is_coarse)| *is_coarse).count(), 5);
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for pair in all.windows(2) {
+            assert!((pair[1].0 - pair[0].0 - TURN_RAD).abs() < 1e-9);
+        }
+        let many: Vec<f64> = (0..20).map(|k| 0.3 * f64::from(k)).collect();
+        let tried = speeds(&own_ship(many.clone()));
+        assert_eq!(tried.len(), MOST_SPEEDS);
+        assert_eq!((tried[0], tried[MOST_SPEEDS - 1]), (many[0], many[19]));
+        assert_eq!(speeds(&own_ship(vec![5.0])), [5.0]);
+    }
+
+    /// A horizon of a day in a set that grows faster than own ship sails costs as many samples as
+    /// an hour.
+    #[test]
+    fn a_set_that_is_never_left_costs_few_looks() {
+        let own = own_ship(vec![5.0]);
+        let (growing, looks) = (8.0, Cell::new(0));
+        let depth = |pose: &Pose, time: f64| {
+            looks.set(looks.get() + 1);
+            60.0 + growing * time - pose.position.norm()
+        };
+        let motion = turned(&own, 5.0, 0.0, 86_400.0);
+        assert_eq!(out_at(&motion, 86_400.0, 5.0 + growing, depth), None);
+        assert!(looks.get() < 100, "{}", looks.get());
+        // a set that grows more slowly is left when own ship reaches its edge
+        let depth = |pose: &Pose, time: f64| 60.0 + 3.0 * time - pose.position.norm();
+        let out = out_at(&motion, 86_400.0, 8.0, depth).expect("out");
+        assert!((out - 30.0).abs() < 1e-3, "{out}");
+    }
+}

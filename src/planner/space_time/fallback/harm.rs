@@ -1,0 +1,139 @@
+//! Harm of a motion to hulls: an order on motions none of which is clear of every set.
+
+use std::cmp::Ordering;
+
+use crate::frame::Pose;
+use crate::planner::space_time::piece::Piece;
+use crate::planner::space_time::proxy::Proxy;
+use crate::trajectory::Segment;
+use crate::vessel::{Hull, OwnShip};
+
+/// Resolution of depths as a fraction of own ship's length, and of times as a fraction of
+/// themselves.
+const DEPTH_STEP: f64 = 0.05;
+const TIME_STEP: f64 = 0.1;
+
+/// Least resolution of depths, metres: own ship may have zero size.
+pub(crate) const LEAST_STEP_M: f64 = 0.1;
+
+/// Samples along an exit for its depth in the sets.
+const LOOKS: u32 = 200;
+
+/// Largest approach of two ships between two samples, as a fraction of own beam. It doubles after
+/// each [`MANY`] samples.
+const LOOK_BEAMS: f64 = 0.25;
+const MANY: u32 = 1000;
+
+/// Harm of an exit from sets. Compared in this order: depth in nominal hulls, depth in the sets,
+/// time in the sets, speed, turn.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Harm {
+    /// Depth in nominal hulls, in steps; 0 where none is met.
+    hulls: f64,
+    /// Depth in the sets beyond that at the start, in steps.
+    sets: f64,
+    /// Logarithm of the time in the sets, in steps.
+    time: f64,
+    /// m/s.
+    speed: f64,
+    /// Radians.
+    turn: f64,
+}
+
+impl Harm {
+    /// Harm of a motion that leaves the sets at `out`; `depth` is its depth in the sets, metres.
+    pub(crate) fn of(
+        own: &OwnShip,
+        watch: &Watch,
+        motion: &[Segment],
+        out: f64,
+        depth: impl Fn(&Pose, f64) -> f64,
+    ) -> Self {
+        let step = (DEPTH_STEP * own.hull.length).max(LEAST_STEP_M);
+        let steps = |metres: f64| (metres / step).ceil();
+        let start = depth(&own.pose, 0.0);
+        let mut deepest = start;
+        for look in 1..LOOKS {
+            let time = out * f64::from(look) / f64::from(LOOKS);
+            if let Some(s) = motion.iter().find(|s| time <= s.end_time()) {
+                deepest = deepest.max(depth(&s.pose_at(time), time));
+            }
+        }
+        let first = &motion[0];
+        Self {
+            hulls: steps(watch.depth(own, motion, out)),
+            sets: ((deepest - start) / step).floor(),
+            time: (out.ln() / (1.0 + TIME_STEP).ln()).floor(),
+            speed: first.speed,
+            turn: first.turn_rate.abs() * first.duration,
+        }
+    }
+
+    /// True where no nominal hull is met.
+    pub(crate) fn is_clear(&self) -> bool {
+        self.hulls == 0.0
+    }
+
+    pub(crate) fn total_cmp(&self, other: &Self) -> Ordering {
+        let key = |h: &Self| [h.hulls, h.sets, h.time, h.speed, h.turn];
+        let both = key(self).into_iter().zip(key(other));
+        both.map(|(a, b)| a.total_cmp(&b))
+            .find(|order| order.is_ne())
+            .unwrap_or(Ordering::Equal)
+    }
+}
+
+/// Hulls of the targets on their nominal tracks.
+pub(crate) struct Watch<'a> {
+    hulls: Vec<(Proxy<'a>, Hull)>,
+}
+
+impl<'a> Watch<'a> {
+    /// Builds the set from the convex pieces of the hulls, with own hull toward each.
+    pub(crate) fn new(pieces: &'a [Piece], own: &[Hull]) -> Self {
+        let hulls = pieces
+            .iter()
+            .map(|part| (Proxy::new(part), own[part.obstacle]));
+        Self {
+            hulls: hulls.collect(),
+        }
+    }
+
+    /// Largest depth of own hull in one of them until a time, metres; 0 where it meets none. The
+    /// sampling interval follows from the largest closing speed.
+    pub(crate) fn depth(&self, own: &OwnShip, motion: &[Segment], until: f64) -> f64 {
+        let until = until.min(motion.last().map_or(0.0, Segment::end_time));
+        let mut deepest: f64 = 0.0;
+        for (proxy, hull) in &self.hulls {
+            let mut least = LOOK_BEAMS * own.hull.beam.max(LEAST_STEP_M);
+            let (mut time, mut at, mut looks): (f64, _, u32) = (0.0, 0, 0);
+            while let Some(segment) = motion.get(at) {
+                if segment.end_time() < time {
+                    at += 1;
+                    continue;
+                }
+                looks += 1;
+                if looks.is_multiple_of(MANY) {
+                    least *= 2.0;
+                }
+                let turning = segment.turn_rate.abs() * hull.half_diagonal();
+                let closing = segment.speed + turning + proxy.speed();
+                let apart = proxy
+                    .clearance_of(hull, &segment.pose_at(time), time)
+                    .unwrap_or(f64::INFINITY);
+                deepest = deepest.max(-apart);
+                let next = time + (apart + deepest).max(least) / closing;
+                // the next segment may be faster
+                time = if next > segment.end_time() && time < segment.end_time() {
+                    segment.end_time()
+                } else {
+                    next
+                };
+                if !(time <= until) {
+                    break;
+                }
+            }
+        }
+        deepest
+    }
+}

@@ -1,0 +1,8 @@
+//! Fallbacks where the graph and its refinement have no plan: sequential conflict resolution,
+//! hybrid A*, and escape from sets that own ship starts in.
+
+pub(crate) mod cost_to_go;
+pub(crate) mod escape;
+pub(crate) mod harm;
+pub(crate) mod hybrid_a_star;
+pub(crate) mod sequential;

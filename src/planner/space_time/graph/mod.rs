@@ -1,0 +1,510 @@
+//! Space-time graph: tangents from the route to moving vertices, courses held beyond them, returns.
+//!
+//! Nodes and edges are generated on demand by the search. The graph decides on which side and in
+//! which order to pass, and whether to wait. `refinement` optimises the lengths.
+
+pub(crate) mod departure;
+pub(crate) mod intercept;
+pub(crate) mod node;
+pub(crate) mod return_to_line;
+pub(crate) mod tangent;
+
+use std::cell::Cell;
+
+use crate::frame::{Side, heading_of};
+use crate::geometry::outer_simplified;
+use crate::obstacle::{PolytopeObstacle, along_path};
+use crate::planner::clock::Clock;
+use crate::planner::cost::space_time_error;
+use crate::planner::space_time::bound::Heuristic;
+use crate::planner::space_time::bound::obstacle::ObstacleBound;
+use crate::planner::space_time::chain::Chain;
+use crate::planner::space_time::fallback::sequential::{TOGETHER_S, soon};
+use crate::planner::space_time::graph::departure::{apparent_turns, leave_for, until, ways_out};
+use crate::planner::space_time::graph::intercept::{Chase, Limits};
+use crate::planner::space_time::graph::node::State;
+use crate::planner::space_time::graph::return_to_line::return_to_line;
+use crate::planner::space_time::graph::tangent::TangentEdges;
+use crate::planner::space_time::land;
+use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
+use crate::planner::space_time::refinement::structure::Ending;
+use crate::planner::space_time::route::Route;
+use crate::planner::{NodeKind, Problem, SearchKind};
+use crate::search::Space;
+use crate::trajectory::Segment;
+use crate::vessel::OwnShip;
+
+/// Times before the first contact at which a manoeuvre may begin, besides t = 0, seconds.
+const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
+/// Angles between a return line and the route, radians.
+const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
+/// Times for which a course is held beyond a vertex, one after another, seconds.
+const HOLDS_S: [f64; 3] = [20.0, 40.0, 80.0];
+/// Largest turn toward a vertex, radians.
+const MAX_TURN: f64 = 2.0;
+/// Largest duration of an interception, seconds.
+const MAX_CHASE_S: f64 = 240.0;
+/// Largest number of consecutive vertices.
+const MAX_CHAIN: u8 = 5;
+/// Largest numbers of vertices of the initial and velocity sets whose moving vertices are nodes.
+/// Larger sets are simplified first.
+const INITIAL_VERTICES: usize = 24;
+const VELOCITY_VERTICES: usize = 12;
+/// Metres. Obstacles farther than this from the nominal motion get no nodes.
+const RELEVANT_M: f64 = 120.0;
+/// Length in seconds of the pieces of the nominal motion in this test.
+const PIECE_S: f64 = 5.0;
+
+/// Positive speeds of own ship.
+fn moving(own: &OwnShip) -> impl Iterator<Item = f64> + '_ {
+    own.speeds.iter().copied().filter(|u| *u > 0.0)
+}
+
+/// Space-time graph of one problem.
+#[derive(Debug)]
+pub(crate) struct Graph<'a> {
+    problem: &'a Problem<'a>,
+    proxies: &'a [Proxy<'a>],
+    route: &'a Route,
+    nominal_motion: &'a [Segment],
+    contacts: Vec<f64>,
+    tangent_edges: Vec<TangentEdges>,
+    heuristic: Option<Heuristic<'a>>,
+    clock: Clock,
+    /// Time until which a motion to the end must be clear, where the graph covers one conflict
+    /// only.
+    stage: Option<f64>,
+}
+
+impl<'a> Graph<'a> {
+    /// Graph of the whole problem. `nominal_motion` is the route followed from t = 0. Generates
+    /// nothing after the deadline.
+    pub(crate) fn new(
+        problem: &'a Problem<'a>,
+        proxies: &'a [Proxy<'a>],
+        route: &'a Route,
+        nominal_motion: &'a [Segment],
+        clock: Clock,
+    ) -> Self {
+        let first = |h: &Proxy| nominal_motion.iter().find_map(|s| h.first_contact(s));
+        let mut contacts: Vec<f64> = by_obstacle(proxies)
+            .filter_map(|parts| parts.iter().filter_map(first).min_by(f64::total_cmp))
+            .chain(
+                land::conflicts(problem.coast, nominal_motion)
+                    .iter()
+                    .map(|c| c.from),
+            )
+            .collect();
+        contacts.sort_by(f64::total_cmp);
+        contacts.dedup_by(|a, b| *a - *b < LEADS_S[3]);
+        // short pieces: the bound is loose on long ones
+        let pieces: Vec<Segment> = nominal_motion
+            .iter()
+            .flat_map(|s| {
+                let count = (s.duration / PIECE_S).ceil() as usize;
+                (0..count).map(move |k| {
+                    let from = s.start_time + PIECE_S * k as f64;
+                    s.between(from, from + PIECE_S)
+                })
+            })
+            .collect();
+        let tangent_edges = proxies
+            .iter()
+            .filter(|_| !contacts.is_empty())
+            .filter(|h| pieces.iter().any(|s| h.clearance_bound(s) < RELEVANT_M))
+            .map(|h| {
+                let body = PolytopeObstacle::new(
+                    "",
+                    outer_simplified(h.body.initial(), INITIAL_VERTICES),
+                    outer_simplified(h.body.velocity(), VELOCITY_VERTICES),
+                );
+                TangentEdges::new(h, &body, moving(problem.own))
+            })
+            .chain(land::tangent_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
+            .collect();
+        let heuristic = (problem.search == SearchKind::AStar).then(|| {
+            let obstacle_bound = ObstacleBound::new(problem, proxies);
+            Heuristic::new(
+                problem.desired,
+                problem.time_weight,
+                problem.own,
+                obstacle_bound,
+            )
+        });
+        Self {
+            problem,
+            proxies,
+            route,
+            nominal_motion,
+            contacts,
+            tangent_edges,
+            heuristic,
+            clock,
+            stage: None,
+        }
+    }
+
+    /// Graph of the conflict at `contact` only, from the start of the rest of a motion. `near` is
+    /// the part of the motion around the conflict. Motions to the end must be clear of early
+    /// contacts only.
+    pub(crate) fn for_conflict(
+        problem: &'a Problem<'a>,
+        proxies: &'a [Proxy<'a>],
+        route: &'a Route,
+        [near, rest]: [&'a [Segment]; 2],
+        contact: f64,
+        clock: Clock,
+    ) -> Self {
+        let mut graph = Self::new(problem, proxies, route, near, clock);
+        graph.contacts.retain(|c| *c <= contact + TOGETHER_S);
+        graph.nominal_motion = rest;
+        graph.stage = Some(contact + TOGETHER_S);
+        graph
+    }
+
+    /// Own ship at t = 0.
+    pub(crate) fn root(&self) -> State {
+        match (self.stage, self.nominal_motion.first()) {
+            (Some(_), Some(first)) => State {
+                time: first.start_time,
+                ..State::start(first.start)
+            },
+            _ => State::start(self.problem.own.pose),
+        }
+    }
+
+    fn push(
+        &self,
+        out: &mut Vec<(State, f64)>,
+        kind: NodeKind,
+        ending: Ending,
+        motion: Vec<Segment>,
+        along: usize,
+        from: &State,
+    ) {
+        let (pose, time) = motion
+            .last()
+            .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
+        if time > self.problem.horizon {
+            return;
+        }
+        let cost = motion
+            .iter()
+            .map(|s| space_time_error(self.problem.desired, s, self.problem.time_weight))
+            .sum();
+        let chain = from.chain + u8::from(matches!(kind, NodeKind::Vertex { .. }));
+        let held = if kind == NodeKind::Held {
+            from.held + 1
+        } else {
+            0
+        };
+        out.push((
+            State {
+                kind,
+                pose,
+                time,
+                motion,
+                along,
+                ending,
+                chain,
+                held,
+                met: Cell::new(None),
+            },
+            cost,
+        ));
+    }
+
+    /// Edges to a first vertex from several points of the nominal motion, and edges that never
+    /// leave the route. A departure is not a node: it costs nothing and decides nothing.
+    fn departures(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let nominal_motion = self.nominal_motion.to_vec();
+        self.push(out, NodeKind::End, Ending::Follow, nominal_motion, 0, from);
+        if self.contacts.is_empty() {
+            return;
+        }
+        let mut times: Vec<f64> = self
+            .contacts
+            .iter()
+            .flat_map(|c| LEADS_S.iter().map(move |lead| c - lead).chain([c * 0.5]))
+            .filter(|t| *t > from.time)
+            .collect();
+        times.push(from.time);
+        times.sort_by(f64::total_cmp);
+        times.dedup_by(|a, b| *a - *b < 2.0);
+        if self.stage.is_none() {
+            self.paced(from, out);
+        }
+        for &time in &times {
+            let before = until(self.nominal_motion, time);
+            let along = before.len();
+            for (motion, least_turn) in ways_out(self.problem, self.route, &before) {
+                self.interceptions(from, &motion, least_turn, out);
+            }
+            for motion in apparent_turns(self.problem, from, &before, HOLDS_S[0]) {
+                self.push(out, NodeKind::Held, Ending::Follow, motion, along, from);
+            }
+        }
+    }
+
+    /// Edges that never leave the route: on schedule, then at the least or greatest speed to touch
+    /// a corner of a path-time obstacle, then back on schedule.
+    fn paced(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let (own, desired) = (self.problem.own, self.problem.desired);
+        for (proxy, (index, leg)) in self
+            .proxies
+            .iter()
+            .filter(|h| {
+                self.nominal_motion
+                    .iter()
+                    .any(|s| h.first_contact(s).is_some())
+            })
+            .flat_map(|h| desired.legs().iter().enumerate().map(move |l| (h, l)))
+        {
+            if self.clock.is_up() {
+                return;
+            }
+            let Some(stretch) = self.route.stretch(index, desired) else {
+                continue;
+            };
+            let start = leg.start + leg.direction * stretch.from;
+            let length = stretch.to - stretch.from;
+            // in the clock of the convex piece
+            let clock = proxy.start();
+            let end = proxy.window.map_or(f64::INFINITY, |w| w.end);
+            let corners = along_path(
+                proxy.body,
+                start,
+                leg.direction,
+                length,
+                end.min(self.problem.horizon) - clock,
+            );
+            for mut corner in corners {
+                corner.time += clock;
+                let goal = stretch.distance + corner.distance;
+                for speed in [own.min_speed(), own.max_speed()] {
+                    let Some(departure) = leave_for(self.nominal_motion, goal, corner.time, speed)
+                    else {
+                        continue;
+                    };
+                    let mut motion = until(self.nominal_motion, departure);
+                    let at: f64 = motion.iter().map(Segment::length).sum();
+                    let (pose, _) = self.route.pose_at(at);
+                    if speed > 0.0 {
+                        self.route.run(at, departure, goal - at, speed, &mut motion);
+                    } else {
+                        motion.push(Segment {
+                            start: pose,
+                            start_time: departure,
+                            duration: corner.time - departure,
+                            speed,
+                            turn_rate: 0.0,
+                        });
+                    }
+                    self.route.follow(
+                        if speed > 0.0 { goal } else { at },
+                        corner.time,
+                        &mut motion,
+                    );
+                    self.push(out, NodeKind::End, Ending::Follow, motion, 0, from);
+                }
+            }
+        }
+    }
+
+    /// Tangent edges to vertices, from a node or from the end of a motion `before` along the route.
+    /// The first turn is at least `least_turn`, radians.
+    fn interceptions(
+        &self,
+        from: &State,
+        before: &[Segment],
+        least_turn: f64,
+        out: &mut Vec<(State, f64)>,
+    ) {
+        let radius = self.problem.own.turning_radius;
+        let (pose, time) = before
+            .last()
+            .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
+        let limits = Limits {
+            turn: MAX_TURN,
+            time: (time + MAX_CHASE_S).min(self.problem.horizon),
+        };
+        let chases = Side::BOTH.map(|side| Chase::new(&pose, time, 1.0, radius, side));
+        let duty = self.problem.duty();
+        let mut scratch = Vec::new();
+        let first = out.len();
+        for tangent_edges in &self.tangent_edges {
+            let (clock, until) = tangent_edges.window();
+            if time > clock + until {
+                continue;
+            }
+            if self.clock.is_up() {
+                return;
+            }
+            let by_its_clock;
+            let chases = if clock == 0.0 {
+                &chases
+            } else {
+                by_its_clock =
+                    Side::BOTH.map(|side| Chase::new(&pose, time - clock, 1.0, radius, side));
+                &by_its_clock
+            };
+            let limits = Limits {
+                time: (limits.time - clock).min(until),
+                ..limits
+            };
+            tangent_edges.touched(chases, limits, &mut scratch, |aim| {
+                if aim.kind == from.kind || aim.meeting.time < 0.0 {
+                    return;
+                }
+                let apparent = duty.sides().contains(&aim.side) && aim.meeting.turn >= least_turn;
+                if from.kind == NodeKind::Start && !apparent {
+                    return;
+                }
+                let mut chain = Chain::new(pose, time, aim.speed, radius);
+                chain.segments.extend_from_slice(before);
+                chain.arc(aim.meeting.turn * radius * aim.side.turn_sign());
+                chain.line(aim.meeting.line);
+                // a turn of zero length is found on both sides
+                let known = out[first..].iter().any(|(s, _)| {
+                    s.kind == aim.kind
+                        && (s.time - chain.time).abs() < 1e-6
+                        && (s.pose.heading - chain.pose.heading).abs() < 1e-6
+                });
+                if known {
+                    return;
+                }
+                self.push(
+                    out,
+                    aim.kind,
+                    Ending::Follow,
+                    chain.segments,
+                    before.len(),
+                    from,
+                );
+            });
+        }
+    }
+
+    /// Edges back onto the legs ahead and straight to the last waypoint, all at the greatest speed:
+    /// own ship is late after a manoeuvre.
+    fn returns(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let (own, desired) = (self.problem.own, self.problem.desired);
+        let (radius, speed) = (own.turning_radius, own.max_speed());
+        let near = desired.nearest(from.pose.position, from.time, 0.0).leg;
+        for leg in near..desired.legs().len().min(near + 2) {
+            let Some(stretch) = self.route.stretch(leg, desired) else {
+                continue;
+            };
+            let l = &desired.legs()[leg];
+            let heading = heading_of(l.direction);
+            for angle in RETURN_ANGLES {
+                let Some(back) = return_to_line(&from.pose, l.start, heading, radius, angle) else {
+                    continue;
+                };
+                let mut chain = Chain::new(from.pose, from.time, speed, radius);
+                chain.arc(back.first);
+                chain.line(back.line);
+                chain.arc(back.last);
+                let along = l.direction.dot(&(chain.pose.position - l.start));
+                if along >= stretch.from && along <= stretch.to {
+                    let at = stretch.distance + along - stretch.from;
+                    self.route.follow(at, chain.time, &mut chain.segments);
+                    let ending = Ending::Return { leg, speed };
+                    self.push(out, NodeKind::End, ending, chain.segments, 0, from);
+                }
+            }
+        }
+        // the rest of the path belongs to another conflict
+        if self.stage.is_some() && near + 2 < desired.legs().len() {
+            return;
+        }
+        for side in Side::BOTH {
+            let chase = Chase::new(&from.pose, from.time, speed, radius, side);
+            if let Some((turn, line)) = chase.way_to(desired.end())
+                && turn <= MAX_TURN
+            {
+                let mut chain = Chain::new(from.pose, from.time, speed, radius);
+                chain.arc(turn * radius * side.turn_sign());
+                chain.line(line);
+                let ending = Ending::Goal { side, speed };
+                self.push(out, NodeKind::End, ending, chain.segments, 0, from);
+            }
+        }
+    }
+
+    /// Edges straight on from a vertex: the tangent line stays clear of that obstacle.
+    fn onward(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let hold = HOLDS_S.get(usize::from(from.held));
+        if let (Some(last), Some(hold)) = (from.motion.last(), hold) {
+            let mut chain = Chain::new(
+                from.pose,
+                from.time,
+                last.speed,
+                self.problem.own.turning_radius,
+            );
+            chain.line(last.speed * hold);
+            self.push(out, NodeKind::Held, Ending::Follow, chain.segments, 0, from);
+        }
+    }
+}
+
+impl Space for Graph<'_> {
+    type State = State;
+
+    fn successors(&mut self, state: &State, out: &mut Vec<(State, f64)>) {
+        match state.kind {
+            NodeKind::Start => self.departures(state, out),
+            NodeKind::Vertex { .. } => {
+                if state.chain < MAX_CHAIN {
+                    self.interceptions(state, &[], 0.0, out);
+                }
+                self.returns(state, out);
+                self.onward(state, out);
+            }
+            NodeKind::Held => {
+                self.returns(state, out);
+                self.onward(state, out);
+            }
+            // the last two kinds belong to path-time graphs
+            NodeKind::End | NodeKind::Corner { .. } | NodeKind::Waypoint => {}
+        }
+    }
+
+    fn bound(&mut self, state: &State) -> f64 {
+        match (&self.heuristic, state.kind) {
+            (None, _) | (_, NodeKind::End) => 0.0,
+            (Some(heuristic), _) if heuristic.is_dead(&state.pose, state.time) => f64::INFINITY,
+            (Some(heuristic), _) => heuristic.cost_to_go(&state.pose, state.time),
+        }
+    }
+
+    fn closer_bound(&mut self, state: &State) -> f64 {
+        match (&self.heuristic, state.kind) {
+            (None, _) | (_, NodeKind::End) => 0.0,
+            (Some(heuristic), _) => heuristic.closer_cost_to_go(&state.pose, state.time),
+        }
+    }
+
+    fn is_goal(&self, state: &State) -> bool {
+        state.kind == NodeKind::End
+    }
+
+    fn admits(&mut self, state: &State) -> bool {
+        if let (Some(until), NodeKind::End) = (self.stage, state.kind) {
+            let soon = soon(&state.motion, until);
+            let met = first_met(self.proxies, &soon);
+            state.met.set(met);
+            return met.is_none() && !land::meets(self.problem.coast, &soon);
+        }
+        let met = first_met(self.proxies, &state.motion).or_else(|| {
+            let ashore = land::meets(self.problem.coast, &state.motion);
+            ashore.then_some(self.problem.obstacles.len())
+        });
+        state.met.set(met);
+        met.is_none()
+    }
+
+    fn is_out_of_time(&self) -> bool {
+        self.clock.is_up()
+    }
+}

@@ -1,0 +1,98 @@
+//! Convex piece: a part of an obstacle that is convex in space-time, with its time window.
+//!
+//! A polytope and an ellipsoid are one piece each, without a window. Consecutive velocity sets give
+//! one polytope per slab, whose time counts from the slab's start. Until the horizon, the union of
+//! the pieces that exist at a time is the obstacle's section. The only exceptions are pieces
+//! without an interior, which are enlarged. A motion that is clear of the pieces is clear of the
+//! obstacle.
+
+use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse};
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
+
+/// The graph uses a polytope that contains the ellipsoid, unless that needs a larger factor than
+/// this. Then it uses one that does not; the contact test rejects motions that meet the ellipsoid.
+const MOST_GROWTH: f64 = 2.0;
+
+/// Convex piece of an obstacle.
+#[derive(Debug)]
+pub(crate) struct Piece {
+    /// Index of the obstacle.
+    pub obstacle: usize,
+    /// Time window; `None` for ever.
+    pub window: Option<Window>,
+    pub body: Body,
+}
+
+/// Time window, seconds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Window {
+    pub start: f64,
+    pub end: f64,
+}
+
+/// Shape of a convex piece.
+#[derive(Debug)]
+pub(crate) enum Body {
+    Polytope(PolytopeObstacle),
+    Ellipsoid(Box<Rounded>),
+}
+
+/// Ellipsoid between two polytopes.
+#[derive(Debug)]
+pub(crate) struct Rounded {
+    pub exact: EllipsoidObstacle,
+    /// Outer polytope: two 16-gons around its sets, enlarged by the excess of the ellipsoid over
+    /// their sum.
+    pub around: PolytopeObstacle,
+    /// Inner polytope: two polygons of 16 boundary points of its sets. It is within their sum,
+    /// which is within the ellipsoid.
+    pub within: PolytopeObstacle,
+}
+
+/// Convex pieces of all obstacles until the horizon, in their order.
+pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
+    let mut pieces = Vec::with_capacity(obstacles.len());
+    for (obstacle, o) in obstacles.iter().enumerate() {
+        let mut push = |window, body| {
+            pieces.push(Piece {
+                obstacle,
+                window,
+                body,
+            });
+        };
+        match o.outer_with_interior() {
+            Obstacle::Polytope(polytope) => push(None, Body::Polytope(polytope)),
+            Obstacle::Ellipsoid(ellipsoid) => push(None, rounded(*ellipsoid, horizon)),
+            Obstacle::Slabs(slabs) => {
+                for slab in slabs.slabs() {
+                    let window = (slabs.slabs().len() > 1).then_some(Window {
+                        start: slab.start(),
+                        end: slab.end(),
+                    });
+                    if slab.start() <= horizon {
+                        push(window, Body::Polytope(slab.obstacle().clone()));
+                    }
+                }
+            }
+        }
+    }
+    pieces
+}
+
+fn rounded(exact: EllipsoidObstacle, horizon: f64) -> Body {
+    let growth = exact.largest_ratio_to_sum(horizon).min(MOST_GROWTH);
+    let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(DISC_SIDES);
+    let within = |e: &Ellipse| {
+        // boundary points of a finite ellipse are finite
+        ConvexPolygon::hull(&e.sampled_boundary(DISC_SIDES))
+            .unwrap_or_else(|_| ConvexPolygon::point(e.center()))
+    };
+    let polytope = |set: &dyn Fn(&Ellipse) -> ConvexPolygon| {
+        PolytopeObstacle::new("", set(exact.initial()), set(exact.velocity()))
+    };
+    Body::Ellipsoid(Box::new(Rounded {
+        around: polytope(&around),
+        within: polytope(&within),
+        exact,
+    }))
+}

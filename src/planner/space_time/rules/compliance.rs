@@ -1,0 +1,240 @@
+//! Compliance of a manoeuvre with the collision regulations, toward targets on their nominal
+//! tracks.
+
+use crate::colregs::{
+    APPARENT_SPEED, APPARENT_TIME, Duty, Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN,
+    SteadyShip,
+};
+use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
+use crate::planner::Problem;
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::selection::initial_guess::SpeedTable;
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// Samples per segment for the position relative to a target.
+const ARC_SAMPLES: u32 = 32;
+
+/// Seconds after the closest approach of the centres at which a target counts as passed: the hulls
+/// may be closest later.
+const PASSED_S: f64 = 2.0;
+
+/// m/s. Below this relative speed the distance counts as constant.
+const NO_RELATIVE_SPEED: f64 = 1e-9;
+
+/// Speed at or below which a speed reduction is readily apparent, m/s.
+pub(crate) fn slow(problem: &Problem) -> f64 {
+    APPARENT_SPEED * SpeedTable::of(problem).normal * (1.0 + 1e-9)
+}
+
+/// Length of the apparent speed reduction at the end of a motion along the route, metres.
+pub(crate) fn visibly_slow(problem: &Problem, motion: &[Segment]) -> f64 {
+    if problem.duty().is_none() {
+        return 0.0;
+    }
+    let last = motion.iter().rev();
+    last.take_while(|s| s.speed <= slow(problem))
+        .map(Segment::length)
+        .sum()
+}
+
+/// True when a motion complies with own ship's duty. `nominal_motion` is the route on schedule,
+/// which a ship without a duty to give way keeps.
+pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[Segment]) -> bool {
+    let problem = context.problem;
+    let duty = problem.duty();
+    if duty.is_none() || motion == nominal_motion {
+        return true;
+    }
+    let departure = Departure::of(context, motion);
+    departure.is_apparent(duty)
+        && problem.encountered.iter().all(|encountered| {
+            let duties = encountered.role.duties();
+            let nearest = Nearest::of(&encountered.ship, motion);
+            let passes = nearest.drifts_to_port || !duties.port_to_port;
+            let heads = !duties.no_port_heading
+                || departure.keeps_off_port(problem, motion, nearest.time + PASSED_S);
+            let plain =
+                !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
+            passes && heads && plain && keeps_off_bow(encountered, motion)
+        })
+}
+
+/// Number of turns until a time that are too small to be apparent. Consecutive turns to one side
+/// count as one.
+fn small_turns(motion: &[Segment], until: f64) -> usize {
+    let turns = |a: &Segment, b: &Segment| a.turn_rate * b.turn_rate > 0.0;
+    let before: Vec<Segment> = motion
+        .iter()
+        .filter(|s| s.start_time < until)
+        .map(|s| s.between(s.start_time, until))
+        .collect();
+    let sums = before
+        .chunk_by(turns)
+        .map(|c| c.iter().map(|s| s.turn_rate * s.duration).sum::<f64>());
+    sums.filter(|turn| turn.abs() > ON_COURSE && turn.abs() < SMALL_TURN)
+        .count()
+}
+
+/// True when a motion never crosses the target's course line within [`Encountered::bow_room`] ahead
+/// of the target.
+fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
+    let room = encountered.bow_room();
+    if room <= 0.0 {
+        return true;
+    }
+    let ship = &encountered.ship;
+    let seen = |s: &Segment, time: f64| {
+        let target = Pose {
+            position: ship.pose.position + ship.velocity() * time,
+            ..ship.pose
+        };
+        target.body_coordinates(s.pose_at(time).position)
+    };
+    let mut before: Option<Vector> = None;
+    motion.iter().all(|s| {
+        (0..=ARC_SAMPLES).all(|k| {
+            let share = f64::from(k) / f64::from(ARC_SAMPLES);
+            let here = seen(s, s.start_time + s.duration * share);
+            let from = before.replace(here).unwrap_or(here);
+            if (from.y < 0.0) == (here.y < 0.0) {
+                return true;
+            }
+            let ahead = from.x + (here.x - from.x) * from.y / (from.y - here.y);
+            // a NaN counts as ahead of the bow
+            ahead <= 0.0 || ahead >= room
+        })
+    })
+}
+
+/// Departure of a motion from the route.
+#[derive(Debug)]
+struct Departure {
+    /// First segment that is not on the route.
+    index: usize,
+    /// Own ship's course before.
+    heading: f64,
+    /// First turn after it, radians, to port positive.
+    turn: f64,
+    /// True where an apparent speed reduction precedes it.
+    slowed: bool,
+}
+
+impl Departure {
+    fn of(context: &Context, motion: &[Segment]) -> Self {
+        let slow = slow(context.problem);
+        let (mut slow_for, mut slowed) = (0.0, false);
+        let mut sees = |s: &Segment| {
+            // negated on purpose: a NaN is fast
+            slow_for = if !(s.speed <= slow) {
+                0.0
+            } else {
+                slow_for + s.duration
+            };
+            slowed |= slow_for >= APPARENT_TIME;
+            slowed
+        };
+        let mut along = 0.0;
+        let mut index = 0;
+        for s in motion {
+            along += s.length();
+            let (due, _) = context.route.pose_at(along);
+            let end = s.end();
+            let near = (end.position - due.position).norm() <= tolerance::JOINT_M;
+            if !(near && wrap(end.heading - due.heading).abs() <= tolerance::JOINT_RAD) {
+                break;
+            }
+            sees(s);
+            index += 1;
+        }
+        let mut departure = Self {
+            index,
+            heading: motion.get(index).map_or(0.0, |s| s.start.heading),
+            turn: 0.0,
+            slowed: false,
+        };
+        for s in &motion[index..] {
+            let turn = s.turn_rate * s.duration;
+            if departure.turn == 0.0 {
+                departure.turn = turn;
+                if turn == 0.0 {
+                    sees(s);
+                }
+            } else if turn * departure.turn > 0.0 {
+                departure.turn += turn;
+            } else {
+                break;
+            }
+        }
+        departure.slowed = slowed;
+        departure
+    }
+
+    fn is_apparent(&self, duty: Duty) -> bool {
+        let allowed = Side::of_turn(self.turn).is_none_or(|side| duty.sides().contains(&side));
+        allowed
+            && (self.slowed && duty.may_slow
+                || self.turn.abs() >= duty.least_turn() - tolerance::JOINT_RAD)
+    }
+
+    /// True when own ship never heads to port of its course before the departure, nor of the path's
+    /// course there, until a time.
+    fn keeps_off_port(&self, problem: &Problem, motion: &[Segment], until: f64) -> bool {
+        let off = motion[self.index..].iter().filter(|s| s.start_time < until);
+        off.map(|s| s.between(s.start_time, until)).all(|s| {
+            [s.start, s.end()].iter().all(|pose| {
+                let at = problem
+                    .desired
+                    .nearest(pose.position, s.start_time, problem.time_weight);
+                let path = heading_of(problem.desired.legs()[at.leg].direction);
+                let beyond = |course: f64| wrap(pose.heading - course) > ON_COURSE;
+                !(beyond(self.heading) && beyond(path))
+            })
+        })
+    }
+}
+
+/// Closest approach of a motion to a target that holds course and speed.
+#[derive(Debug)]
+struct Nearest {
+    time: f64,
+    /// True when the target then moves from starboard to port as seen from own ship.
+    drifts_to_port: bool,
+}
+
+impl Nearest {
+    fn of(ship: &SteadyShip, motion: &[Segment]) -> Self {
+        let mut least = f64::INFINITY;
+        let mut nearest = Self {
+            time: 0.0,
+            drifts_to_port: false,
+        };
+        let mut look = |s: &Segment, time: f64| {
+            let target = ship.pose.position + ship.velocity() * time;
+            let offset = s.pose_at(time).position - target;
+            let relative = s.velocity_at(time) - ship.velocity();
+            if offset.norm() < least {
+                least = offset.norm();
+                nearest = Self {
+                    time,
+                    drifts_to_port: cross(relative, offset) < 0.0,
+                };
+            }
+            (offset, relative)
+        };
+        for s in motion {
+            let (offset, relative) = look(s, s.start_time);
+            if s.is_arc() {
+                for k in 1..ARC_SAMPLES {
+                    let share = f64::from(k) / f64::from(ARC_SAMPLES);
+                    look(s, s.start_time + s.duration * share);
+                }
+            } else if relative.norm() > NO_RELATIVE_SPEED {
+                let ahead = -offset.dot(&relative) / relative.norm_squared();
+                look(s, s.start_time + ahead.clamp(0.0, s.duration));
+            }
+            look(s, s.end_time());
+        }
+        nearest
+    }
+}

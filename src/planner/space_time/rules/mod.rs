@@ -1,0 +1,6 @@
+//! Requirements of the collision regulations on a manoeuvre: the permitted side, a readily apparent
+//! alteration, and holding course and speed as the stand-on ship.
+
+pub(crate) mod compliance;
+pub(crate) mod readily_apparent;
+pub(crate) mod stand_on;

@@ -1,0 +1,458 @@
+//! Candidate selection: refines the graph's plans and predefined manoeuvres; the cheapest clear
+//! candidate wins.
+
+pub(crate) mod budget;
+pub(crate) mod initial_guess;
+pub(crate) mod warm_start;
+
+use crate::frame::{Side, cross};
+use crate::planner::Plan;
+use crate::planner::clock::Clock;
+use crate::planner::cost::space_time_error;
+use crate::planner::space_time::graph::node::State;
+use crate::planner::space_time::land;
+use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
+use crate::planner::space_time::refinement::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
+use crate::planner::space_time::refinement::insertion::{pruned, with_insertions};
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::refinement::{InitialGuess, Refinement};
+use crate::planner::space_time::rules::compliance::complies;
+use crate::planner::space_time::selection::budget::SearchBudget;
+use crate::planner::space_time::selection::initial_guess::{
+    Canonical, Conflict, ahead, from_graph, slowing, waiting,
+};
+use crate::trajectory::Segment;
+
+/// Ahead of schedule first, then around the set: useful in every conflict.
+const RUSH: Canonical = Canonical {
+    turn: 0.5,
+    lead: 0.3,
+    reach: 0.9,
+    slow: false,
+    rush: 0.5,
+};
+
+/// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin
+/// of attraction. The best subset for 400 encounters of 152 combinations of angles, leads and
+/// offsets.
+const COMPACT: [Canonical; 4] = [
+    Canonical {
+        turn: 1.4,
+        lead: 0.6,
+        reach: 0.6,
+        slow: false,
+        rush: 0.0,
+    },
+    Canonical {
+        turn: 1.0,
+        lead: 1.0,
+        reach: 0.9,
+        slow: true,
+        rush: 0.0,
+    },
+    Canonical {
+        turn: 0.4,
+        lead: 1.4,
+        reach: 0.6,
+        slow: false,
+        rush: 0.0,
+    },
+    RUSH,
+];
+
+/// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
+const SLENDER: [Canonical; 5] = [
+    Canonical {
+        turn: 0.2,
+        lead: 0.3,
+        reach: 0.6,
+        slow: false,
+        rush: 0.0,
+    },
+    Canonical {
+        turn: 0.2,
+        lead: 1.0,
+        reach: 0.9,
+        slow: false,
+        rush: 0.0,
+    },
+    Canonical {
+        turn: 0.7,
+        lead: 0.3,
+        reach: 0.6,
+        slow: true,
+        rush: 0.0,
+    },
+    Canonical {
+        turn: 0.4,
+        lead: 0.3,
+        reach: 0.9,
+        slow: false,
+        rush: 0.0,
+    },
+    RUSH,
+];
+
+/// Slenderness from which a conflict uses [`SLENDER`].
+const SLENDER_FROM: f64 = 2.5;
+
+/// Ratio of the offsets of the two sides above which the farther side gets one manoeuvre only.
+const FAR_SIDE: f64 = 1.8;
+
+/// Ratio of the offset astern to the lateral one below which waiting is tried as well.
+const WORTH_WAITING: f64 = 1.2;
+
+/// Ratio of the offset ahead to the lateral one below which passing ahead is tried as well.
+const WORTH_RUSHING: f64 = 1.2;
+
+/// Largest number of conflicts with manoeuvres of their own, earliest first.
+const MAX_CONFLICTS: usize = 2;
+
+/// Relative cost difference up to which a manoeuvre still gets insertions, and below which two
+/// manoeuvres count as the same.
+const BEHIND: f64 = 0.05;
+const ALIKE: f64 = 1e-3;
+
+/// Length above which lines are divided for the first and for the second insertion, metres.
+const UNCUT_M: [f64; 2] = [200.0, 80.0];
+
+/// Steps of a refinement after an insertion, and after the final pruning.
+const STEPS_ENRICHED: usize = 8;
+const STEPS_TIDY: usize = 6;
+
+/// Relative gain of an insertion that justifies another.
+const WORTH_ANOTHER: f64 = 0.01;
+
+/// Relative cost that pruning may add.
+const TIDINESS: f64 = 2e-3;
+
+/// Number of rounds after which arcs are divided into fine chords.
+const FINE_FROM: usize = 6;
+
+/// Clear trajectory.
+#[derive(Debug, Clone)]
+struct Candidate {
+    motion: Vec<Segment>,
+    cost: f64,
+}
+
+/// Candidates of one problem.
+#[derive(Debug)]
+pub(crate) struct Selection<'a> {
+    context: Context<'a>,
+    /// Route on schedule.
+    nominal_motion: &'a [Segment],
+    search_budget: &'a SearchBudget,
+    signatures: Vec<Vec<bool>>,
+    guesses: Vec<InitialGuess>,
+    best: Option<Candidate>,
+    graph_cost: Option<f64>,
+}
+
+impl<'a> Selection<'a> {
+    pub(crate) fn new(
+        context: Context<'a>,
+        nominal_motion: &'a [Segment],
+        search_budget: &'a SearchBudget,
+    ) -> Self {
+        Self {
+            context,
+            nominal_motion,
+            search_budget,
+            signatures: Vec::new(),
+            guesses: Vec::new(),
+            best: None,
+            graph_cost: None,
+        }
+    }
+
+    /// Number of distinct passing signatures seen so far.
+    pub(crate) fn signatures(&self) -> usize {
+        self.signatures.len()
+    }
+
+    /// Adds a manoeuvre to refine.
+    pub(crate) fn begin_from(&mut self, guess: InitialGuess) {
+        self.guesses.push(guess);
+    }
+
+    /// Adds a tested plan of the graph, given by the states after the root; false where it violates
+    /// the rules.
+    pub(crate) fn offer(&mut self, cost: f64, way: &[&State]) -> bool {
+        let motion: Vec<Segment> = way.iter().flat_map(|s| s.motion.iter().copied()).collect();
+        if !complies(&self.context, self.nominal_motion, &motion) {
+            return false;
+        }
+        let signature = self.signature(&motion);
+        self.graph_cost.get_or_insert(cost);
+        if self.signatures.contains(&signature) {
+            return true;
+        }
+        self.signatures.push(signature);
+        self.guesses.extend(from_graph(self.context.problem, way));
+        self.consider(motion);
+        true
+    }
+
+    /// Passing signature: the side on which each target is passed, as the sign of its relative
+    /// bearing rate at the least distance of the centres.
+    fn signature(&self, motion: &[Segment]) -> Vec<bool> {
+        by_obstacle(self.context.proxies)
+            .map(|proxies| {
+                let mut nearest = (f64::INFINITY, false);
+                for s in motion {
+                    for k in 0..=4 {
+                        let t = s.start_time + s.duration * f64::from(k) / 4.0;
+                        let (position, velocity) = (s.pose_at(t).position, s.velocity_at(t));
+                        let relative = |h: &Proxy| h.relative(position, velocity, t);
+                        if let Some((r, w)) = proxies.iter().find_map(relative)
+                            && r.norm() < nearest.0
+                        {
+                            nearest = (r.norm(), cross(w, r) > 0.0);
+                        }
+                    }
+                }
+                nearest.1
+            })
+            .collect()
+    }
+
+    /// Refines the graph's plans and the predefined manoeuvres; true when the deadline was reached.
+    pub(crate) fn refine(&mut self, conflicts: &[Conflict], clock: Clock) -> bool {
+        let mut context = self.context;
+        context.chord = COARSE_CHORD_RAD;
+        let (problem, route) = (context.problem, context.route);
+        let mut guesses = std::mem::take(&mut self.guesses);
+        let leg = problem.desired.legs().len() - 1;
+        let duty = problem.duty();
+        let sides = duty.sides();
+        for conflict in conflicts.iter().take(MAX_CONFLICTS) {
+            if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
+                for across in [false, true] {
+                    guesses.extend(
+                        sides
+                            .iter()
+                            .filter_map(|side| waiting(problem, *side, across, conflict, leg)),
+                    );
+                }
+            }
+            if !duty.is_none() {
+                let slower = sides.iter();
+                guesses.extend(slower.filter_map(|side| slowing(problem, *side, conflict, leg)));
+            }
+            if duty.is_none() && conflict.ahead.0 < WORTH_RUSHING * conflict.nearest_offset() {
+                let both = Side::BOTH.into_iter();
+                guesses.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
+            }
+            let slender = conflict.slenderness() > SLENDER_FROM;
+            let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
+            let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
+            for &side in sides {
+                let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
+                let tried = if far && sides.len() > 1 {
+                    &manoeuvres[..1]
+                } else {
+                    manoeuvres
+                };
+                guesses.extend(
+                    tried
+                        .iter()
+                        .filter_map(|c| c.guess(problem, route, side, conflict, leg)),
+                );
+            }
+        }
+        let mut running: Vec<Refinement> = guesses
+            .into_iter()
+            .take_while(|_| !clock.is_up())
+            .filter_map(|s| Refinement::fitting(&context, s))
+            .collect();
+        for round in 0..self.search_budget.steps {
+            let decided = round >= self.search_budget.rounds
+                && running.iter().any(|r| r.best_cost().is_finite());
+            // only manoeuvres checked with fine chords count as clear
+            if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
+                break;
+            }
+            race(&mut running, round, self.search_budget.places);
+            if round == FINE_FROM {
+                context.chord = FINE_CHORD_RAD;
+                for refinement in running.iter_mut().filter(|r| !r.is_overtaken()) {
+                    if !clock.is_up() {
+                        refinement.look_again(&context);
+                    }
+                }
+            }
+            for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
+                if clock.is_up() {
+                    self.collect(ranked(&running));
+                    return true;
+                }
+                refinement.step(&context);
+            }
+        }
+        for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
+            if !clock.is_up() {
+                refinement.settle(&context);
+            }
+        }
+        let tidy = self.polish(&mut running, clock);
+        self.collect(tidy.iter().chain(ranked(&running)));
+        clock.is_up()
+    }
+
+    /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
+    /// them. In the end prunes short segments where that costs almost nothing.
+    fn polish(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
+        let leaders = leaders(running, self.search_budget.leaders);
+        let mut least = leaders.first()?.1;
+        let [first, then] = UNCUT_M;
+        let mut best = None;
+        let mut gained = 0.0;
+        for (guess, rank) in leaders {
+            let again = self.richer(&guess, first, clock);
+            let after = again
+                .as_ref()
+                .map_or(f64::INFINITY, Refinement::rank)
+                .min(rank);
+            if best.is_none() || after < least {
+                gained = 1.0 - after / rank;
+                best = again.as_ref().and_then(Refinement::best).or(Some(guess));
+                least = after;
+            }
+            running.extend(again);
+        }
+        if self.search_budget.twice && gained > WORTH_ANOTHER {
+            let again = best.as_ref().and_then(|s| self.richer(s, then, clock));
+            best = again.as_ref().and_then(Refinement::best).or(best);
+            running.extend(again);
+        }
+        let least = best_of(running)?.rank();
+        let guess = best.and_then(|s| pruned(&self.context, &s));
+        let tidy = guess.and_then(|s| self.refined(s, STEPS_TIDY, clock))?;
+        (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
+    }
+
+    /// Manoeuvre with insertions, refined; `None` where nothing is inserted or the deadline was
+    /// reached.
+    fn richer(&self, guess: &InitialGuess, uncut: f64, clock: Clock) -> Option<Refinement> {
+        if clock.is_up() {
+            return None;
+        }
+        self.refined(
+            with_insertions(&self.context, guess, uncut)?,
+            STEPS_ENRICHED,
+            clock,
+        )
+    }
+
+    /// Refinement with at most `most` steps, and fewer after the deadline.
+    fn refined(&self, guess: InitialGuess, most: usize, clock: Clock) -> Option<Refinement> {
+        let mut refinement = Refinement::fitting(&self.context, guess)?;
+        for _ in 0..most {
+            if refinement.is_finished() || clock.is_up() {
+                return Some(refinement);
+            }
+            refinement.step(&self.context);
+        }
+        refinement.settle(&self.context);
+        Some(refinement)
+    }
+
+    /// Tests the refinements' results in the given order until one passes.
+    fn collect<'r>(&mut self, found: impl Iterator<Item = &'r Refinement>) {
+        for refinement in found {
+            let Some(motion) = refinement.best_motion(&self.context) else {
+                return;
+            };
+            if self.consider(motion) {
+                return;
+            }
+        }
+    }
+
+    /// True once a candidate was clear.
+    pub(crate) fn has_plan(&self) -> bool {
+        self.best.is_some()
+    }
+
+    /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
+    pub(crate) fn consider(&mut self, motion: Vec<Segment>) -> bool {
+        let problem = self.context.problem;
+        let cost: f64 = motion
+            .iter()
+            .map(|s| space_time_error(problem.desired, s, problem.time_weight))
+            .sum();
+        let in_time = motion
+            .last()
+            .is_some_and(|s| s.end_time() <= problem.horizon);
+        let clear = in_time
+            && cost.is_finite()
+            && complies(&self.context, self.nominal_motion, &motion)
+            && first_met(self.context.proxies, &motion).is_none()
+            && !land::meets(problem.coast, &motion);
+        if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
+            self.best = Some(Candidate { motion, cost });
+        }
+        clear
+    }
+
+    /// Cheapest clear motion.
+    pub(crate) fn plan(self) -> Option<Plan> {
+        let best = self.best?;
+        Plan::measured(self.context.problem, best.motion, self.graph_cost)
+    }
+}
+
+fn best_of(running: &[Refinement]) -> Option<&Refinement> {
+    let costs = |a: &&Refinement, b: &&Refinement| a.rank().total_cmp(&b.rank());
+    running.iter().min_by(costs)
+}
+
+/// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`.
+/// Insertions can gain more than the best manoeuvre's lead.
+fn leaders(running: &[Refinement], most: usize) -> Vec<(InitialGuess, f64)> {
+    let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most);
+    for refinement in ranked(running) {
+        let rank = refinement.rank();
+        let least = found.first().map_or(rank, |f| f.1);
+        let alike = found.iter().any(|f| rank <= (1.0 + ALIKE) * f.1);
+        // negated on purpose: a NaN is too expensive
+        if found.len() == most || !(rank <= (1.0 + BEHIND) * least) {
+            break;
+        }
+        if !alike {
+            found.extend(refinement.best().map(|guess| (guess, rank)));
+        }
+    }
+    found
+}
+
+/// Refinements by rank, cheapest first.
+fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
+    let mut found: Vec<_> = running.iter().collect();
+    found.sort_by(|a, b| a.rank().total_cmp(&b.rank()));
+    found.into_iter()
+}
+
+/// Racing: stops refinements that have fallen behind after some rounds, but never the first that is
+/// nearly clear. A missing metre costs at least the median price, because a refinement stuck deep
+/// inside a set has no price.
+fn race(running: &mut [Refinement], rounds: usize, places: &[(usize, usize)]) {
+    let places = places.iter().rev().find(|(from, _)| *from <= rounds);
+    let places = places.map_or(running.len(), |p| p.1);
+    let mut going: Vec<&mut Refinement> =
+        running.iter_mut().filter(|r| !r.is_overtaken()).collect();
+    if going.is_empty() {
+        return;
+    }
+    let mut prices: Vec<f64> = going.iter().map(|r| r.price()).collect();
+    prices.sort_by(f64::total_cmp);
+    let usual = prices[(prices.len() - 1) / 2];
+    going.sort_by(|a, b| a.expected_cost(usual).total_cmp(&b.expected_cost(usual)));
+    let clear = going.iter().position(|r| r.is_nearly_clear());
+    for (place, refinement) in going.into_iter().enumerate().skip(places) {
+        if Some(place) != clear {
+            refinement.stop();
+        }
+    }
+}

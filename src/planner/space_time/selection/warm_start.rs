@@ -1,0 +1,286 @@
+//! Warm start: refines an earlier plan against new sets without a new search.
+
+use crate::frame::{Pose, Side, wrap};
+use crate::planner::clock::Clock;
+use crate::planner::space_time::land;
+use crate::planner::space_time::proxy::Proxy;
+use crate::planner::space_time::refinement::InitialGuess;
+use crate::planner::space_time::refinement::approach::FINE_CHORD_RAD;
+use crate::planner::space_time::refinement::quadratic::MAX_VARIABLES;
+use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable};
+use crate::planner::space_time::refinement::trial::Context;
+use crate::planner::space_time::route::Route;
+use crate::planner::space_time::selection::Selection;
+use crate::planner::space_time::selection::budget::SearchBudget;
+use crate::planner::space_time::selection::initial_guess::{Draft, SpeedTable};
+use crate::planner::{NoPlan, Outcome, Planned, Problem};
+use crate::tolerance;
+use crate::trajectory::{Segment, Trajectory};
+
+/// Distance (metres) and angle (radians) within which a pose is on the route.
+const ON_ROUTE_M: f64 = 1e-3;
+const ON_ROUTE_RAD: f64 = 1e-6;
+
+/// Number of segment variables besides turns and lines: the runs and the dependent ones.
+const BESIDE: usize = 5;
+
+/// Plans one problem by a warm start from a plan for other sets, whose order of turns it keeps
+/// (numerical continuation).
+///
+/// The guarantees of [`crate::planner::space_time::plan`] hold. Either function may find a plan
+/// where the other finds none. Cost: some milliseconds, without a search. Plans with waits or with
+/// very many turns give no initial guess, and then no plan.
+pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
+    let clock = Clock::new(problem.deadline);
+    crate::planner::space_time::as_usual(problem, |problem, proxies, usual| match usual {
+        Some(usual) => refined(problem, proxies, &usual.motion(from.segments()), clock),
+        None => refined(problem, proxies, from.segments(), clock),
+    })
+}
+
+fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Clock) -> Planned {
+    let found = Route::new(problem, clock).and_then(|route| {
+        let guess = seed_of(problem, &route, motion)?;
+        let mut nominal_motion = Vec::new();
+        route.follow(0.0, 0.0, &mut nominal_motion);
+        let blocks = land::proxies(problem);
+        let context = Context {
+            problem,
+            route: &route,
+            proxies,
+            blocks: &blocks,
+            chord: FINE_CHORD_RAD,
+        };
+        let mut selection = Selection::new(context, &nominal_motion, &SearchBudget::CONTINUED);
+        selection.begin_from(guess);
+        let timed_out = selection.refine(&[], clock);
+        Some((selection.plan(), timed_out))
+    });
+    let outcome = match found {
+        Some((plan, true)) => Outcome::Deadline(plan),
+        Some((Some(plan), false)) => Outcome::Solved(plan),
+        _ => Outcome::Infeasible(NoPlan::NoTrajectory),
+    };
+    Planned::of(outcome)
+}
+
+/// Initial guess from a motion that follows the route, leaves it, and returns to it or to its end.
+/// Its rollout is the motion again. Lines get the other speeds, with zero length, while there is
+/// room. `None` for any other motion.
+fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<InitialGuess> {
+    let motion = merged(motion);
+    if motion.iter().any(|s| s.speed <= 0.0) {
+        return None;
+    }
+    let speed_table = SpeedTable::of(problem);
+    let mut run = [0.0; 3];
+    let (mut left_at, mut first) = (0.0, 0);
+    for s in &motion {
+        let to = left_at + s.length();
+        let halfway = 0.5 * (left_at + to);
+        if !(is_at(route, to, s.end()) && is_at(route, halfway, s.middle())) {
+            break;
+        }
+        run[nearest(
+            s.speed,
+            [speed_table.normal, speed_table.fast, speed_table.slow],
+        )] += s.length();
+        (left_at, first) = (to, first + 1);
+    }
+    let (mut back_at, mut join) = (route.length(), motion.len());
+    while join > first {
+        let from = back_at - motion[join - 1].length();
+        if !is_at(route, from, motion[join - 1].start) {
+            break;
+        }
+        (back_at, join) = (from, join - 1);
+    }
+    let manoeuvre = &motion[first..join];
+    let (last, before) = manoeuvre.split_last()?;
+    let (free, ending) = if join < motion.len() {
+        let leg = (0..problem.desired.legs().len()).find(|leg| {
+            route
+                .stretch(*leg, problem.desired)
+                .is_some_and(|s| (s.distance..=s.distance + s.to - s.from).contains(&back_at))
+        })?;
+        let free = match before.split_last() {
+            Some((line, free)) if !line.is_arc() && line.speed == last.speed => free,
+            _ => before,
+        };
+        let speed = last.speed;
+        (
+            last.is_arc().then_some(free)?,
+            Ending::Return { leg, speed },
+        )
+    } else {
+        let (turn, free) = before.split_last()?;
+        let side = Side::of_turn(turn.turn_rate)?;
+        let ends = !last.is_arc() && turn.speed == last.speed;
+        let speed = last.speed;
+        (ends.then_some(free)?, Ending::Goal { side, speed })
+    };
+    let mut room = MAX_VARIABLES.checked_sub(free.len() + BESIDE)?;
+    let mut draft = Draft::default();
+    draft.runs(&speed_table, run[0], run[1], run[2]);
+    for lines in free.chunk_by(|a, b| !a.is_arc() && !b.is_arc()) {
+        for s in lines {
+            let speed = s.speed;
+            let variable = Side::of_turn(s.turn_rate)
+                .map_or(SegmentVariable::Line { speed }, |side| {
+                    SegmentVariable::Arc { side, speed }
+                });
+            draft.push(variable, s.length());
+        }
+        let others = [speed_table.slow, speed_table.normal, speed_table.fast].into_iter();
+        let others = others.filter(|u| lines.iter().all(|s| !s.is_arc() && s.speed != *u));
+        for speed in others.take(room) {
+            draft.push(SegmentVariable::Line { speed }, 0.0);
+            room -= 1;
+        }
+    }
+    draft.guess(ending)
+}
+
+/// Motion without segments of zero length and with equal neighbours merged.
+fn merged(motion: &[Segment]) -> Vec<Segment> {
+    let mut merged: Vec<Segment> = Vec::with_capacity(motion.len());
+    let of_use = |s: &&Segment| s.speed <= 0.0 || s.length() > tolerance::LENGTH_M;
+    for s in motion.iter().filter(of_use) {
+        match merged.last_mut() {
+            Some(last) if last.speed == s.speed && last.turn_rate == s.turn_rate => {
+                last.duration += s.duration;
+            }
+            _ => merged.push(*s),
+        }
+    }
+    merged
+}
+
+fn is_at(route: &Route, distance: f64, pose: Pose) -> bool {
+    let there = route.pose_at(distance).0;
+    (there.position - pose.position).norm() < ON_ROUTE_M
+        && wrap(there.heading - pose.heading).abs() < ON_ROUTE_RAD
+}
+
+/// Index of the nearest of three speeds, the first of equals.
+fn nearest(speed: f64, speeds: [f64; 3]) -> usize {
+    let apart = |k: &usize| (speeds[*k] - speed).abs();
+    (0..3)
+        .min_by(|a, b| apart(a).total_cmp(&apart(b)))
+        .unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::obstacle::{Coast, Obstacle};
+    use crate::pipeline;
+    use crate::planner::SearchKind;
+    use crate::planner::space_time::plan;
+    use crate::planner::space_time::refinement::structure::FLATTEST_RETURN;
+    use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
+
+    /// Runs a check on the problems of random encounters and traffic with their plans.
+    fn at_plans(check: impl Fn(&Problem, &Trajectory, f64)) {
+        let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
+            (0..6).map(move |guess| random_encounter(kind, guess, Placement::Random))
+        });
+        let traffic = (0..6).map(|guess| random_traffic(3, guess, Placement::Random));
+        for drawn in encounters.chain(traffic) {
+            let scenario = drawn.expect("drawn").scenario;
+            let sets = pipeline::sets(&scenario);
+            let obstacles: Vec<Obstacle> = sets.into_iter().map(|s| s.shaped).collect();
+            let problem = Problem {
+                search: SearchKind::AStar,
+                deadline: Duration::from_secs(60),
+                ..pipeline::problem(&scenario, &obstacles, Coast::none())
+            };
+            if let Some(found) = plan(&problem).outcome.plan() {
+                check(&problem, &found.trajectory, found.cost);
+            }
+        }
+    }
+
+    #[test]
+    fn the_slots_of_a_plan_sail_it_again() {
+        at_plans(|problem, trajectory, _| {
+            let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
+            let Some(guess) = seed_of(problem, &route, trajectory.segments()) else {
+                // it only follows the route
+                assert!(!trajectory.segments().iter().any(Segment::is_arc));
+                return;
+            };
+            let rollout = guess.structure.sail(problem, &route, &guess.lengths);
+            let Some(rollout) = rollout else {
+                // the return has the smallest angle, minus a rounding
+                let back = trajectory.segments().iter().rev().find(|s| s.is_arc());
+                let turn = back.map_or(0.0, |s| (s.turn_rate * s.duration).abs());
+                assert!((turn - FLATTEST_RETURN).abs() < 1e-9, "{turn} rad");
+                return;
+            };
+            let again = Trajectory::new(rollout.motion()).expect("valid");
+            assert!((again.end_time() - trajectory.end_time()).abs() < 1e-5);
+            // before that, the runs along the route may be in another order
+            let turn = trajectory.segments().iter().find(|s| s.is_arc());
+            let leaves = turn.map_or(0.0, |s| s.start_time);
+            for k in 0..=200 {
+                let time = leaves + (trajectory.end_time() - leaves) * f64::from(k) / 200.0;
+                let apart = again.pose_at(time).position - trajectory.pose_at(time).position;
+                assert!(apart.norm() < 1e-4, "{} m at {time} s", apart.norm());
+            }
+        });
+    }
+
+    /// Warm starts for the same sets and for larger ones, checked independently of the planner's
+    /// contact test.
+    #[test]
+    fn what_is_drawn_out_of_a_plan_is_clear_and_for_its_own_sets_no_dearer() {
+        let (drawn, larger) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
+        at_plans(|problem, trajectory, cost| {
+            if let Some(again) = warm_started(problem, trajectory).outcome.plan() {
+                assert!(again.cost <= 1.01 * cost, "{} {cost}", again.cost);
+                drawn.set(drawn.get() + 1);
+            }
+            let grown: Vec<Obstacle> = problem
+                .obstacles
+                .iter()
+                .map(|o| match o {
+                    Obstacle::Polytope(o) => crate::obstacle::PolytopeObstacle::new(
+                        "",
+                        o.initial()
+                            .minkowski_sum(&crate::geometry::outer_disc(15.0, 0.0)),
+                        o.velocity().clone(),
+                    )
+                    .into(),
+                    other => other.clone(),
+                })
+                .collect();
+            let problem = Problem {
+                obstacles: &grown,
+                ..problem.clone()
+            };
+            let planned = warm_started(&problem, trajectory);
+            if let Some(plan) = planned.outcome.plan() {
+                larger.set(larger.get() + 1);
+                let end = plan.trajectory.end_time();
+                for k in 0..=2000 {
+                    let time = end * f64::from(k) / 2000.0;
+                    let place = plan.trajectory.pose_at(time).position;
+                    let inside = |o: &Obstacle| match o {
+                        Obstacle::Polytope(o) => o.slack(place, time).value < -1e-6,
+                        _ => false,
+                    };
+                    assert!(!grown.iter().any(inside), "inside at {time} s");
+                }
+            }
+        });
+        assert!(
+            drawn.get() > 20 && larger.get() > 15,
+            "{} {}",
+            drawn.get(),
+            larger.get()
+        );
+    }
+}
