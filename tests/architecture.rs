@@ -141,6 +141,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "study",
         &[
+            "document",
             "frame",
             "tolerance",
             "geometry",
@@ -171,7 +172,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "scenario",
             "pipeline",
             "study",
-            "report",
         ],
     ),
     (
