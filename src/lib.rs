@@ -132,6 +132,7 @@ pub mod frame;
 pub mod geometry;
 pub mod input;
 pub mod map;
+mod numerics;
 pub mod obstacle;
 mod output;
 pub mod pipeline;

@@ -8,6 +8,13 @@ pub const LENGTH_M: f64 = 1e-9;
 /// difference covers the rounding of both.
 pub const DEPTH_M: f64 = 1e-6;
 
+/// Metres. Planned motions may touch a set; deeper than this they are in contact. A tenth of
+/// [`DEPTH_M`], so that the checker accepts what a planner accepts.
+pub const TOUCH_M: f64 = 1e-7;
+
+/// Standard deviations of a target's position that its sets cover.
+pub const POSITION_SIGMAS: f64 = 3.0;
+
 /// Metres. Positions at the joint of two segments may differ by this: rounding along a chain of
 /// some hundred segments.
 pub const JOINT_M: f64 = 1e-6;

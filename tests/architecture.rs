@@ -12,6 +12,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 const MAY_USE: &[(&str, &[&str])] = &[
     ("frame", &[]),
     ("tolerance", &[]),
+    ("numerics", &[]),
     ("search", &[]),
     ("output", &[]),
     ("text", &[]),
@@ -40,6 +41,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "frame",
             "geometry",
             "tolerance",
+            "numerics",
             "target",
             "trajectory",
             "map",
@@ -56,6 +58,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "geometry",
             "frame",
             "tolerance",
+            "numerics",
             "colregs",
         ],
     ),

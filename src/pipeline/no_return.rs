@@ -48,7 +48,7 @@ impl Run {
         let held = space_time::nominal_motion(&asked)?;
         let contacts = hard.iter().filter_map(|set| {
             held.iter()
-                .find_map(|s| set.first_contact(s, super::relaxation::TOUCH_M))
+                .find_map(|s| set.first_contact(s, crate::tolerance::TOUCH_M))
         });
         let Some(met) = contacts.min_by(f64::total_cmp) else {
             return Some(NoReturn::Never);

@@ -34,9 +34,6 @@ const RETAINED_HALVINGS: usize = 10;
 /// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
 pub const RISK_STEP: f64 = 1.0 / 64.0;
 
-/// Metres. A plan that is deeper than this in a set enters it; a tenth of what a checker rejects.
-pub(super) const TOUCH_M: f64 = 0.1 * crate::tolerance::DEPTH_M;
-
 /// How much of the request a plan satisfies, in the order in which requirements are given up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RelaxationLevel {
@@ -536,7 +533,7 @@ impl Relaxer<'_> {
             let clear = |scale: f64| {
                 let set = sets.scaled(self.scenario, target, scale).obstacle;
                 let set = if risk > 0.0 { set.at_risk(risk) } else { set };
-                let enters = |s| set.first_contact(s, TOUCH_M).is_some();
+                let enters = |s| set.first_contact(s, crate::tolerance::TOUCH_M).is_some();
                 !trajectory.segments().iter().any(enters)
             };
             if !sets.has_domain() || clear(1.0) {

@@ -1,6 +1,7 @@
 //! The exact Minkowski sum of two ellipses, which is not an ellipse; docs/theory.md section 3.
 
 use crate::frame::{Vector, cross, to_starboard};
+use crate::numerics::GoldenSection;
 use crate::obstacle::{EllipsoidObstacle, SpaceTimeObstacle};
 
 /// Golden section steps on the unit interval: accuracy 1e-12.
@@ -86,25 +87,13 @@ impl EllipsoidObstacle {
             let below = c * c * determinant[0] + b * c * determinant[1] + b * b * determinant[2];
             above / below
         };
-        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let (mut low, mut high) = (0.0, 1.0);
-        let (mut left, mut right) = (1.0 - golden, golden);
-        let (mut at_left, mut at_right) = (value(left), value(right));
+        let below = |b: f64| -value(b);
+        let mut search = GoldenSection::new(0.0, 1.0, below);
         for _ in 0..GOLDEN_STEPS {
-            if at_left > 1.0 || at_right > 1.0 {
+            if search.left.1 < -1.0 || search.right.1 < -1.0 {
                 return false;
             }
-            if at_left > at_right {
-                high = right;
-                (right, at_right) = (left, at_left);
-                left = high - golden * (high - low);
-                at_left = value(left);
-            } else {
-                low = left;
-                (left, at_left) = (right, at_right);
-                right = low + golden * (high - low);
-                at_right = value(right);
-            }
+            search.shorten(below);
         }
         true
     }

@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_interior_is_widened_and_a_polytope_enclosed() {
+    fn flat_sets_are_widened_and_polytopes_enclosed() {
         let point = ConvexPolygon::point(Vector::new(5.0, 5.0));
         let wall =
             ConvexPolygon::hull(&[Vector::new(0.0, 0.0), Vector::new(0.0, 9.0)]).expect("finite");

@@ -5,8 +5,9 @@ use crate::geometry::{ConvexPolygon, outer_simplified};
 use crate::obstacle::{LAND, LandObstacle, PolytopeObstacle, window_of};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::tangent::TangentEdges;
-use crate::planner::space_time::proxy::{Proxy, TOUCH_M};
-use crate::planner::space_time::selection::initial_guess::{Conflict, SpeedTable};
+use crate::planner::space_time::proxy::Proxy;
+use crate::planner::space_time::selection::initial_guess::{Conflict, ManoeuvreSpeeds};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 
 /// Metres. Blocks farther than this from the nominal motion get no tangent edges.
@@ -152,7 +153,7 @@ pub(crate) fn tangent_edges(
     } else {
         Vec::new()
     };
-    let speed_table = SpeedTable::of(problem);
+    let speed_table = ManoeuvreSpeeds::of(problem);
     blocks.into_iter().filter_map(move |b| {
         let block = &land_obstacle.blocks()[b];
         let around = outer_simplified(block.initial(), BLOCK_VERTICES);
