@@ -15,20 +15,6 @@ use crate::geometry::{
 };
 
 /// The land of a scenario. Two maps are equal when their polygons are.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Geographic, Georeference, Vector};
-/// use searoom::map::Map;
-///
-/// let earth = Georeference::new(Geographic { lat_deg: 63.0, lon_deg: 10.0 }).expect("an origin");
-/// let island = r#"{ "type": "Polygon", "coordinates":
-///     [[[10.00, 63.00], [10.01, 63.00], [10.01, 63.01], [10.00, 63.01], [10.00, 63.00]]] }"#;
-/// let map = Map::parse(island, &earth).expect("no faults");
-/// assert!(map.contains(Vector::new(100.0, 100.0)));
-/// assert!((map.signed_distance(Vector::new(-50.0, 500.0)) - 50.0).abs() < 1.0);
-/// ```
 #[derive(Clone)]
 pub struct Map {
     polygons: Vec<Polygon>,

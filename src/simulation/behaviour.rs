@@ -12,15 +12,6 @@ const HOLD: std::ops::Range<f64> = 5.0..60.0;
 const WALK_STEP: f64 = 0.3;
 
 /// How a velocity varies in time.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::Signal;
-///
-/// assert_eq!(Signal::ALL.len(), 3);
-/// assert!(Signal::ALL.contains(&Signal::BangBang));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Signal {
     /// One velocity for ever.
@@ -45,24 +36,6 @@ struct Stretch {
 }
 
 /// A motion of piecewise constant velocity from t = 0: exact at every instant.
-///
-/// # Examples
-///
-/// ```
-/// use rand::SeedableRng;
-/// use rand_chacha::ChaCha8Rng;
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::simulation::{Behaviour, Signal};
-///
-/// let start = ConvexPolygon::point(Vector::zeros());
-/// let velocities = ConvexPolygon::hull(&[Vector::new(4.0, 0.0), Vector::new(6.0, 0.0)]).expect("a segment");
-/// let mut rng = ChaCha8Rng::seed_from_u64(1);
-/// let ferry = Behaviour::random(Signal::RandomWalk, &start, &velocities, 60.0, &mut rng);
-/// // whatever she does, her mean velocity is in the set
-/// let east = ferry.position_at(60.0).x;
-/// assert!((240.0..=360.0).contains(&east));
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Behaviour {
     stretches: Vec<Stretch>,

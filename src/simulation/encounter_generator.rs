@@ -66,15 +66,6 @@ const EARLIER: f64 = 30.0;
 const MAX_DRAWS: usize = 10_000;
 
 /// What own ship is to the target that is drawn.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::EncounterKind;
-///
-/// let names = EncounterKind::ALL.map(EncounterKind::name);
-/// assert_eq!(names, ["head-on", "give-way", "stand-on", "overtaking"]);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum EncounterKind {
     /// Nearly reciprocal courses.
@@ -146,18 +137,6 @@ impl EncounterKind {
 }
 
 /// Where the scene lies in the plane.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::{EncounterKind, Placement, random_encounter};
-///
-/// // the same encounter, at the origin and somewhere else on another course
-/// let [here, there] = [Placement::Origin, Placement::Random].map(|p| random_encounter(EncounterKind::HeadOn, 7, p));
-/// let start = |drawn: searoom::simulation::Drawn| drawn.scenario.own_ship.pose.position.norm();
-/// assert!(start(here?) < 1e-9 && start(there?) > 1.0);
-/// # Ok::<(), searoom::simulation::GeneratorError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Placement {
     /// Own ship starts at the origin and steers east.
@@ -167,18 +146,6 @@ pub enum Placement {
 }
 
 /// A drawn scenario and what the drawing took.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::{Drawn, EncounterKind, Placement, random_encounter};
-///
-/// let Drawn { scenario, kinds, .. } = random_encounter(EncounterKind::GiveWay, 42, Placement::Origin)?;
-/// assert_eq!((scenario.targets.len(), kinds), (1, vec![EncounterKind::GiveWay]));
-/// // the same seed, the same scene
-/// assert_eq!(random_encounter(EncounterKind::GiveWay, 42, Placement::Origin)?.scenario, scenario);
-/// # Ok::<(), searoom::simulation::GeneratorError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// Ready to be planned.
@@ -190,15 +157,6 @@ pub struct Drawn {
 }
 
 /// Why no scene could be drawn.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::{EncounterKind, GeneratorError};
-///
-/// let error = GeneratorError::Exhausted { kind: EncounterKind::HeadOn, draws: 1000 };
-/// assert_eq!(error.to_string(), "no head-on encounter in 1000 draws");
-/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeneratorError {
     /// Every draw was of another kind or began inside a hard set.

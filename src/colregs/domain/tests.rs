@@ -1,4 +1,4 @@
-//! Shapes: nested, swept to the side that the rules forbid, drawn back from own ship's start.
+//! Ship domains: nested, swept to the forbidden side, reduced around own ship's start.
 
 use super::*;
 use crate::colregs::{Role, SteadyShip, raw_role, risk_distance};
