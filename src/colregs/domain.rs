@@ -15,7 +15,8 @@ const POSITION_SIGMAS: f64 = 3.0;
 /// Initial sets of one target for own ship's centre, metres: hard set and ship domain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shapes {
-    /// Hulls on every possible heading, safety margin and position uncertainty: the claim of safety.
+    /// Hulls on every possible heading, safety margin and position uncertainty: the claim of
+    /// safety.
     pub hard: ConvexPolygon,
     /// The ship domain; contains `hard`.
     pub shaped: ConvexPolygon,
@@ -33,11 +34,12 @@ pub struct Shapes {
 /// - hard = hull ⊕ disc(own half-diagonal + safety margin + three standard deviations);
 /// - shaped = (conv(base ∪ hull) ⊕ `[0, e]`) ⊕ the same disc.
 ///
-/// The disc is an outer 16-gon aligned with the target. The base contains the hull before it is swept,
-/// so the domain contains the hard set by construction. The base is symmetric, so the asymmetry of
-/// the domain is exactly `e . n_bad`. The base is sized by the target's length alone; margin and own
-/// size enter once, with the disc. `risk` is the first instant of risk, for the "colregs" domain only:
-/// its `e` is [`sweep`]. A target without risk, at rest, or to stand on for, has the bare base.
+/// The disc is an outer 16-gon aligned with the target. The base contains the hull before it is
+/// swept, so the domain contains the hard set by construction. The base is symmetric, so the
+/// asymmetry of the domain is exactly `e . n_bad`. The base is sized by the target's length alone;
+/// margin and own size enter once, with the disc. `risk` is the first instant of risk, for the
+/// "colregs" domain only: its `e` is [`sweep`]. A target without risk, at rest, or to stand on for,
+/// has the bare base.
 ///
 /// If the domain, but not the hard set, contains own ship's start, it is reduced until own ship is
 /// [`tolerance::START_M`] outside: first `e` shrinks, then the base toward the hull. A start inside
@@ -122,8 +124,8 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
     }
 }
 
-/// docs/colregs.md 3.2: passing on the forbidden side takes at least two risk distances more than on
-/// the other, where the margin is kept. True for a domain that is not swept or not finite.
+/// docs/colregs.md 3.2: passing on the forbidden side takes at least two risk distances more than
+/// on the other, where the margin is kept. True for a domain that is not swept or not finite.
 fn keeps_the_design_inequality(
     own: &OwnShip,
     target: &ShipTrack,
@@ -141,8 +143,8 @@ fn keeps_the_design_inequality(
 }
 
 impl Shapes {
-    /// The ship domain reduced toward the hard set: `scale` 1 gives `shaped`, 0 gives `hard`. Convex
-    /// and nested. O(n + m).
+    /// The ship domain reduced toward the hard set: `scale` 1 gives `shaped`, 0 gives `hard`.
+    /// Convex and nested. O(n + m).
     pub fn scaled(&self, scale: f64) -> ConvexPolygon {
         let (hard, shaped) = (self.hard.scaled(1.0 - scale), self.shaped.scaled(scale));
         hard.minkowski_sum(&shaped)
@@ -249,9 +251,9 @@ const SWEEP_EXCESS: f64 = 0.1;
 /// Radians, 5°: own ship this far off the wake of the ship that it overtakes passes on that side.
 const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
 
-/// Vector `e` of docs/colregs.md 3.3 by which the base is swept, metres. Passing on the forbidden side
-/// then takes `|e| = 2 (1 + 0.1)` risk distances more than on the other, so that the compliant side is
-/// cheaper for every miss distance that is a risk (3.2).
+/// Vector `e` of docs/colregs.md 3.3 by which the base is swept, metres. Passing on the forbidden
+/// side then takes `|e| = 2 (1 + 0.1)` risk distances more than on the other, so that the compliant
+/// side is cheaper for every miss distance that is a risk (3.2).
 ///
 /// The direction is the normal of the relative velocity at the first instant of risk on the closed
 /// side ([`RoleDuties::closed_side`](super::RoleDuties)). When overtaking, that is the target's
@@ -279,8 +281,8 @@ pub fn sweep(own: &OwnShip, target: &ShipTrack, risk: &Risk) -> Vector {
     normal * toward.signum() * (2.0 * (1.0 + SWEEP_EXCESS) * risk_distance(own, target))
 }
 
-/// A bevelled box about a ship, in ship lengths: its reach to each side, and the fraction of the side
-/// reach that is left at bow and stern.
+/// A bevelled box about a ship, in ship lengths: its reach to each side, and the fraction of the
+/// side reach that is left at bow and stern.
 struct BevelledBox {
     fore: f64,
     aft: f64,
@@ -291,9 +293,9 @@ struct BevelledBox {
 }
 
 impl BevelledBox {
-    /// The symmetric base of the "colregs" domain: two lengths ahead and astern, one and a half abeam.
-    /// The bevel leans by a multiple of 22.5°, like the sides of the disc that is added, so the sum
-    /// has 16 edges instead of 20. The disc contains the safety margin.
+    /// The symmetric base of the "colregs" domain: two lengths ahead and astern, one and a half
+    /// abeam. The bevel leans by a multiple of 22.5°, like the sides of the disc that is added, so
+    /// the sum has 16 edges instead of 20. The disc contains the safety margin.
     fn symmetric() -> Self {
         let (along, abeam) = (2.0, 1.5);
         let bevel = 1.0 - (std::f64::consts::PI / 8.0).tan() * (along / 2.0) / abeam;

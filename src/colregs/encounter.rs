@@ -34,17 +34,17 @@ pub struct Risk {
     pub target: SteadyShip,
 }
 
-/// Metres: two centres that will pass nearer than this are at risk. Twice the longer ship, or half of
-/// own safety margin if that is more (docs/colregs.md 1.3).
+/// Metres: two centres that will pass nearer than this are at risk. Twice the longer ship, or half
+/// of own safety margin if that is more (docs/colregs.md 1.3).
 pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
     (RiskLimits::STANDARD.lengths * own.hull.length.max(target.hull.length))
         .max(0.5 * own.safety_margin)
 }
 
-/// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md 1.3):
-/// the distance shrinks, and two ships that hold course and speed will pass within [`risk_distance`]
-/// and `horizon` seconds. Searched from 0 to the horizon or the desired arrival, whichever is first.
-/// Own ship is on the desired trajectory, wherever it starts.
+/// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md
+/// 1.3): the distance shrinks, and two ships that hold course and speed will pass within
+/// [`risk_distance`] and `horizon` seconds. Searched from 0 to the horizon or the desired arrival,
+/// whichever is first. Own ship is on the desired trajectory, wherever it starts.
 ///
 /// Closed form: on a leg the relative velocity is constant, and so is the distance at the closest
 /// approach. O(legs). A leg that is not finite has no risk: safety rests on the sets, not the role.
@@ -170,9 +170,9 @@ struct Closest {
     time: f64,
 }
 
-/// Least value of a convex function on an interval by golden section, to about 1e-9 of the interval;
-/// among equal values the first one. The distance of two convex sets in steady motion is convex in
-/// time, overlap included.
+/// Least value of a convex function on an interval by golden section, to about 1e-9 of the
+/// interval; among equal values the first one. The distance of two convex sets in steady motion is
+/// convex in time, overlap included.
 fn least(from: f64, until: f64, distance: impl Fn(f64) -> f64) -> Closest {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     const STEPS: usize = 48;
@@ -367,7 +367,8 @@ mod tests {
         let desired = line(&[(0.0, 0.0), (600.0, 0.0)], 6.0);
         let found = encounter(&own_ship(), &desired, &target, 400.0);
         assert_eq!(found.role, Role::None);
-        // past its growing corner, which comes nearer still: own way relative to the corner is a line
+        // past its growing corner, which comes nearer still: own way relative to the corner is a
+        // line
         let (way, corner) = (Vector::new(5.5, 0.5), Vector::new(310.0, 90.0));
         let exact = cross(way, corner) / way.norm();
         assert!((found.undisturbed_dcpa - exact).abs() < 1e-6, "{found:?}");

@@ -85,8 +85,8 @@ impl Map {
     }
 
     /// Metres from the nearest edge of the land: positive on water, negative on land, infinite
-    /// without land. If polygons overlap, an edge inside another polygon counts too, so the result may
-    /// be less than the depth. NaN gives NaN. O(log n).
+    /// without land. If polygons overlap, an edge inside another polygon counts too, so the result
+    /// may be less than the depth. NaN gives NaN. O(log n).
     pub fn signed_distance(&self, p: Vector) -> f64 {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return f64::NAN;
