@@ -68,7 +68,6 @@ pub struct Compared<'a> {
 /// use searoom::study::compare::{Contender, Method};
 /// use searoom::recording::{Compared, Recorded, write_comparison};
 /// use searoom::scenario::Scenario;
-/// use searoom::study::compare::{Contender, Method};
 ///
 /// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
 /// let entries = [Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario)];
