@@ -12,10 +12,10 @@ mod new_york;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use searoom::colregs::conduct::{Conduct, Thresholds};
+use searoom::colregs::{Thresholds, compliance::ComplianceReport};
 use searoom::pipeline::{self, Run};
 use searoom::planner::Outcome;
-use searoom::scenario::formats::{Assumed, Assumption, Contents};
+use searoom::scenario::import::{Assumed, Assumption, Contents};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
 
@@ -35,7 +35,7 @@ const QUICK: (u64, usize) = (4, 1);
 const DEADLINE: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let thresholds = Thresholds::standard().ok_or("no thresholds")?;
+    let thresholds = Thresholds::standard();
     let (random, runs) = match std::env::args().nth(1).as_deref() {
         None => (RANDOM, RUNS),
         Some("--quick") => QUICK,
@@ -151,13 +151,14 @@ fn row(
             .map(|time| time.as_secs_f64() * 1e3)
             .collect();
         times.push(quantile(&mut of_this, 0.5));
-        let conduct: Vec<Conduct> = run.conduct(thresholds).into_iter().flatten().collect();
+        let conduct: Vec<ComplianceReport> =
+            run.conduct(thresholds).into_iter().flatten().collect();
         scores.extend(conduct.iter().map(|c| c.scores.least()));
         if is_clear(&run) {
             clear += 1;
             relaxed += usize::from(!run.relaxations.is_empty());
             judged += usize::from(conduct.iter().any(|c| !c.roles.is_empty()));
-            complies += usize::from(conduct.iter().all(Conduct::complies));
+            complies += usize::from(conduct.iter().all(ComplianceReport::complies));
             costs.extend(run.planned.outcome.plan().map(|plan| plan.cost));
         }
     }

@@ -182,7 +182,7 @@ pub fn clockwise_deg_per_s(turn_rate: f64) -> f64 {
 }
 
 /// Radians from degrees, for angles without a direction such as a half-width.
-pub fn radians_from_deg(degrees: f64) -> f64 {
+pub const fn radians_from_deg(degrees: f64) -> f64 {
     degrees.to_radians()
 }
 

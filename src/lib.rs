@@ -67,7 +67,8 @@
 //! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
 //! | [`evaluation`] | judges any trajectory, without the sets and contact tests of the planner |
 //! | [`verification`] | checks a plan document alone, without scenario and planner |
-//! | [`scenario`] | scenario files: every fault of a file at once; [`scenario::formats`]: files of other programs |
+//! | [`input`] | reading of files: bounded text, values with their places, every fault at once |
+//! | [`scenario`] | scenario files; [`scenario::import`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
 //! | [`simulation`] | random encounters, and targets that do anything their sets allow |
 //! | [`study`] | [`study::assess`]: risk and closest approach without a plan; [`study::compare`]: every planner and two baselines on one scenario; [`study::lint`]: faults of a scenario |
@@ -129,6 +130,7 @@ pub mod document;
 pub mod evaluation;
 pub mod frame;
 pub mod geometry;
+pub mod input;
 pub mod map;
 pub mod obstacle;
 mod output;

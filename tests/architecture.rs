@@ -233,8 +233,7 @@ const NEVER: &[(&str, &str)] = &[
 /// A name and the only places (path prefixes below `src/`) where it may stand.
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
-    ("parry2d_f64", &["geometry/", "map.rs", "obstacle/index.rs"]),
-    ("rstar", &["map/", "geometry/boxes.rs"]),
+    ("parry2d_f64", &["geometry/parry"]),
     ("geojson", &["map/"]),
     ("spade", &["geometry/polygon/decomposition.rs"]),
     ("robust", &["geometry/"]),

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Vector, direction, heading_of, wrap};
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, RelaxationLevel, Run};
-use searoom::scenario::formats::{Assumed, Assumption, Contents, Format, Imported, Situation};
+use searoom::scenario::import::{Assumed, Assumption, Contents, Format, Imported, Situation};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{Placement, random_traffic};
 use searoom::target::{Motion, Target};

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
-use searoom::colregs::conduct::Thresholds;
+use searoom::colregs::Thresholds;
 use searoom::planner::{PlannerKind, SearchKind};
 use searoom::report::printable_lines;
-use searoom::scenario::formats::{Assumed, Assumption};
+use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
 
 use super::products::Wanted;
@@ -405,7 +405,7 @@ fn thresholds(word: &str) -> Result<Arc<Thresholds>, String> {
     }
     let file = Path::new(word);
     if !file.exists() {
-        let names: Vec<&str> = Thresholds::all().iter().map(|t| t.name.as_str()).collect();
+        let names: Vec<&str> = Thresholds::all().iter().map(|t| &*t.name).collect();
         return Err(format!(
             "allowed: {}, or a file that is there",
             names.join(", ")

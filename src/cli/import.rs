@@ -4,7 +4,7 @@ use std::fs;
 
 use anyhow::Context;
 use searoom::report::write_atomically;
-use searoom::scenario::formats::Assumed;
+use searoom::scenario::import::Assumed;
 
 use super::args::ImportArgs;
 use super::files::refuse_clashes;

@@ -3,7 +3,7 @@
 use searoom::document::{LintDocument, LintScenarioDocument};
 use searoom::report::lint_text;
 use searoom::scenario::Scenario;
-use searoom::scenario::formats::Assumed;
+use searoom::scenario::import::Assumed;
 use searoom::study::lint::{Likeness, Lint, likenesses, lint};
 
 use super::args::SuiteArgs;

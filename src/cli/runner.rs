@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use searoom::pipeline::{self, Run};
 use searoom::scenario::ScenarioError;
-use searoom::scenario::formats::Assumed;
+use searoom::scenario::import::Assumed;
 
 use super::args::Shared;
 use super::scenes::{Made, Scene};

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use searoom::scenario::formats::{Assumed, Contents, Declared, Format, Imported, Situation};
+use searoom::scenario::import::{Assumed, Contents, Declared, Format, Imported, Situation};
 use searoom::scenario::{Scenario, ScenarioError};
 
 use super::files::{self, Found};

@@ -8,7 +8,7 @@ use searoom::document::{
 use searoom::pipeline::Run;
 use searoom::report::page::Report;
 use searoom::report::{Row, Summary, printable, suite_table};
-use searoom::scenario::formats::Assumed;
+use searoom::scenario::import::Assumed;
 
 use super::args::SuiteArgs;
 use super::files::{self, Found, shown};

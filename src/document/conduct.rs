@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::colregs::conduct::{Conduct, Measure};
+use crate::colregs::compliance::{ComplianceReport, Measure};
 use crate::frame::deg_from_radians;
 
 /// A role and when own ship has it along the plan.
@@ -48,7 +48,7 @@ pub struct ConductDocument {
 
 impl ConductDocument {
     /// Angles in degrees.
-    pub(super) fn of(conduct: &Conduct) -> Self {
+    pub(super) fn of(conduct: &ComplianceReport) -> Self {
         let scores = conduct.scores.by_name();
         Self {
             roles: conduct
@@ -65,7 +65,7 @@ impl ConductDocument {
                 .map(|(name, score)| (name.to_owned(), score))
                 .collect(),
             breaches: conduct
-                .breaches
+                .violations
                 .iter()
                 .map(|breach| BreachDocument {
                     rule: breach.rule.to_owned(),
@@ -74,7 +74,7 @@ impl ConductDocument {
                 })
                 .collect(),
             monitors: conduct
-                .findings
+                .monitors
                 .iter()
                 .map(|finding| {
                     let (unit, scale): (_, fn(f64) -> f64) = match finding.measure {

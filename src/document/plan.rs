@@ -103,9 +103,7 @@ impl PlanDocument {
             planner: scenario.planner.word().to_owned(),
             search: words::search(scenario.search).to_owned(),
             compliance: scenario.compliance.word().to_owned(),
-            thresholds: scenario
-                .judged_by()
-                .map_or_else(String::new, |t| t.name.clone()),
+            thresholds: scenario.judged_by().name.to_string(),
             objective: words::objective(scenario).to_owned(),
             risk_weight_m: match scenario.objective {
                 Objective::LengthRisk { weight } => Some(weight),

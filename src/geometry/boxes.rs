@@ -1,7 +1,4 @@
-//! Axis-aligned boxes, and an index of many boxes.
-
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
+//! Axis-aligned boxes.
 
 use super::ConvexPolygon;
 use crate::frame::Vector;
@@ -72,44 +69,12 @@ impl Window {
         }
         kept
     }
-
-    fn envelope(&self) -> AABB<[f64; 2]> {
-        AABB::from_corners(self.low.into(), self.high.into())
-    }
-}
-
-/// An index of boxes: an R*-tree, built in O(n log n).
-#[derive(Debug, Clone)]
-pub struct BoxIndex {
-    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
-}
-
-impl BoxIndex {
-    /// An index of boxes, numbered from 0.
-    pub fn new(boxes: impl IntoIterator<Item = Window>) -> Self {
-        let boxes = boxes
-            .into_iter()
-            .enumerate()
-            .map(|(index, w)| {
-                GeomWithData::new(Rectangle::from_corners(w.low.into(), w.high.into()), index)
-            })
-            .collect();
-        Self {
-            tree: RTree::bulk_load(boxes),
-        }
-    }
-
-    /// The boxes that meet a window, touching included, in no order. O(log n + found).
-    pub fn meeting<'a>(&'a self, window: &Window) -> impl Iterator<Item = usize> + use<'a> {
-        self.tree
-            .locate_in_envelope_intersecting(window.envelope())
-            .map(|b| b.data)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::BoxIndex;
     use rand::{Rng, SeedableRng};
 
     #[test]

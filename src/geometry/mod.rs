@@ -6,16 +6,18 @@ mod convex_set;
 mod disc;
 mod ellipse;
 mod nearness;
+mod parry;
 mod polygon;
 mod simplify;
 
-pub(crate) use boxes::{BoxIndex, Window};
+pub(crate) use boxes::Window;
 pub use convex::{ConvexPolygon, GeometryError};
 pub use convex_set::ConvexSet;
 pub use disc::{DISC_SIDES, outer_disc};
 pub(crate) use ellipse::distance_in_frame;
 pub use ellipse::{Ellipse, ShapeError, SignedDistance, outer_enclosing_ellipse};
 pub(crate) use nearness::stretch_near;
+pub(crate) use parry::{Between, BoxIndex, EdgeTree, shortest_between};
 pub use polygon::{Crossing, DecompositionError, EdgeIndex, Polygon, PolygonError, convex_pieces};
 pub(crate) use simplify::outer_simplified;
 

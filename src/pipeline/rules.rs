@@ -1,8 +1,8 @@
 //! The rules in a scenario: what they ask of own ship, and how its motion complies.
 
 use super::{Relaxation, Run, TargetSets};
-use crate::colregs::conduct::{Conduct, OwnTrack, Thresholds};
-use crate::colregs::{Duty, Encountered, Role, SteadyShip};
+use crate::colregs::compliance::{ComplianceReport, OwnSamples};
+use crate::colregs::{Duty, Encountered, Role, SteadyShip, Thresholds};
 use crate::frame::Side;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::{Compliance, Scenario};
@@ -23,7 +23,10 @@ pub(super) fn without_domains_of_give_way_targets(
 ) -> Vec<TargetSets> {
     let roles = sets.iter().map(|s| s.encounter.role);
     if scenario.compliance == Compliance::Rules && Duty::of(roles).stands_on {
-        for set in sets.iter_mut().filter(|s| s.encounter.role.stands_on()) {
+        for set in sets
+            .iter_mut()
+            .filter(|s| s.encounter.role.duties().stands_on)
+        {
             set.remove_domain();
         }
     }
@@ -67,19 +70,22 @@ impl Run {
     ///
     /// `None` without a plan, and for a target that is not a tracked ship. Uses the planned
     /// trajectory and the nominal track alone. O(targets × seconds), less for distant targets.
-    pub fn conduct(&self, thresholds: &Thresholds) -> Vec<Option<Conduct>> {
+    pub fn conduct(&self, thresholds: &Thresholds) -> Vec<Option<ComplianceReport>> {
         let plan = self.planned.outcome.plan();
         let own = self.scenario.own_ship.hull;
-        let track = plan.map(|plan| OwnTrack::along(&plan.trajectory, own));
+        let track = plan.map(|plan| OwnSamples::along(&plan.trajectory, own));
         let judge = |target: &crate::target::Target| {
-            Some(Conduct::along(track.as_ref()?, target.ship()?, thresholds))
+            Some(ComplianceReport::along(
+                track.as_ref()?,
+                target.ship()?,
+                thresholds,
+            ))
         };
         self.scenario.targets.iter().map(judge).collect()
     }
 
-    /// [`Run::conduct`] by the scenario's thresholds; empty where it has none.
-    pub fn judged_conduct(&self) -> Vec<Option<Conduct>> {
-        let thresholds = self.scenario.judged_by();
-        thresholds.map_or_else(Vec::new, |t| self.conduct(t))
+    /// [`Run::conduct`] by the scenario's thresholds.
+    pub fn judged_conduct(&self) -> Vec<Option<ComplianceReport>> {
+        self.conduct(self.scenario.judged_by())
     }
 }

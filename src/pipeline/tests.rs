@@ -393,7 +393,7 @@ fn out_of_time_there_is_still_an_answer() {
 /// Three ships leave no way near the path: a wide detour is found, clear of every hard set.
 #[test]
 fn a_wide_detour_is_found_where_no_plan_stays_near_the_path() {
-    use crate::scenario::formats::{Assumed, Contents};
+    use crate::scenario::import::{Assumed, Contents};
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenarios/dnv/traffic_situation_47.json");
     let assumed = Assumed::default();

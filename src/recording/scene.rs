@@ -4,7 +4,7 @@
 use rerun::{Color, TimeColumn};
 
 use super::{TIMELINE, style, thinning};
-use crate::colregs::conduct::Conduct;
+use crate::colregs::compliance::ComplianceReport;
 use crate::frame::{Pose, Vector, heading_of};
 use crate::obstacle::Obstacle;
 use crate::pipeline::{Run, TargetSets};
@@ -249,7 +249,7 @@ pub struct Scene<'a> {
     /// grow.
     pub stage: Stage<'a>,
     /// How own ship behaves toward each target, in the order of the scenario's; `None` for one that is no ship, and without a plan.
-    pub conduct: Vec<Option<Conduct>>,
+    pub conduct: Vec<Option<ComplianceReport>>,
 }
 
 impl<'a> Scene<'a> {

@@ -1,6 +1,6 @@
 //! How own ship behaves, in words.
 
-use crate::colregs::conduct::{Finding, Measure, Verdict};
+use crate::colregs::compliance::{Measure, MonitorResult, Verdict};
 use crate::frame::deg_from_radians;
 use crate::pipeline::Run;
 
@@ -18,15 +18,15 @@ pub(super) fn lines(run: &Run) -> Vec<(&'static str, String)> {
             .map(|(name, score)| format!("{} {score:.2}", name.replace('_', " ")))
             .collect();
         lines.push(("rules", format!("'{}': {}", target.name, scores.join(", "))));
-        for breach in &conduct.breaches {
+        for breach in &conduct.violations {
             let said = format!(
                 "breaks {} at {:.0} s: {}",
                 breach.rule, breach.time, breach.what
             );
             lines.push(("", said));
         }
-        let broken = |f: &&Finding| f.verdict == Verdict::Violated;
-        for finding in conduct.findings.iter().filter(broken) {
+        let broken = |f: &&MonitorResult| f.verdict == Verdict::Violated;
+        for finding in conduct.monitors.iter().filter(broken) {
             let (worst, time) = (
                 finding.robustness.unwrap_or(f64::NAN),
                 finding.time.unwrap_or(f64::NAN),

@@ -771,11 +771,14 @@ fn thresholds_that_are_wrong_are_named() {
     let file = write(folder.path(), "mine.toml", faulty);
     refused(&file)
         .stderr(contains(
-            "mine.toml: head_on_deg: found 200; allowed: a number from 0 to 180",
+            "line 4: head_on_deg: found 200; allowed: a number from 0 to 180",
         ))
-        .stderr(contains("hold: found 1; allowed: like, name, source"));
+        .stderr(contains("mine.toml: 2 faults"))
+        .stderr(contains(
+            "line 5: hold: found an unknown key, perhaps for 'hold_deg'",
+        ));
     refused(text(folder.path())).stderr(contains("cannot be read"));
-    let long = write(folder.path(), "long.toml", "#".repeat(70_000));
-    refused(&long).stderr(contains("file: found more than 65536 bytes"));
+    let long = write(folder.path(), "long.toml", "#".repeat(1_100_000));
+    refused(&long).stderr(contains("found more than 1 MiB"));
     searoom(&["suite", "--lint", stand_on, "--thresholds", "searoom"]).code(2);
 }

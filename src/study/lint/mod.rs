@@ -11,7 +11,7 @@ use crate::geometry::DISC_SIDES;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::sets;
 use crate::scenario::Scenario;
-use crate::scenario::formats::Declared;
+use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
 
 /// Instants at which sets and own ship are compared.

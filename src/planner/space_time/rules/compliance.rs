@@ -49,13 +49,13 @@ pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[
     let departure = Departure::of(context, motion);
     departure.is_apparent(duty)
         && problem.encountered.iter().all(|encountered| {
-            let role = encountered.role;
+            let duties = encountered.role.duties();
             let nearest = Nearest::of(&encountered.ship, motion);
-            let passes = nearest.drifts_to_port || !role.passes_port_to_port();
-            let heads = !role.bars_port_until_passed()
+            let passes = nearest.drifts_to_port || !duties.port_to_port;
+            let heads = !duties.no_port_heading
                 || departure.keeps_off_port(problem, motion, nearest.time + PASSED_S);
             let plain =
-                !role.keeps_clear() || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
+                !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
             passes && heads && plain && keeps_off_bow(encountered, motion)
         })
 }
