@@ -31,7 +31,7 @@ pub(crate) use stage_cost::{StageWeights, stage_costs};
 pub use steered::{Steering, evaluate_steered};
 pub(crate) use turned_hull::TurnedHull;
 pub(crate) use undisturbed::{undisturbed_distance, undisturbed_legs};
-pub(crate) use words::{Tone, outcome, risk_figure};
+pub(crate) use words::risk_figure;
 pub use words::{facts, outcome_word};
 
 use clearance::Body;

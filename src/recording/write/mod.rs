@@ -63,7 +63,7 @@ pub(super) type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// let file = folder.path().join("head-on.rrd");
 /// write(&pipeline::run(scenario), Some("{}"), &file)?;
 /// let recorded = Recorded::read(&file)?;
-/// assert_eq!(recorded.document(), Some("{}"));
+/// assert_eq!(recorded.document().as_deref(), Some("{}"));
 /// assert!(recorded.table("curves/speed_kn").is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

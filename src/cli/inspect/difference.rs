@@ -1,4 +1,4 @@
-//! What two recordings differ in.
+//! The differences of two recordings.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use searoom::recording::Recorded;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::args::InspectArgs;
-use super::inspect::read;
-use super::output::Output;
-use super::status::Status;
+use super::super::args::InspectArgs;
+use super::super::output::Output;
+use super::super::output::status::Status;
+use super::read;
 
 /// Differences of two plan documents that are listed; the rest is counted.
 const LISTED: usize = 20;
@@ -18,12 +18,12 @@ const LISTED: usize = 20;
 /// by field without the time that planning took.
 const APART: [&str; 3] = ["/__properties", "/plan_document", "/comparison_document"];
 
-/// What two recordings differ in.
+/// The differences of two recordings.
 #[derive(Debug, Default, Serialize)]
 struct Difference {
     files: Vec<String>,
     equal: bool,
-    /// Of the plan documents, their times aside: where, and what stands there in each.
+    /// Fields in which the plan documents differ, timing aside.
     plan: Vec<PlanDifference>,
     /// In the first alone.
     only_first: Vec<String>,

@@ -1,17 +1,17 @@
-//! The scenarios in the files that were found: one in a scenario file, one or many in a foreign one.
+//! The scenarios in files: one in a scenario file, one or many in an imported one.
 
 use std::path::{Path, PathBuf};
 
 use searoom::scenario::import::{Assumed, Contents, Declared, Format, Imported, Situation};
 use searoom::scenario::{Scenario, ScenarioError};
 
+use super::super::output::Output;
 use super::files::{self, Found};
-use super::output::Output;
 
-/// A scenario that was asked for, not made yet.
+/// A scenario that is not read in full yet.
 #[derive(Debug)]
 pub struct Scene {
-    /// Its file, and what is written for it is called.
+    /// Its file, and the name of its results.
     pub found: Found,
     source: Source,
 }
@@ -20,7 +20,7 @@ pub struct Scene {
 enum Source {
     /// A scenario file.
     File,
-    /// One of the situations of a foreign file.
+    /// A situation of an imported file.
     Situation(Box<Situation>),
 }
 
@@ -33,16 +33,16 @@ pub struct Unread {
     pub error: String,
 }
 
-/// What a scene gave.
+/// A scenario with notes.
 #[derive(Debug)]
 pub struct Made {
     pub scenario: Scenario,
-    /// What was assumed or not used.
+    /// Assumptions, and parts of the file that are not used.
     pub notes: Vec<String>,
 }
 
 impl Scene {
-    /// The scenario, with what a foreign file does not say assumed.
+    /// The scenario, with assumptions where an imported file gives no value.
     pub fn scenario(&self, assumed: &Assumed) -> Result<Made, ScenarioError> {
         match self.imported(assumed) {
             Some(imported) => imported.map(|imported| Made {
@@ -56,7 +56,7 @@ impl Scene {
         }
     }
 
-    /// The same of a foreign file, with its text; `None` where it is a scenario file.
+    /// The scenario of an imported file, with its text; `None` for a scenario file.
     pub fn imported(&self, assumed: &Assumed) -> Option<Result<Imported, ScenarioError>> {
         match &self.source {
             Source::File => None,
@@ -68,7 +68,7 @@ impl Scene {
         }
     }
 
-    /// What a foreign file says of its situation besides.
+    /// Further facts that an imported file declares about its situation.
     pub fn declared(&self) -> Declared {
         match &self.source {
             Source::File => Declared::default(),
@@ -88,8 +88,8 @@ impl Scene {
     }
 }
 
-/// Opens what was found: every scene in the order of the files. What is no scenario but a document of the program or a map
-/// is left out of a folder, and that is said.
+/// Opens files: every scene in their order. Documents and maps in a folder are left out with a
+/// note.
 pub fn open(
     found: Vec<Result<Found, (PathBuf, anyhow::Error)>>,
     assumed: &Assumed,
@@ -142,8 +142,8 @@ fn of_file(
             output.note(&format_args!("{}: {what}, left out", file.display()));
         }
         Ok(Contents::Other(what)) => {
-            let said = format!("{}: {what}; no scenario in it", file.display());
-            scenes.push(Err(unread(said)));
+            let error = format!("{}: {what}; no scenario in it", file.display());
+            scenes.push(Err(unread(error)));
         }
         Err(error) => scenes.push(Err(unread(error.to_string()))),
     }
@@ -155,20 +155,20 @@ pub fn scenario_file(file: &Path) -> Result<Scenario, String> {
     let is = match read {
         Contents::Scenario => return Scenario::read(file).map_err(|error| error.to_string()),
         Contents::Situations { format, .. } => {
-            let foreign = match format {
+            let other = match format {
                 Format::Scenario => "situations",
                 Format::Dnv => "a DNV traffic situation",
                 Format::Imazu => "Imazu's cases",
                 Format::CommonOcean => "a CommonOcean scenario",
             };
-            format!("{foreign}; `searoom import` makes scenario files of it")
+            format!("{other}; `searoom import` makes scenario files of it")
         }
         Contents::Other(what) => format!("{what}; no scenario in it"),
     };
     Err(format!("{}: {is}", file.display()))
 }
 
-/// Says how many foreign files a command that takes scenario files alone leaves out of each folder.
+/// Notes how many files of other formats a folder holds that this command leaves out.
 pub fn note_foreign(paths: &[PathBuf], output: &Output) {
     for folder in paths.iter().filter(|path| path.is_dir()) {
         let is_foreign = |file: &PathBuf| {
@@ -180,7 +180,7 @@ pub fn note_foreign(paths: &[PathBuf], output: &Output) {
         if count > 0 {
             let (folder, plural) = (folder.display(), if count == 1 { "" } else { "s" });
             output.note(&format_args!(
-                "{folder}: {count} file{plural} of foreign formats left out; `searoom import` makes scenario files of them"
+                "{folder}: {count} file{plural} of other formats left out; `searoom import` makes scenario files of them"
             ));
         }
     }
@@ -209,5 +209,5 @@ fn named(found: &Found, situation: &Situation) -> Found {
     }
 }
 
-/// What stands for "/" in the names of outputs.
+/// Replaces "/" in the names of results.
 const SEPARATOR: &str = "__";

@@ -88,8 +88,8 @@ pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64;
     Ok(row)
 }
 
-/// The rows of a CSV file with a header line, at least one; its columns may be in any order. Every fault of the
-/// file is in the error, each with its line and its field.
+/// The rows of a CSV file with a header line, at least one; its columns may be in any order. Every
+/// fault of the file is in the error, each with its line and its field.
 pub fn read<const N: usize>(
     file: &Path,
     columns: &[Column; N],

@@ -3,18 +3,18 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, bail};
 use searoom::document::{ComparisonDocument, PlanDocument};
-use searoom::pipeline::{NoReturn, Run};
+use searoom::pipeline::Run;
 use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
 use searoom::report::page::{Report, Subject, link_from};
 use searoom::report::write_atomically;
 use searoom::scenario::Scenario;
 use searoom::study::compare::Entry;
 
-use super::files::{Found, refuse_clashes};
-use super::output::json;
-use super::runner::guarded;
+use super::super::input::files::{Found, refuse_clashes};
+use super::super::runner::guarded;
+use super::json;
 use super::status::Status;
 
 /// Where recordings, figures and plans go.
@@ -26,7 +26,7 @@ pub struct Products {
     report: Option<PathBuf>,
 }
 
-/// What is asked for.
+/// The paths asked for.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted<'a> {
     pub recordings: Option<&'a Path>,
@@ -42,8 +42,9 @@ enum Place {
 }
 
 impl Products {
-    /// Makes the folders, before anything is planned. A path means a file when it ends as such files do and is no folder;
-    /// one with another ending is no new folder, unless it says so with a slash.
+    /// Makes the folders, before anything is planned. A path is a file where its name has such an
+    /// ending and no folder has it. A new folder whose name has another ending needs a slash at its
+    /// end.
     pub fn prepare(found: &[Found], wanted: Wanted) -> anyhow::Result<Self> {
         let Wanted {
             recordings,
@@ -98,21 +99,24 @@ impl Products {
         })
     }
 
-    /// Writes what was asked for, with the time of no return where one was sought; on failure the status and the reason.
-    pub fn write(
-        &self,
-        stem: &str,
-        run: &Run,
-        no_return: Option<NoReturn>,
-    ) -> Result<(), (Status, String)> {
-        match guarded(|| self.try_write(stem, run, no_return)) {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(error)) => Err((Status::BadInput, format!("{error:#}"))),
-            Err(fault) => Err((Status::InternalFault, fault)),
-        }
+    /// Writes the recording, the figure and the plan document, where asked for.
+    pub fn write(&self, stem: &str, run: &Run, plan: &PlanDocument) -> Result<(), Failure> {
+        attempt(|| {
+            if let Some(place) = &self.recordings {
+                record(run, plan, &place.file(stem, "rrd"))?;
+            }
+            if let Some(place) = &self.figures {
+                plan_figure(run).write(&place.file(stem, "svg"))?;
+            }
+            if let Some(folder) = &self.plans {
+                let file = folder.join(format!("{stem}.json"));
+                write_atomically(&file, json(plan)?.as_bytes())?;
+            }
+            Ok(())
+        })
     }
 
-    /// What a report says of a scenario besides what came of it: call it when all else is written.
+    /// Names and links of a scenario in a report. Call it when all other results are written.
     pub fn subject(&self, stem: &str, file: String) -> Subject {
         let recording = self.recordings.as_ref().map(|p| p.file(stem, "rrd"));
         let plan = self.plans.as_ref().map(|f| f.join(format!("{stem}.json")));
@@ -135,49 +139,39 @@ impl Products {
         self.report.is_some()
     }
 
-    /// Writes the report, if one was asked for; on failure the status and the reason.
-    pub fn write_report(
-        &self,
-        report: &Report,
-        title: &str,
-        lead: &str,
-    ) -> Result<(), (Status, String)> {
+    /// Writes the report, if one was asked for.
+    pub fn write_report(&self, report: &Report, title: &str, lead: &str) -> Result<(), Failure> {
         let Some(folder) = &self.report else {
             return Ok(());
         };
-        match guarded(|| report.write(folder, title, lead)) {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(error)) => Err((Status::BadInput, error.to_string())),
-            Err(fault) => Err((Status::InternalFault, fault)),
-        }
-    }
-
-    fn try_write(&self, stem: &str, run: &Run, no_return: Option<NoReturn>) -> anyhow::Result<()> {
-        if let Some(place) = &self.recordings {
-            record(run, no_return, &place.file(stem, "rrd"))?;
-        }
-        if let Some(place) = &self.figures {
-            let file = place.file(stem, "svg");
-            // the message names its cause already
-            plan_figure(run)
-                .write(&file)
-                .map_err(|error| anyhow!("{error}"))?;
-        }
-        if let Some(folder) = &self.plans {
-            let file = folder.join(format!("{stem}.json"));
-            let document = json(&document(run, no_return))?;
-            // the message names its cause already
-            write_atomically(&file, document.as_bytes()).map_err(|error| anyhow!("{error}"))?;
-        }
-        Ok(())
+        attempt(|| Ok(report.write(folder, title, lead)?))
     }
 }
 
-/// The plan document of a run, with the time of no return where one was sought.
-pub fn document(run: &Run, no_return: Option<NoReturn>) -> PlanDocument {
-    PlanDocument {
-        time_of_no_return_s: no_return.map(NoReturn::time),
-        ..PlanDocument::of(run)
+/// The status and the reason of what could not be written.
+pub type Failure = (Status, String);
+
+fn attempt(work: impl FnOnce() -> anyhow::Result<()>) -> Result<(), Failure> {
+    match guarded(work) {
+        Ok(Ok(())) => Ok(()),
+        // the message of each error names its cause already
+        Ok(Err(error)) => Err((Status::BadInput, error.to_string())),
+        Err(fault) => Err((Status::InternalFault, fault)),
+    }
+}
+
+/// Refuses the name of a figure in another format, and makes its folder.
+pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
+    if FigureFormat::of(path).is_none() {
+        let file = path.to_owned();
+        bail!("--figure: {}", FigureError::Format { file });
+    }
+    if path.is_dir() {
+        bail!("--figure: {}: a folder; name a file", path.display());
+    }
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => make(folder),
+        _ => Ok(()),
     }
 }
 
@@ -194,20 +188,12 @@ pub struct ScenarioCompared<'a> {
 }
 
 impl Products {
-    /// Writes the recording of a comparison, if one was asked for; on failure the status and the reason.
-    pub fn write_comparison(
-        &self,
-        stem: &str,
-        side: &ScenarioCompared,
-    ) -> Result<(), (Status, String)> {
+    /// Writes the recording of a comparison, if one was asked for.
+    pub fn write_comparison(&self, stem: &str, side: &ScenarioCompared) -> Result<(), Failure> {
         let Some(place) = &self.recordings else {
             return Ok(());
         };
-        match guarded(|| record_comparison(side, &place.file(stem, "rrd"))) {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(error)) => Err((Status::BadInput, format!("{error:#}"))),
-            Err(fault) => Err((Status::InternalFault, fault)),
-        }
+        attempt(|| record_comparison(side, &place.file(stem, "rrd")))
     }
 }
 
@@ -250,10 +236,8 @@ fn make(folder: &Path) -> anyhow::Result<()> {
 }
 
 #[cfg(feature = "recording")]
-fn record(run: &Run, no_return: Option<NoReturn>, file: &Path) -> anyhow::Result<()> {
-    // the message names its cause already
-    let document = json(&document(run, no_return))?;
-    searoom::recording::write(run, Some(&document), file).map_err(|error| anyhow!("{error}"))
+fn record(run: &Run, plan: &PlanDocument, file: &Path) -> anyhow::Result<()> {
+    Ok(searoom::recording::write(run, Some(&json(plan)?), file)?)
 }
 
 #[cfg(feature = "recording")]
@@ -265,8 +249,7 @@ fn record_comparison(side: &ScenarioCompared, file: &Path) -> anyhow::Result<()>
         table: &side.table,
         document: &document,
     };
-    // the message names its cause already
-    searoom::recording::write_comparison(&compared, file).map_err(|error| anyhow!("{error}"))
+    Ok(searoom::recording::write_comparison(&compared, file)?)
 }
 
 #[cfg(not(feature = "recording"))]
@@ -275,6 +258,6 @@ fn record_comparison(_: &ScenarioCompared, file: &Path) -> anyhow::Result<()> {
 }
 
 #[cfg(not(feature = "recording"))]
-fn record(_: &Run, _: Option<NoReturn>, file: &Path) -> anyhow::Result<()> {
+fn record(_: &Run, _: &PlanDocument, file: &Path) -> anyhow::Result<()> {
     bail!("{}: built without recordings", file.display())
 }

@@ -1,4 +1,4 @@
-//! Which scenario files the paths of a command mean, and what their outputs are called.
+//! The scenario files at the paths of a command, and the names of their results.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 
-use super::output::Output;
+use super::super::output::Output;
 
 /// A scenario file that was asked for.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,25 +24,25 @@ pub struct Found {
 #[derive(Debug)]
 pub struct Kinds {
     endings: &'static [&'static str],
-    said: &'static str,
+    text: &'static str,
 }
 
 /// Scenario files.
 pub const SCENARIOS: Kinds = Kinds {
     endings: &["toml"],
-    said: ".toml",
+    text: ".toml",
 };
 
-/// Scenario files and foreign ones.
+/// Scenario files and files of other formats.
 pub const ANY_FORMAT: Kinds = Kinds {
     endings: &["toml", "json", "xml"],
-    said: ".toml, .json or .xml",
+    text: ".toml, .json or .xml",
 };
 
-/// Foreign files alone.
+/// Files of other formats alone.
 pub const FOREIGN: Kinds = Kinds {
     endings: &["json", "xml"],
-    said: ".json or .xml",
+    text: ".json or .xml",
 };
 
 impl Kinds {
@@ -52,9 +52,8 @@ impl Kinds {
     }
 }
 
-/// The scenario files that `paths` mean, in the order of the arguments and sorted within each
-/// folder; for a path that cannot be searched, the reason. A file that several of them mean is taken once, and
-/// that is said.
+/// The scenario files at `paths`, in the order of the arguments and sorted within each folder. A
+/// folder that cannot be searched gives the reason. A repeated file is taken once, with a note.
 pub fn find(
     paths: &[PathBuf],
     kinds: &Kinds,
@@ -95,7 +94,7 @@ fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow
                 anyhow::anyhow!(
                     "{}: a folder without scenarios ({} files)",
                     path.display(),
-                    kinds.said
+                    kinds.text
                 ),
             ))),
             Ok(()) => all.extend(files.into_iter().map(|file| {
@@ -112,8 +111,8 @@ fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow
     all
 }
 
-/// What a page that may be given to others calls a file: as it was asked for, but without the folders of this machine, from where
-/// the program was started or alone.
+/// The name of a file on a page: as it was given, but an absolute path is shortened to the part
+/// below the current folder, or to the name.
 pub fn shown(file: &Path) -> String {
     if !file.is_absolute() {
         return file.display().to_string();

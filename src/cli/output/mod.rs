@@ -1,5 +1,8 @@
 //! The only place that prints: results to standard output, everything else to standard error.
 
+pub mod products;
+pub mod status;
+
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
@@ -9,7 +12,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use searoom::report::printable_lines;
 use serde::Serialize;
 
-use super::status::Status;
+use status::Status;
 
 /// Red, green, yellow, and the end of each, as tables have them.
 const COLOURS: [&str; 5] = [
@@ -51,8 +54,8 @@ impl Output {
         }
     }
 
-    /// A text without what a terminal would act on, but for the colours of tables; whoever makes a coloured text has taken
-    /// those of others out of its parts. In a document the codes stand for the characters themselves.
+    /// Escapes control characters, except the colours of tables. Coloured tables have escaped their
+    /// texts before.
     fn shown(&self, text: &str) -> String {
         if !self.colour {
             return printable_lines(text);
@@ -84,14 +87,14 @@ impl Output {
         }
     }
 
-    /// Says what went wrong.
+    /// Prints an error.
     pub fn error(&self, error: &impl Display) {
-        // when standard error is gone there is nobody left to tell
+        // an error of standard error cannot be reported
         let error = printable_lines(&error.to_string());
         let _ = writeln!(std::io::stderr(), "error: {error}");
     }
 
-    /// Says what may not have been expected.
+    /// Prints a note.
     pub fn note(&self, note: &impl Display) {
         let note = printable_lines(&note.to_string());
         let _ = writeln!(std::io::stderr(), "note: {note}");
@@ -117,7 +120,7 @@ pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
 
 /// Prints help, the version or what is wrong with the arguments.
 pub fn usage(error: &clap::Error) -> ExitCode {
-    // when the stream is gone there is nobody left to tell
+    // an error of this stream cannot be reported
     let _ = error.print();
     if error.use_stderr() {
         Status::BadInput.into()

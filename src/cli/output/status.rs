@@ -9,7 +9,7 @@ use searoom::pipeline::{Relaxation, Run};
 pub enum Status {
     /// All planned and verified.
     Good,
-    /// At least one scenario without a collision-free plan to the end: none, one that enters a set, or one that does not arrive.
+    /// A scenario without a plan that is clear of all sets and arrives.
     NoPlan,
     /// Bad input or usage, or a result that cannot be written.
     BadInput,
@@ -18,7 +18,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// What one run amounts to.
+    /// The status of one run.
     pub fn of(run: &Run) -> Self {
         match (run.planned.outcome.plan(), &run.evaluation) {
             (None, _) => Self::NoPlan,
@@ -38,7 +38,7 @@ impl Status {
 }
 
 impl Status {
-    /// What the process ends with.
+    /// The exit status of the process.
     fn code(self) -> u8 {
         match self {
             Self::Good => 0,

@@ -1,26 +1,27 @@
-//! `searoom inspect`: what a recording holds, read offline.
+//! `searoom inspect`: the contents of a recording.
+
+mod difference;
 
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use comfy_table::{ContentArrangement, Table, presets};
-use searoom::evaluation::facts;
+use searoom::document::{PlanDocument, ScenarioComparisonDocument};
 use searoom::recording::{EntityTable, Recorded, TimelineContents};
-use searoom::report::printable;
+use searoom::report::{comparison_table, plan_document_text};
 use serde::Serialize;
 use serde_json::Value;
 
 use super::args::InspectArgs;
-use super::difference::two;
-use super::document_words::{conduct, costs, manoeuvre, tenths, verdict};
 use super::output::Output;
+use super::output::status::Status;
 use super::runner::guarded;
-use super::status::Status;
+use difference::two;
 
 /// Entities of a similar name that are offered for one that is not there.
 const OFFERED: usize = 3;
 
-/// Shows one recording, what of it is asked for, or what two differ in.
+/// Shows one recording, a part of it, or the differences of two.
 pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
     let asked = || match &args.other {
         None => one(args, output),
@@ -157,14 +158,14 @@ impl EntityDocument {
     }
 }
 
-/// What a recording holds.
+/// The contents of a recording.
 #[derive(Debug, Serialize)]
 struct Contents {
     file: String,
     bytes: u64,
     application: &'static str,
     rerun_version: Option<String>,
-    /// Of the plan document; null without one.
+    /// This and the next ones are from the plan document; null without one.
     scenario: Value,
     planner: Value,
     search: Value,
@@ -176,11 +177,12 @@ struct Contents {
     /// Where own ship stands on; else null.
     escape: Value,
     targets: Vec<Value>,
-    /// The word that people see.
-    #[serde(skip)]
-    verdict: String,
-    /// Of a comparison: its part of `compare --json`; else null.
+    /// The entry of `compare --json`; null for a plan.
     comparison: Value,
+    #[serde(skip)]
+    plan: Option<PlanDocument>,
+    #[serde(skip)]
+    compared: Option<ScenarioComparisonDocument>,
     timelines: Vec<TimelineDocument>,
     entities: Vec<ContentsDocument>,
 }
@@ -265,7 +267,8 @@ impl Contents {
             search_stats: field("search_stats"),
             escape: field("escape"),
             targets: names.cloned().collect(),
-            verdict: verdict(&document),
+            plan: serde_json::from_value(document).ok(),
+            compared: serde_json::from_value(comparison.clone()).ok(),
             comparison,
             timelines: TimelineDocument::all(recorded.timelines()),
             entities: recorded
@@ -291,11 +294,11 @@ impl Contents {
                 .as_deref()
                 .unwrap_or("of an unknown version")
         )];
-        match self.scenario.as_str() {
-            Some(scenario) if self.comparison.is_object() => lines.extend(self.compared(scenario)),
-            Some(scenario) => lines.extend(self.plan(scenario)),
-            None => lines.push("no plan document in it".to_owned()),
-        }
+        lines.push(match (&self.plan, &self.compared) {
+            (Some(plan), _) => plan_document_text(plan),
+            (None, Some(compared)) => comparison_table(compared, false),
+            (None, None) => "no plan document in it".to_owned(),
+        });
         lines.push(String::new());
         let timelines: Vec<String> = self.timelines.iter().map(TimelineDocument::text).collect();
         lines.push(format!("Timelines: {}", list(&timelines)));
@@ -328,78 +331,6 @@ impl Contents {
         }
         lines.push(table.trim_fmt());
         lines.join("\n")
-    }
-
-    fn compared(&self, scenario: &str) -> Vec<String> {
-        let entries = self.comparison["entries"].as_array();
-        let entries = entries.map_or(&[][..], Vec::as_slice);
-        let mut lines = vec![format!(
-            "{}: a comparison of {} contenders",
-            printable(scenario),
-            entries.len()
-        )];
-        for entry in entries {
-            let word = |key: &str| printable(entry[key].as_str().unwrap_or("unknown"));
-            let risk = match entry["max_risk"].as_f64() {
-                Some(risk) if risk > 0.0 => format!(" at risk {risk}"),
-                _ => String::new(),
-            };
-            let costs = costs(&entry["cost"]);
-            lines.push(format!(
-                "  {}{risk}: {}{}{costs}",
-                word("method"),
-                verdict(entry),
-                if costs.is_empty() { "" } else { ", " }
-            ));
-        }
-        lines
-    }
-
-    fn plan(&self, scenario: &str) -> Vec<String> {
-        let word = |value: &Value| printable(value.as_str().unwrap_or("unknown"));
-        let facts = match self.verified.as_bool() {
-            Some(verified) if !self.cost.is_null() => {
-                format!(" ({})", facts(verified, self.safe == true))
-            }
-            _ => String::new(),
-        };
-        let mut lines = vec![
-            format!("{}: {}{facts}", printable(scenario), self.verdict),
-            format!(
-                "  planner      {}, {}",
-                word(&self.planner),
-                word(&self.search)
-            ),
-        ];
-        let costs = costs(&self.cost);
-        if !costs.is_empty() {
-            lines.push(format!("  costs        {costs}"));
-        }
-        if let Some(expanded) = self.search_stats["expanded"].as_u64() {
-            lines.push(format!("  search       {expanded} nodes expanded"));
-        }
-        if let Some(latest) = self.escape["latest_s"].as_f64() {
-            lines.push(format!(
-                "  stands on    until {latest:.1} s, then {}",
-                manoeuvre(&self.escape)
-            ));
-        }
-        for target in &self.targets {
-            let dcpa = target["dcpa_m"].as_f64().map_or(String::new(), |d| {
-                format!(
-                    ", passed at {:.1} m after {:.1} s",
-                    tenths(d),
-                    target["tcpa_s"].as_f64().unwrap_or(0.0)
-                )
-            });
-            lines.push(format!(
-                "  target       {} ({}){dcpa}",
-                word(&target["target"]),
-                word(&target["role"])
-            ));
-            lines.extend(conduct(target));
-        }
-        lines
     }
 }
 
