@@ -203,3 +203,6 @@ impl EdgeTree {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;
