@@ -16,19 +16,22 @@ struct Slab {
     set: MovingSet,
 }
 
-/// The slabs of a set, in order of time; each begins with the section that the one before ends with, or a larger one.
+/// The slabs of a set, in order of time; each begins with the section that the one before ends
+/// with, or a larger one.
 #[derive(Debug, Clone)]
 pub(super) struct MovingSlabs {
     slabs: Vec<Slab>,
 }
 
 impl MovingSlabs {
-    /// From the set at t = 0 and the velocity sets in order; the last one holds for ever. O(slabs (n + m)²).
+    /// From the set at t = 0 and the velocity sets in order; the last one holds for ever. O(slabs
+    /// (n + m)²).
     pub fn new(initial: &ConvexPolygon, spells: &[VelocitySpell]) -> Self {
         Self::growing(|_| initial.clone(), spells)
     }
 
-    /// The same where the set at t = 0 is another one for each slab, known by its end: that of the last is infinite.
+    /// The same where the set at t = 0 is another one for each slab, known by its end: that of the
+    /// last is infinite.
     pub fn growing(initial: impl Fn(f64) -> ConvexPolygon, spells: &[VelocitySpell]) -> Self {
         let mut slabs = Vec::with_capacity(spells.len());
         let (mut start, mut way) = (0.0, None::<ConvexPolygon>);
@@ -70,7 +73,8 @@ impl MovingSlabs {
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
         let mut least = Least::new();
         for slab in &self.slabs {
-            // what ends as a slab begins, but for rounding, is in the slab before: a set that grows is not as large yet
+            // what ends as a slab begins, but for rounding, is in the slab before: a set that grows
+            // is not as large yet
             let begun = slab.start * (1.0 + 8.0 * f64::EPSILON);
             let fastest = slab.set.fastest();
             let before = |s: &P| {

@@ -16,7 +16,8 @@ use parry2d_f64::transformation::convex_hull;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// One to eight points, often on a grid: repeated ones, ones on a line, and sides that are parallel.
+/// One to eight points, often on a grid: repeated ones, ones on a line, and sides that are
+/// parallel.
 fn points(rng: &mut ChaCha8Rng, size: f64) -> Vec<Vector> {
     let on_grid = rng.random_bool(0.5);
     (0..rng.random_range(1..9))
@@ -39,7 +40,8 @@ fn farthest(set: &ConvexPolygon) -> impl Fn(Vector) -> Vector {
     }
 }
 
-/// The support of the hull in every direction is that of parry's hull, or of the points where these are on a line.
+/// The support of the hull in every direction is that of parry's hull, or of the points where these
+/// are on a line.
 #[test]
 fn hulls_are_those_of_parry() {
     let mut rng = ChaCha8Rng::seed_from_u64(901);
@@ -70,7 +72,8 @@ fn hulls_are_those_of_parry() {
     assert!(wide > 300 && flat > 50, "{wide} {flat}");
 }
 
-/// The distance of sets that are apart, and the shortest way out of an overlap (parry's by the expanding polytope algorithm).
+/// The distance of sets that are apart, and the shortest way out of an overlap (parry's by the
+/// expanding polytope algorithm).
 #[test]
 fn distances_and_depths_are_those_of_parry() {
     let mut rng = ChaCha8Rng::seed_from_u64(902);
@@ -112,7 +115,8 @@ fn distances_and_depths_are_those_of_parry() {
             let (a, b) = (Farthest::new(farthest(&a)), Farthest::new(farthest(&b)));
             let deep = contact_support_map_support_map(&Pose::identity(), &a, &b, f64::MAX);
             let deep = deep.map_or(0.0, |contact| contact.dist / UNITS);
-            // its polytope is within the difference of the sets: it may end too early, never too late
+            // its polytope is within the difference of the sets: it may end too early, never too
+            // late
             assert!(deep > ours - 1e-7 * size, "{ours} {deep}");
             alike += usize::from(close(deep));
         } else {
@@ -126,7 +130,8 @@ fn distances_and_depths_are_those_of_parry() {
     );
 }
 
-/// A moving set and how far own ship is from it at a time, by parry: the farthest point of `O_0 + t V` is one of each.
+/// A moving set and how far own ship is from it at a time, by parry: the farthest point of `O_0 + t
+/// V` is one of each.
 fn gap(initial: &ConvexPolygon, velocity: &ConvexPolygon, own: &Segment, time: f64) -> f64 {
     let (still, moving) = (farthest(initial), farthest(velocity));
     let here = own.pose_at(time).position;
@@ -135,8 +140,8 @@ fn gap(initial: &ConvexPolygon, velocity: &ConvexPolygon, own: &Segment, time: f
     found.expect("an answer").shortest.norm()
 }
 
-/// The times during which own ship is in a moving set are those at which parry finds no distance; and where the set only moves
-/// and the way is straight, they begin when its linear cast hits.
+/// The times during which own ship is in a moving set are those at which parry finds no distance;
+/// and where the set only moves and the way is straight, they begin when its linear cast hits.
 #[test]
 fn contacts_in_space_time_are_those_of_parry() {
     let mut rng = ChaCha8Rng::seed_from_u64(903);
