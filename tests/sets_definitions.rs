@@ -467,7 +467,7 @@ fn an_interval_of_contact_ends_where_the_line_leaves() {
             let t = inside.start + (inside.end - inside.start) * f64::from(i) / 50.0;
             assert!(at(t) < 1e-6, "{o:?} {s:?} {inside:?} {t} {}", at(t));
         }
-        let after = inside.end + 1e-3;
+        let after = inside.end + 1e-6;
         assert!(
             after > s.end_time() || at(after) > -1e-6,
             "{o:?} {s:?} {inside:?}"

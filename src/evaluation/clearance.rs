@@ -9,16 +9,18 @@ use crate::trajectory::Bounds;
 use crate::vessel::Hull;
 
 /// The least signed distance between own hull and a moving set along a chain of pieces: negative in
-/// overlap, minus the shortest translation that separates the two. The distance is parry's, the depth the smallest
-/// overlap along a normal of either (separating axes). Exact to [`crate::tolerance::MARGIN_M`] and certified: between
-/// two probes the distance is bounded from below by supporting lines, which separate the two for as long as they do.
-/// About a hundred probes a segment near the minimum and one far from it, each linear in the vertices. A distance that
+/// overlap, minus the shortest translation that separates the two. The distance is parry's, the
+/// depth the smallest overlap along a normal of either (separating axes). Exact to
+/// [`crate::tolerance::MARGIN_M`] and certified: between two probes the distance is bounded from
+/// below by supporting lines, which separate the two for as long as they do. About a hundred probes
+/// a segment near the minimum and one far from it, each linear in the vertices. A distance that
 /// parry does not find, or that a supporting line contradicts, is a NaN, which is a collision.
 pub(super) fn least_distance<P: Piece>(pieces: &[P], own: Body, set: &MovingSet) -> Least {
     least_distance_below(Least::new(), pieces, own, set)
 }
 
-/// The same where a least distance to something else is known already: what is not nearer is not looked at closely.
+/// The same where a least distance to something else is known already: what is not nearer is not
+/// looked at closely.
 pub(super) fn least_distance_below<P: Piece>(
     known: Least,
     pieces: &[P],
@@ -167,7 +169,8 @@ impl Body {
                 keep(gap, -normal);
             }
         }
-        // not apart along any normal of either: they overlap, and the smallest overlap along one is the depth
+        // not apart along any normal of either: they overlap, and the smallest overlap along one is
+        // the depth
         if !(best.value > 0.0) {
             return best;
         }
@@ -218,8 +221,9 @@ fn farthest(n: Vector, points: impl Iterator<Item = Vector>) -> Vector {
     best
 }
 
-/// How far a set is beyond one of own ship's sides now, and at least within `half` seconds. The side turns
-/// with her: a fixed line through it would lose a distance of first order in time at its ends.
+/// How far a set is beyond one of own ship's sides now, and at least within `half` seconds. The
+/// side turns with her: a fixed line through it would lose a distance of first order in time at its
+/// ends.
 fn beyond_side(
     pose: &Pose,
     moving: &Moving,

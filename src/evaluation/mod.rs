@@ -1,5 +1,6 @@
-//! Judges any trajectory without the sets, contact tests and searches of the planners. Shared are geometry, segments, and the hull
-//! and the velocity sets of a tracked ship (`target`).
+//! Judges any trajectory without the sets, contact tests and searches of the planners. Distances
+//! are parry's. Shared are polygons, ellipses, segments, and the hull and the velocity sets of a
+//! tracked ship (`target`).
 
 mod along;
 mod clearance;

@@ -6,6 +6,7 @@ use super::piece::Piece;
 use super::space_time_set::MovingSet;
 use crate::geometry::ConvexPolygon;
 use crate::target::VelocitySpell;
+use crate::tolerance;
 
 /// One slab. The time of its set counts from its start.
 #[derive(Debug, Clone)]
@@ -15,19 +16,22 @@ struct Slab {
     set: MovingSet,
 }
 
-/// The slabs of a set, in order of time; each begins with the section that the one before ends with, or a larger one.
+/// The slabs of a set, in order of time; each begins with the section that the one before ends
+/// with, or a larger one.
 #[derive(Debug, Clone)]
 pub(super) struct MovingSlabs {
     slabs: Vec<Slab>,
 }
 
 impl MovingSlabs {
-    /// From the set at t = 0 and the velocity sets in order; the last one holds for ever. O(slabs (n + m)²).
+    /// From the set at t = 0 and the velocity sets in order; the last one holds for ever. O(slabs
+    /// (n + m)²).
     pub fn new(initial: &ConvexPolygon, spells: &[VelocitySpell]) -> Self {
         Self::growing(|_| initial.clone(), spells)
     }
 
-    /// The same where the set at t = 0 is another one for each slab, known by its end: that of the last is infinite.
+    /// The same where the set at t = 0 is another one for each slab, known by its end: that of the
+    /// last is infinite.
     pub fn growing(initial: impl Fn(f64) -> ConvexPolygon, spells: &[VelocitySpell]) -> Self {
         let mut slabs = Vec::with_capacity(spells.len());
         let (mut start, mut way) = (0.0, None::<ConvexPolygon>);
@@ -69,11 +73,17 @@ impl MovingSlabs {
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
         let mut least = Least::new();
         for slab in &self.slabs {
-            // what ends as a slab begins, but for rounding, is in the slab before: a set that grows is not as large yet
+            // what ends as a slab begins, but for rounding, is in the slab before: a set that grows
+            // is not as large yet
             let begun = slab.start * (1.0 + 8.0 * f64::EPSILON);
+            let fastest = slab.set.fastest();
             let before = |s: &P| {
+                let rounding = s.end_time() - slab.start;
+                let both = fastest + s.bounds().speed;
                 s.end_time() < slab.start
                     || slab.start > 0.0 && s.start_time() <= slab.start && s.end_time() <= begun
+                    // at any speed of a ship they stay where they are meanwhile
+                    && rounding * both <= tolerance::MARGIN_M
             };
             let parts: Vec<P> = pieces
                 .iter()
@@ -92,5 +102,37 @@ impl MovingSlabs {
             least.probes += here.probes;
         }
         least
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Vector};
+    use crate::trajectory::Segment;
+
+    /// A set 90 m abeam that starts to widen at 1e15 m/s some roundings before own ship arrives.
+    #[test]
+    fn a_slab_that_begins_by_a_rounding_before_the_end_is_looked_at_where_it_matters() {
+        let end = 600.0_f64;
+        let wait = Segment {
+            start: Pose::new(Vector::zeros(), 0.0),
+            start_time: 0.0,
+            duration: end,
+            speed: 0.0,
+            turn_rate: 0.0,
+        };
+        let least = |velocity: f64| {
+            let spell = |until: f64, v: f64| VelocitySpell {
+                until,
+                velocities: ConvexPolygon::point(Vector::new(0.0, -v)),
+            };
+            let initial = ConvexPolygon::point(Vector::new(0.0, 90.0));
+            let begins = end * (1.0 - 3.0 * f64::EPSILON);
+            let spells = [spell(begins, 0.0), spell(f64::INFINITY, velocity)];
+            MovingSlabs::new(&initial, &spells).least_distance(&[wait], Body::POINT)
+        };
+        assert_eq!(least(50.0).value, 90.0);
+        assert!(least(1e14).value < 89.0, "{:?}", least(1e14));
     }
 }

@@ -22,11 +22,12 @@ impl<'a> Shore<'a> {
         }
     }
 
-    /// The least distance between own hull, which reaches so far from its middle, and land along a chain of pieces: negative
-    /// on land. A hull that starts on water and touches no edge stays on water, so edges are all that is looked at, each
-    /// as a set of two points that does not move; a position inside a polygon is on land whatever its edges say.
-    /// Certified like [`least_distance_below`]; infinite without land. O(log edges) per piece, and probes for those that
-    /// are near.
+    /// The least distance between own hull, which reaches so far from its middle, and land along a
+    /// chain of pieces: negative on land. A hull that starts on water and touches no edge stays on
+    /// water, so edges are all that is looked at, each as a set of two points that does not move; a
+    /// position inside a polygon is on land whatever its edges say. Certified like
+    /// [`least_distance_below`]; infinite without land. O(log edges) per piece, and probes for
+    /// those that are near.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body, reach: f64) -> Least {
         let mut least = Least::new();
         for s in pieces {
@@ -42,7 +43,8 @@ impl<'a> Shore<'a> {
             let middle = s.pose_at(s.start_time() + half).position;
             let radius = s.bounds().speed * half + reach;
             let Some(first) = self.edges.nearest(middle) else {
-                // without edges there is no land; with some, a place that is no number has no nearest one
+                // without edges there is no land; with some, a place that is no number has no
+                // nearest one
                 if !self.land.is_empty() {
                     least.see(f64::NAN, s.start_time());
                 }

@@ -258,6 +258,11 @@ impl MovingSet {
         }
     }
 
+    /// m/s of its fastest vertex.
+    pub fn fastest(&self) -> f64 {
+        self.velocity.reach()
+    }
+
     /// False when the sections are points or segments at every time.
     pub fn has_interior(&self) -> bool {
         self.vertices.len() > 2

@@ -1,5 +1,5 @@
-//! The bridge to `parry`, and the only place that names it: distances between convex sets by the algorithm of Gilbert,
-//! Johnson and Keerthi (doi:10.1109/56.2083), and trees of boxes and edges.
+//! The bridge to `parry`, and the only place that names it: distances between convex sets by the
+//! algorithm of Gilbert, Johnson and Keerthi (doi:10.1109/56.2083), and trees of boxes and edges.
 
 use std::cell::Cell;
 
@@ -21,11 +21,12 @@ fn vector(p: Point) -> Vector {
     Vector::new(p.x, p.y)
 }
 
-/// Units of parry in a metre. It takes two points for one that are nearer than 5e-8 units: a power of two, so that nothing is
-/// rounded.
+/// Units of parry in a metre. It takes two points for one that are nearer than 5e-8 units: a power
+/// of two, so that nothing is rounded.
 const UNITS: f64 = 1_048_576.0;
 
-/// parry tells no more than this share of the largest coordinate: the root of ten roundings, by which it also ends.
+/// parry tells no more than this share of the largest coordinate: the root of ten roundings, by
+/// which it also ends.
 const RESOLUTION: f64 = 5e-8;
 
 /// Steps of the algorithm after parry's own end.
@@ -64,16 +65,17 @@ impl<F: Fn(Vector) -> Vector> SupportMap for Farthest<F> {
 /// The way between two convex sets.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Between {
-    /// From the one to the other; zero where they touch or overlap. The ends lie in the sets, so it is never shorter than
-    /// the distance.
+    /// From the one to the other; zero where they touch or overlap. The ends lie in the sets, so it
+    /// is never shorter than the distance.
     pub shortest: Vector,
     /// Metres: sets this near may count as touching.
     pub resolution: f64,
 }
 
-/// The shortest vector from one convex set to another, each given by its farthest point in a direction; `None` where it is
-/// not found. `toward` is a first guess of the vector's direction. Parry's end leaves a share of the distance open, so the
-/// algorithm is taken on to the end of its steps. About five farthest points of each.
+/// The shortest vector from one convex set to another, each given by its farthest point in a
+/// direction; `None` where it is not found. `toward` is a first guess of the vector's direction.
+/// Parry's end leaves a share of the distance open, so the algorithm is taken on to the end of its
+/// steps. About five farthest points of each.
 pub(crate) fn shortest_between(
     from: impl Fn(Vector) -> Vector,
     to: impl Fn(Vector) -> Vector,
@@ -203,3 +205,6 @@ impl EdgeTree {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

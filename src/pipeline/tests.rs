@@ -329,8 +329,20 @@ fn from_within_a_hard_set_own_ship_slows_and_turns_away_and_claims_begin_outside
         matches!(&run.relaxations[0], Relaxation::Risk { target, amount, until: Some(_) } if target == "other" && *amount == 1.0)
     );
     let inside = trajectory.segments().iter();
-    let inside: Vec<&Segment> = inside.take_while(|s| s.start_time < until - 1e-3).collect();
+    let inside: Vec<Segment> = inside
+        .copied()
+        .take_while(|s| s.start_time < until - 1e-3)
+        .collect();
     assert!(inside.iter().all(|s| s.speed == 2.5) && inside[0].turn_rate < 0.0);
+    // hardly longer than on the slow turn to starboard that it begins with
+    let turning = Segment {
+        duration: 400.0,
+        turn_rate: -2.5 / 100.0,
+        ..inside[0]
+    };
+    let mut times = (0..4000).map(|k| 0.1 * f64::from(k));
+    let out = times.find(|&t| depth(turning.pose_at(t).position, t) < 0.0);
+    assert!(out.is_some_and(|out| until < 1.05 * out), "{until} {out:?}");
     let judged = run.evaluation.expect("judged");
     assert!(judged.verified());
     // at full speed and least time inside: 16.5 m

@@ -1,0 +1,282 @@
+//! Our hulls, distances and contacts in space-time against parry's, and the bridge against both.
+
+use super::*;
+use crate::frame::{Pose as Place, direction, heading_of};
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::PolytopeObstacle;
+use crate::obstacle::contact::{arc_contacts, line_contact};
+use crate::trajectory::Segment;
+use parry2d_f64::query;
+use parry2d_f64::query::ShapeCastOptions;
+use parry2d_f64::query::details::{
+    cast_shapes_support_map_support_map, contact_support_map_support_map,
+};
+use parry2d_f64::shape::ConvexPolygon as ParryPolygon;
+use parry2d_f64::transformation::convex_hull;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// One to eight points, often on a grid: repeated ones, ones on a line, and sides that are
+/// parallel.
+fn points(rng: &mut ChaCha8Rng, size: f64) -> Vec<Vector> {
+    let on_grid = rng.random_bool(0.5);
+    (0..rng.random_range(1..9))
+        .map(|_| {
+            let p = Vector::new(rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0));
+            (if on_grid { p.map(f64::round) } else { p }) * size
+        })
+        .collect()
+}
+
+fn set(rng: &mut ChaCha8Rng, size: f64) -> ConvexPolygon {
+    ConvexPolygon::hull(&points(rng, size)).expect("finite")
+}
+
+fn farthest(set: &ConvexPolygon) -> impl Fn(Vector) -> Vector {
+    let vertices = set.vertices().to_vec();
+    move |n| {
+        let reach = |p: &&Vector| n.dot(p);
+        *(vertices.iter().max_by(|a, b| reach(a).total_cmp(&reach(b)))).expect("a vertex")
+    }
+}
+
+/// The support of the hull in every direction is that of parry's hull, or of the points where these
+/// are on a line.
+#[test]
+fn hulls_are_those_of_parry() {
+    let mut rng = ChaCha8Rng::seed_from_u64(901);
+    let (mut wide, mut flat) = (0, 0);
+    for case in 0..600 {
+        let size = [1e-3, 1.0, 1e4][case % 3];
+        let given = points(&mut rng, size);
+        let ours = ConvexPolygon::hull(&given).expect("finite");
+        let theirs: Vec<Vector> = if ours.vertices().len() > 2 {
+            wide += 1;
+            let given: Vec<Point> = given.iter().map(|p| point(*p)).collect();
+            let hull = convex_hull(&given);
+            assert!(hull.len() >= ours.vertices().len());
+            hull.into_iter().map(vector).collect()
+        } else {
+            flat += 1;
+            given
+        };
+        for k in 0..72 {
+            let n = direction(0.0873 * f64::from(k));
+            let most = theirs
+                .iter()
+                .map(|p| n.dot(p))
+                .fold(f64::NEG_INFINITY, f64::max);
+            assert!((ours.support(n) - most).abs() < 1e-9 * size, "{ours:?}");
+        }
+    }
+    assert!(wide > 300 && flat > 50, "{wide} {flat}");
+}
+
+/// The distance of sets that are apart, and the shortest way out of an overlap (parry's by the
+/// expanding polytope algorithm).
+#[test]
+fn distances_and_depths_are_those_of_parry() {
+    let mut rng = ChaCha8Rng::seed_from_u64(902);
+    let (mut apart, mut over, mut touching, mut alike) = (0, 0, 0, 0);
+    for case in 0..900 {
+        let size = [1e-2, 1.0, 1e3][case % 3];
+        let (a, b) = (set(&mut rng, size), set(&mut rng, size));
+        let shift = points(&mut rng, 1.5 * size)[0];
+        let b = b.translated(shift);
+        let ours = a.separation(&b);
+        let close = |d: f64| (d - ours).abs() < 1e-7 * size;
+        let found = shortest_between(farthest(&a), farthest(&b), shift).expect("an answer");
+        let found = found.shortest.norm();
+        if ours > 1e-7 * size {
+            apart += 1;
+            assert!(close(found), "{ours} {found} {a:?} {b:?}");
+            let shapes = [&a, &b].map(|set| {
+                let corners: Vec<Point> = set.vertices().iter().map(|p| point(*p)).collect();
+                ParryPolygon::from_convex_polyline(corners)
+            });
+            if let [Some(a), Some(b)] = &shapes {
+                let here = Pose::identity();
+                let theirs = query::distance(&here, a, &here, b)
+                    .expect("two shapes")
+                    .distance;
+                assert!(close(theirs), "{ours} {theirs}");
+            }
+        } else if ours < -1e-7 * size {
+            over += 1;
+            assert!(found == 0.0, "{ours} {found}");
+            // by definition: the smallest overlap along a direction
+            let along = |n: &Vector| a.support(*n) + b.support(-n);
+            let all = (0..360).map(|k| direction(0.01746 * f64::from(k)));
+            let all = all
+                .chain(a.normals())
+                .chain(b.normals().into_iter().map(|n| -n));
+            let least = all.map(|n| along(&n)).fold(f64::INFINITY, f64::min);
+            assert!(close(-least), "{ours} {least}");
+            let (a, b) = (Farthest::new(farthest(&a)), Farthest::new(farthest(&b)));
+            let deep = contact_support_map_support_map(&Pose::identity(), &a, &b, f64::MAX);
+            let deep = deep.map_or(0.0, |contact| contact.dist / UNITS);
+            // its polytope is within the difference of the sets: it may end too early, never too
+            // late
+            assert!(deep > ours - 1e-7 * size, "{ours} {deep}");
+            alike += usize::from(close(deep));
+        } else {
+            touching += 1;
+            assert!(found <= 1e-7 * size, "{ours} {found}");
+        }
+    }
+    assert!(
+        apart > 300 && over > 150 && touching > 5 && over - alike < 10,
+        "{apart} {over} {touching} {alike}"
+    );
+}
+
+/// A moving set and how far own ship is from it at a time, by parry: the farthest point of `O_0 + t
+/// V` is one of each.
+fn gap(initial: &ConvexPolygon, velocity: &ConvexPolygon, own: &Segment, time: f64) -> f64 {
+    let (still, moving) = (farthest(initial), farthest(velocity));
+    let here = own.pose_at(time).position;
+    let section = |n: Vector| still(n) + moving(n) * time;
+    let found = shortest_between(section, |_| here, Vector::zeros());
+    found.expect("an answer").shortest.norm()
+}
+
+/// The times during which own ship is in a moving set are those at which parry finds no distance;
+/// and where the set only moves and the way is straight, they begin when its linear cast hits.
+#[test]
+fn contacts_in_space_time_are_those_of_parry() {
+    let mut rng = ChaCha8Rng::seed_from_u64(903);
+    let (mut met, mut clear, mut cast) = (0, 0, 0);
+    for case in 0..700 {
+        let initial = set(&mut rng, 30.0);
+        let velocity = if case % 2 == 0 {
+            ConvexPolygon::point(points(&mut rng, 1.0)[0])
+        } else {
+            set(&mut rng, 0.7)
+        };
+        let at = Vector::new(
+            rng.random_range(-300.0..300.0),
+            rng.random_range(-300.0..300.0),
+        );
+        let toward = heading_of(initial.centroid() - at);
+        let own = Segment {
+            start: Place::new(at, toward + rng.random_range(-0.6..0.6)),
+            start_time: 0.0,
+            duration: 120.0,
+            speed: rng.random_range(0.0..8.0),
+            turn_rate: if case % 3 == 0 {
+                rng.random_range(-0.03..0.03)
+            } else {
+                0.0
+            },
+        };
+        let body = PolytopeObstacle::new("set", initial.clone(), velocity.clone());
+        let inside = if own.is_arc() {
+            arc_contacts(&body, &own, 0.0)
+        } else {
+            line_contact(&body, &own, 0.0).into_iter().collect()
+        };
+        let gap = |time: f64| gap(&initial, &velocity, &own, time);
+        for contact in &inside {
+            assert!(
+                gap(contact.start) < 1e-6 && gap(contact.end) < 1e-6,
+                "{contact:?}"
+            );
+            assert!(gap(0.5 * (contact.start + contact.end)) < 1e-6);
+        }
+        let far = |time: f64| {
+            let off = |c: &crate::obstacle::contact::Interval| (c.start - time).max(time - c.end);
+            inside.iter().map(off).fold(f64::INFINITY, f64::min) > 1e-6
+        };
+        for time in (0..=240).map(|k| 0.5 * f64::from(k)) {
+            assert!(!far(time) || gap(time) > 0.0, "{time} {inside:?}");
+        }
+        // a little before and after, own ship is outside
+        for time in inside.iter().flat_map(|c| [c.start - 1e-3, c.end + 1e-3]) {
+            let within = time > own.start_time && time < own.end_time();
+            assert!(
+                !within || !far(time) || gap(time) > 0.0,
+                "{time} {inside:?}"
+            );
+        }
+        met += usize::from(!inside.is_empty());
+        clear += usize::from(inside.is_empty());
+        let ([carried], false) = (velocity.vertices(), own.is_arc()) else {
+            continue;
+        };
+        let relative = own.start.ahead() * own.speed - carried;
+        let (a, b) = (Farthest::new(farthest(&initial)), Farthest::new(|_| at));
+        let options = ShapeCastOptions::with_max_time_of_impact(own.duration);
+        let hit = cast_shapes_support_map_support_map(
+            &Pose::identity(),
+            point(relative * UNITS),
+            &a,
+            &b,
+            options,
+        );
+        let (theirs, ours) = (
+            hit.map(|h| h.time_of_impact),
+            inside.first().map(|c| c.start),
+        );
+        // a graze is a hit for the one and none for the other
+        let long = inside.first().is_some_and(|c| c.end - c.start > 1e-3);
+        if long {
+            cast += 1;
+            let off = theirs.zip(ours).map(|(a, b)| (a - b).abs());
+            assert!(off.is_some_and(|off| off < 1e-6), "{theirs:?} {ours:?}");
+        }
+    }
+    assert!(
+        met > 200 && clear > 100 && cast > 50,
+        "{met} {clear} {cast}"
+    );
+}
+
+#[test]
+fn what_is_no_number_has_no_answer() {
+    let at = |x: f64| move |_| Vector::new(x, 0.0);
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let found = shortest_between(at(bad), at(1.0), Vector::zeros());
+        assert!(found.is_none(), "{bad}");
+        assert!(shortest_between(at(1.0), at(bad), Vector::new(bad, bad)).is_none());
+    }
+    let found = shortest_between(at(1.0), at(4.0), Vector::new(f64::NAN, 0.0));
+    assert_eq!(found.expect("numbers").shortest, Vector::new(3.0, 0.0));
+}
+
+#[test]
+fn edges_are_found_as_by_a_scan() {
+    let mut rng = ChaCha8Rng::seed_from_u64(904);
+    let mut draw = || {
+        Vector::new(
+            rng.random_range(0..40).into(),
+            rng.random_range(0..40).into(),
+        )
+    };
+    for count in [1, 2, 3, 200] {
+        let edges: Vec<(Vector, Vector)> = (0..count).map(|_| (draw(), draw())).collect();
+        let tree = EdgeTree::new(edges.iter().copied());
+        for _ in 0..100 {
+            let p = draw();
+            let off = |(a, b): &(Vector, Vector)| {
+                let edge = ConvexPolygon::hull(&[*a, *b]).expect("finite");
+                edge.signed_distance(p)
+            };
+            let all: Vec<f64> = edges.iter().map(off).collect();
+            let nearest = tree.nearest(p).expect("an edge");
+            assert_eq!(tree.edge(nearest.index), edges[nearest.index]);
+            let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+            assert!((nearest.distance - least).abs() < 1e-9);
+            assert!((all[nearest.index] - least).abs() < 1e-9);
+            let near: Vec<NearEdge> = tree.within(p, 5.0).collect();
+            assert!(
+                near.iter()
+                    .all(|e| (e.distance - all[e.index]).abs() < 1e-9)
+            );
+            let found = |k: usize| near.iter().any(|e| e.index == k);
+            assert!((0..count).all(|k| all[k] > 5.0 || found(k)));
+        }
+    }
+    let none = EdgeTree::new(std::iter::empty());
+    assert!(none.nearest(Vector::zeros()).is_none());
+    assert!(none.within(Vector::zeros(), 1e9).next().is_none());
+}
