@@ -1,5 +1,5 @@
-//! Figure 2 of the paper: an ellipsoid, its two sets (20) and (21) and its sections over time, from above, from the side and in
-//! the round.
+//! Figure 2 of the paper: an ellipsoid, its two sets (20) and (21) and its sections over time, from above and from the
+//! side.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure2 [FILE.svg|FILE.png]
@@ -7,9 +7,7 @@
 
 mod shared;
 
-use searoom::report::figure::{
-    Figure, FigureError, extent_panel, sections_panel, set_panel, volume_panel,
-};
+use searoom::report::figure::{Figure, FigureError, extent_panel, sections_panel, set_panel};
 
 fn main() -> Result<(), FigureError> {
     let target = shared::figure_2();
@@ -27,7 +25,6 @@ fn main() -> Result<(), FigureError> {
         ),
         sections_panel("Sections over time", std::slice::from_ref(&target), &times),
         extent_panel("Space-time obstacle from the side", &target, &times, 100.0),
-        volume_panel("Space-time obstacle", &target, &times, 100.0),
     ];
     shared::write(Figure::new(2, panels), "figure2.svg")
 }

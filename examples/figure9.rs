@@ -1,5 +1,5 @@
-//! Figure 9 of the paper: the optimal trajectory of CyberShip II among three ellipsoids, at the start and at the closest
-//! approach to each of them; and her velocities and forces.
+//! Figure 9 of the paper: the optimal trajectory of CyberShip II among three ellipsoids, with its
+//! velocities and forces.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure9 [FILE.svg|FILE.png]
@@ -8,12 +8,11 @@
 mod shared;
 
 use searoom::pipeline;
-use searoom::report::figure::{FigureError, moments_figure};
+use searoom::report::figure::{FigureError, plan_figure};
 use searoom::scenario::Scenario;
 
 fn main() -> Result<(), FigureError> {
     let text = include_str!("../scenarios/paper/figure_9.toml");
     let run = pipeline::run(Scenario::parse(text).expect("a sound scenario"));
-    let figure = moments_figure(&run).expect("a plan");
-    shared::write(figure, "figure9.svg")
+    shared::write(plan_figure(&run), "figure9.svg")
 }

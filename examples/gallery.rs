@@ -1,4 +1,4 @@
-//! The pictures of docs/gallery.md, into a folder.
+//! Draws the pictures of docs/gallery.md into a folder.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example gallery [FOLDER]
@@ -11,10 +11,10 @@ use searoom::report::figure::{comparison_figure, plan_figure};
 use searoom::scenario::Scenario;
 use searoom::study::compare::compare;
 
-/// Where the pictures of the page are.
+/// Folder of the pictures.
 const FOLDER: &str = "docs/gallery";
 
-/// Scenario files, below `scenarios/`, of which the plan is drawn.
+/// Scenario files below `scenarios/` whose plans are drawn.
 const PLANS: [&str; 5] = [
     "colregs/head-on",
     "colregs/give-way",
@@ -23,7 +23,7 @@ const PLANS: [&str; 5] = [
     "paper/figure_9",
 ];
 
-/// A scenario whose planners are drawn side by side, and the risks that they may accept.
+/// Scenario of the comparison, and its accepted risks.
 const COMPARED: (&str, [f64; 4]) = ("colregs/give-way", [0.0, 0.1, 0.2, 0.4]);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,11 +1,10 @@
-//! The table of docs/benchmarks.md, to standard output: how the space-time planner fares on encounters of others and on random ones.
+//! Prints docs/benchmarks.md: the space-time planner on imported and random encounters.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example leaderboard > docs/benchmarks.md
 //! ```
 //!
-//! Everything but the milliseconds is the same wherever it runs. With `--quick` there are few random encounters, each planned once:
-//! for a look whether it works.
+//! Only the times depend on the machine. `--quick` plans few random encounters, once each.
 
 #[path = "shared/new_york.rs"]
 mod new_york;
@@ -13,30 +12,30 @@ mod new_york;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use searoom::colregs::conduct::{Conduct, Thresholds};
+use searoom::colregs::{Thresholds, compliance::ComplianceReport};
 use searoom::pipeline::{self, Run};
 use searoom::planner::Outcome;
-use searoom::scenario::formats::{Assumed, Assumption, Contents};
+use searoom::scenario::import::{Assumed, Assumption, Contents};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
 
 /// Random encounters of each kind, seeds from 0.
 const RANDOM: u64 = 250;
 
-/// Plans of each scene: the time of one is the median of these. A shared machine is held up now and then, a planner is not.
+/// Plans of each scene. Their median time is reported, because a shared machine has delays.
 const RUNS: usize = 5;
 
-/// Metres between the hulls in Imazu's cases, which name none.
+/// Safety margin in metres of Imazu's cases, which have none.
 const IMAZU_MARGIN: f64 = 500.0;
 
-/// The same of a quick look.
+/// [`RANDOM`] and [`RUNS`] with `--quick`.
 const QUICK: (u64, usize) = (4, 1);
 
-/// Seconds. Outcomes must not depend on the clock.
+/// Deadline in seconds, so long that outcomes do not depend on the clock.
 const DEADLINE: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let thresholds = Thresholds::standard().ok_or("no thresholds")?;
+    let thresholds = Thresholds::standard();
     let (random, runs) = match std::env::args().nth(1).as_deref() {
         None => (RANDOM, RUNS),
         Some("--quick") => QUICK,
@@ -45,11 +44,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let assumed = Assumed::default();
     let wide = assumed.clone().with(Assumption::SafetyMargin, IMAZU_MARGIN);
     let mut suites = vec![
-        ("Imazu, margin 500 m".to_owned(), foreign("imazu", &wide)?),
-        ("DNV, margin 122 m".to_owned(), foreign("dnv", &assumed)?),
+        ("Imazu, margin 500 m".to_owned(), imported("imazu", &wide)?),
+        ("DNV, margin 122 m".to_owned(), imported("dnv", &assumed)?),
         (
             "CommonOcean samples".to_owned(),
-            foreign("commonocean", &assumed)?,
+            imported("commonocean", &assumed)?,
         ),
     ];
     suites.push(("New York, 195 targets".to_owned(), new_york::scenes()?));
@@ -62,20 +61,30 @@ fn main() -> Result<(), Box<dyn Error>> {
             scenes,
         ));
     }
-    println!("# Benchmarks\n");
+    let version = env!("CARGO_PKG_VERSION");
     println!(
-        "Searoom {}, the space-time planner, ±0.5 m/s and ±5° on every target of foreign files. Made by\n",
-        env!("CARGO_PKG_VERSION")
-    );
-    println!(
-        "```text\ncargo run --release --no-default-features --example leaderboard > docs/benchmarks.md\n```\n"
-    );
-    println!(
-        "*Clear*: a plan that enters no set that is declared, verified. *Relaxed*: of those, with shapes drawn back or not by the rules. *Judged*: of those, in \
-         which own ship, as planned, is ever at risk and so has a role toward a target. *Complies*: neither judge of [rules.md](rules.md) finds a rule broken, thresholds of the profile \
-         `searoom`; who is never at risk breaks none. *Score*: the mean over targets of the least of the scores. Milliseconds of planning on one core: a scene's is the \
-         median of {runs} plans; the columns are over scenes. All else is the same everywhere. A ship that stands on by the rules holds on until the latest moment of a certain escape, and the plan has that escape: the judges count it \
-         as an alteration, so that none complies ([rules.md](rules.md)).\n"
+        "# Benchmarks
+
+This page shows how the space-time planner of Searoom {version} performs on imported and random
+encounters. Targets of imported files have spreads of ±0.5 m/s and ±5°. This command prints the
+page; `--quick` runs a small sample:
+
+```text
+cargo run --release --no-default-features --example leaderboard > docs/benchmarks.md
+```
+
+| column | meaning |
+| --- | --- |
+| clear | scenes with a verified plan that enters no hard set |
+| relaxed | of those, plans with a relaxed ship domain or not by the rules |
+| judged | of those, plans along which own ship is at risk and so has a role toward a target |
+| complies | of the clear plans, those without rule violations or violated monitors ([rules.md](rules.md)), by the profile `searoom` |
+| score | mean over targets of their least score |
+| ms | planning time on one core: the median of {runs} plans for a scene, then statistics over scenes |
+
+Only the times depend on the machine. With `rules` no stand-on plan complies, because the plan
+contains its escape, which the monitors count as an alteration.
+"
     );
     println!(
         "| suite | `compliance` | scenes | clear | relaxed | judged | complies | score | J, median, m² | ms, median | ms, 99 % | ms, worst |"
@@ -94,7 +103,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// The scenarios of a folder below `scenarios/`, in order of the files' names.
-fn foreign(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Error>> {
+fn imported(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenarios")
         .join(folder);
@@ -142,13 +151,14 @@ fn row(
             .map(|time| time.as_secs_f64() * 1e3)
             .collect();
         times.push(quantile(&mut of_this, 0.5));
-        let conduct: Vec<Conduct> = run.conduct(thresholds).into_iter().flatten().collect();
+        let conduct: Vec<ComplianceReport> =
+            run.conduct(thresholds).into_iter().flatten().collect();
         scores.extend(conduct.iter().map(|c| c.scores.least()));
         if is_clear(&run) {
             clear += 1;
             relaxed += usize::from(!run.relaxations.is_empty());
             judged += usize::from(conduct.iter().any(|c| !c.roles.is_empty()));
-            complies += usize::from(conduct.iter().all(Conduct::complies));
+            complies += usize::from(conduct.iter().all(ComplianceReport::complies));
             costs.extend(run.planned.outcome.plan().map(|plan| plan.cost));
         }
     }
@@ -170,7 +180,7 @@ fn is_clear(run: &Run) -> bool {
         && run.evaluation.as_ref().is_some_and(|e| e.verified())
 }
 
-/// NaN of nothing.
+/// NaN for an empty slice.
 fn quantile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1) as f64;

@@ -12,6 +12,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 const MAY_USE: &[(&str, &[&str])] = &[
     ("frame", &[]),
     ("tolerance", &[]),
+    ("numerics", &[]),
     ("search", &[]),
     ("output", &[]),
     ("text", &[]),
@@ -40,6 +41,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "frame",
             "geometry",
             "tolerance",
+            "numerics",
             "target",
             "trajectory",
             "map",
@@ -56,6 +58,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "geometry",
             "frame",
             "tolerance",
+            "numerics",
             "colregs",
         ],
     ),
@@ -141,6 +144,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "study",
         &[
+            "document",
             "frame",
             "tolerance",
             "geometry",
@@ -171,7 +175,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "scenario",
             "pipeline",
             "study",
-            "report",
         ],
     ),
     (
@@ -233,10 +236,9 @@ const NEVER: &[(&str, &str)] = &[
 /// A name and the only places (path prefixes below `src/`) where it may stand.
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
-    ("parry2d_f64", &["geometry/", "map.rs", "obstacle/index.rs"]),
-    ("rstar", &["map/", "geometry/boxes.rs"]),
+    ("parry2d_f64", &["geometry/parry"]),
     ("geojson", &["map/"]),
-    ("spade", &["geometry/decomposition.rs"]),
+    ("spade", &["geometry/polygon/decomposition.rs"]),
     ("robust", &["geometry/"]),
     ("roxmltree", &["scenario/formats/"]),
     ("kuva", &["report/figure/"]),

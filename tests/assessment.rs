@@ -277,12 +277,13 @@ fn the_answers_are_those_of_the_obstacles() {
             velocities: vec![s.velocity(), vector(&mut rng, 8.0)],
             ..Query::default()
         };
-        let answer = assess(&s, &query);
-        for (held, same) in answer.hold_course.iter().zip(&answer.velocities[0].targets) {
-            assert_eq!(held.approach, *same);
+        let answer = assess("Random", "hard", &s, &query);
+        let all = answer.hold_course.targets.iter();
+        for (held, same) in all.zip(&answer.velocities[0].targets) {
+            assert_eq!((held.dcpa_m, held.tcpa_s), (same.dcpa_m, same.tcpa_s));
             assert!((0.0..=1.0).contains(&held.max_risk));
-            if held.approach.dcpa > 1e-9 {
-                assert!(!held.approach.in_velocity_obstacle);
+            if held.dcpa_m > 1e-9 {
+                assert!(!same.in_velocity_obstacle);
                 assert!(held.max_risk <= 1e-11, "{}", held.max_risk);
             }
         }
@@ -309,7 +310,7 @@ fn degenerate_sets_are_left_too() {
         s.pose.position = vector(&mut rng, 150.0 * far);
         s.horizon *= far;
         // straight at one of them, as a rule
-        if let searoom::obstacle::Section::Polygon(section) = obstacles[0].section(100.0 * far) {
+        if let searoom::geometry::ConvexSet::Polygon(section) = obstacles[0].section(100.0 * far) {
             let relative = section.vertices()[0] - s.pose.position;
             s.pose.heading = relative.y.atan2(relative.x);
             s.speed = (relative.norm() / (100.0 * far)).clamp(0.1, 9.0);

@@ -1,7 +1,7 @@
 //! CommonOcean scenarios: the samples, mutated ones, and what is meant to eat memory.
 
 use searoom::frame::Vector;
-use searoom::scenario::formats::{Assumed, Assumption, Contents, Format, Imported, Situation};
+use searoom::scenario::import::{Assumed, Assumption, Contents, Format, Imported, Situation};
 use searoom::scenario::{Fault, Scenario};
 use searoom::target::Motion;
 

@@ -11,7 +11,10 @@ mod statistics;
 
 use passing::crosses_ahead;
 use rayon::prelude::*;
-use searoom::colregs::conduct::{Conduct, Meeting, Thresholds};
+use searoom::colregs::{
+    Thresholds,
+    compliance::{ComplianceReport, EncounterSamples},
+};
 use searoom::frame::{Side, wrap};
 use searoom::pipeline::{self, Relaxation, Run};
 use searoom::scenario::Compliance;
@@ -123,7 +126,7 @@ struct Seen {
     /// Seconds from the end of the hold to the undisturbed closest approach.
     to_spare: Option<f64>,
     /// The rules broken, by the first judge.
-    breaches: Vec<&'static str>,
+    violations: Vec<&'static str>,
     cost: f64,
     milliseconds: f64,
 }
@@ -132,11 +135,11 @@ fn seen(run: &Run) -> Seen {
     let plan = run.planned.outcome.plan().expect("a plan");
     let ship = run.scenario.targets[0].ship().expect("a ship");
     let evaluation = run.evaluation.as_ref().expect("judged");
-    let meeting = Meeting::along(&plan.trajectory, run.scenario.own_ship.hull, ship);
-    let thresholds = Thresholds::standard().expect("the file is read");
+    let meeting = EncounterSamples::along(&plan.trajectory, run.scenario.own_ship.hull, ship);
+    let thresholds = Thresholds::standard();
     let turn = first_turn(&plan.trajectory);
     let given_up = |r: &Relaxation| matches!(r, Relaxation::Compliance { .. });
-    let breaches = Conduct::judge(&meeting, thresholds).breaches;
+    let violations = ComplianceReport::judge(&meeting, thresholds).violations;
     Seen {
         complies: !run.relaxations.iter().any(given_up),
         planned: evaluation.verified(),
@@ -151,7 +154,7 @@ fn seen(run: &Run) -> Seen {
             .planned
             .escape
             .map(|e| run.sets[0].encounter.undisturbed_tcpa - e.latest),
-        breaches: breaches.iter().map(|b| b.rule).collect(),
+        violations: violations.iter().map(|b| b.rule).collect(),
         cost: plan.cost,
         milliseconds: run.plan_time.as_secs_f64() * 1e3,
     }
@@ -260,10 +263,10 @@ fn plans_keep_to_the_rules() {
             EncounterKind::Overtaking => {}
         }
         asked("no rule broken, by the judge", NONE_BROKEN, &|s| {
-            s.breaches.is_empty()
+            s.violations.is_empty()
         });
         let mut rules = std::collections::BTreeMap::new();
-        for rule in all.iter().flat_map(|s| &s.breaches) {
+        for rule in all.iter().flat_map(|s| &s.violations) {
             *rules.entry(*rule).or_insert(0) += 1;
         }
         println!("  rules broken                     {rules:?}");

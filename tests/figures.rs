@@ -3,7 +3,7 @@
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle};
-use searoom::report::figure::{Figure, assessment_figure, volume_panel};
+use searoom::report::figure::{Figure, assessment_figure};
 use searoom::study::assess::Situation;
 use searoom::target::VelocitySpell;
 
@@ -112,31 +112,6 @@ fn names_do_not_lie_on_one_another() {
     assert!((height(&svg, "first") - height(&svg, "second")).abs() > 10.0);
     let svg = figure(&[at("first", 100.0), at("second", 900.0)], 5.0, &[0.0]).svg();
     assert!((height(&svg, "first") - height(&svg, "second")).abs() < 1e-6);
-}
-
-/// In the round: its own axes with their units, and a line for every section and edge that the key names.
-#[test]
-fn a_body_in_the_round_has_axes_and_units() {
-    for target in targets() {
-        let drawn = || {
-            let panel = volume_panel("Body", &target, &[0.0, 50.0, 100.0], 100.0);
-            Figure::new(1, vec![panel]).svg()
-        };
-        let svg = drawn();
-        assert_eq!(svg, drawn());
-        for text in [
-            "East [m]",
-            "North [m]",
-            "Time [s]",
-            ">100<",
-            "section at 0 s",
-            "sections at 50, 100 s",
-            "edges of the body",
-        ] {
-            assert!(svg.contains(text), "{text}");
-        }
-        assert!(!svg.contains("NaN") && !svg.contains("inf"));
-    }
 }
 
 /// From one to many panels, and situations at the edge of what there is.

@@ -6,8 +6,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Vector, direction, heading_of, wrap};
 use searoom::obstacle::SpaceTimeObstacle;
-use searoom::pipeline::{self, Run, Rung};
-use searoom::scenario::formats::{Assumed, Assumption, Contents, Format, Imported, Situation};
+use searoom::pipeline::{self, RelaxationLevel, Run};
+use searoom::scenario::import::{Assumed, Assumption, Contents, Format, Imported, Situation};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{Placement, random_traffic};
 use searoom::target::{Motion, Target};
@@ -741,9 +741,9 @@ fn every_encounter_has_a_plan_clear_of_all_it_declares() {
     assert_eq!(planned, 50);
 }
 
-/// Without the rung that answers, another would, or none: what is asserted is what that rung alone gives.
+/// Another level, or none, would answer without this one: asserted is what this level alone gives.
 #[test]
-fn every_rung_of_the_ladder_is_the_answer_to_some_encounter() {
+fn every_relaxation_level_answers_some_encounter() {
     let answer = |mut scenario: Scenario, compliance| {
         scenario.compliance = compliance;
         scenario.deadline = 60.0;
@@ -759,19 +759,22 @@ fn every_rung_of_the_ladder_is_the_answer_to_some_encounter() {
     };
     // head-on, and a ship that is overtaken or gives way
     let by_the_rules = answer(dnv("09"), Compliance::Rules);
-    assert_eq!(by_the_rules.rung, Rung::Rules);
+    assert_eq!(by_the_rules.level, RelaxationLevel::Rules);
     let clear_of_shapes = answer(dnv("07"), Compliance::Rules);
-    assert_eq!(clear_of_shapes.rung, Rung::Shapes);
+    assert_eq!(clear_of_shapes.level, RelaxationLevel::Domains);
     let imazu = Assumed::default().with(Assumption::SafetyMargin, 500.0);
     let case = benchmark("imazu/imazu.json").remove(16);
     let case = case.scenario(&imazu).expect("no faults").scenario;
     let searched = |run: &Run| run.planned.stats.expanded > 0;
     let clear_of_hard_sets = answer(case, Compliance::Shape);
-    assert!(clear_of_hard_sets.rung == Rung::Domains && searched(&clear_of_hard_sets));
+    assert!(
+        clear_of_hard_sets.level == RelaxationLevel::ReducedDomains
+            && searched(&clear_of_hard_sets)
+    );
     // wide ways are no plans of the graph
     let around = answer(dnv("53"), Compliance::Shape);
-    assert!(around.rung == Rung::Domains && !searched(&around));
+    assert!(around.level == RelaxationLevel::ReducedDomains && !searched(&around));
     let crowd = random_traffic(10, 201, Placement::Origin).expect("drawn");
     let half = answer(crowd.scenario, Compliance::Shape);
-    assert!(half.rung == Rung::Domains && half.max_risk == 0.0);
+    assert!(half.level == RelaxationLevel::ReducedDomains && half.max_risk == 0.0);
 }

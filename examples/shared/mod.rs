@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use nalgebra::Matrix2;
 use searoom::frame::Vector;
-use searoom::geometry::{ConvexPolygon, Ellipse};
-use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, Section};
+use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 use searoom::report::figure::{Figure, FigureError};
 
 fn polygon(vertices: [(f64, f64); 4]) -> ConvexPolygon {
@@ -41,8 +41,8 @@ pub fn figure_1() -> Obstacle {
 }
 
 /// The velocities of eq. (11), m/s.
-pub fn figure_1_velocities() -> Section {
-    Section::Polygon(polytope().velocity().clone())
+pub fn figure_1_velocities() -> ConvexSet {
+    ConvexSet::Polygon(polytope().velocity().clone())
 }
 
 /// Paper eqs. (20) and (21).
@@ -51,8 +51,8 @@ pub fn figure_2() -> Obstacle {
 }
 
 /// The velocities of eq. (21), m/s.
-pub fn figure_2_velocities() -> Section {
-    Section::Ellipse(*ellipsoid().velocity())
+pub fn figure_2_velocities() -> ConvexSet {
+    ConvexSet::Ellipse(*ellipsoid().velocity())
 }
 
 /// Writes to the file named by the first argument, or to `name` in the current folder.

@@ -5,20 +5,21 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
-use searoom::colregs::conduct::Thresholds;
+use searoom::colregs::Thresholds;
 use searoom::planner::{PlannerKind, SearchKind};
 use searoom::report::printable_lines;
-use searoom::scenario::formats::{Assumed, Assumption};
+use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
 
-use super::products::Wanted;
-use super::rows;
+use super::input::rows;
+use super::output::products::Wanted;
 
 /// Plans how a ship keeps clear of others when nobody knows exactly what they will do.
 ///
-/// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan or with one that
-/// takes a risk or enters a set, a plan that is rejected, or recordings that differ, 2 bad input or
-/// usage, or a result that cannot be written, 3 a fault of the program; the highest of a run wins.
+/// Exit status: 0 all planned and verified, 1 a scenario without a collision-free plan or with one
+/// that takes a risk or enters a set, a plan that is rejected, or recordings that differ, 2 bad
+/// input or usage, or a result that cannot be written, 3 a fault of the program; the highest of a
+/// run wins.
 #[derive(Debug, Parser)]
 #[command(name = "searoom", version, max_term_width = 100)]
 pub struct Arguments {
@@ -36,13 +37,14 @@ pub enum Command {
     Plan(PlanArgs),
     /// Runs every scenario below the paths: one row each, a summary, one exit status
     Suite(SuiteArgs),
-    /// Turns files of foreign formats into scenario files
+    /// Turns files of other formats into scenario files
     Import(ImportArgs),
     /// Every planner that applies and two baselines on the same scenarios, side by side
     Compare(CompareArgs),
-    /// What a recording holds, read offline, or what two differ in
+    /// Shows the contents of a recording, or the differences of two
     Inspect(InspectArgs),
-    /// Checks plan documents again from themselves alone, without the planners and their contact tests
+    /// Checks plan documents again from themselves alone, without the planners and their contact
+    /// tests
     Verify(VerifyArgs),
     /// Prints the completions of a shell, to be read by it
     Completions(CompletionsArgs),
@@ -52,7 +54,7 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scenario files, files of foreign formats, or folders of them
+    /// Scenario files, files of other formats, or folders of them
     #[arg(required = true, value_name = "SCENARIO")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
@@ -79,7 +81,7 @@ pub struct AssessArgs {
     /// A time, seconds, at which the sets are given; repeatable
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     pub section: Vec<f64>,
-    /// The sets with the domains around them instead of the hard ones
+    /// Use the ship domains instead of the hard sets
     #[arg(long)]
     pub shaped: bool,
     /// Draw sections, risk at the times of the sections, and dCPA: a file ending in .svg or .png
@@ -92,12 +94,12 @@ pub struct AssessArgs {
 
 #[derive(Debug, Args)]
 pub struct PlanArgs {
-    /// A scenario file, or a foreign one with one situation in it
+    /// A scenario file, or a file of another format with one situation
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     #[command(flatten)]
     pub shared: Shared,
-    /// Also seek the last moment at which a plan clear of every hard set exists (space-time planner)
+    /// Also find the last time at which a plan clear of every hard set exists (space-time planner)
     #[arg(long)]
     pub no_return: bool,
     // the last, because its heading holds for all that follows
@@ -107,7 +109,8 @@ pub struct PlanArgs {
 
 #[derive(Debug, Args)]
 pub struct SuiteArgs {
-    /// Scenario files, files of foreign formats, or folders that are searched for .toml, .json and .xml files (hidden ones are left out)
+    /// Scenario files, files of other formats, or folders that are searched for .toml, .json and
+    /// .xml files (hidden ones are left out)
     #[arg(value_name = "PATH", default_value = "scenarios")]
     pub paths: Vec<PathBuf>,
     #[command(flatten)]
@@ -115,7 +118,7 @@ pub struct SuiteArgs {
     /// Write one plan document per scenario into this folder
     #[arg(long, value_name = "DIR")]
     pub plans: Option<PathBuf>,
-    /// Plan nothing: say where ships would meet, and what is odd about the scenarios
+    /// Plan nothing: report where ships would meet, and faults of the scenarios
     #[arg(long, conflicts_with_all = ["plans", "report", "rrd", "figure", "planner", "search", "compliance", "max_risk", "thresholds"])]
     pub lint: bool,
     // the last, because its heading holds for all that follows
@@ -125,7 +128,7 @@ pub struct SuiteArgs {
 
 #[derive(Debug, Args)]
 pub struct ImportArgs {
-    /// Files of foreign formats, or folders of them
+    /// Files of other formats, or folders of them
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Where the scenario files go; the folder is made
@@ -197,7 +200,7 @@ pub struct CompletionsArgs {
     pub shell: clap_complete::Shell,
 }
 
-/// What takes the place of what a scenario says.
+/// Settings that replace those of a scenario.
 #[derive(Debug, Args)]
 pub struct Asked {
     /// Planner instead of the scenario's: space-time, path-time, optimal-control
@@ -206,10 +209,12 @@ pub struct Asked {
     /// Search instead of the scenario's: a-star, dijkstra
     #[arg(long, value_name = "KIND", value_parser = search)]
     pub search: Option<SearchKind>,
-    /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and filters)
+    /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and
+    /// filters)
     #[arg(long, value_name = "C", value_parser = compliance)]
     pub compliance: Option<Compliance>,
-    /// What own ship's behaviour is judged by, of no effect on the plan: searoom, dnv-trafficgen, sfi-autoship, or a TOML file
+    /// Thresholds of rule compliance, without effect on the plan: searoom, dnv-trafficgen,
+    /// sfi-autoship, or a TOML file
     #[arg(long, value_name = "PROFILE|FILE", value_parser = thresholds)]
     pub thresholds: Option<Arc<Thresholds>>,
 }
@@ -220,7 +225,8 @@ pub struct Written {
     /// Write a Rerun recording: a file ending in .rrd, or a folder
     #[arg(long, value_name = "PATH")]
     pub rrd: Option<PathBuf>,
-    /// Draw the chart, and the path-time diagram of a path-time plan: a file ending in .svg or .png, or a folder
+    /// Draw the chart, and the path-time diagram of a path-time plan: a file ending in .svg or
+    /// .png, or a folder
     #[arg(long, value_name = "PATH")]
     pub figure: Option<PathBuf>,
     /// Write a report for a browser, index.html and its figures, into this folder
@@ -231,7 +237,7 @@ pub struct Written {
     pub json: bool,
 }
 
-/// What `plan` and `suite` take.
+/// Options of `plan` and `suite`.
 #[derive(Debug, Args)]
 pub struct Shared {
     #[command(flatten)]
@@ -243,32 +249,34 @@ pub struct Shared {
     pub written: Written,
 }
 
-/// What foreign files do not say. Of no effect on scenario files.
+/// Values that files of other formats do not give.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Foreign files (of no effect on scenario files)")]
 pub struct AssumedArgs {
     /// Half-width of every target's speed, m/s [default: 0.5]
-    #[arg(long, value_name = "MPS", value_parser = speed_spread)]
+    #[arg(long, value_name = "MPS", value_parser = assumption(Assumption::SpeedSpread))]
     pub speed_spread_mps: Option<f64>,
     /// Half-width of every target's course, degrees [default: 5]
-    #[arg(long, value_name = "DEG", value_parser = course_spread)]
+    #[arg(long, value_name = "DEG", value_parser = assumption(Assumption::CourseSpread))]
     pub course_spread_deg: Option<f64>,
     /// Kept between the hulls, metres [default: own length]
-    #[arg(long, value_name = "M", visible_alias = "margin-m", value_parser = safety_margin)]
+    #[arg(long, value_name = "M", visible_alias = "margin-m", value_parser = assumption(Assumption::SafetyMargin))]
     pub safety_margin_m: Option<f64>,
-    /// Length of ships without one, metres [default: 100 where the format has no place for it, otherwise a fault]
-    #[arg(long, value_name = "M", value_parser = length)]
+    /// Length of ships without one, metres [default: 100 where the format has no place for it,
+    /// otherwise a fault]
+    #[arg(long, value_name = "M", value_parser = assumption(Assumption::Length))]
     pub length_m: Option<f64>,
-    /// Beam of ships without one, metres [default: 20 where the format has no place for it, otherwise a fault]
-    #[arg(long, value_name = "M", value_parser = beam)]
+    /// Beam of ships without one, metres [default: 20 where the format has no place for it,
+    /// otherwise a fault]
+    #[arg(long, value_name = "M", value_parser = assumption(Assumption::Beam))]
     pub beam_m: Option<f64>,
-    /// Imazu's cases also as others have coded them
+    /// Import Imazu's cases also in published variants
     #[arg(long)]
     pub variants: bool,
 }
 
 impl AssumedArgs {
-    /// What is assumed.
+    /// The assumptions.
     pub fn assumed(&self) -> Assumed {
         let given = [
             (Assumption::SpeedSpread, self.speed_spread_mps),
@@ -287,35 +295,15 @@ impl AssumedArgs {
     }
 }
 
-fn assumption(what: Assumption, word: &str) -> Result<f64, String> {
-    match word.parse() {
+fn assumption(what: Assumption) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |word| match word.parse() {
         Ok(value) if what.allows(value) => Ok(value + 0.0),
         _ => Err(format!("allowed: {}", what.allowed())),
     }
 }
 
-fn speed_spread(word: &str) -> Result<f64, String> {
-    assumption(Assumption::SpeedSpread, word)
-}
-
-fn course_spread(word: &str) -> Result<f64, String> {
-    assumption(Assumption::CourseSpread, word)
-}
-
-fn safety_margin(word: &str) -> Result<f64, String> {
-    assumption(Assumption::SafetyMargin, word)
-}
-
-fn length(word: &str) -> Result<f64, String> {
-    assumption(Assumption::Length, word)
-}
-
-fn beam(word: &str) -> Result<f64, String> {
-    assumption(Assumption::Beam, word)
-}
-
 impl Asked {
-    /// What the rules ask of a scenario, and by what own ship is judged.
+    /// Replaces compliance and thresholds.
     pub fn apply_rules(&self, scenario: &mut Scenario) {
         if let Some(compliance) = self.compliance {
             scenario.compliance = compliance;
@@ -339,7 +327,7 @@ impl Written {
 }
 
 impl Shared {
-    /// Puts what the command line says in the place of what the scenario says; what the planner cannot do then.
+    /// Replaces settings of the scenario; fails where the planner cannot use them.
     pub fn apply(&self, scenario: &mut Scenario) -> Result<(), Vec<Fault>> {
         if let Some(planner) = self.asked.planner {
             scenario.planner = planner;
@@ -372,40 +360,45 @@ fn time(text: &str) -> Result<f64, String> {
     rows::option(text, &rows::TIME).map(|[time]| time)
 }
 
-fn planner(word: &str) -> Result<PlannerKind, String> {
-    match word {
-        "space-time" => Ok(PlannerKind::SpaceTime),
-        "path-time" => Ok(PlannerKind::PathTime),
-        "optimal-control" => Ok(PlannerKind::OptimalControl),
-        _ => Err("allowed: space-time, path-time, optimal-control".to_owned()),
-    }
+/// The value with this word.
+fn word<T: Copy>(words: &[(&str, T)], found: &str) -> Result<T, String> {
+    let known = words.iter().find(|(word, _)| *word == found);
+    known.map(|(_, value)| *value).ok_or_else(|| {
+        let words: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+        format!("allowed: {}", words.join(", "))
+    })
 }
 
-fn search(word: &str) -> Result<SearchKind, String> {
-    match word {
-        "a-star" => Ok(SearchKind::AStar),
-        "dijkstra" => Ok(SearchKind::Dijkstra),
-        _ => Err("allowed: a-star, dijkstra".to_owned()),
-    }
+fn planner(found: &str) -> Result<PlannerKind, String> {
+    let all = [
+        PlannerKind::SpaceTime,
+        PlannerKind::PathTime,
+        PlannerKind::OptimalControl,
+    ];
+    word(&all.map(|kind| (kind.word(), kind)), found)
 }
 
-fn compliance(word: &str) -> Result<Compliance, String> {
-    match word {
-        "none" => Ok(Compliance::None),
-        "shape" => Ok(Compliance::Shape),
-        "rules" => Ok(Compliance::Rules),
-        _ => Err("allowed: none, shape, rules".to_owned()),
-    }
+fn search(found: &str) -> Result<SearchKind, String> {
+    let words = [
+        ("a-star", SearchKind::AStar),
+        ("dijkstra", SearchKind::Dijkstra),
+    ];
+    word(&words, found)
 }
 
-/// A published set by its name, before a file of that name; `./NAME` is the file.
+fn compliance(found: &str) -> Result<Compliance, String> {
+    let all = [Compliance::None, Compliance::Shape, Compliance::Rules];
+    word(&all.map(|kind| (kind.word(), kind)), found)
+}
+
+/// Published thresholds by name, before a file of that name; `./NAME` is the file.
 fn thresholds(word: &str) -> Result<Arc<Thresholds>, String> {
     if let Some(published) = Thresholds::named(word) {
         return Ok(Arc::new(published.clone()));
     }
     let file = Path::new(word);
     if !file.exists() {
-        let names: Vec<&str> = Thresholds::all().iter().map(|t| t.name.as_str()).collect();
+        let names: Vec<&str> = Thresholds::all().iter().map(|t| &*t.name).collect();
         return Err(format!(
             "allowed: {}, or a file that is there",
             names.join(", ")

@@ -1,6 +1,5 @@
 //! `searoom assess`: risk, closest approach and velocity obstacle, no planning.
 
-use searoom::document::AssessmentDocument;
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
@@ -10,12 +9,12 @@ use searoom::scenario::Scenario;
 use searoom::study::assess::{Query, Situation, SpaceTimePoint, assess as answer};
 
 use super::args::AssessArgs;
-use super::figure;
+use super::input::rows;
+use super::input::scenes::scenario_file;
 use super::output::Output;
-use super::rows;
+use super::output::products::prepare_figure;
+use super::output::status::Status;
 use super::runner::guarded;
-use super::scenes::scenario_file;
-use super::status::Status;
 
 /// Assesses one file.
 pub fn assess(args: &AssessArgs, output: &Output) -> Status {
@@ -29,7 +28,7 @@ pub fn assess(args: &AssessArgs, output: &Output) -> Status {
     }
     // before anything is computed
     if let Some(path) = &args.figure
-        && let Err(error) = figure::prepare(path)
+        && let Err(error) = prepare_figure(path)
     {
         output.error(&format_args!("{error:#}"));
         return Status::BadInput;
@@ -106,14 +105,11 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
         horizon: scenario.horizon,
         obstacles: &obstacles,
     };
-    let assessment = answer(&situation, query);
+    let sets = if args.shaped { "shaped" } else { "hard" };
+    let assessment = answer(&scenario.title, sets, &situation, query);
     let drawn = match &args.figure {
         Some(path) => match assessment_figure(&situation, &query.sections)
-            .titled(&format!(
-                "{}, {} sets",
-                scenario.title,
-                if args.shaped { "shaped" } else { "hard" }
-            ))
+            .titled(&format!("{}, {sets} sets", scenario.title))
             .write(path)
         {
             Ok(()) => Status::Good,
@@ -125,14 +121,8 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
         None => Status::Good,
     };
     drawn.max(if args.json {
-        output.document(&AssessmentDocument::of(
-            &scenario.title,
-            scenario.horizon,
-            args.shaped,
-            &assessment,
-        ))
+        output.document(&assessment)
     } else {
-        let text = assessment_text(&scenario.title, args.shaped, &situation, &assessment);
-        output.result(&text)
+        output.result(&assessment_text(&situation, &assessment))
     })
 }

@@ -1,9 +1,9 @@
 //! `searoom check`: reads and checks, plans nothing.
 
 use super::args::CheckArgs;
+use super::input::{files, scenes};
 use super::output::Output;
-use super::status::Status;
-use super::{files, scenes};
+use super::output::status::Status;
 
 /// One line for each good scenario, with what was assumed; every fault of the others.
 pub fn check(args: &CheckArgs, output: &Output) -> Status {

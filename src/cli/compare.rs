@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use rayon::prelude::*;
 use searoom::document::{
     ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument, UNREADABLE,
@@ -10,44 +10,43 @@ use searoom::document::{
 use searoom::report::figure::comparison_figure;
 use searoom::report::page::Report;
 use searoom::report::{
-    COMPARISON_COLUMNS, ComparisonRow, comparison_csv, comparison_markdown, comparison_table,
-    write_atomically,
+    COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table, write_atomically,
 };
 use searoom::scenario::Scenario;
 use searoom::study::compare::{
-    Contender, Entry, Inapplicable, Method, Sailed, contenders, methods,
+    Candidate, Entry, EntryResult, Inapplicable, Method, candidates, methods,
 };
 
 use super::args::CompareArgs;
-use super::figure;
-use super::files::{self, Found};
+use super::input::files::{self, Found};
+use super::input::scenes::{note_foreign, scenario_file};
 use super::output::Output;
-use super::products::{Products, ScenarioCompared, Wanted};
+use super::output::products::{Failure, Products, ScenarioCompared, Wanted, prepare_figure};
+use super::output::status::Status;
 use super::runner::guarded;
-use super::scenes::{note_foreign, scenario_file};
-use super::status::Status;
 
-/// A scenario and who is to sail it, or why it is none.
+/// A scenario with its candidates, or why there is none.
 struct Asked {
     file: String,
     stem: String,
     scenario: Result<Scenario, String>,
-    contenders: Vec<Contender>,
+    candidates: Vec<Candidate>,
     inapplicable: Vec<Inapplicable>,
 }
 
-/// A scenario with its entries, or with the faults of the program that came instead.
+/// A scenario with its entries and the faults of the program.
 struct Compared {
     asked: Asked,
     entries: Vec<Entry>,
     faults: Vec<String>,
 }
 
-/// Compares every scenario. Contenders of all of them run at the same time, and are shown in a fixed order.
+/// Compares every scenario. Candidates of all of them run at the same time, and are shown in a
+/// fixed order.
 pub fn compare(args: &CompareArgs, output: &Output) -> Status {
     // before anything is computed
     if let Some(path) = &args.written.figure
-        && let Err(error) = figure::prepare(path)
+        && let Err(error) = prepare_figure(path)
     {
         output.error(&format_args!("{error:#}"));
         return Status::BadInput;
@@ -82,24 +81,35 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
         }
         status = status.max(c.status());
     }
-    let written = write(args, &compared).unwrap_or_else(|error| {
+    let documents: Vec<_> = compared.iter().map(Compared::document).collect();
+    let written = write(args, &compared, &documents).unwrap_or_else(|error| {
         output.error(&format_args!("{error:#}"));
         Status::BadInput
     });
-    for c in &compared {
-        let Some(side) = c.side() else { continue };
+    for (c, document) in compared.iter().zip(&documents) {
+        let Ok(scenario) = &c.asked.scenario else {
+            continue;
+        };
+        let side = ScenarioCompared {
+            scenario,
+            entries: &c.entries,
+            table: comparison_markdown(document),
+            document: ComparisonDocument {
+                comparisons: vec![document.clone()],
+            },
+        };
         if let Err((reached, error)) = products.write_comparison(&c.asked.stem, &side) {
             output.error(&error);
             status = status.max(reached);
         }
     }
     if products.wants_report()
-        && let Err((reached, error)) = report(&compared, &products)
+        && let Err((reached, error)) = report(&compared, &documents, &products)
     {
         output.error(&error);
         status = status.max(reached);
     }
-    status.max(written).max(show(args, &compared, output))
+    status.max(written).max(show(args, documents, output))
 }
 
 impl Asked {
@@ -108,7 +118,7 @@ impl Asked {
             file,
             stem: String::new(),
             scenario: Err(error),
-            contenders: Vec::new(),
+            candidates: Vec::new(),
             inapplicable: Vec::new(),
         }
     }
@@ -137,7 +147,7 @@ fn ask(found: &Found, args: &CompareArgs) -> Asked {
     Asked {
         file: name,
         stem,
-        contenders: contenders(&found.methods, &risks),
+        candidates: candidates(&found.methods, &risks),
         inapplicable: found.inapplicable,
         scenario: Ok(scenario),
     }
@@ -153,20 +163,20 @@ fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     }
 }
 
-/// Runs all contenders of all scenarios at once.
+/// Runs all candidates of all scenarios at once.
 fn run(asked: Vec<Asked>, output: &Output) -> Vec<Compared> {
-    let jobs: Vec<(usize, &Scenario, Contender)> = asked
+    let jobs: Vec<(usize, &Scenario, Candidate)> = asked
         .iter()
         .enumerate()
-        .filter_map(|(index, a)| Some((index, a.scenario.as_ref().ok()?, &a.contenders)))
+        .filter_map(|(index, a)| Some((index, a.scenario.as_ref().ok()?, &a.candidates)))
         .flat_map(|(index, scenario, all)| all.iter().map(move |c| (index, scenario, *c)))
         .collect();
     let bar = output.progress(jobs.len());
     let results: Vec<(usize, Result<Entry, String>)> = jobs
         .into_par_iter()
-        .map(|(index, scenario, contender)| {
-            let entry = guarded(|| contender.run(scenario))
-                .map_err(|fault| format!("{}, {}: {fault}", asked[index].file, contender.method));
+        .map(|(index, scenario, candidate)| {
+            let entry = guarded(|| candidate.run(scenario))
+                .map_err(|fault| format!("{}, {}: {fault}", asked[index].file, candidate.method));
             bar.inc(1);
             (index, entry)
         })
@@ -190,43 +200,22 @@ fn run(asked: Vec<Asked>, output: &Output) -> Vec<Compared> {
 }
 
 impl Compared {
-    fn rows(&self) -> Vec<ComparisonRow> {
-        let Ok(scenario) = &self.asked.scenario else {
-            return Vec::new();
-        };
-        let row = |entry| ComparisonRow::of(scenario, entry);
-        self.entries.iter().map(row).collect()
-    }
-
     /// The document's part about this scenario.
     fn document(&self) -> ScenarioComparisonDocument {
         let file = self.asked.file.clone();
         match &self.asked.scenario {
             Ok(scenario) => ScenarioComparisonDocument::of(
                 file,
-                &scenario.title,
+                scenario,
                 &self.entries,
-                &self.rows(),
                 &self.asked.inapplicable,
             ),
             Err(error) => ScenarioComparisonDocument::failed(file, error.clone()),
         }
     }
 
-    /// What is written for this scenario alone; `None` where it is none.
-    fn side(&self) -> Option<ScenarioCompared<'_>> {
-        let scenario = self.asked.scenario.as_ref().ok()?;
-        Some(ScenarioCompared {
-            scenario,
-            entries: &self.entries,
-            table: comparison_markdown(&scenario.title, &self.rows(), &self.asked.inapplicable),
-            document: ComparisonDocument {
-                comparisons: vec![self.document()],
-            },
-        })
-    }
-
-    /// Good when some planner has a plan that is clear; a plan that fails its check is a fault of the program.
+    /// Good when some planner has a plan that is clear; a plan that fails its check is a fault of
+    /// the program.
     fn status(&self) -> Status {
         if self.asked.scenario.is_err() {
             return Status::BadInput;
@@ -238,8 +227,8 @@ impl Compared {
             .entries
             .iter()
             .filter_map(|entry| match &entry.result {
-                Sailed::Planned(run) => Some(Status::of(run)),
-                Sailed::Baseline(_) | Sailed::Nothing(_) => None,
+                EntryResult::Planned(run) => Some(Status::of(run)),
+                EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
             })
             .collect();
         if of_planners.contains(&Status::InternalFault) {
@@ -251,19 +240,21 @@ impl Compared {
 }
 
 /// Writes what was asked for.
-fn write(args: &CompareArgs, compared: &[Compared]) -> anyhow::Result<Status> {
+fn write(
+    args: &CompareArgs,
+    compared: &[Compared],
+    documents: &[ScenarioComparisonDocument],
+) -> anyhow::Result<Status> {
     if let Some(file) = &args.csv {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(COMPARISON_COLUMNS)?;
-        for c in compared {
-            let title = c.asked.scenario.as_ref().map_or("", |s| s.title.as_str());
-            for row in c.rows() {
-                writer.write_record(comparison_csv(&c.asked.file, title, &row))?;
+        for document in documents {
+            for entry in &document.entries {
+                writer.write_record(comparison_csv(document, entry))?;
             }
         }
         let bytes = writer.into_inner().context("the rows cannot be written")?;
-        // the message names its cause already
-        write_atomically(file, &bytes).map_err(|error| anyhow!("{error}"))?;
+        write_atomically(file, &bytes)?;
     }
     if let Some(file) = &args.written.figure {
         let drawn: Vec<(&Scenario, &[Entry])> = compared
@@ -271,23 +262,25 @@ fn write(args: &CompareArgs, compared: &[Compared]) -> anyhow::Result<Status> {
             .filter_map(|c| Some((c.asked.scenario.as_ref().ok()?, c.entries.as_slice())))
             .collect();
         if !drawn.is_empty() {
-            comparison_figure(&drawn)
-                .write(file)
-                .map_err(|error| anyhow!("{error}"))?;
+            comparison_figure(&drawn).write(file)?;
         }
     }
     Ok(Status::Good)
 }
 
 /// The report of all scenarios, those that are none among them.
-fn report(compared: &[Compared], products: &Products) -> Result<(), (Status, String)> {
+fn report(
+    compared: &[Compared],
+    documents: &[ScenarioComparisonDocument],
+    products: &Products,
+) -> Result<(), Failure> {
     let mut report = Report::new();
-    for c in compared {
+    for (c, document) in compared.iter().zip(documents) {
         let file = files::shown(Path::new(&c.asked.file));
         match &c.asked.scenario {
             Ok(scenario) => {
                 let subject = products.subject(&c.asked.stem, file);
-                report.add_comparison(&subject, scenario, &c.entries, &c.asked.inapplicable);
+                report.add_comparison(&subject, document, scenario, &c.entries);
             }
             Err(error) => {
                 let error = error.replace(&c.asked.file, &file);
@@ -306,24 +299,17 @@ fn report(compared: &[Compared], products: &Products) -> Result<(), (Status, Str
     products.write_report(&report, "Searoom: a comparison", lead)
 }
 
-fn show(args: &CompareArgs, compared: &[Compared], output: &Output) -> Status {
+fn show(
+    args: &CompareArgs,
+    comparisons: Vec<ScenarioComparisonDocument>,
+    output: &Output,
+) -> Status {
     if args.written.json {
-        return output.document(&ComparisonDocument {
-            comparisons: compared.iter().map(Compared::document).collect(),
-        });
+        return output.document(&ComparisonDocument { comparisons });
     }
-    let tables: Vec<String> = compared
-        .iter()
-        .filter_map(|c| {
-            let title = &c.asked.scenario.as_ref().ok()?.title;
-            let rows = c.rows();
-            Some(comparison_table(
-                title,
-                &rows,
-                &c.asked.inapplicable,
-                output.colour,
-            ))
-        })
+    let read = comparisons.iter().filter(|c| c.error.is_none());
+    let tables: Vec<String> = read
+        .map(|compared| comparison_table(compared, output.colour))
         .collect();
     if tables.is_empty() {
         return Status::Good;

@@ -1,26 +1,24 @@
-//! `searoom suite --lint`: what is odd about scenarios, without planning.
+//! `searoom suite --lint`: faults of scenarios, without planning.
 
 use searoom::document::{LintDocument, LintScenarioDocument};
 use searoom::report::lint_text;
 use searoom::scenario::Scenario;
-use searoom::scenario::formats::Assumed;
-use searoom::study::lint::{Likeness, Lint, likenesses, lint};
+use searoom::scenario::import::Assumed;
+use searoom::study::lint::{Likeness, likenesses, lint};
 
 use super::args::SuiteArgs;
+use super::input::scenes::{Scene, Unread};
 use super::output::Output;
+use super::output::status::Status;
 use super::runner::guarded;
-use super::scenes::{Scene, Unread};
-use super::status::Status;
 
-/// A scenario that was read, and what is said of it.
-struct Looked {
-    file: String,
+/// A scenario that was read, with its findings.
+struct Checked {
     scenario: Scenario,
-    lint: Lint,
-    notes: Vec<String>,
+    document: LintScenarioDocument,
 }
 
-/// Looks at every scene; good unless one cannot be read.
+/// Checks every scene; good unless one cannot be read.
 pub fn suite(
     scenes: Vec<Result<Scene, Unread>>,
     args: &SuiteArgs,
@@ -28,29 +26,24 @@ pub fn suite(
     output: &Output,
 ) -> Status {
     let mut status = Status::Good;
-    let mut all: Vec<Result<Looked, Unread>> = Vec::new();
+    let mut all: Vec<Result<Checked, Unread>> = Vec::new();
     for scene in scenes {
-        let looked = match scene {
-            Ok(scene) => guarded(|| look(&scene, assumed)).unwrap_or_else(|fault| {
+        let checked = match scene {
+            Ok(scene) => guarded(|| check(&scene, assumed)).unwrap_or_else(|fault| {
                 status = status.max(Status::InternalFault);
                 Err(unread(&scene, fault))
             }),
             Err(unread) => Err(unread),
         };
-        if let Err(failed) = &looked {
+        if let Err(failed) = &checked {
             status = status.max(Status::BadInput);
             output.error(&failed.error);
         }
-        all.push(looked);
+        all.push(checked);
     }
     compare(&mut all);
-    let documents = all.into_iter().map(|looked| match looked {
-        Ok(looked) => LintScenarioDocument::of(
-            looked.file,
-            looked.scenario.title,
-            &looked.lint,
-            looked.notes,
-        ),
+    let documents = all.into_iter().map(|checked| match checked {
+        Ok(checked) => checked.document,
         Err(failed) => {
             LintScenarioDocument::failed(failed.file.display().to_string(), failed.error)
         }
@@ -71,35 +64,33 @@ fn unread(scene: &Scene, error: String) -> Unread {
     }
 }
 
-fn look(scene: &Scene, assumed: &Assumed) -> Result<Looked, Unread> {
-    match scene.scenario(assumed) {
-        Ok(made) => Ok(Looked {
-            lint: lint(&made.scenario, &scene.declared()),
-            file: scene.found.file.display().to_string(),
-            scenario: made.scenario,
-            notes: made.notes,
-        }),
-        Err(error) => Err(unread(scene, error.to_string())),
-    }
+fn check(scene: &Scene, assumed: &Assumed) -> Result<Checked, Unread> {
+    let made = scene.scenario(assumed);
+    let made = made.map_err(|error| unread(scene, error.to_string()))?;
+    let file = scene.found.file.display().to_string();
+    Ok(Checked {
+        document: lint(file, &made.scenario, &scene.declared(), made.notes),
+        scenario: made.scenario,
+    })
 }
 
-/// Adds which are like which.
-fn compare(all: &mut [Result<Looked, Unread>]) {
+/// Adds findings about repeated scenarios.
+fn compare(all: &mut [Result<Checked, Unread>]) {
     let read: Vec<&Scenario> = all
         .iter()
         .flatten()
-        .map(|looked| &looked.scenario)
+        .map(|checked| &checked.scenario)
         .collect();
     let names: Vec<String> = all
         .iter()
         .flatten()
-        .map(|looked| format!("{} ({})", looked.scenario.title, looked.file))
+        .map(|checked| format!("{} ({})", checked.scenario.title, checked.document.file))
         .collect();
     let like = likenesses(&read);
-    for (looked, like) in all.iter_mut().flatten().zip(like) {
+    for (checked, like) in all.iter_mut().flatten().zip(like) {
         let Some((before, how)) = like else { continue };
         let name = &names[before];
-        looked.lint.findings.push(match how {
+        checked.document.findings.push(match how {
             Likeness::Same => format!("the same encounter as {name}"),
             Likeness::Mirrored => format!("the mirror image of {name}"),
         });

@@ -4,24 +4,15 @@ mod args;
 mod assess;
 mod check;
 mod compare;
-#[cfg(feature = "recording")]
-mod difference;
-#[cfg(feature = "recording")]
-mod document_words;
-mod figure;
-mod files;
 mod import;
+mod input;
 #[cfg(feature = "recording")]
 mod inspect;
 mod lint;
 mod output;
 mod plan;
-mod products;
-mod rows;
 mod runner;
-mod scenes;
 mod shell;
-mod status;
 mod suite;
 mod verify;
 
@@ -31,7 +22,7 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use output::Output;
-use status::Status;
+use output::status::Status;
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {

@@ -1,16 +1,17 @@
 //! `searoom plan`: one scenario.
 
+use searoom::document::PlanDocument;
 use searoom::pipeline::{NoReturn, Run};
 use searoom::report::page::Report;
-use searoom::report::{no_return_line, no_return_reason, plan_text};
+use searoom::report::{no_return_line, no_return_reason, plan_document_text};
 
 use super::args::PlanArgs;
-use super::files::{Found, shown};
+use super::input::files::{Found, shown};
+use super::input::{files, scenes};
 use super::output::Output;
-use super::products::{Products, document};
+use super::output::products::{Failure, Products};
+use super::output::status::Status;
 use super::runner::{Attempt, attempt};
-use super::status::Status;
-use super::{files, scenes};
 
 /// Plans one file and prints the verdict.
 pub fn plan(args: &PlanArgs, output: &Output) -> Status {
@@ -60,13 +61,18 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
                 if args.no_return && no_return.is_none() {
                     output.note(&no_return_reason(&run));
                 }
-                let shown = if args.shared.written.json {
-                    output.document(&document(&run, no_return))
-                } else {
-                    let said = no_return.map(|found| format!("\n{}", no_return_line(found)));
-                    output.result(&format!("{}{}", plan_text(&run), said.unwrap_or_default()))
+                let document = PlanDocument {
+                    time_of_no_return_s: no_return.map(NoReturn::time),
+                    ..PlanDocument::of(&run)
                 };
-                let written = match write(&products, &scene.found, &run, no_return) {
+                let shown = if args.shared.written.json {
+                    output.document(&document)
+                } else {
+                    let line = no_return.map(|found| format!("\n{}", no_return_line(found)));
+                    let text = plan_document_text(&document);
+                    output.result(&format!("{text}{}", line.unwrap_or_default()))
+                };
+                let written = match write(&products, &scene.found, &run, &document) {
                     Ok(()) => Status::Good,
                     Err((status, error)) => {
                         output.error(&error);
@@ -93,13 +99,13 @@ fn write(
     products: &Products,
     found: &Found,
     run: &Run,
-    no_return: Option<NoReturn>,
-) -> Result<(), (Status, String)> {
-    products.write(&found.stem, run, no_return)?;
+    plan: &PlanDocument,
+) -> Result<(), Failure> {
+    products.write(&found.stem, run, plan)?;
     let mut report = Report::new();
     if products.wants_report() {
         let subject = products.subject(&found.stem, shown(&found.file));
-        report.add_run(&subject, run);
+        report.add_run(&subject, plan, run);
     }
-    products.write_report(&report, &run.scenario.title, "Planned by Searoom.")
+    products.write_report(&report, &plan.scenario, "Planned by Searoom.")
 }

@@ -1,4 +1,4 @@
-//! Runs one scenario so that a fault of the program costs that scenario alone.
+//! Runs one scenario, so that a fault of the program stops that scenario alone.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -8,16 +8,16 @@ use std::time::{Duration, Instant};
 
 use searoom::pipeline::{self, Run};
 use searoom::scenario::ScenarioError;
-use searoom::scenario::formats::Assumed;
+use searoom::scenario::import::Assumed;
 
 use super::args::Shared;
-use super::scenes::{Made, Scene};
+use super::input::scenes::{Made, Scene};
 
 thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// What became of one file.
+/// The result of one file.
 #[expect(
     clippy::large_enum_variant,
     reason = "one per file, and nearly always the large one"
@@ -27,7 +27,7 @@ pub enum Attempt {
     Run(Run, Vec<String>),
     /// No scenario in it.
     Unreadable(ScenarioError),
-    /// A scenario, by its title, that is of no use to what the command line asks for, and why.
+    /// A valid scenario, by its title, that cannot be used as asked, and why.
     NotApplicable(String, ScenarioError),
     /// The program failed; says where.
     Fault(String),
@@ -51,15 +51,15 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// The same on a thread of its own, and `None` where it is not done by the end of a time: it then goes on unheeded until the program
-/// ends.
+/// [`guarded`] on a thread of its own; `None` where it takes longer than `time`. The thread then
+/// runs on until the program ends.
 pub fn guarded_within<T: Send + 'static>(
     time: Duration,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Option<Result<T, String>> {
     let begun = Instant::now();
     let (done, result) = mpsc::channel();
-    // nobody listens any more where the time is over
+    // the receiver is gone when the time is over
     std::thread::spawn(move || drop(done.send(guarded(work))));
     let found = result.recv_timeout(time).ok();
     found.filter(|_| begun.elapsed() <= time)
@@ -84,7 +84,7 @@ fn message(payload: &(dyn Any + Send)) -> &str {
     }
 }
 
-/// Reads, plans and judges one scene.
+/// Reads, plans and evaluates one scene.
 pub fn attempt(scene: &Scene, shared: &Shared, assumed: &Assumed) -> Attempt {
     let file = &scene.found.file;
     let work = || match scene.scenario(assumed) {

@@ -1,4 +1,5 @@
-//! `searoom completions` and `searoom man`: what shells and readers of manuals need, from the arguments themselves.
+//! `searoom completions` and `searoom man`: what shells and readers of manuals need, from the
+//! arguments themselves.
 
 use clap::CommandFactory;
 use clap_complete::generate;
@@ -6,7 +7,7 @@ use clap_mangen::Man;
 
 use super::args::{Arguments, CompletionsArgs};
 use super::output::Output;
-use super::status::Status;
+use super::output::status::Status;
 
 /// Prints the completions of a shell.
 pub fn completions(args: &CompletionsArgs, output: &Output) -> Status {

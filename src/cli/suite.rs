@@ -3,32 +3,26 @@
 use std::path::Path;
 
 use searoom::document::{
-    INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, UNREADABLE,
+    INTERNAL_FAULT, NOT_APPLICABLE, PlanDocument, SuiteDocument, SuiteRunDocument, UNREADABLE,
 };
-use searoom::pipeline::Run;
 use searoom::report::page::Report;
-use searoom::report::{Row, Summary, printable, suite_table};
-use searoom::scenario::formats::Assumed;
+use searoom::report::{printable, suite_table};
+use searoom::scenario::import::Assumed;
 
 use super::args::SuiteArgs;
-use super::files::{self, Found, shown};
+use super::input::files::{self, Found, shown};
+use super::input::scenes::{self, Scene};
 use super::lint;
 use super::output::Output;
-use super::products::{Products, Wanted};
+use super::output::products::{Products, Wanted};
+use super::output::status::Status;
 use super::runner::{Attempt, attempt};
-use super::scenes::{self, Scene};
-use super::status::Status;
 
-/// Rows, entries of the document and the messages so far, in the order of the files.
+/// Entries of the document and the messages so far, in the order of the files.
 #[derive(Default)]
 struct Tally {
-    rows: Vec<Row>,
     runs: Vec<SuiteRunDocument>,
     errors: Vec<String>,
-    /// Runs of which something was assumed or not used.
-    noted: usize,
-    /// Scenarios of no use to what was asked for.
-    skipped: usize,
     report: Report,
     status: Option<Status>,
 }
@@ -38,43 +32,31 @@ impl Tally {
         self.status = self.status.max(Some(status));
     }
 
-    fn run(&mut self, file: String, run: &Run, notes: Vec<String>) {
-        self.reach(Status::of(run));
-        self.rows.push(Row::Run(Summary::of(run)));
-        self.noted += usize::from(!notes.is_empty());
-        self.runs.push(SuiteRunDocument::of(file, run, notes));
-    }
-
-    /// A scenario that is no fault of anybody, but of no use to what was asked for.
+    /// A scenario without fault that the planner or the rules asked for cannot use.
     fn not_applicable(&mut self, file: &Path, title: String, reason: String) {
-        self.skipped += 1;
-        self.report
-            .add_failure(&shown(file), NOT_APPLICABLE, &without_folder(file, &reason));
+        self.fail(file, NOT_APPLICABLE, &reason);
         let file = file.display().to_string();
-        self.rows.push(Row::Failed {
-            file: file.clone(),
-            outcome: NOT_APPLICABLE,
-        });
         self.runs
             .push(SuiteRunDocument::not_applicable(file, title, reason));
     }
 
     fn failed(&mut self, file: &Path, outcome: &'static str, error: String) {
-        self.reach(if outcome == INTERNAL_FAULT {
-            Status::InternalFault
-        } else {
-            Status::BadInput
+        self.reach(match outcome {
+            INTERNAL_FAULT => Status::InternalFault,
+            _ => Status::BadInput,
         });
         self.errors.push(error.clone());
-        self.report
-            .add_failure(&shown(file), outcome, &without_folder(file, &error));
+        self.fail(file, outcome, &error);
         let file = file.display().to_string();
-        self.rows.push(Row::Failed {
-            file: file.clone(),
-            outcome,
-        });
         self.runs
             .push(SuiteRunDocument::failed(file, outcome, error));
+    }
+
+    /// Adds a failure to the report, which shows files without the folders of this machine.
+    fn fail(&mut self, file: &Path, outcome: &str, error: &str) {
+        let name = shown(file);
+        let error = error.replace(&file.display().to_string(), &name);
+        self.report.add_failure(&name, outcome, &error);
     }
 }
 
@@ -116,16 +98,19 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     for error in &tally.errors {
         output.error(error);
     }
-    if tally.noted > 0 {
-        let (noted, plural) = (tally.noted, if tally.noted == 1 { "" } else { "s" });
+    let count = |wanted: fn(&SuiteRunDocument) -> bool| {
+        let count = tally.runs.iter().filter(|run| wanted(run)).count();
+        let plural = if count == 1 { "" } else { "s" };
+        (count > 0).then(|| format!("{count} scenario{plural}"))
+    };
+    if let Some(scenarios) = count(|run| !run.notes.is_empty()) {
         output.note(&format_args!(
-            "{noted} scenario{plural} with assumptions: `searoom check`, and \"notes\" with --json, say which"
+            "{scenarios} with assumptions: `searoom check`, and \"notes\" with --json, say which"
         ));
     }
-    if tally.skipped > 0 {
-        let (skipped, plural) = (tally.skipped, if tally.skipped == 1 { "" } else { "s" });
+    if let Some(scenarios) = count(|run| run.outcome == NOT_APPLICABLE) {
         output.note(&format_args!(
-            "{skipped} scenario{plural} not applicable, skipped: \"reason\" with --json, and `searoom plan`, say why"
+            "{scenarios} not applicable, skipped: \"reason\" with --json, and `searoom plan`, say why"
         ));
     }
     let document = SuiteDocument::of(tally.runs);
@@ -137,7 +122,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     let shown = if args.shared.written.json {
         output.document(&document)
     } else {
-        let table = suite_table(&tally.rows, output.colour);
+        let table = suite_table(&document.runs, output.colour);
         output.result(&format!("{table}\n{}", document.summary))
     };
     tally.status.unwrap_or(Status::Good).max(shown)
@@ -147,14 +132,17 @@ fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, 
     let file = scene.found.file.as_path();
     match attempt(scene, &args.shared, assumed) {
         Attempt::Run(run, notes) => {
-            tally.run(file.display().to_string(), &run, notes);
-            if let Err((status, error)) = products.write(&scene.found.stem, &run, None) {
+            let plan = PlanDocument::of(&run);
+            let name = file.display().to_string();
+            tally.reach(Status::of(&run));
+            tally.runs.push(SuiteRunDocument::of(name, &plan, notes));
+            if let Err((status, error)) = products.write(&scene.found.stem, &run, &plan) {
                 tally.reach(status);
                 tally.errors.push(error);
             }
             if products.wants_report() {
                 let subject = products.subject(&scene.found.stem, shown(file));
-                tally.report.add_run(&subject, &run);
+                tally.report.add_run(&subject, &plan, &run);
             }
         }
         Attempt::Unreadable(error) => tally.failed(file, UNREADABLE, error.to_string()),
@@ -163,9 +151,4 @@ fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, 
         }
         Attempt::Fault(fault) => tally.failed(file, INTERNAL_FAULT, fault),
     }
-}
-
-/// A message about a file, which names it as a report does.
-fn without_folder(file: &Path, message: &str) -> String {
-    message.replace(&file.display().to_string(), &shown(file))
 }

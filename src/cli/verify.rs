@@ -11,8 +11,8 @@ use searoom::verification::{Verification, verify as check};
 
 use super::args::VerifyArgs;
 use super::output::Output;
+use super::output::status::Status;
 use super::runner::guarded_within;
-use super::status::Status;
 
 /// Bytes, 64 MiB: a plan among a hundred targets has less than one.
 const FILE_BYTES: u64 = 1 << 26;

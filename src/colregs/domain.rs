@@ -1,35 +1,15 @@
 //! Shapes of the initial set: where a target's ship may be, with what own ship is to keep of her
 //! folded in, and what the rules of the road add to it (docs/colregs.md 3.2-3.3).
 
-use super::bevelled_box::BevelledBox;
-use super::encounter::{Risk, risk_distance};
-use super::sweep::sweep;
-use crate::frame::{Pose, Vector};
+use super::encounter::{Risk, offset_from_wake, risk_distance};
+use super::rules::ClosedSide;
+use crate::frame::{Pose, Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, outer_disc};
 use crate::target::{DomainKind, ShipTrack};
 use crate::tolerance;
 use crate::vessel::OwnShip;
 
-/// Standard deviations of the position that the sets cover.
-const POSITION_SIGMAS: f64 = 3.0;
-
 /// The two initial sets of one target, for own ship's centre, metres.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::colregs::{Shapes, first_risk, shapes};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let ferry = scenario.targets[0].ship().expect("a ship");
-/// let risk = first_risk(&scenario.own_ship, &scenario.desired, ferry, scenario.horizon);
-/// let Shapes { hard, shaped, .. } = shapes(&scenario.own_ship, ferry, risk.as_ref(), scenario.horizon);
-/// // the shape holds the hard set and what the rules add to it
-/// assert!(hard.vertices().iter().all(|v| shaped.signed_distance(*v) < 1e-6));
-/// assert!(shaped.area() > 2.0 * hard.area());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shapes {
     /// Hull and own ship, each on any heading it may have, safety margin, position uncertainty: safety is claimed on this.
@@ -86,7 +66,9 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f
 /// The same of a target at the origin.
 fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
     let around = outer_disc(
-        own.hull.half_diagonal() + own.safety_margin + POSITION_SIGMAS * target.position_std,
+        own.hull.half_diagonal()
+            + own.safety_margin
+            + tolerance::POSITION_SIGMAS * target.position_std,
         target.pose.heading,
     );
     let hull = target.outer_hull(horizon);
@@ -260,6 +242,100 @@ fn largest(holds: impl Fn(f64) -> bool) -> f64 {
         }
     }
     low
+}
+
+/// How much the sweep exceeds what the design inequality needs: covers a planner that does not find
+/// the exact optimum.
+const SWEEP_EXCESS: f64 = 0.1;
+
+/// Radians. Own ship this far off the wake of the ship that she overtakes passes on that side (5°).
+const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
+
+/// `e` of docs/colregs.md 3.3, metres: which way, and how far, the base is swept. Passing on the side that
+/// the rules forbid then costs `|e| = 2 (1 + 0.1)` risk distances more of displacement than on the other,
+/// so that the cheaper side is the compliant one for every miss distance that is a risk (3.2).
+///
+/// The direction is the normal of the relative velocity at the first instant of risk on the bad side:
+/// the target's starboard side in a head-on or port-to-port meeting; ahead of her when giving way; when
+/// overtaking her starboard side, unless own ship is more than 5° to starboard of her wake, then her
+/// port side. Zero for every other role.
+pub fn sweep(own: &OwnShip, target: &ShipTrack, risk: &Risk) -> Vector {
+    let ahead = direction(target.pose.heading);
+    let port = to_port(ahead);
+    // the bad side, and what decides when the normal has no part in it
+    let (bad, otherwise) = match risk.role.duties().closed_side {
+        ClosedSide::Starboard => (-port, ahead),
+        ClosedSide::Ahead => (ahead, -port),
+        ClosedSide::AcrossWake if offset_from_wake(risk) > OFF_THE_WAKE => (port, ahead),
+        ClosedSide::AcrossWake => (-port, ahead),
+        ClosedSide::None => return Vector::zeros(),
+    };
+    let relative = risk.own.velocity() - risk.target.velocity();
+    let Some(along) = relative.try_normalize(0.0) else {
+        return Vector::zeros();
+    };
+    let normal = to_port(along);
+    let toward = match normal.dot(&bad) {
+        0.0 => normal.dot(&otherwise),
+        part => part,
+    };
+    normal * toward.signum() * (2.0 * (1.0 + SWEEP_EXCESS) * risk_distance(own, target))
+}
+
+/// A bevelled box about a ship, in her lengths: how far it reaches, and the fraction of the side reach
+/// to which it is bevelled at the bow and at the stern.
+struct BevelledBox {
+    fore: f64,
+    aft: f64,
+    port: f64,
+    starboard: f64,
+    bow: f64,
+    stern: f64,
+}
+
+impl BevelledBox {
+    /// The symmetric base of the "colregs" domain: two lengths ahead and astern, one and a half
+    /// abeam. The bevel leans by a multiple of 22.5°, like the sides of the disc that is added: the
+    /// sum has 16 edges instead of 20. The safety margin is not in here, it is in that disc.
+    fn symmetric() -> Self {
+        let (along, abeam) = (2.0, 1.5);
+        let bevel = 1.0 - (std::f64::consts::PI / 8.0).tan() * (along / 2.0) / abeam;
+        Self {
+            fore: along,
+            aft: along,
+            port: abeam,
+            starboard: abeam,
+            bow: bevel,
+            stern: bevel,
+        }
+    }
+
+    /// The "paper" domain: a large forbidden region in front and to starboard.
+    fn one_size() -> Self {
+        Self {
+            fore: 6.0,
+            aft: 2.0,
+            port: 1.5,
+            starboard: 4.0,
+            bow: 0.5,
+            stern: 0.5,
+        }
+    }
+
+    /// `P(f, a, p, s, kf, ka)` of docs/colregs.md 3.3, `(ahead, to port)` in units of `length`.
+    fn corners(&self, length: f64) -> [Vector; 8] {
+        [
+            (self.fore, -self.bow * self.starboard),
+            (self.fore, self.bow * self.port),
+            (self.fore / 2.0, self.port),
+            (-self.aft / 2.0, self.port),
+            (-self.aft, self.stern * self.port),
+            (-self.aft, -self.stern * self.starboard),
+            (-self.aft / 2.0, -self.starboard),
+            (self.fore / 2.0, -self.starboard),
+        ]
+        .map(|(ahead, port)| Vector::new(ahead, port) * length)
+    }
 }
 
 #[cfg(test)]

@@ -1,19 +1,22 @@
-//! The rules of the road: encounters and the shapes that answer them.
+//! The collision regulations: encounters and roles, the duties of each role, ship domains that answer
+//! them, and the assessment of own ship's compliance.
+//!
+//! A new role needs its case in [`Role`] and in the conditions of [`role_within`], and its row in
+//! [`Role::duties`], which planner, ship domain and scores read.
 
-mod bevelled_box;
-pub mod conduct;
+pub mod compliance;
 mod domain;
-mod duty;
 mod encounter;
 mod role;
-mod sweep;
+mod rules;
+mod thresholds;
 
-pub use domain::{Shapes, shapes};
-pub(crate) use duty::Duty;
-pub use duty::{
-    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, Encountered, MOST_SMALL_TURNS, ON_COURSE,
-    SMALL_TURN,
-};
+pub use domain::{Shapes, shapes, sweep};
 pub use encounter::{Encounter, Risk, encounter, first_risk, risk_distance};
 pub use role::{Role, Sectors, SteadyShip, raw_role, role_within};
-pub use sweep::sweep;
+pub(crate) use rules::Duty;
+pub use rules::{
+    APPARENT_SPEED, APPARENT_TIME, APPARENT_TURN, ClosedSide, CrossingAhead, Encountered,
+    MOST_SMALL_TURNS, ON_COURSE, RoleDuties, SMALL_TURN,
+};
+pub use thresholds::{MonitorLimits, RiskLimits, ScoreLimits, Thresholds};

@@ -1,71 +1,39 @@
 //! Roles of two ships that meet: docs/colregs.md 1.3.
 
-use crate::frame::{Pose, Vector, relative_bearing};
+use crate::frame::{Pose, Vector, radians_from_deg, relative_bearing};
 
-/// By what numbers roles are told apart.
-///
-/// # Examples
-///
-/// ```
-/// use std::f64::consts::{FRAC_PI_2, PI};
-/// use searoom::colregs::{Role, Sectors, SteadyShip, role_within};
-/// use searoom::frame::{Pose, Vector};
-///
-/// let north = SteadyShip { pose: Pose::new(Vector::zeros(), FRAC_PI_2), speed: 5.0 };
-/// // on the opposite course but for 8 degrees
-/// let south = SteadyShip { pose: Pose::new(Vector::new(0.0, 1000.0), -FRAC_PI_2 - 0.14), speed: 5.0 };
-/// let narrow = Sectors { head_on: PI / 36.0, ..Sectors::default() };
-/// assert_eq!(role_within(&north, &south, &Sectors::default()), Some(Role::HeadOn));
-/// assert_ne!(role_within(&north, &south, &narrow), Some(Role::HeadOn));
-/// ```
+/// Limits that separate the roles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sectors {
-    /// Radians. Both relative bearings within this of ahead: head-on.
+    /// Radians from ahead: head-on if both relative bearings are within it.
     pub head_on: f64,
-    /// Radians. More than this from ahead is the sector of the sternlight, Rule 13(b).
+    /// Radians from ahead: the sector of the sternlight begins here, Rule 13(b).
     pub abaft_the_beam: f64,
-    /// m/s. A slower ship is at rest: she has no course to judge.
+    /// m/s: a slower ship is at rest and has no course to judge.
     pub at_rest: f64,
-    /// m/s. Overtaking needs the distance to shrink at least this fast.
+    /// m/s: overtaking requires that the distance shrinks at least this fast.
     pub closing: f64,
 }
 
-impl Default for Sectors {
-    /// 10°, 112.5°, 0.2 m/s and 0.1 m/s: what planners use.
-    fn default() -> Self {
-        Self {
-            head_on: std::f64::consts::PI / 18.0,
-            abaft_the_beam: std::f64::consts::PI * 0.625,
-            at_rest: 0.2,
-            closing: 0.1,
-        }
-    }
+impl Sectors {
+    /// 10°, 112.5°, 0.2 m/s and 0.1 m/s: the sectors of the planner and the encounter generator.
+    pub const STANDARD: Self = Self {
+        head_on: radians_from_deg(10.0),
+        abaft_the_beam: radians_from_deg(112.5),
+        at_rest: 0.2,
+        closing: 0.1,
+    };
 }
 
-/// Radians. A bearing this close to dead ahead or astern has no side of its own.
+/// Radians: a bearing this close to dead ahead or astern has no side.
 const SIDE: f64 = 1e-9;
 
-/// What own ship is to a target.
-///
-/// # Examples
-///
-/// ```
-/// use std::f64::consts::{FRAC_PI_2, PI};
-/// use searoom::colregs::{Role, SteadyShip, raw_role};
-/// use searoom::frame::{Pose, Vector};
-///
-/// let own = SteadyShip { pose: Pose::new(Vector::zeros(), FRAC_PI_2), speed: 5.0 };
-/// // westwards from starboard
-/// let other = SteadyShip { pose: Pose::new(Vector::new(750.0, 750.0), PI), speed: 5.0 };
-/// assert_eq!(raw_role(&own, &other), Some(Role::GiveWay));
-/// assert_eq!(raw_role(&other, &own), Some(Role::StandOn));
-/// assert_eq!((Role::GiveWay.name(), Role::GiveWay.rule()), ("give-way", Some(15)));
-/// ```
+/// Role of own ship toward a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Role {
     /// Rule 14.
     HeadOn,
-    /// Rule 15, the other on own starboard side.
+    /// Rule 15, the target on own starboard side.
     GiveWay,
     /// Rule 17.
     StandOn,
@@ -85,7 +53,7 @@ pub enum Role {
 
 impl Role {
     /// The role as tables, documents and recordings name it.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::HeadOn => "head-on",
             Self::GiveWay => "give-way",
@@ -98,32 +66,9 @@ impl Role {
             Self::None => "none",
         }
     }
-
-    /// The number of the rule that tells own ship what to do; `None` without a role.
-    pub fn rule(self) -> Option<u8> {
-        match self {
-            Self::Overtaking | Self::Overtaken => Some(13),
-            // port to port is kept as head-on is
-            Self::HeadOn | Self::PortToPort => Some(14),
-            Self::GiveWay | Self::BothGiveWay => Some(15),
-            Self::StandOn => Some(17),
-            Self::Static | Self::None => None,
-        }
-    }
 }
 
-/// A ship on a steady course: the sectors of the rules are taken on the heading, and there is no drift.
-///
-/// # Examples
-///
-/// ```
-/// use std::f64::consts::FRAC_PI_2;
-/// use searoom::colregs::SteadyShip;
-/// use searoom::frame::{Pose, Vector};
-///
-/// let north = SteadyShip { pose: Pose::new(Vector::zeros(), FRAC_PI_2), speed: 5.0 };
-/// assert!((north.velocity() - Vector::new(0.0, 5.0)).norm() < 1e-12);
-/// ```
+/// A ship on a steady course without drift: the sectors of the rules are relative to its heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteadyShip {
     /// Hull centre and heading.
@@ -146,18 +91,18 @@ impl SteadyShip {
     }
 }
 
-/// The role that the geometry alone gives `own` toward `target`, whether or not there is risk:
-/// `raw(own, obs)` of docs/colregs.md 1.3, an ordered list, so that every state has one role and the two
-/// ships agree: head-on/head-on, give-way/stand-on, overtaking/overtaken, both-give-way twice,
-/// port-to-port twice, and none twice in line where they do not close. Of a mirrored state it is the mirrored role.
+/// Role of `own` toward `target` by geometry alone, whether or not there is risk: `raw(own, obs)` of
+/// docs/colregs.md 1.3. It is an ordered list, so that every state has one role and the two ships
+/// agree: head-on/head-on, give-way/stand-on, overtaking/overtaken, both-give-way twice, port-to-port
+/// twice, and none twice in line without closing. A mirrored state has the mirrored role.
 ///
-/// `None` when a number is not finite or the two centres coincide (no bearing): the caller must claim
-/// nothing. An own ship at rest has no duty of Rules 13-17: [`Role::None`].
+/// `None` if a number is not finite or the centres coincide: the caller must claim nothing. An own
+/// ship at rest has no duty of Rules 13 to 17: [`Role::None`].
 pub fn raw_role(own: &SteadyShip, target: &SteadyShip) -> Option<Role> {
-    role_within(own, target, &Sectors::default())
+    role_within(own, target, &Sectors::STANDARD)
 }
 
-/// The same by other numbers.
+/// [`raw_role`] with explicit sector limits.
 pub fn role_within(own: &SteadyShip, target: &SteadyShip, sectors: &Sectors) -> Option<Role> {
     let offset = target.pose.position - own.pose.position;
     let range = offset.norm();
@@ -307,7 +252,8 @@ pub(super) mod tests {
         ]
     }
 
-    /// Each role by a condition of its own, in no order: docs/colregs.md 1.3 once more, from angles found another way.
+    /// Each role by its own condition, in no order: a second reading of docs/colregs.md 1.3 from angles
+    /// that are found another way.
     fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {
         let seen = |from: &SteadyShip, of: &SteadyShip| {
             let p = of.pose.position - from.pose.position;
@@ -390,7 +336,7 @@ pub(super) mod tests {
             );
             // a ship at rest has no role, and the other sees one at rest
             let resting = matches!(pair, (Role::Static, Role::Static | Role::None));
-            let sectors = Sectors::default();
+            let sectors = Sectors::STANDARD;
             let at_rest = own.speed < sectors.at_rest || other.speed < sectors.at_rest;
             assert!(
                 if at_rest { resting } else { consistent },
@@ -420,12 +366,12 @@ pub(super) mod tests {
         for (beyond, role) in [(1e-9, Role::Overtaking), (-1e-9, Role::GiveWay)] {
             // bearing 45° to starboard, own on the port side of the target
             let p = direction(-PI / 4.0) * 500.0;
-            let heading = heading_of(-p) - (Sectors::default().abaft_the_beam + beyond);
+            let heading = heading_of(-p) - (Sectors::STANDARD.abaft_the_beam + beyond);
             let other = ship(p.x, p.y, heading, 2.0);
             assert_eq!(raw_role(&own, &other), Some(role));
         }
         for (beyond, role) in [(-1e-9, Role::HeadOn), (1e-9, Role::StandOn)] {
-            let p = direction(Sectors::default().head_on + beyond) * 500.0;
+            let p = direction(Sectors::STANDARD.head_on + beyond) * 500.0;
             assert_eq!(
                 raw_role(&own, &ship(p.x, p.y, heading_of(-p), 6.0)),
                 Some(role)

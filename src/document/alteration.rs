@@ -1,87 +1,86 @@
-//! Alterations of course of any motion: the first one and the largest.
+//! Alterations of course of a motion.
 
 use crate::frame::{Side, deg_from_radians, wrap};
-use crate::report::Turn;
 use crate::trajectory::Trajectory;
 
 /// Degrees. A smaller alteration of lines and arcs is no turn: nobody would see it.
 const LEAST_TURN_DEG: f64 = 0.5;
 
-/// The first alteration of a trajectory: arcs that follow each other to one side are one turn. Under forces the first
-/// swing of the heading to one side.
-pub(crate) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
-    if let Some(motion) = trajectory.steered() {
-        return motion.swings().first().and_then(|swing| seen(swing.turned));
-    }
-    let mut turned = 0.0_f64;
-    for segment in trajectory.segments() {
-        let more = if segment.duration > 0.0 {
-            segment.turn_rate * segment.duration
-        } else {
-            0.0
-        };
-        if turned * more > 0.0 {
-            turned += more;
-            continue;
-        }
-        if let Some(turn) = seen(turned) {
-            return Some(turn);
-        }
-        turned = more;
-    }
-    seen(turned)
+/// An alteration of course to one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Turn {
+    pub side: Side,
+    /// Positive.
+    pub degrees: f64,
+    /// Seconds.
+    pub start: f64,
 }
 
-/// The largest turn to one side without a straight stretch or a turn back in it, the one at the start from the course before,
-/// radians, included; under forces the largest swing of the heading to one side. `None` where all are too small to be seen.
+/// The first alteration of course. Corners of a path are no alterations.
+pub(crate) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
+    turns(trajectory, None).into_iter().next()
+}
+
+/// The largest alteration of course to one side. Corners of the path count, and so does the turn
+/// at the start from the course `before`, radians.
 pub(crate) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option<Turn> {
-    if let Some(motion) = trajectory.steered() {
-        let largest = motion
-            .swings()
-            .iter()
-            .map(|swing| swing.turned)
-            .max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
-        return seen(largest);
-    }
-    let mut largest = 0.0_f64;
-    let mut turned = 0.0_f64;
-    for change in changes(trajectory, before) {
-        // a straight stretch, a change of 0, ends a turn
-        turned = if turned * change > 0.0 {
-            turned + change
+    let all = turns(trajectory, Some(before)).into_iter();
+    all.reduce(|most, turn| {
+        if turn.degrees > most.degrees {
+            turn
         } else {
-            change
-        };
-        if turned.abs() > largest.abs() {
-            largest = turned;
+            most
+        }
+    })
+}
+
+/// All visible turns in order of time. Arcs that follow each other to one side are one turn; a
+/// straight segment ends it. Under forces, these are the swings of the heading. Corners between
+/// segments count where a course `before` the start is given.
+fn turns(trajectory: &Trajectory, before: Option<f64>) -> Vec<Turn> {
+    if let Some(motion) = trajectory.steered() {
+        let swings = motion.swings().into_iter();
+        return swings
+            .filter_map(|s| visible(s.turned, s.start_time))
+            .collect();
+    }
+    let mut changes: Vec<(f64, f64)> = Vec::new();
+    let mut heading = before;
+    for segment in trajectory.segments() {
+        let corner = heading.map_or(0.0, |heading| wrap(segment.start.heading - heading));
+        // rounding at a joint is no corner
+        if corner.abs() > crate::tolerance::JOINT_RAD {
+            changes.push((segment.start_time, corner));
+        }
+        let turned = segment.turn_rate * segment.duration;
+        if segment.duration > 0.0 && segment.speed > 0.0 {
+            changes.push((segment.start_time, turned));
+        }
+        heading = heading.map(|_| segment.start.heading + turned);
+    }
+    let mut turns = Vec::new();
+    let mut current = (0.0, 0.0);
+    for (start, change) in changes {
+        if current.1 * change > 0.0 {
+            current.1 += change;
+        } else {
+            turns.extend(visible(current.1, current.0));
+            current = (start, change);
         }
     }
-    seen(largest)
+    turns.extend(visible(current.1, current.0));
+    turns
 }
 
 /// A change of the heading, radians, as a turn; `None` for one that nobody would see.
-fn seen(turned: f64) -> Option<Turn> {
+fn visible(turned: f64, start: f64) -> Option<Turn> {
     let degrees = deg_from_radians(turned.abs());
     let side = Side::of_turn(turned)?;
-    (degrees >= LEAST_TURN_DEG).then_some(Turn { side, degrees })
-}
-
-/// Changes of the heading along segments one after another, radians.
-fn changes(trajectory: &Trajectory, before: f64) -> Vec<f64> {
-    let mut heading = before;
-    let mut changes = Vec::new();
-    for segment in trajectory.segments() {
-        let corner = wrap(segment.start.heading - heading);
-        // rounding at a joint is no corner
-        if corner.abs() > crate::tolerance::JOINT_RAD {
-            changes.push(corner);
-        }
-        if segment.duration > 0.0 && segment.speed > 0.0 {
-            changes.push(segment.turn_rate * segment.duration);
-        }
-        heading = segment.start.heading + segment.turn_rate * segment.duration;
-    }
-    changes
+    (degrees >= LEAST_TURN_DEG).then_some(Turn {
+        side,
+        degrees,
+        start,
+    })
 }
 
 #[cfg(test)]

@@ -1,28 +1,28 @@
-//! The comparison document: contenders of every scenario side by side.
+//! The comparison document: the candidates of every scenario side by side.
 
 use serde::{Deserialize, Serialize};
 
+use super::alteration::largest_alteration;
 use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
-use super::plan::{cost_of, finite, position, stats, timing};
-use super::words;
-use crate::report::ComparisonRow;
-use crate::study::compare::{Entry, Inapplicable, Sailed};
+use super::plan::{cost_of, finite, objective, position, stats, timing};
+use crate::evaluation::{Safety, outcome_word};
+use crate::pipeline::Verdict;
+use crate::scenario::Scenario;
+use crate::study::compare::{Entry, EntryResult, Inapplicable};
 
-/// Seconds between two positions of a track, and how many there are at most beside the first: those of a longer motion are farther
-/// apart, evenly.
+/// Seconds between two positions of a track, and how many steps there are at most. The steps of a
+/// longer motion are longer.
 const TRACK_STEP: f64 = 5.0;
 const MOST_STEPS: f64 = 1000.0;
 
 /// Every scenario that was compared, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct ComparisonDocument {
     pub comparisons: Vec<ScenarioComparisonDocument>,
 }
 
 /// One scenario. Where it could not be read `error` says why, and the rest is empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/compare.md says what each key means")]
 pub struct ScenarioComparisonDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -31,19 +31,18 @@ pub struct ScenarioComparisonDocument {
     pub inapplicable: Vec<InapplicableDocument>,
 }
 
-/// One contender.
+/// One candidate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/compare.md says what each key means")]
 pub struct EntryDocument {
     pub method: String,
     pub max_risk: f64,
-    /// Of a planner; null for a baseline.
+    /// Null for a baseline.
     pub objective: Option<String>,
     pub outcome: String,
-    /// The word that people see for it.
+    /// The outcome in the word that people see.
     pub verdict: String,
     pub reason: Option<String>,
-    /// Of a baseline: clear of sets, hulls and land.
+    /// For a baseline: clear of sets, hulls and land.
     pub verified: bool,
     /// No hard set, hull or land is entered.
     pub safe: bool,
@@ -55,42 +54,40 @@ pub struct EntryDocument {
     pub breaks: Option<Vec<String>>,
     pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
-    /// Every five seconds, or every thousandth part of a motion of more than 5000 s, and at the end.
+    /// Every five seconds, or every thousandth part of a motion of more than 5000 s, and at the
+    /// end.
     pub track: Vec<TrackPointDocument>,
 }
 
 /// A place at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct TrackPointDocument {
     pub t_s: f64,
     #[serde(flatten)]
     pub position: PositionDocument,
 }
 
-/// A method that the scenario has no use for.
+/// A method that does not apply to the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct InapplicableDocument {
     pub method: String,
     pub reason: String,
 }
 
 impl ScenarioComparisonDocument {
-    /// The entry of a scenario that was compared; `rows` are those of the entries.
+    /// The document of a scenario that was compared.
     pub fn of(
         file: String,
-        title: &str,
+        scenario: &Scenario,
         entries: &[Entry],
-        rows: &[ComparisonRow],
         inapplicable: &[Inapplicable],
     ) -> Self {
         Self {
             file,
-            scenario: Some(title.to_owned()),
+            scenario: Some(scenario.title.clone()),
             error: None,
-            entries: (entries.iter().zip(rows))
-                .map(|(entry, row)| EntryDocument::of(entry, row))
+            entries: (entries.iter())
+                .map(|entry| EntryDocument::of(scenario, entry))
                 .collect(),
             inapplicable: (inapplicable.iter())
                 .map(|other| InapplicableDocument {
@@ -114,34 +111,59 @@ impl ScenarioComparisonDocument {
 }
 
 impl EntryDocument {
-    fn of(entry: &Entry, row: &ComparisonRow) -> Self {
+    fn of(scenario: &Scenario, entry: &Entry) -> Self {
         let run = match &entry.result {
-            Sailed::Planned(run) => Some(run),
-            Sailed::Baseline(_) | Sailed::Nothing(_) => None,
+            EntryResult::Planned(run) => Some(run),
+            EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
         };
-        let objective = run
-            .and_then(|run| run.planned.outcome.plan())
-            .map(|plan| plan.cost);
+        let plan = run.and_then(|run| run.planned.outcome.plan());
+        let trajectory = entry.trajectory();
+        let verified = entry.evaluation().is_some_and(|e| e.verified());
+        let max_risk = entry.candidate.max_risk;
+        let risks = entry.risks().iter().map(|peak| peak.risk);
+        let largest_risk = risks.fold(0.0, f64::max);
+        let outcome = match &entry.result {
+            EntryResult::Planned(run) => Verdict::of(run).word(),
+            EntryResult::Baseline(_) if !verified => "collides",
+            // clear of the level sets alone
+            EntryResult::Baseline(_) if max_risk > 0.0 && largest_risk > 0.0 => {
+                Verdict::Relaxed.word()
+            }
+            EntryResult::Baseline(_) => "clear",
+            EntryResult::Nothing(_) => Verdict::Infeasible.word(),
+        };
+        let turn = trajectory
+            .and_then(|motion| largest_alteration(motion, scenario.own_ship.pose.heading));
+        let conduct = entry.conduct(scenario);
+        let mut broken: Vec<String> = (conduct.iter())
+            .flat_map(|conduct| conduct.broken())
+            .map(str::to_owned)
+            .collect();
+        broken.sort_unstable();
+        broken.dedup();
         Self {
-            method: row.method.to_string(),
-            max_risk: row.max_risk,
-            objective: run.map(|run| words::objective(&run.scenario).to_owned()),
-            outcome: row.outcome.to_owned(),
-            verdict: row.seen().0,
-            reason: row.reason.clone(),
-            verified: row.verified == Some(true),
-            safe: row.safe() == Some(true),
-            cost: entry.evaluation().map(|evaluation| {
+            method: entry.candidate.method.to_string(),
+            max_risk,
+            objective: run.map(|run| objective(&run.scenario).to_owned()),
+            outcome: outcome.to_owned(),
+            verdict: outcome_word(outcome, entry.safety(), largest_risk),
+            reason: match &entry.result {
+                EntryResult::Planned(run) => run.reason(),
+                EntryResult::Baseline(_) => None,
+                EntryResult::Nothing(reason) => Some((*reason).to_owned()),
+            },
+            verified,
+            safe: entry.safety() == Some(Safety::Safe),
+            cost: trajectory.zip(entry.evaluation()).map(|(motion, found)| {
                 // a baseline minimises nothing else
-                let objective = objective.unwrap_or(evaluation.space_time_error);
-                let mut cost = cost_of(evaluation, objective, row.arrived, entry.risks());
-                cost.delay_s = row.delay;
+                let objective = plan.map_or(found.space_time_error, |plan| plan.cost);
+                let mut cost = cost_of(motion, found, objective, entry.arrived(), entry.risks());
+                cost.delay_s = cost.delay_s.filter(|_| cost.arrived);
                 cost
             }),
-            largest_turn_deg: row.largest_turn.map(|turn| turn.degrees),
-            largest_turn_side: row.largest_turn.map(|turn| turn.side.to_string()),
-            breaks: (row.broken.as_ref())
-                .map(|broken| broken.iter().map(|rule| (*rule).to_owned()).collect()),
+            largest_turn_deg: turn.map(|turn| turn.degrees),
+            largest_turn_side: turn.map(|turn| turn.side.to_string()),
+            breaks: (!conduct.is_empty()).then_some(broken),
             search_stats: run.map(|run| stats(run)),
             timing: run.map(|run| timing(run)),
             track: track(entry),

@@ -2,15 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::words;
 use crate::pipeline::Run;
 
-/// Ship, weights and grid; what every start led to; the homotopy classes.
+/// Ship, weights and grid; the result of every initial guess; the homotopy classes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(
-    missing_docs,
-    reason = "docs/optimal-control.md says what each key means"
-)]
 pub struct ControlDocument {
     pub vessel: String,
     pub force_limits: ForceLimitsDocument,
@@ -20,9 +15,10 @@ pub struct ControlDocument {
     pub start_intervals: usize,
     /// Of the plan; more than asked for where those were too coarse.
     pub intervals: usize,
-    /// The largest deviation at the end of an interval, in the ship's units; null where no start led to a plan.
+    /// The largest deviation at the end of an interval, in the ship's units; null where no start
+    /// led to a plan.
     pub defect: Option<f64>,
-    /// Targets that are kept out of by an ellipsoid around their set.
+    /// Targets whose set is replaced by an ellipsoid around it.
     pub enclosed_targets: Vec<String>,
     pub starts: Vec<StartAttemptDocument>,
     /// The cheapest first.
@@ -31,16 +27,14 @@ pub struct ControlDocument {
 
 /// To either side of zero.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct ForceLimitsDocument {
     pub surge_n: f64,
     pub sway_n: f64,
     pub yaw_nm: f64,
 }
 
-/// What one start led to.
+/// The result of one initial guess.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct StartAttemptDocument {
     pub start: String,
     pub status: String,
@@ -49,11 +43,10 @@ pub struct StartAttemptDocument {
     pub iterations: usize,
 }
 
-/// Plans that pass every set alike.
+/// Plans that pass every set on the same side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct HomotopyClassDocument {
-    /// Per target the side on which it is passed; null where it stays far away.
+    /// For each target the side on which it is passed; null where it stays far away.
     pub sides: Vec<Option<String>>,
     pub objective: f64,
     pub starts: usize,
@@ -95,7 +88,7 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
                 sides: class
                     .sides
                     .iter()
-                    .map(|side| side.map(words::side).map(str::to_owned))
+                    .map(|side| side.map(|side| side.to_string()))
                     .collect(),
                 objective: class.objective,
                 starts: class.starts,

@@ -2,12 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::plan::finite;
-use crate::study::lint::Lint;
-
-/// Many scenarios, looked at without planning.
+/// Many scenarios, checked without planning.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/formats.md says what each key means")]
 pub struct LintDocument {
     pub scenarios: Vec<LintScenarioDocument>,
     pub summary: LintSummaryDocument,
@@ -15,7 +11,6 @@ pub struct LintDocument {
 
 /// One of them; of an unreadable file `error` says why.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/formats.md says what each key means")]
 pub struct LintScenarioDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -27,7 +22,6 @@ pub struct LintScenarioDocument {
 
 /// One target, undisturbed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/formats.md says what each key means")]
 pub struct LintTargetDocument {
     pub name: String,
     pub role: String,
@@ -37,9 +31,8 @@ pub struct LintTargetDocument {
     pub matters: String,
 }
 
-/// How many of which.
+/// Counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/formats.md says what each key means")]
 pub struct LintSummaryDocument {
     pub scenarios: usize,
     pub targets: usize,
@@ -48,7 +41,7 @@ pub struct LintSummaryDocument {
 }
 
 impl LintDocument {
-    /// With the counts.
+    /// Adds the counts.
     pub fn of(scenarios: Vec<LintScenarioDocument>) -> Self {
         let summary = LintSummaryDocument {
             scenarios: scenarios.len(),
@@ -61,27 +54,7 @@ impl LintDocument {
 }
 
 impl LintScenarioDocument {
-    /// Of a scenario that was read.
-    pub fn of(file: String, scenario: String, lint: &Lint, notes: Vec<String>) -> Self {
-        let targets = lint.targets.iter().map(|target| LintTargetDocument {
-            name: target.name.clone(),
-            role: target.role.name().to_owned(),
-            undisturbed_dcpa_m: finite(target.dcpa),
-            undisturbed_tcpa_s: finite(target.tcpa),
-            to_set_m: finite(target.to_set),
-            matters: target.weight.word().to_owned(),
-        });
-        Self {
-            file,
-            scenario: Some(scenario),
-            error: None,
-            targets: targets.collect(),
-            findings: lint.findings.clone(),
-            notes,
-        }
-    }
-
-    /// Of a file that gave none.
+    /// The entry of a file without a scenario.
     pub fn failed(file: String, error: String) -> Self {
         Self {
             file,

@@ -1,12 +1,14 @@
-//! The JSON documents, docs/documents.md.
+//! The published JSON documents: the one description of a result. Text, pages and `inspect` render
+//! them, and `verify` checks a [`PlanDocument`] alone.
 //!
-//! A number that is not finite is written as null. Keys of what does not exist yet are absent.
+//! A number that is not finite is written as null.
+#![expect(missing_docs, reason = "docs/documents.md says what each key means")]
 
-pub(crate) mod alteration;
+mod alteration;
 mod assessment;
 mod comparison;
-mod conduct;
 mod control;
+mod encounter;
 mod lint;
 mod parts;
 mod path_time;
@@ -14,20 +16,23 @@ mod plan;
 mod suite;
 mod targets;
 mod verification;
-pub(crate) mod words;
 
 pub use assessment::*;
 pub use comparison::{
     ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
     TrackPointDocument,
 };
-pub use conduct::{BreachDocument, ConductDocument, MonitorDocument, RoleDocument};
 pub use control::{
     ControlDocument, ForceLimitsDocument, HomotopyClassDocument, StartAttemptDocument,
 };
+pub use encounter::{
+    BreachDocument, ConductDocument, EncounterDocument, MonitorDocument, RoleDocument,
+};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use parts::*;
+pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
+pub(crate) use plan::finite;
 pub use plan::{PLAN_FORMAT, PlanDocument};
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,

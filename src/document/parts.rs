@@ -1,20 +1,16 @@
-//! What documents are made of: mirrors of what is written, nothing more.
+//! Parts of documents.
 
 use serde::{Deserialize, Serialize};
 
-use super::conduct::ConductDocument;
-
 /// A point of the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct PositionDocument {
     pub east_m: f64,
     pub north_m: f64,
 }
 
-/// Own ship and her limits, in the keys of the scenario file.
+/// Own ship and its limits, in the keys of the scenario file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct OwnShipDocument {
     pub position: PositionDocument,
     pub course_deg: f64,
@@ -30,34 +26,31 @@ pub struct OwnShipDocument {
 
 /// The desired trajectory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct MissionDocument {
     pub waypoints: Vec<PositionDocument>,
     pub leg_speeds_mps: Vec<f64>,
     /// Desired end.
     pub duration_s: f64,
     pub length_m: f64,
-    /// Other paths that may be sailed; absent where there are none.
+    /// Alternative paths; absent where there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alternatives: Vec<Vec<PositionDocument>>,
 }
 
-/// Something that was given up.
+/// A relaxation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct RelaxationDocument {
     pub kind: String,
     pub target: String,
     pub amount: f64,
     pub unit: String,
-    /// Of a set that is entered and left: nothing is claimed before. Absent elsewhere.
+    /// For a set that is entered and left: nothing is claimed before. Absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until_s: Option<f64>,
 }
 
-/// How the hold of a ship that stands on ends.
+/// The escape of a stand-on ship.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct EscapeDocument {
     pub policy: String,
     pub latest_s: f64,
@@ -66,9 +59,8 @@ pub struct EscapeDocument {
     pub speed_mps: f64,
 }
 
-/// Something that the independent checker found.
+/// A violation found by the independent checker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct ViolationDocument {
     pub what: String,
     pub t_s: Option<f64>,
@@ -76,11 +68,10 @@ pub struct ViolationDocument {
 
 /// The figures of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct CostDocument {
     pub objective: f64,
     pub space_time_error_m2: f64,
-    /// Until when that is counted.
+    /// Until when the space-time error is counted.
     pub space_time_error_until_s: f64,
     pub space_time_error_arc_length_m2: f64,
     pub arrived: bool,
@@ -88,11 +79,14 @@ pub struct CostDocument {
     pub length_m: f64,
     /// Null for a plan that never arrives.
     pub delay_s: Option<f64>,
+    /// The first alteration of course; null where there is none.
+    #[serde(default)]
+    pub first_turn: Option<TurnDocument>,
     /// Against the sets of which `obstacles` are the level sets.
     pub max_risk: f64,
     /// Null without targets.
     pub min_clearance_m: Option<f64>,
-    /// The same over `arrival_hold_s` after the end of the motion, own ship lying where it ends.
+    /// Least clearance over `arrival_hold_s` after the end of the motion, own ship resting there.
     #[serde(default)]
     pub hold_clearance_m: Option<f64>,
     #[serde(default)]
@@ -101,9 +95,18 @@ pub struct CostDocument {
     pub min_land_distance_m: Option<f64>,
 }
 
-/// What the search did.
+/// An alteration of course to one side.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TurnDocument {
+    pub side: String,
+    /// Positive to either side.
+    pub turn_deg: f64,
+    /// When it begins.
+    pub t_s: f64,
+}
+
+/// Statistics of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct SearchStatsDocument {
     pub expanded: usize,
     pub generated: usize,
@@ -112,14 +115,12 @@ pub struct SearchStatsDocument {
 
 /// The only figure that differs between two runs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the name says it")]
 pub struct TimingDocument {
     pub plan_s: f64,
 }
 
 /// A pose at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct StartDocument {
     pub t_s: f64,
     pub east_m: f64,
@@ -129,7 +130,6 @@ pub struct StartDocument {
 
 /// A line or an arc; starboard turns are positive.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct SegmentDocument {
     pub start: StartDocument,
     pub duration_s: f64,
@@ -139,7 +139,6 @@ pub struct SegmentDocument {
 
 /// A pose at a time, with the speed from then on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct SampleDocument {
     pub t_s: f64,
     pub east_m: f64,
@@ -151,9 +150,9 @@ pub struct SampleDocument {
     pub node: Option<NodeDocument>,
 }
 
-/// The state at a node, and the forces held until the next one; starboard and clockwise are positive.
+/// The state at a node, and the forces held until the next one; starboard and clockwise are
+/// positive.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct NodeDocument {
     pub heading_deg: f64,
     pub surge_mps: f64,
@@ -164,10 +163,9 @@ pub struct NodeDocument {
     pub yaw_nm: f64,
 }
 
-/// A trajectory, exact and sampled: every second, or every 20,000th part of a longer one, and
-/// wherever a segment starts or ends or a node is.
+/// A trajectory, exact and sampled: every second, or every 20,000th part of a longer one, and at
+/// every start or end of a segment and every node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct TrajectoryDocument {
     /// Null for a motion under forces.
     pub segments: Option<Vec<SegmentDocument>>,
@@ -212,30 +210,9 @@ pub enum VelocitySetDocument {
 
 /// A space-time obstacle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct ObstacleDocument {
     pub name: String,
     pub valid_s: [f64; 2],
     pub initial_set: InitialSetDocument,
     pub velocity_set: VelocitySetDocument,
-}
-
-/// A target as it is met. Figures of the plan are null without one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
-pub struct EncounterDocument {
-    pub target: String,
-    pub role: String,
-    pub dcpa_m: Option<f64>,
-    pub tcpa_s: Option<f64>,
-    pub undisturbed_dcpa_m: Option<f64>,
-    pub undisturbed_tcpa_s: Option<f64>,
-    pub passing_side: Option<String>,
-    /// The largest risk along the plan.
-    pub max_risk: Option<f64>,
-    /// When; null where the risk is 0.
-    pub max_risk_t_s: Option<f64>,
-    /// What the judges say; absent without a plan and where the target is no ship on a nominal track.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub conduct: Option<ConductDocument>,
 }

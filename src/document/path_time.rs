@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::words;
 use crate::frame::clockwise_deg;
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::pipeline::Run;
@@ -10,7 +9,6 @@ use crate::planner::path_time::PathTimeDiagram;
 
 /// Distance along the path and time; points are `[s_m, t_s]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct PathTimeDocument {
     /// `"main"`, `"alternative 1"` …; where own ship changes, one after another.
     pub path: String,
@@ -21,19 +19,17 @@ pub struct PathTimeDocument {
     pub profile: Vec<[f64; 2]>,
 }
 
-/// A leg that is sailed.
+/// A leg of the planned path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct PathLegDocument {
     pub start_m: f64,
     pub end_m: f64,
-    /// Which path it is of.
+    /// The path that it belongs to.
     pub path: String,
 }
 
 /// An obstacle on a leg, clipped to the leg and the horizon.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct PathObstacleDocument {
     pub target: String,
     pub leg: usize,
@@ -42,7 +38,6 @@ pub struct PathObstacleDocument {
 
 /// A corner of the path: exempt from the turning radius, the hull over both headings there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names are the units")]
 pub struct PathCornerDocument {
     pub s_m: f64,
     /// To starboard positive.
@@ -54,14 +49,14 @@ pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTi
     // +0.0 turns a negative zero into zero
     let plain = |p: &PathTime| [p.distance + 0.0, p.time + 0.0];
     PathTimeDocument {
-        path: words::paths(diagram),
+        path: paths(diagram),
         legs: diagram
             .legs
             .iter()
             .map(|leg| PathLegDocument {
                 start_m: leg.begin,
                 end_m: leg.begin + leg.track.length,
-                path: words::path(leg.path),
+                path: path(leg.path),
             })
             .collect(),
         obstacles: diagram
@@ -83,4 +78,20 @@ pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTi
             .collect(),
         profile: diagram.profile.iter().map(plain).collect(),
     }
+}
+
+/// The name of a path: 0 is the main one.
+fn path(index: usize) -> String {
+    match index {
+        0 => "main".to_owned(),
+        index => format!("alternative {index}"),
+    }
+}
+
+/// The paths of a plan in order.
+pub(crate) fn paths(diagram: &PathTimeDiagram) -> String {
+    let mut paths: Vec<usize> = diagram.legs.iter().map(|leg| leg.path).collect();
+    paths.dedup();
+    let names: Vec<String> = paths.into_iter().map(path).collect();
+    names.join(", ")
 }

@@ -2,51 +2,49 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::conduct::ConductDocument;
+use super::alteration::{Turn, first_alteration};
 use super::control::{ControlDocument, control};
+use super::encounter::{EncounterDocument, encounters};
 use super::parts::{
-    CostDocument, EncounterDocument, EscapeDocument, InitialSetDocument, MissionDocument,
-    NodeDocument, ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument,
-    SampleDocument, SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument,
-    TrajectoryDocument, VelocitySetDocument, ViolationDocument,
+    CostDocument, EscapeDocument, InitialSetDocument, MissionDocument, NodeDocument,
+    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
+    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
+    TurnDocument, VelocitySetDocument, ViolationDocument,
 };
 use super::path_time::{PathTimeDocument, path_time_document};
 use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
-use super::words;
 use crate::evaluation::Evaluation;
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
 };
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
-use crate::pipeline::Verdict;
-use crate::pipeline::{Relaxation, Run};
-use crate::planner::{Objective, Plan};
+use crate::pipeline::{Relaxation, Run, Verdict};
+use crate::planner::{Objective, Plan, PlannerKind, SearchKind};
+use crate::scenario::Scenario;
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
 
 /// The name of the plan document's format.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
 
-/// Seconds between two samples of a trajectory, and how many there are at most beside those where it changes: a day's way
-/// is not written second by second.
+/// Seconds between two samples of a trajectory, and how many there are at most beside its joints.
 const SAMPLE_STEP: f64 = 1.0;
 const MOST_SAMPLES: u32 = 20_000;
 
 /// One plan, alone: everything that is needed to check it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct PlanDocument {
     pub format: String,
     pub scenario: String,
     pub planner: String,
     pub search: String,
     pub compliance: String,
-    /// The name of what own ship's behaviour is judged by.
+    /// The name of the thresholds of rule compliance.
     #[serde(default)]
     pub thresholds: String,
     pub objective: String,
-    /// Of the objective that weighs risk; absent elsewhere.
+    /// Weight of the objective with risk; absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub risk_weight_m: Option<f64>,
     pub time_weight_m2_per_s2: f64,
@@ -57,36 +55,37 @@ pub struct PlanDocument {
     pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
     pub outcome: String,
-    /// The word that people see for it, by what happens to hulls.
+    /// The outcome in the word that people see, by what happens to hulls.
     pub verdict: String,
-    /// Why there is no plan, or none that was finished or keeps all that was asked.
+    /// Why there is no plan, or one that is unfinished or relaxed.
     pub reason: Option<String>,
     pub relaxation: Option<RelaxationDocument>,
-    /// All of what was given up, the most important first.
+    /// All relaxations, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
     /// No hard set, hull or land is entered from start to arrival.
     pub safe: bool,
-    /// Where it was asked for: null where nothing is met, or nothing was found even from the start.
+    /// Absent unless asked for. Null where nothing is met, or no clear plan exists even at the
+    /// start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_of_no_return_s: Option<Option<f64>>,
-    /// What the independent checker found wrong.
+    /// Found by the independent checker.
     pub violations: Vec<ViolationDocument>,
     pub cost: Option<CostDocument>,
     pub search_stats: SearchStatsDocument,
     pub timing: TimingDocument,
     pub trajectory: Option<TrajectoryDocument>,
-    /// Where own ship stands on; absent elsewhere.
+    /// Absent where own ship does not stand on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub escape: Option<EscapeDocument>,
-    /// As the scenario has them: what the sets have to contain.
+    /// As in the scenario: `obstacles` have to contain them.
     pub targets: Vec<TargetDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
-    /// Of a path-time plan; absent elsewhere.
+    /// Absent for other planners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path_time: Option<PathTimeDocument>,
-    /// Of a plan of forces alone.
+    /// Absent for other planners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimal_control: Option<ControlDocument>,
 }
@@ -101,12 +100,10 @@ impl PlanDocument {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
             planner: scenario.planner.word().to_owned(),
-            search: words::search(scenario.search).to_owned(),
+            search: search(scenario.search).to_owned(),
             compliance: scenario.compliance.word().to_owned(),
-            thresholds: scenario
-                .judged_by()
-                .map_or_else(String::new, |t| t.name.clone()),
-            objective: words::objective(scenario).to_owned(),
+            thresholds: scenario.judged_by().name.to_string(),
+            objective: objective(scenario).to_owned(),
             risk_weight_m: match scenario.objective {
                 Objective::LengthRisk { weight } => Some(weight),
                 _ => None,
@@ -154,15 +151,30 @@ impl PlanDocument {
     }
 }
 
+/// The word for what the planner minimises.
+pub(super) fn objective(scenario: &Scenario) -> &'static str {
+    match scenario.planner {
+        PlannerKind::OptimalControl => "stage-cost",
+        PlannerKind::SpaceTime | PlannerKind::PathTime => scenario.objective.word(),
+    }
+}
+
+fn search(kind: SearchKind) -> &'static str {
+    match kind {
+        SearchKind::AStar => "a-star",
+        SearchKind::Dijkstra => "dijkstra",
+    }
+}
+
 fn plan(run: &Run) -> Option<&Plan> {
     run.planned.outcome.plan()
 }
 
-pub(super) fn verified(run: &Run) -> bool {
+fn verified(run: &Run) -> bool {
     run.evaluation.as_ref().is_some_and(|e| e.verified())
 }
 
-pub(super) fn finite(value: f64) -> Option<f64> {
+pub(crate) fn finite(value: f64) -> Option<f64> {
     // +0.0 turns a negative zero into zero
     value.is_finite().then_some(value + 0.0)
 }
@@ -184,7 +196,7 @@ pub(super) fn timing(run: &Run) -> TimingDocument {
     }
 }
 
-pub(super) fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
+fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
     match given_up {
         Relaxation::Domain { target, amount } => RelaxationDocument {
             kind: "domain".to_owned(),
@@ -261,18 +273,18 @@ fn mission(run: &Run) -> MissionDocument {
     }
 }
 
-pub(super) fn cost(run: &Run) -> Option<CostDocument> {
+fn cost(run: &Run) -> Option<CostDocument> {
     let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
+    let arrived = run.control.is_none() && plan.to_go == 0.0;
+    let trajectory = &plan.trajectory;
     Some(cost_of(
-        evaluation,
-        plan.cost,
-        run.control.is_none() && plan.to_go == 0.0,
-        &run.risks,
+        trajectory, evaluation, plan.cost, arrived, &run.risks,
     ))
 }
 
-/// Of any motion.
+/// The figures of any motion.
 pub(super) fn cost_of(
+    trajectory: &Trajectory,
     evaluation: &Evaluation,
     objective: f64,
     arrived: bool,
@@ -287,11 +299,20 @@ pub(super) fn cost_of(
         duration_s: evaluation.duration,
         length_m: evaluation.length,
         delay_s: finite(evaluation.delay),
+        first_turn: first_alteration(trajectory).map(turn),
         max_risk: risks.iter().map(|peak| peak.risk).fold(0.0, f64::max),
         min_clearance_m: finite(evaluation.min_clearance),
         hold_clearance_m: finite(evaluation.hold_clearance),
         arrival_hold_s: evaluation.arrival_hold,
         min_land_distance_m: finite(evaluation.min_land_distance),
+    }
+}
+
+fn turn(turn: Turn) -> TurnDocument {
+    TurnDocument {
+        side: turn.side.to_string(),
+        turn_deg: turn.degrees,
+        t_s: turn.start,
     }
 }
 
@@ -354,7 +375,7 @@ fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
     })
 }
 
-/// The direction of the way made good, radians; the heading where no way is made.
+/// The direction of motion over ground, radians; the heading where there is no motion.
 fn course(motion: &Steered, time: f64) -> f64 {
     let piece = motion.piece_at(time);
     let velocity = piece.velocity(piece.part(time));
@@ -365,8 +386,8 @@ fn course(motion: &Steered, time: f64) -> f64 {
     }
 }
 
-/// One entry, or one per slab: its initial set is the section at its start, and its time counts from there. Of a set that the
-/// plan enters, what is left of it from when it has left it.
+/// One entry, or one per slab: its initial set is the section at its start, and its time counts
+/// from there. A set that the plan enters appears from when the plan has left it.
 fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
     let from = from.min(horizon);
     let set = &set.remainder(from);
@@ -418,37 +439,4 @@ pub(super) fn rows(ellipse: &Ellipse) -> [[f64; 2]; 2] {
         plain(Vector::new(q[(0, 0)], q[(0, 1)])),
         plain(Vector::new(q[(1, 0)], q[(1, 1)])),
     ]
-}
-
-pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
-    let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
-    let conduct = run.judged_conduct();
-    run.scenario
-        .targets
-        .iter()
-        .zip(&run.sets)
-        .enumerate()
-        .map(|(index, (target, sets))| {
-            let passage = passages.and_then(|passages| passages.get(index));
-            EncounterDocument {
-                target: target.name.clone(),
-                role: sets.encounter.role.name().to_owned(),
-                dcpa_m: passage.and_then(|p| finite(p.dcpa)),
-                tcpa_s: passage.and_then(|p| finite(p.tcpa)),
-                undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
-                undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
-                passing_side: passage.map(|p| p.passing_side.to_string()),
-                max_risk: run.risks.get(index).map(|peak| peak.risk),
-                max_risk_t_s: run
-                    .risks
-                    .get(index)
-                    .filter(|peak| peak.risk > 0.0)
-                    .map(|peak| peak.time),
-                conduct: conduct
-                    .get(index)
-                    .and_then(Option::as_ref)
-                    .map(ConductDocument::of),
-            }
-        })
-        .collect()
 }

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{CostDocument, EncounterDocument, RelaxationDocument, TimingDocument};
-use super::plan::{cost, encounters, relaxation, timing, verified};
+use super::encounter::EncounterDocument;
+use super::parts::{CostDocument, RelaxationDocument, SearchStatsDocument, TimingDocument};
+use super::plan::PlanDocument;
 use crate::evaluation::outcome_word;
-use crate::pipeline::Run;
 use crate::pipeline::Verdict;
 
 /// The outcome of a file that is no scenario.
@@ -14,44 +14,44 @@ pub const UNREADABLE: &str = "unreadable";
 /// The outcome of a run that ended in a fault of the program.
 pub const INTERNAL_FAULT: &str = "internal-fault";
 
-/// The outcome of a scenario that is sound, but of no use to the planner or the rules that the command line asks for.
+/// The outcome of a valid scenario that the planner or the rules asked for cannot use.
 pub const NOT_APPLICABLE: &str = "not-applicable";
 
 /// Many runs in one document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct SuiteDocument {
     pub runs: Vec<SuiteRunDocument>,
     pub summary: SuiteSummaryDocument,
 }
 
-/// One run of a suite. Where there was none, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`], and `error` says why, or
-/// [`NOT_APPLICABLE`], and `reason` does; the keys that have no meaning are null.
+/// One run of a suite. Without a run, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`] with an
+/// `error`, or [`NOT_APPLICABLE`] with a `reason`; keys without meaning are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct SuiteRunDocument {
     pub file: String,
     pub scenario: Option<String>,
     pub planner: Option<String>,
     pub outcome: String,
-    /// The word that people see for it.
+    /// The outcome in the word that people see.
     pub verdict: String,
     pub error: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// All of what was given up, the most important first.
+    /// All relaxations, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
     pub safe: bool,
     pub cost: Option<CostDocument>,
     pub encounters: Vec<EncounterDocument>,
     pub targets: Option<usize>,
+    #[serde(default)]
+    pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
 
-/// How many of which.
+/// Counts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SuiteSummaryDocument {
     /// All of them: the sum of the seven outcomes below.
@@ -64,7 +64,7 @@ pub struct SuiteSummaryDocument {
     pub infeasible: usize,
     /// Budget ran out.
     pub deadline: usize,
-    /// Scenarios of no use to the planner or the rules that were asked for.
+    /// Valid scenarios that the planner or the rules asked for cannot use.
     pub not_applicable: usize,
     /// Files that are no scenario.
     pub unreadable: usize,
@@ -74,7 +74,7 @@ pub struct SuiteSummaryDocument {
     pub verified: usize,
     /// Plans that enter no hard set, hull or land.
     pub safe: usize,
-    /// Of the relaxed plans, those that are not safe.
+    /// Relaxed plans that are not safe.
     pub not_safe: usize,
 }
 
@@ -129,28 +129,29 @@ impl std::fmt::Display for SuiteSummaryDocument {
 }
 
 impl SuiteRunDocument {
-    /// The entry of a run; the notes say what was assumed or not used of a foreign file.
-    pub fn of(file: String, run: &Run, notes: Vec<String>) -> Self {
+    /// The entry of a plan. The notes say what was assumed or not used of an imported file.
+    pub fn of(file: String, plan: &PlanDocument, notes: Vec<String>) -> Self {
         Self {
             file,
-            scenario: Some(run.scenario.title.clone()),
-            planner: Some(run.scenario.planner.word().to_owned()),
-            outcome: Verdict::of(run).word().to_owned(),
-            verdict: run.word(),
+            scenario: Some(plan.scenario.clone()),
+            planner: Some(plan.planner.clone()),
+            outcome: plan.outcome.clone(),
+            verdict: plan.verdict.clone(),
             error: None,
-            reason: run.reason(),
-            relaxations: run.relaxations.iter().map(relaxation).collect(),
-            verified: verified(run),
-            safe: run.safe(),
-            cost: cost(run),
-            encounters: encounters(run),
-            targets: Some(run.scenario.targets.len()),
-            timing: Some(timing(run)),
+            reason: plan.reason.clone(),
+            relaxations: plan.relaxations.clone(),
+            verified: plan.verified,
+            safe: plan.safe,
+            cost: plan.cost.clone(),
+            encounters: plan.encounters.clone(),
+            targets: Some(plan.targets.len()),
+            search_stats: Some(plan.search_stats),
+            timing: Some(plan.timing),
             notes,
         }
     }
 
-    /// The entry of a scenario that is of no use to what was asked for.
+    /// The entry of a valid scenario that cannot be used as asked.
     pub fn not_applicable(file: String, title: String, reason: String) -> Self {
         Self {
             scenario: Some(title),
@@ -176,6 +177,7 @@ impl SuiteRunDocument {
             cost: None,
             encounters: Vec::new(),
             targets: None,
+            search_stats: None,
             timing: None,
             notes: Vec::new(),
         }

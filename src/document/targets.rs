@@ -1,4 +1,4 @@
-//! The targets as a plan was made for them: with these a document can be checked alone.
+//! The targets of a plan: with these a document can be checked alone.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ use crate::target::{Motion, Representation, ShipTrack, Target};
 pub struct TargetDocument {
     /// Unique within a document.
     pub name: String,
-    /// `"polytope"` or `"ellipsoid"`: what her obstacle is made of.
+    /// `"polytope"` or `"ellipsoid"`.
     pub representation: String,
     /// Absent where the sets are given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -28,7 +28,6 @@ pub struct TargetDocument {
 
 /// A tracked ship, in the keys of the scenario file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/documents.md says what each key means")]
 pub struct ShipDocument {
     pub position: PositionDocument,
     pub course_deg: f64,
@@ -51,7 +50,7 @@ pub struct SpellDocument {
     pub set: VelocitySetDocument,
 }
 
-/// A target as it is known.
+/// The document of a target.
 pub(super) fn target(target: &Target) -> TargetDocument {
     let polygon = |set: &ConvexPolygon| InitialSetDocument::Polygon {
         vertices_m: vertices(set),

@@ -1,4 +1,4 @@
-//! What became of plan documents that were checked again.
+//! Results of checking plan documents.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,23 +6,21 @@ use super::parts::ViolationDocument;
 use super::plan::finite;
 use crate::verification::Verification;
 
-/// The verdict on a document that is none.
+/// The outcome of a file that is no plan document.
 const UNREADABLE: &str = "unreadable";
-/// And on one that was not checked in time.
+/// The outcome of a document that was not checked in time.
 const UNPROVEN: &str = "unproven";
 
 /// Every document that was asked for, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub struct VerificationDocument {
     pub plans: Vec<VerifiedPlanDocument>,
     pub verified: usize,
     pub safe: usize,
 }
 
-/// One document. What is unknown of one that is unreadable or unproven is null.
+/// One document. Unknown figures of an unreadable or unproven one are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "docs/verify.md says what each key means")]
 pub struct VerifiedPlanDocument {
     pub file: String,
     pub scenario: Option<String>,
@@ -39,22 +37,22 @@ pub struct VerifiedPlanDocument {
     pub min_land_distance_t_s: Option<f64>,
 }
 
-/// How near a target is met.
+/// The margins to one target.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MarginDocument {
-    /// Her name.
+    /// The name of the target.
     pub target: String,
-    /// Nothing is claimed of her set before: the plan enters it. 0 where all is claimed.
+    /// The plan enters the set before this time and claims nothing of it; 0 where all is claimed.
     pub claimed_from_s: f64,
-    /// Least signed distance to the set that was kept out of.
+    /// Least signed distance to the set.
     pub min_margin_m: Option<f64>,
-    /// And when.
+    /// The time of the value before.
     pub min_margin_t_s: Option<f64>,
-    /// Least distance to any hull that she may have.
+    /// Least distance to any hull that the target may have.
     pub min_clearance_m: Option<f64>,
-    /// Least distance to her hull if she keeps course and speed.
+    /// Least distance to its hull on the nominal motion.
     pub dcpa_m: Option<f64>,
-    /// And when.
+    /// The time of the value before.
     pub tcpa_s: Option<f64>,
 }
 

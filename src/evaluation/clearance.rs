@@ -2,16 +2,18 @@
 
 use super::least::{Least, Probe};
 use super::piece::Piece;
-use super::space_time_set::{Face, MovingSet, nearest_on};
+use super::space_time_set::{Face, MovingSet};
 use crate::frame::{Pose, Vector, to_port};
+use crate::geometry::{Between, shortest_between};
 use crate::trajectory::Bounds;
 use crate::vessel::Hull;
 
 /// The least signed distance between own hull and a moving set along a chain of pieces: negative in
-/// overlap, minus the shortest translation that separates the two. Exact to
-/// [`crate::tolerance::MARGIN_M`] and certified: between two probes the distance is bounded from below
-/// by supporting lines, which separate the two for as long as they do. About a hundred probes a segment
-/// near the minimum and one far from it, each linear in the vertices.
+/// overlap, minus the shortest translation that separates the two. The distance is parry's, the depth the smallest
+/// overlap along a normal of either (separating axes). Exact to [`crate::tolerance::MARGIN_M`] and certified: between
+/// two probes the distance is bounded from below by supporting lines, which separate the two for as long as they do.
+/// About a hundred probes a segment near the minimum and one far from it, each linear in the vertices. A distance that
+/// parry does not find, or that a supporting line contradicts, is a NaN, which is a collision.
 pub(super) fn least_distance<P: Piece>(pieces: &[P], own: Body, set: &MovingSet) -> Least {
     least_distance_below(Least::new(), pieces, own, set)
 }
@@ -141,11 +143,15 @@ impl Body {
             value: f64::NEG_INFINITY,
             lower: f64::NEG_INFINITY,
         };
-        let mut keep = |gap: Probe| {
-            best.value = best.value.max(gap.value);
+        // from the set to the body across the widest gap
+        let mut across = Vector::zeros();
+        let mut keep = |gap: Probe, toward: Vector| {
+            if gap.value > best.value {
+                (best.value, across) = (gap.value, toward);
+            }
             best.lower = best.lower.max(gap.lower);
         };
-        set.faces.iter().for_each(|face| keep(beyond(face)));
+        (set.faces.iter()).for_each(|face| keep(beyond(face), face.normal));
         if !self.is_point() {
             let ahead = pose.ahead();
             let port = to_port(ahead);
@@ -157,17 +163,35 @@ impl Body {
             ];
             for (normal, reach) in sides {
                 let side = Side { normal, reach };
-                keep(beyond_side(&pose, &moving, bounds, side, set, time, half));
+                let gap = beyond_side(&pose, &moving, bounds, side, set, time, half);
+                keep(gap, -normal);
             }
         }
-        if best.value > 0.0 {
-            let apart = self.shortest(&pose, corners, set, time);
-            best.value = apart.norm();
-            if let Some(normal) = apart.try_normalize(0.0) {
-                best.lower = best.lower.max(beyond(&set.face(normal)).lower);
-            }
+        // not apart along any normal of either: they overlap, and the smallest overlap along one is the depth
+        if !(best.value > 0.0) {
+            return best;
         }
-        best
+        // about own ship, where numbers are small
+        let on_set =
+            |n: Vector| farthest(n, set.vertices.iter().map(|v| v.at(time) - pose.position));
+        let on_hull = |n: Vector| farthest(n, corners.iter().map(|c| c.position - pose.position));
+        match shortest_between(on_set, on_hull, across) {
+            // a supporting line proves a gap: a shorter way across it is wrong
+            Some(Between {
+                shortest,
+                resolution,
+            }) if shortest.norm() >= best.value - resolution => {
+                best.value = best.value.max(shortest.norm());
+                if let Some(normal) = shortest.try_normalize(0.0) {
+                    best.lower = best.lower.max(beyond(&set.face(normal)).lower);
+                }
+                best
+            }
+            _ => Probe {
+                value: f64::NAN,
+                lower: f64::NAN,
+            },
+        }
     }
 
     fn corners(&self, pose: &Pose, moving: &Moving) -> [Corner; 4] {
@@ -180,30 +204,18 @@ impl Body {
             }
         })
     }
+}
 
-    /// The shortest vector from the set to the body, the two being apart.
-    fn shortest(&self, pose: &Pose, corners: &[Corner], set: &MovingSet, time: f64) -> Vector {
-        let mut best = Vector::repeat(f64::INFINITY);
-        let mut keep = |apart: Vector| {
-            if apart.norm_squared() < best.norm_squared() {
-                best = apart;
-            }
-        };
-        for edge in set.edges_at(time) {
-            for corner in corners {
-                keep(corner.position - nearest_on(edge, corner.position));
-            }
-            if !self.is_point() {
-                let p = pose.body_coordinates(edge.0);
-                let on_hull = Vector::new(
-                    p.x.clamp(-self.half_length, self.half_length),
-                    p.y.clamp(-self.half_beam, self.half_beam),
-                );
-                keep(pose.world_coordinates(on_hull) - edge.0);
-            }
+/// The farthest of some points in a direction.
+fn farthest(n: Vector, points: impl Iterator<Item = Vector>) -> Vector {
+    let (mut most, mut best) = (f64::NEG_INFINITY, Vector::repeat(f64::NAN));
+    for p in points {
+        let reach = n.dot(&p);
+        if reach > most {
+            (most, best) = (reach, p);
         }
-        best
     }
+    best
 }
 
 /// How far a set is beyond one of own ship's sides now, and at least within `half` seconds. The side turns

@@ -31,7 +31,7 @@ pub(crate) use stage_cost::{StageWeights, stage_costs};
 pub use steered::{Steering, evaluate_steered};
 pub(crate) use turned_hull::TurnedHull;
 pub(crate) use undisturbed::{undisturbed_distance, undisturbed_legs};
-pub(crate) use words::{Tone, outcome, risk_figure};
+pub(crate) use words::risk_figure;
 pub use words::{facts, outcome_word};
 
 use clearance::Body;
@@ -39,7 +39,7 @@ use least::Least;
 use met::passage;
 use piece::Piece;
 use safety::{Claim, collision, grounding};
-use shore::least_land_distance;
+use shore::Shore;
 use turn::{Turn, turns};
 
 use std::collections::HashMap;
@@ -338,10 +338,10 @@ fn shore<P: Piece>(
 ) -> Least {
     let own = &request.own.hull;
     let (body, reach) = (Body::hull(own), own.half_diagonal());
-    let mut least = least_land_distance(pieces, body, reach, request.land);
+    let land = Shore::new(request.land);
+    let mut least = land.least_distance(pieces, body, reach);
     for turn in turns {
-        let sweep = std::slice::from_ref(&turn.sweep);
-        let here = least_land_distance(sweep, body, reach, request.land);
+        let here = land.least_distance(std::slice::from_ref(&turn.sweep), body, reach);
         least.see(here.value, turn.time);
         least.certified &= here.certified;
     }

@@ -3,70 +3,80 @@
 use super::clearance::{Body, least_distance_below};
 use super::least::Least;
 use super::piece::Piece;
-use super::space_time_set::{MovingSet, nearest_on};
+use super::space_time_set::MovingSet;
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, Polygon};
+use crate::geometry::{ConvexPolygon, EdgeTree, Polygon};
 
-/// The least distance between own hull and land along a chain of pieces: negative on land. A hull that starts
-/// on water and touches no edge stays on water, so edges are all that is looked at, each as a set of two points
-/// that does not move; a position inside a polygon is on land whatever its edges say. Certified like
-/// [`least_distance_below`]; infinite without land. O(edges) per piece, and probes for those that are near.
-pub(super) fn least_land_distance<P: Piece>(
-    pieces: &[P],
-    own: Body,
-    reach: f64,
-    land: &[Polygon],
-) -> Least {
-    let mut least = Least::new();
-    let edges: Vec<(Vector, Vector)> = land.iter().flat_map(Polygon::edges).collect();
-    let nearest = |p: Vector| {
-        edges
-            .iter()
-            .map(|e| (nearest_on(*e, p) - p).norm())
-            .fold(f64::INFINITY, f64::min)
-    };
-    for s in pieces {
-        for time in [s.start_time(), s.end_time()] {
-            let position = s.pose_at(time).position;
-            if land.iter().any(|polygon| polygon.contains(position)) {
-                least.see(-nearest(position), time);
-            }
-        }
-        // no point of the hull leaves this disc meanwhile
-        let half = 0.5 * (s.end_time() - s.start_time());
-        let middle = s.pose_at(s.start_time() + half).position;
-        let radius = s.bounds().speed * half + reach;
-        let mut near: Vec<(f64, usize)> = edges
-            .iter()
-            .enumerate()
-            .map(|(index, e)| ((nearest_on(*e, middle) - middle).norm() - radius, index))
-            .collect();
-        let look = |least: &mut Least, index: usize| {
-            let (a, b) = edges[index];
-            let set = MovingSet::new(
-                &ConvexPolygon::from_ccw(vec![a, b]),
-                &ConvexPolygon::point(Vector::zeros()),
-            );
-            let here = least_distance_below(*least, std::slice::from_ref(s), own, &set);
-            least.see(here.value, here.time);
-            least.certified &= here.certified;
-            least.probes += here.probes;
-        };
-        let by_bound = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        // after the nearest few of the others are left to sort
-        if let Some(&(_, first)) = near.iter().min_by(|a, b| by_bound(a, b)) {
-            look(&mut least, first);
-            // negated on purpose: a NaN on either side is looked at
-            near.retain(|&(bound, index)| index != first && !(bound >= least.value));
-        }
-        near.sort_unstable_by(by_bound);
-        for (bound, index) in near {
-            if !(bound >= least.value) {
-                look(&mut least, index);
-            }
+/// Land, and its edges by place.
+pub(super) struct Shore<'a> {
+    land: &'a [Polygon],
+    edges: EdgeTree,
+}
+
+impl<'a> Shore<'a> {
+    /// O(edges log edges).
+    pub fn new(land: &'a [Polygon]) -> Self {
+        Self {
+            land,
+            edges: EdgeTree::new(land.iter().flat_map(Polygon::edges)),
         }
     }
-    least
+
+    /// The least distance between own hull, which reaches so far from its middle, and land along a chain of pieces: negative
+    /// on land. A hull that starts on water and touches no edge stays on water, so edges are all that is looked at, each
+    /// as a set of two points that does not move; a position inside a polygon is on land whatever its edges say.
+    /// Certified like [`least_distance_below`]; infinite without land. O(log edges) per piece, and probes for those that
+    /// are near.
+    pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body, reach: f64) -> Least {
+        let mut least = Least::new();
+        for s in pieces {
+            for time in [s.start_time(), s.end_time()] {
+                let position = s.pose_at(time).position;
+                if self.land.iter().any(|polygon| polygon.contains(position)) {
+                    let depth = self.edges.nearest(position);
+                    least.see(depth.map_or(f64::NAN, |edge| -edge.distance), time);
+                }
+            }
+            // no point of the hull leaves this disc meanwhile
+            let half = 0.5 * (s.end_time() - s.start_time());
+            let middle = s.pose_at(s.start_time() + half).position;
+            let radius = s.bounds().speed * half + reach;
+            let Some(first) = self.edges.nearest(middle) else {
+                // without edges there is no land; with some, a place that is no number has no nearest one
+                if !self.land.is_empty() {
+                    least.see(f64::NAN, s.start_time());
+                }
+                continue;
+            };
+            self.look(&mut least, s, own, first.index);
+            let near = self.edges.within(middle, least.value + radius);
+            let mut near: Vec<(f64, usize)> = near
+                .filter(|edge| edge.index != first.index)
+                .map(|edge| (edge.distance - radius, edge.index))
+                .collect();
+            near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            for (bound, index) in near {
+                // negated on purpose: a NaN on either side is looked at
+                if !(bound >= least.value) {
+                    self.look(&mut least, s, own, index);
+                }
+            }
+        }
+        least
+    }
+
+    /// Takes note of the distance from one edge along a piece.
+    fn look<P: Piece>(&self, least: &mut Least, piece: &P, own: Body, index: usize) {
+        let (a, b) = self.edges.edge(index);
+        let set = MovingSet::new(
+            &ConvexPolygon::from_ccw(vec![a, b]),
+            &ConvexPolygon::point(Vector::zeros()),
+        );
+        let here = least_distance_below(*least, std::slice::from_ref(piece), own, &set);
+        least.see(here.value, here.time);
+        least.certified &= here.certified;
+        least.probes += here.probes;
+    }
 }
 
 #[cfg(test)]
@@ -115,7 +125,7 @@ mod tests {
             };
             let reach = hull.half_diagonal();
             let land = [land];
-            let found = least_land_distance(&[s], Body::hull(&hull), reach, &land);
+            let found = Shore::new(&land).least_distance(&[s], Body::hull(&hull), reach);
             let mut scan = f64::INFINITY;
             for k in 0..=300 {
                 let pose = s.pose_after(s.duration * f64::from(k) / 300.0);
@@ -155,9 +165,9 @@ mod tests {
             speed: 5.0,
             turn_rate: 0.0,
         };
-        let found = least_land_distance(&[inland], Body::hull(&hull), 11.0, &land);
+        let found = Shore::new(&land).least_distance(&[inland], Body::hull(&hull), 11.0);
         assert!(found.value <= -400.0, "{found:?}");
-        let nowhere = least_land_distance(&[inland], Body::hull(&hull), 11.0, &[]);
+        let nowhere = Shore::new(&[]).least_distance(&[inland], Body::hull(&hull), 11.0);
         assert_eq!(nowhere.value, f64::INFINITY);
     }
 }

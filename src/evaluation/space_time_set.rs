@@ -262,32 +262,10 @@ impl MovingSet {
     pub fn has_interior(&self) -> bool {
         self.vertices.len() > 2
     }
-
-    /// Directed edges of the section, each as its two ends; one point to itself for a point.
-    pub fn edges_at(&self, time: f64) -> impl Iterator<Item = (Vector, Vector)> + '_ {
-        let n = self.vertices.len();
-        (0..n).map(move |i| {
-            (
-                self.vertices[i].at(time),
-                self.vertices[(i + 1) % n].at(time),
-            )
-        })
-    }
 }
 
 /// Along the bisector of the counter-clockwise gap, at most half a turn, between two unit vectors. The
 /// first part vanishes for opposite vectors, the second for equal ones.
 fn between(a: Vector, b: Vector) -> Vector {
     (a + b) + to_starboard(b - a)
-}
-
-/// The point of a segment nearest to `p`.
-pub(super) fn nearest_on(edge: (Vector, Vector), p: Vector) -> Vector {
-    let along = edge.1 - edge.0;
-    let length = along.norm_squared();
-    if length > 0.0 {
-        edge.0 + along * ((p - edge.0).dot(&along) / length).clamp(0.0, 1.0)
-    } else {
-        edge.0
-    }
 }

@@ -1,18 +1,10 @@
-//! The words that people see for how something ended, and for the two facts of a plan.
+//! Words for an outcome, a risk, and whether a plan is verified and safe.
 
 use super::Safety;
 
-/// What a word says: good, bad or neither.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Tone {
-    Plain,
-    Good,
-    Fair,
-    Bad,
-}
-
-/// The word that people see for how something ended, by what happens to hulls: `ended` is the word of the documents (of a baseline also
-/// `"clear"`, or `"collides"` where it enters a set), `safety` what is entered, `None` without a motion, `risk` the largest that is taken.
+/// The word that people see for an outcome, by what happens to hulls. `outcome` is the word of the
+/// documents, `safety` what is entered (`None` without a motion), `risk` the largest that is taken.
+/// The outcome of a baseline may also be `"clear"`, or `"collides"` where it enters a set.
 ///
 /// # Examples
 ///
@@ -26,32 +18,19 @@ pub(crate) enum Tone {
 /// assert_eq!(outcome_word("deadline", Some(Safety::Unsafe), 1.0), "NOT SAFE, deadline");
 /// assert_eq!(outcome_word("deadline", None, 0.0), "deadline");
 /// ```
-pub fn outcome_word(ended: &str, safety: Option<Safety>, risk: f64) -> String {
-    outcome(ended, safety, risk).0
-}
-
-/// [`outcome_word`], and what it says.
-pub(crate) fn outcome(ended: &str, safety: Option<Safety>, risk: f64) -> (String, Tone) {
-    let (word, tone) = match safety {
+pub fn outcome_word(outcome: &str, safety: Option<Safety>, risk: f64) -> String {
+    let word = match safety {
         // more than the hard sets is entered, at a risk that nobody accepted
-        Some(Safety::Safe) if ended == "collides" => ("relaxed".to_owned(), Tone::Fair),
-        Some(Safety::Collides) => ("COLLIDES".to_owned(), Tone::Bad),
-        Some(Safety::Unsafe) => ("NOT SAFE".to_owned(), Tone::Bad),
-        Some(Safety::AtRisk) => (at_risk(risk), Tone::Fair),
-        Some(Safety::Safe) if risk > 0.0 => (at_risk(risk), Tone::Fair),
-        Some(Safety::Safe) | None => {
-            let tone = match ended {
-                "solved" | "clear" => Tone::Good,
-                "relaxed" => Tone::Fair,
-                "not-applicable" => Tone::Plain,
-                _ => Tone::Bad,
-            };
-            return (ended.replace('-', " "), tone);
-        }
+        Some(Safety::Safe) if outcome == "collides" => "relaxed".to_owned(),
+        Some(Safety::Collides) => "COLLIDES".to_owned(),
+        Some(Safety::Unsafe) => "NOT SAFE".to_owned(),
+        Some(Safety::AtRisk) => at_risk(risk),
+        Some(Safety::Safe) if risk > 0.0 => at_risk(risk),
+        Some(Safety::Safe) | None => return outcome.replace('-', " "),
     };
-    match ended {
-        "deadline" => (format!("{word}, {ended}"), Tone::Bad),
-        _ => (word, tone),
+    match outcome {
+        "deadline" => format!("{word}, {outcome}"),
+        _ => word,
     }
 }
 

@@ -1,12 +1,9 @@
-//! Upright boxes, and an index over many of them.
-
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
+//! Axis-aligned boxes.
 
 use super::ConvexPolygon;
 use crate::frame::Vector;
 
-/// An upright box.
+/// An axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// South-western corner.
@@ -16,7 +13,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// The least one around some points; `None` without points.
+    /// The smallest box around points; `None` without points.
     pub fn around<'a>(points: impl IntoIterator<Item = &'a Vector>) -> Option<Self> {
         let mut points = points.into_iter();
         let first = points.next()?;
@@ -43,8 +40,10 @@ impl Window {
         }
     }
 
-    /// The vertices of what of a convex set is within the box, counter-clockwise; empty where nothing is. Cut side by
-    /// side (Sutherland & Hodgman, doi:10.1145/360767.360802).
+    /// Vertices of the part of a convex set inside the box, counter-clockwise; empty where there is
+    /// none.
+    ///
+    /// Clips side by side (Sutherland & Hodgman, doi:10.1145/360767.360802).
     pub fn part_of(&self, set: &ConvexPolygon) -> Vec<Vector> {
         let sides = [
             (Vector::new(1.0, 0.0), self.high.x),
@@ -70,44 +69,12 @@ impl Window {
         }
         kept
     }
-
-    fn envelope(&self) -> AABB<[f64; 2]> {
-        AABB::from_corners(self.low.into(), self.high.into())
-    }
-}
-
-/// Which of many boxes meet a box: an R*-tree, built in O(n log n).
-#[derive(Debug, Clone)]
-pub struct BoxIndex {
-    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
-}
-
-impl BoxIndex {
-    /// Of boxes that count from 0.
-    pub fn new(boxes: impl IntoIterator<Item = Window>) -> Self {
-        let boxes = boxes
-            .into_iter()
-            .enumerate()
-            .map(|(index, w)| {
-                GeomWithData::new(Rectangle::from_corners(w.low.into(), w.high.into()), index)
-            })
-            .collect();
-        Self {
-            tree: RTree::bulk_load(boxes),
-        }
-    }
-
-    /// The boxes that meet a window, touching included, in no order. O(log n + found).
-    pub fn meeting<'a>(&'a self, window: &Window) -> impl Iterator<Item = usize> + use<'a> {
-        self.tree
-            .locate_in_envelope_intersecting(window.envelope())
-            .map(|b| b.data)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::BoxIndex;
     use rand::{Rng, SeedableRng};
 
     #[test]

@@ -1,23 +1,17 @@
 //! Land: polygons from a GeoJSON file, cut into convex pieces and indexed.
 //!
-//! Everything is in metres on the scenario's plane. Polygons are what the file draws, pieces tile them. Land is
-//! the union of all polygons; they may overlap. What no polygon covers is water, whatever it is in truth: a map
-//! that is cut off somewhere has water beyond the cut.
+//! Everything is in metres on the scenario's plane. Land is the union of all polygons, which may
+//! overlap; the convex pieces tile them. Everything else is water: a map that is cut off somewhere
+//! has water beyond the cut.
 
-mod fault;
 mod path;
 mod reading;
 
-pub(crate) use fault::listed;
-pub use fault::{MapError, MapFault};
 pub use path::LandCrossing;
-
-use rstar::RTree;
-use rstar::primitives::Line;
 
 use crate::frame::Vector;
 use crate::geometry::{
-    BoxIndex, ConvexPolygon, DecompositionError, Polygon, Window, convex_pieces,
+    BoxIndex, ConvexPolygon, DecompositionError, EdgeTree, Polygon, Window, convex_pieces,
 };
 
 /// The land of a scenario. Two maps are equal when their polygons are.
@@ -42,7 +36,7 @@ pub struct Map {
     /// The pieces by their boxes.
     boxes: BoxIndex,
     /// The edges of the polygons.
-    edges: RTree<Line<[f64; 2]>>,
+    edges: EdgeTree,
 }
 
 impl std::fmt::Debug for Map {
@@ -69,16 +63,12 @@ impl Map {
         }
         let boxes = pieces.iter().filter_map(|c| Window::around(c.vertices()));
         let boxes = BoxIndex::new(boxes);
-        let edges = polygons
-            .iter()
-            .flat_map(Polygon::edges)
-            .map(|(a, b)| Line::new(a.into(), b.into()))
-            .collect();
+        let edges = EdgeTree::new(polygons.iter().flat_map(Polygon::edges));
         Ok(Self {
             polygons,
             pieces,
             boxes,
-            edges: RTree::bulk_load(edges),
+            edges,
         })
     }
 
@@ -108,15 +98,15 @@ impl Map {
         self.pieces_within(&here).iter().any(|c| c.contains(p))
     }
 
-    /// Metres from the nearest edge of the land: positive on water, negative on land, infinite without land.
-    /// Where polygons overlap an edge of one inside another counts too: then less than the depth. NaN in, NaN
-    /// out. O(log n).
+    /// Metres from the nearest edge of the land: positive on water, negative on land, infinite
+    /// without land. If polygons overlap, an edge inside another polygon counts too, so the result may
+    /// be less than the depth. NaN gives NaN. O(log n).
     pub fn signed_distance(&self, p: Vector) -> f64 {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return f64::NAN;
         }
-        let nearest = self.edges.nearest_neighbor_with_distance_2(p.into());
-        let distance = nearest.map_or(f64::INFINITY, |(_, square)| square.sqrt());
+        let nearest = self.edges.nearest(p);
+        let distance = nearest.map_or(f64::INFINITY, |edge| edge.distance);
         if self.contains(p) {
             -distance
         } else {
@@ -138,8 +128,8 @@ mod tests {
         Map::read(file.as_ref(), &earth).unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// The pieces of real coasts are their polygons: areas add up, membership agrees with the even-odd rule,
-    /// distances with a scan over all edges.
+    /// Pieces tile the polygons of real coasts: areas add up, membership agrees with the even-odd
+    /// rule, distances with a scan over all edges.
     #[test]
     fn real_maps_are_tiled_and_measured() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(75);

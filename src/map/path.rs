@@ -1,31 +1,14 @@
-//! A path against the land: where it comes too near, and by how much.
+//! Stretches of a path that are too near to land.
 
 use super::Map;
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Window, stretch_near};
 use crate::tolerance;
 
-/// Metres. The place at which most is missing is found to this: along a quay every place is nearly the worst.
+/// Metres: resolution of the worst distance. Along a quay every place is nearly the worst.
 const SETTLED_M: f64 = 0.02;
 
-/// A stretch of one leg of a path that is nearer to land than it may be.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Geographic, Georeference, Vector};
-/// use searoom::map::{LandCrossing, Map};
-///
-/// let earth = Georeference::new(Geographic { lat_deg: 63.0, lon_deg: 10.0 }).expect("an origin");
-/// let island = r#"{ "type": "Polygon", "coordinates":
-///     [[[10.00, 63.00], [10.01, 63.00], [10.01, 63.01], [10.00, 63.01], [10.00, 63.00]]] }"#;
-/// let map = Map::parse(island, &earth).expect("no faults");
-/// let path = [Vector::new(-100.0, 500.0), Vector::new(100.0, 500.0)];
-/// // half-breadth and margin: 10 m
-/// let crossings: Vec<LandCrossing> = map.crossings(&path, 10.0);
-/// assert_eq!((crossings.len(), crossings[0].leg), (1, 0));
-/// assert!((crossings[0].from - 90.0).abs() < 1.0, "metres along the leg");
-/// ```
+/// A stretch of one leg of a path that is too near to land.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LandCrossing {
     /// Which leg, from 0.
@@ -34,18 +17,16 @@ pub struct LandCrossing {
     pub from: f64,
     /// See `from`.
     pub to: f64,
-    /// The place at which most is missing.
+    /// The place nearest to land.
     pub worst: Vector,
-    /// Metres that are missing there: the clearance asked for less the distance from land, which is negative on
-    /// land.
+    /// Metres missing there: required clearance minus the distance from land, negative on land.
     pub missing: f64,
 }
 
 impl Map {
-    /// Every stretch of a polyline that is nearer to land than `clearance >= 0` metres: the half-breadth of a
-    /// hull that sails along it, and a margin. Touching is allowed, to [`tolerance::DEPTH_M`]. Stretches are
-    /// exact; what is missing at the worst place of each is exact to 2 cm. In order of legs, then of place. O(log n) and
-    /// the pieces near the path.
+    /// Stretches of a polyline that are nearer to land than `clearance >= 0` metres, in order of legs
+    /// and places. Touching is allowed, to [`tolerance::DEPTH_M`]. The ends are exact, the missing
+    /// distance is exact to 2 cm. O(log n) and the pieces near the path.
     pub fn crossings(&self, path: &[Vector], clearance: f64) -> Vec<LandCrossing> {
         let mut found = Vec::new();
         for (leg, pair) in path.windows(2).enumerate() {

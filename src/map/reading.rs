@@ -1,68 +1,39 @@
 //! GeoJSON (RFC 7946) → [`Map`], noting every fault.
 
-use std::io::Read;
+use std::fmt::Display;
 use std::path::Path;
 
 use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue, Position};
 
-use super::{Map, MapError, MapFault};
+use super::Map;
 use crate::frame::{GEOREFERENCE_REACH_M, Geographic, Georeference, Vector};
 use crate::geometry::{Polygon, PolygonError};
+use crate::input::{Fault, InputError, read_text};
 
-/// Bytes of a map.
-const FILE_BYTES: u64 = 64 * 1024 * 1024;
+/// Mebibytes of a map.
+const FILE_MEBIBYTES: u64 = 64;
 
-/// What a feature has to be.
+/// Allowed features.
 const POLYGON: &str = "a Polygon or a MultiPolygon";
 
-/// What a position has to be.
+/// Allowed positions.
 const POSITION: &str =
     "[longitude, latitude] in degrees, WGS84: longitude from -180 to 180, latitude from -90 to 90";
 
-/// What is wrong with a position of a map in the wrong order, and with one of another place: as a rule with all of them.
+/// Messages of exchanged and of far positions, which usually concern all polygons of a map.
 const EXCHANGED: &str = ", which looks like [latitude, longitude]";
 const FAR: &str = " from the origin";
 
 impl Map {
-    /// Reads a GeoJSON file: a feature collection, a feature or a geometry of polygons, holes included, on the
-    /// plane of a georeference. Every fault of the file is in the error, one for each polygon at most.
-    pub fn read(file: &Path, earth: &Georeference) -> Result<Self, MapError> {
-        let unread = |source| MapError::Read {
-            file: file.to_owned(),
-            source,
-        };
-        // a pipe would be waited for, a device read for ever
-        if !std::fs::metadata(file).map_err(unread)?.is_file() {
-            let kind = std::io::ErrorKind::InvalidInput;
-            return Err(unread(std::io::Error::new(kind, "not a regular file")));
-        }
-        let handle = std::fs::File::open(file).map_err(unread)?;
-        let mut bytes = Vec::new();
-        let mut limited = handle.take(FILE_BYTES + 1);
-        limited.read_to_end(&mut bytes).map_err(unread)?;
-        let whole = |found: &str, allowed: &str| {
-            Err(vec![MapFault {
-                feature: None,
-                found: found.to_owned(),
-                allowed: allowed.to_owned(),
-            }])
-        };
-        let map = if bytes.len() as u64 > FILE_BYTES {
-            whole("more than 64 MiB", "a map of at most 64 MiB")
-        } else {
-            match std::str::from_utf8(&bytes) {
-                Ok(text) => Self::parse(text, earth),
-                Err(_) => whole("bytes that are no text", "UTF-8 text"),
-            }
-        };
-        map.map_err(|faults| MapError::Faults {
-            file: file.to_owned(),
-            faults,
-        })
+    /// Reads a GeoJSON file: a feature collection, a feature or a geometry of polygons with holes,
+    /// on the plane of a georeference. The error holds every fault, at most one for each polygon.
+    pub fn read(file: &Path, earth: &Georeference) -> Result<Self, InputError> {
+        let text = read_text(file, FILE_MEBIBYTES, "a map")?;
+        Self::parse(&text, earth).map_err(|faults| InputError::faults(file, faults))
     }
 
-    /// The same from text.
-    pub fn parse(text: &str, earth: &Georeference) -> Result<Self, Vec<MapFault>> {
+    /// [`Map::read`] of a text.
+    pub fn parse(text: &str, earth: &Georeference) -> Result<Self, Vec<Fault>> {
         let mut reading = Reading {
             earth,
             polygons: Vec::new(),
@@ -83,17 +54,14 @@ impl Map {
             return Err(reading.faults);
         }
         Self::new(reading.polygons).map_err(|error| {
-            vec![MapFault {
-                feature: None,
-                found: error.to_string(),
-                allowed: "polygons that can be cut into convex pieces".to_owned(),
-            }]
+            let allowed = "polygons that can be cut into convex pieces";
+            vec![Fault::new("", error, allowed)]
         })
     }
 }
 
-/// The faults of a map without a good polygon, but one if all are of positions that are exchanged, or all of far ones.
-fn together(mut faults: Vec<MapFault>) -> Vec<MapFault> {
+/// Merges the faults of a map without a good polygon if all are exchanged or all are far positions.
+fn together(mut faults: Vec<Fault>) -> Vec<Fault> {
     let all = |sign: &str| faults.iter().all(|fault| fault.found.contains(sign));
     if faults.len() > 1 && (all(EXCHANGED) || all(FAR)) {
         let more = faults.len() - 1;
@@ -108,21 +76,13 @@ fn together(mut faults: Vec<MapFault>) -> Vec<MapFault> {
 struct Reading<'a> {
     earth: &'a Georeference,
     polygons: Vec<Polygon>,
-    faults: Vec<MapFault>,
+    faults: Vec<Fault>,
 }
 
 impl Reading<'_> {
-    fn fault(
-        &mut self,
-        feature: Option<usize>,
-        found: impl Into<String>,
-        allowed: impl Into<String>,
-    ) {
-        self.faults.push(MapFault {
-            feature,
-            found: found.into(),
-            allowed: allowed.into(),
-        });
+    fn fault(&mut self, feature: Option<usize>, found: impl Display, allowed: impl Display) {
+        let path = feature.map_or_else(String::new, |index| format!("features[{index}]"));
+        self.faults.push(Fault::new(path, found, allowed));
     }
 
     fn document(&mut self, text: &str) {
@@ -192,7 +152,7 @@ impl Reading<'_> {
         }
     }
 
-    /// A closed ring on the plane, open; or what is wrong with it and what is allowed.
+    /// A closed ring on the plane without its last point, or what was found and what is allowed.
     fn ring(&self, ring: &[Position]) -> Result<Vec<Vector>, (String, String)> {
         if ring.len() < 4 {
             let allowed = "at least 4, the first once more at the end";
@@ -245,7 +205,7 @@ impl Reading<'_> {
         ))
     }
 
-    /// What is wrong with a polygon and what is allowed, for a reader of the file.
+    /// What was found in a faulty polygon, and what is allowed.
     fn described(&self, error: &PolygonError) -> (String, String) {
         match error {
             PolygonError::Crosses { crossing } => {
@@ -302,7 +262,7 @@ mod tests {
 
     const ISLAND: &str = "[[10.4,63.44],[10.41,63.44],[10.41,63.45],[10.4,63.44]]";
 
-    fn only_fault(text: &str) -> MapFault {
+    fn only_fault(text: &str) -> Fault {
         let faults = Map::parse(text, &earth()).expect_err("faulty");
         assert_eq!(faults.len(), 1, "{faults:?}");
         faults[0].clone()
@@ -388,7 +348,7 @@ mod tests {
         ];
         for (geometry, found, allowed) in &cases {
             let fault = only_fault(&collection(&[&island, geometry]));
-            assert_eq!(fault.feature, Some(1), "{fault}");
+            assert_eq!(fault.path, "features[1]", "{fault}");
             assert!(fault.found.contains(found), "{fault}");
             assert!(fault.allowed.contains(allowed), "{fault}");
         }
@@ -397,7 +357,7 @@ mod tests {
         assert_eq!(together.len(), cases.len(), "all at once");
     }
 
-    /// Not a line for every one of a thousand islands.
+    /// One fault, not one for each of a thousand islands.
     #[test]
     fn a_map_that_is_wrong_as_a_whole_is_one_fault() {
         let island = |places: [(f64, f64); 3]| {
@@ -406,7 +366,7 @@ mod tests {
         };
         let swapped = island([(63.44, 10.4), (63.44, 10.41), (63.45, 10.41)]);
         let fault = only_fault(&collection(&[&swapped, &swapped, &swapped]));
-        assert_eq!(fault.feature, Some(0));
+        assert_eq!(fault.path, "features[0]");
         assert!(fault.found.contains("[latitude, longitude]"), "{fault}");
         assert!(
             fault.found.ends_with("and so in 2 more polygons"),
@@ -440,7 +400,7 @@ mod tests {
         assert!(only_fault(&utm).found.contains("25832"));
     }
 
-    /// Nothing a file can say may panic.
+    /// No text may cause a panic.
     #[test]
     fn hostile_text_is_refused_and_never_panics() {
         let text = collection(&[&polygon(ISLAND)]);

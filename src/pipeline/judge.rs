@@ -1,6 +1,6 @@
-//! The independent judgement of a motion.
+//! The independent evaluation of a motion.
 
-use super::ladder::Attempt;
+use super::relaxation::Attempt;
 use crate::evaluation::{
     Evaluation, Freedom, Request, SetShape, SpaceTimeSet, Steering, evaluate, evaluate_steered,
 };
@@ -10,30 +10,30 @@ use crate::scenario::Scenario;
 use crate::target::VelocitySpell;
 use crate::trajectory::Trajectory;
 
-/// The independent judgement of a trajectory against the obstacles that it was planned against.
+/// Evaluates a trajectory against the obstacles that it was planned against.
 pub fn judge(scenario: &Scenario, obstacles: &[Obstacle], trajectory: &Trajectory) -> Evaluation {
-    let kept = Claims {
+    let claims = Claims {
         obstacles,
         released: &[],
         risk: scenario.max_risk,
     };
-    judge_plan(scenario, &kept, trajectory, true)
+    judge_plan(scenario, &claims, trajectory, true)
 }
 
-/// The same of an answer: at the risk that it takes, and of sets that it enters from when it has left them.
-pub(super) fn judge_kept(
+/// Evaluates an answer at its accepted risk; sets that it enters count from when they are left.
+pub(super) fn judge_answer(
     scenario: &Scenario,
     answer: &Attempt,
     trajectory: &Trajectory,
 ) -> Evaluation {
-    let kept = Claims {
+    let claims = Claims {
         obstacles: &answer.obstacles,
         released: &answer.released,
         risk: answer.risk,
     };
     let plan = answer.planned.outcome.plan();
     let arrives = plan.is_none_or(|plan| plan.to_go == 0.0);
-    judge_plan(scenario, &kept, trajectory, arrives)
+    judge_plan(scenario, &claims, trajectory, arrives)
 }
 
 fn judge_plan(
@@ -52,26 +52,27 @@ fn judge_plan(
     judged(scenario, claims, trajectory, freedom)
 }
 
-/// The same for what is no plan: its start, every set, every hull, the land and the figures, whatever own ship's limits are and
-/// whether it arrives or not.
+/// Evaluates a motion that is not a plan: start, sets, hulls, land and figures, without own ship's
+/// limits and without arrival.
 pub fn judge_free(
     scenario: &Scenario,
     obstacles: &[Obstacle],
     trajectory: &Trajectory,
 ) -> Evaluation {
-    let kept = Claims {
+    let claims = Claims {
         obstacles,
         released: &[],
         risk: scenario.max_risk,
     };
-    judged(scenario, &kept, trajectory, Freedom::Any)
+    judged(scenario, &claims, trajectory, Freedom::Any)
 }
 
-/// What a trajectory is said to be clear of: sets, per set from when on where it enters her, and the risk of which they are the
-/// level sets.
+/// Sets that a trajectory is claimed to be clear of.
 struct Claims<'a> {
     obstacles: &'a [Obstacle],
+    /// Seconds, per set: the time from which it counts, where the trajectory enters it.
     released: &'a [Option<f64>],
+    /// The risk of which the obstacles are the level sets.
     risk: f64,
 }
 
@@ -95,7 +96,7 @@ fn judged(
         },
         Obstacle::Slabs(o) => SetShape::Polygons {
             initial: o.initial().clone(),
-            spells: o.spells().to_vec(),
+            spells: o.velocity_sets().to_vec(),
         },
     };
     let released = claims

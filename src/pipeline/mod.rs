@@ -1,91 +1,86 @@
-//! The arrows in one place: Scenario → obstacles → Plan → Evaluation = Run.
+//! Runs a scenario: scenario → obstacles → plan → evaluation, collected in a [`Run`].
 
-mod conduct;
-mod duty;
-mod inside;
+mod entered;
 mod judge;
-mod ladder;
+mod land;
 mod no_return;
+mod outcome;
 mod relaxation;
 mod risk;
-mod rung;
+mod rules;
 mod sets;
-mod shares;
-mod shore;
-mod verdict;
 
 pub use judge::{judge, judge_free};
-pub use ladder::RISK_STEP;
+pub use land::{land_obstacle, land_within_reach};
 pub use no_return::{NO_RETURN_STEP_S, NoReturn};
-pub use relaxation::Relaxation;
+pub use outcome::{Relaxation, Verdict};
+pub use relaxation::{RISK_STEP, RelaxationLevel};
 pub use risk::peak_risk;
-pub use rung::Rung;
 pub use sets::{TargetSets, sets};
-pub use shore::{coast, land_within_reach};
-pub use verdict::Verdict;
 
-use duty::rules_given_up;
-use judge::judge_kept;
-use ladder::{Attempt, Ladder};
+use judge::judge_answer;
+use relaxation::{Attempt, Relaxer};
+use rules::rules_given_up;
 
 use std::time::{Duration, Instant};
 
 use crate::evaluation::Evaluation;
 use crate::geometry::ConvexPolygon;
-use crate::obstacle::{Coast, Obstacle, PeakRisk, SpaceTimeObstacle};
+use crate::obstacle::{LandObstacle, Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::planner::optimal_control::ControlReport;
 use crate::planner::{NoPlan, Outcome, Planned, PlannerKind, Problem};
 use crate::scenario::{Compliance, Scenario};
 
-/// One scenario, planned and judged.
+/// A scenario with its plan and the evaluation of that plan.
 #[derive(Debug, Clone)]
 pub struct Run {
-    /// What was asked.
+    /// The request.
     pub scenario: Scenario,
     /// The sets, in the order of the scenario's targets.
     pub sets: Vec<TargetSets>,
-    /// How much of what was asked the plan keeps.
-    pub rung: Rung,
-    /// The whole sets that the plan keeps clear of, in the same order: hard ones with what is kept of the shapes.
-    /// [`Run::risks`] are against these.
+    /// How much of the request the plan satisfies.
+    pub level: RelaxationLevel,
+    /// The whole sets that the plan keeps clear of, in the same order: hard sets with the retained
+    /// part of the ship domains. [`Run::risks`] refer to these.
     pub whole: Vec<Obstacle>,
-    /// The obstacles that the plan was made against, in the same order: the level sets `O_alpha` of `whole`,
-    /// `alpha = 1 - max_risk`.
+    /// The obstacles that were planned against, in the same order: the level sets `O_alpha` of
+    /// `whole`, `alpha = 1 - max_risk`.
     pub obstacles: Vec<Obstacle>,
-    /// The risk that was accepted in the end, in `[0, 1)`: the scenario's, or more where there was no plan at that.
+    /// The accepted risk, in `[0, 1)`: the scenario's, or more where there was no plan at that.
     pub max_risk: f64,
-    /// Seconds, per target in the same order: the plan enters the set and is clear of it from then on; `None` where it is clear
-    /// all along.
+    /// Seconds, per target in the same order: the plan enters the set and is clear of it from then
+    /// on. `None` where it is always clear.
     pub released: Vec<Option<f64>>,
-    /// The convex pieces of land that the plan was made against: all that own ship could reach.
+    /// The convex pieces of land that were planned against: all that own ship could reach.
     pub land: Vec<ConvexPolygon>,
     /// The planner's answer.
     pub planned: Planned,
-    /// Why no plan keeps all that was asked; `None` where one does, and where there is no plan.
+    /// Why no plan satisfies the whole request; `None` where one does, or where there is no plan.
     pub why: Option<NoPlan>,
-    /// How the optimal-control planner found it; `None` for another planner.
+    /// Report of the optimal-control planner; `None` for another planner.
     pub control: Option<ControlReport>,
-    /// Targets whose obstacles are ellipsoids around sets of another kind.
+    /// Names of targets whose polygonal sets are replaced by ellipsoids around them.
     pub enclosed: Vec<String>,
-    /// What had to be given up, most important first; empty when nothing.
+    /// Requirements that were given up, most important first.
     pub relaxations: Vec<Relaxation>,
-    /// The largest risk along the plan, per target in the same order, against the sets of which `obstacles` are the
-    /// level sets; empty when there is no plan.
+    /// The largest risk along the plan, per target in the same order, in the sets `whole`; empty
+    /// without a plan.
     pub risks: Vec<PeakRisk>,
-    /// The independent judgement of the plan; `None` when there is no plan.
+    /// The independent evaluation of the plan; `None` without a plan.
     pub evaluation: Option<Evaluation>,
     /// Wall-clock time of planning alone.
     pub plan_time: Duration,
 }
 
 impl Run {
-    /// True where something of the shapes is kept.
+    /// True where some part of a ship domain is retained.
     pub fn is_shaped(&self) -> bool {
         let mut both = self.whole.iter().zip(&self.sets);
-        both.any(|(kept, sets)| *kept != sets.hard)
+        both.any(|(whole, sets)| *whole != sets.hard)
     }
 
-    /// Why there is no plan, or none that was finished or keeps all that was asked; `None` with a plan that does.
+    /// Why there is no plan, or only an unfinished or relaxed one; `None` for a plan that satisfies
+    /// the whole request.
     pub fn reason(&self) -> Option<String> {
         match &self.planned.outcome {
             Outcome::Infeasible(reason) => Some(reason.to_string()),
@@ -98,11 +93,11 @@ impl Run {
     }
 }
 
-/// What a scenario asks of a planner, against the given obstacles and the land.
+/// The planning problem of a scenario, for the given obstacles and land.
 pub fn problem<'a>(
     scenario: &'a Scenario,
     obstacles: &'a [Obstacle],
-    coast: &'a Coast,
+    land_obstacle: &'a LandObstacle,
 ) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
@@ -110,7 +105,7 @@ pub fn problem<'a>(
         alternatives: &scenario.alternatives,
         objective: scenario.objective,
         obstacles,
-        coast,
+        land_obstacle,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: scenario.search,
@@ -124,29 +119,31 @@ fn deadline(scenario: &Scenario) -> Duration {
     Duration::try_from_secs_f64(scenario.deadline).unwrap_or(Duration::MAX)
 }
 
-/// Plans a scenario and judges the plan. Where no plan keeps all that was asked, less is asked, rung by rung, and what was given
-/// up is said. The clock is read around planning alone and enters no result but `plan_time`, unless the deadline ends
-/// the search.
+/// Plans a scenario and evaluates the plan.
+///
+/// Where no plan satisfies the whole request, requirements are given up level by level
+/// (`docs/relaxation.md`), and the run reports which. The clock is read around planning alone. It
+/// enters no result but `plan_time`, unless the deadline ends the search.
 pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let begun = Instant::now();
     let land = land_within_reach(&scenario);
-    let shore;
-    let coast: &Coast = match scenario.planner {
+    let around_land;
+    let land_obstacle: &LandObstacle = match scenario.planner {
         PlannerKind::SpaceTime | PlannerKind::OptimalControl => {
-            shore = coast(&scenario, &land);
-            &shore
+            around_land = land_obstacle(&scenario, &land);
+            &around_land
         }
-        // the paths are kept off land when the scenario is read
-        PlannerKind::PathTime => Coast::none(),
+        // reading a scenario checks that its paths are clear of land
+        PlannerKind::PathTime => LandObstacle::none(),
     };
-    let ladder = Ladder {
+    let relaxer = Relaxer {
         scenario: &scenario,
         sets: &sets,
-        coast,
+        land_obstacle,
         begun,
     };
-    let answer = ladder.answer();
+    let answer = relaxer.answer();
     let plan_time = begun.elapsed();
     let risks: Vec<PeakRisk> = answer.trajectory().map_or_else(Vec::new, |trajectory| {
         let whole = answer.whole.iter();
@@ -154,14 +151,14 @@ pub fn run(scenario: Scenario) -> Run {
             .map(|set| peak_risk(&set.outer_where_flat(), trajectory, answer.risk))
             .collect()
     });
-    let mut relaxations = relaxation::relaxations(
+    let mut relaxations = outcome::relaxations(
         &sets,
-        &answer.cuts,
+        &answer.reductions,
         &risks,
         &answer.released,
         not_arrived(&answer),
     );
-    if scenario.compliance == Compliance::Rules && answer.rung > Rung::Rules {
+    if scenario.compliance == Compliance::Rules && answer.level > RelaxationLevel::Rules {
         relaxations.extend(rules_given_up(&scenario, &sets));
     }
     let forces = scenario.planner == PlannerKind::OptimalControl;
@@ -170,9 +167,9 @@ pub fn run(scenario: Scenario) -> Run {
     let enclosed = enclosed.map(|s| s.name().to_owned()).collect();
     let evaluation = answer
         .trajectory()
-        .map(|trajectory| judge_kept(&scenario, &answer, trajectory));
+        .map(|trajectory| judge_answer(&scenario, &answer, trajectory));
     Run {
-        rung: answer.rung,
+        level: answer.level,
         whole: answer.whole,
         obstacles: answer.obstacles,
         max_risk: answer.risk,
@@ -191,7 +188,8 @@ pub fn run(scenario: Scenario) -> Run {
     }
 }
 
-/// The arrival that a plan gives up, and for whom: who bars the way, else whose set is entered.
+/// The arrival that a plan gives up, and the target that prevents it: one that blocks the way, or
+/// else one whose set is entered.
 fn not_arrived(answer: &Attempt) -> Option<Relaxation> {
     let to_go = answer.planned.outcome.plan()?.to_go;
     let barring = match answer.why.as_ref() {

@@ -1,26 +1,26 @@
-//! The last moment at which a plan that is clear of every hard set still exists.
+//! The time of no return: the last moment from which a plan clear of every hard set was found.
 
-use super::sets::TargetSets;
-use super::{Run, coast, problem};
+use super::{Run, land_obstacle, problem};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::{PlannerKind, space_time};
 
-/// Seconds to which the time of no return is sought.
+/// Accuracy of the time of no return, seconds.
 pub const NO_RETURN_STEP_S: f64 = 1.0;
 
-/// How long own ship may hold on.
+/// How long own ship can hold its course and speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoReturn {
-    /// On the desired trajectory she meets no hard set.
+    /// The desired trajectory meets no hard set.
     Never,
-    /// Held so long, seconds, there still is a plan that is clear of every hard set; [`NO_RETURN_STEP_S`] later none was found.
+    /// Seconds. After holding until then a plan clear of every hard set exists; none was found
+    /// [`NO_RETURN_STEP_S`] later.
     At(f64),
-    /// None was found even from the start.
+    /// No such plan was found even from the start.
     Past,
 }
 
 impl NoReturn {
-    /// Seconds, where there is such a time.
+    /// The time in seconds, where there is one.
     pub fn time(self) -> Option<f64> {
         match self {
             Self::At(time) => Some(time),
@@ -30,24 +30,25 @@ impl NoReturn {
 }
 
 impl Run {
-    /// How long own ship can follow the desired trajectory as if nobody were there and still have a plan that is clear of every hard
-    /// set, whatever the plan of this run is. `None` for planners other than space-time, and where the trajectory cannot be
-    /// followed at all.
+    /// How long own ship can follow the desired trajectory and still have a plan clear of every hard
+    /// set, independent of the plan of this run.
     ///
-    /// Whoever may still leave later may leave now, so it is sought by bisection between the start and the first contact. What was
-    /// found exists; the planner may have missed a later one. Some ten plans.
+    /// `None` for planners other than space-time, and where the trajectory cannot be followed.
+    /// Bisection between the start and the first contact: a plan from a later time is also a plan
+    /// now. The plan that was found exists; the planner may have missed a later one. About ten
+    /// plans.
     pub fn no_return(&self) -> Option<NoReturn> {
         let scenario = &self.scenario;
         if scenario.planner != PlannerKind::SpaceTime {
             return None;
         }
-        let hard: Vec<Obstacle> = self.sets.iter().map(TargetSets::hard_set).collect();
-        let coast = coast(scenario, &self.land);
-        let asked = problem(scenario, &hard, &coast);
+        let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
+        let land_obstacle = land_obstacle(scenario, &self.land);
+        let asked = problem(scenario, &hard, &land_obstacle);
         let held = space_time::nominal_motion(&asked)?;
         let contacts = hard.iter().filter_map(|set| {
             held.iter()
-                .find_map(|s| set.first_contact(s, super::ladder::TOUCH_M))
+                .find_map(|s| set.first_contact(s, crate::tolerance::TOUCH_M))
         });
         let Some(met) = contacts.min_by(f64::total_cmp) else {
             return Some(NoReturn::Never);

@@ -1,75 +1,604 @@
-//! What a plan gave up of what was asked.
+//! Relaxation levels: which requirements are given up, in order, so that there is always an answer.
+//!
+//! A level is tried when the levels above it gave no plan. A planner may find a way around a larger
+//! set and miss it for a smaller one. So a level also plans against more than it requires.
 
+use std::time::{Duration, Instant};
+
+use super::entered;
+use super::rules::{encountered, first_turn};
 use super::sets::TargetSets;
-use crate::colregs::Role;
-use crate::obstacle::{PeakRisk, SpaceTimeObstacle};
+use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
+use crate::planner::optimal_control::{self, ControlReport, Controlled};
+use crate::planner::{
+    NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time,
+};
+use crate::scenario::{Compliance, Scenario};
+use crate::trajectory::Trajectory;
 
-/// What a plan gave up.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Relaxation {
-    /// A shape was drawn back toward its hard set.
-    Domain {
-        /// Name of the target.
-        target: String,
-        /// Metres, the largest cut.
-        amount: f64,
-    },
-    /// The plan enters the set of a target.
-    Risk {
-        /// Name of the target.
-        target: String,
-        /// The largest risk along the plan, eq. (25), in `(0, 1]`.
-        amount: f64,
-        /// Seconds: of this target's set nothing is claimed before, and from then on the plan is clear of the whole
-        /// set. `None` where the plan is clear of the level set of the accepted risk all along.
-        until: Option<f64>,
-    },
-    /// The plan does not arrive before the horizon.
-    Arrival {
-        /// Name of the target whose set is in the way.
-        target: String,
-        /// Metres of the way that are left at the horizon.
-        amount: f64,
-    },
-    /// The plan does not keep to the rules.
-    Compliance {
-        /// Name of a target that asks something of own ship.
-        target: String,
-        /// Her role toward it.
-        role: Role,
-    },
+/// Domain scale factor between the hard set, 0, and the full ship domain, 1.
+const HALF: f64 = 0.5;
+
+/// Scale factors of the level that keeps the rules, in the order in which they are tried.
+const SCALES_BY_THE_RULES: [f64; 2] = [HALF, 0.0];
+
+/// Scale factors tried when ship domains are not asked for and the hard sets alone gave no plan.
+const SCALES_ABOVE_HARD_SETS: [f64; 2] = [1.0, HALF];
+
+/// Bisection steps for a larger common scale factor, each with a warm-started plan.
+const SCALE_HALVINGS: usize = 3;
+
+/// Bisection steps for the largest scale factor of one domain that a given plan is clear of.
+const RETAINED_HALVINGS: usize = 10;
+
+/// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
+pub const RISK_STEP: f64 = 1.0 / 64.0;
+
+/// How much of the request a plan satisfies, in the order in which requirements are given up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RelaxationLevel {
+    /// Everything that compliance asks: the rules, and the ship domains where own ship's start
+    /// permits them.
+    Compliant,
+    /// By the rules, clear of the hard sets and of reduced ship domains.
+    Rules,
+    /// Clear of the full ship domains, but not by the rules.
+    Domains,
+    /// Clear of the hard sets and of reduced ship domains.
+    ReducedDomains,
+    /// Along paths: clear of the hard sets and of reduced domains until the horizon, without
+    /// arriving by then.
+    Waiting,
+    /// Clear of the level sets of the least risk for which a plan was found.
+    Risk,
+    /// Enters or leaves a hard set; nothing is claimed of that set before it is left.
+    Inside,
 }
 
-/// What was given up of the sets, most important first: risks, the greatest first, then arrival, then shapes, the largest cut first.
-pub(super) fn relaxations(
-    sets: &[TargetSets],
-    cuts: &[f64],
-    risks: &[PeakRisk],
-    released: &[Option<f64>],
-    late: Option<Relaxation>,
-) -> Vec<Relaxation> {
-    let mut taken: Vec<(&TargetSets, f64, Option<f64>)> = (sets.iter())
-        .zip(risks)
-        .zip(released)
-        .map(|((set, peak), until)| (set, peak.risk, *until))
-        .filter(|(_, risk, until)| *risk > 0.0 || until.is_some())
-        .collect();
-    taken.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut drawn: Vec<(&TargetSets, f64)> = (sets.iter().zip(cuts.iter().copied()))
-        .filter(|(_, cut)| *cut > 0.0)
-        .collect();
-    drawn.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let name = |set: &TargetSets| set.hard.name().to_owned();
-    let risked = taken
-        .into_iter()
-        .map(|(set, amount, until)| Relaxation::Risk {
-            target: name(set),
-            amount,
-            until,
-        });
-    let cut = drawn.into_iter().map(|(set, amount)| Relaxation::Domain {
-        target: name(set),
-        amount,
-    });
-    risked.chain(late).chain(cut).collect()
+/// A planner's answer and the sets it was planned against.
+#[derive(Debug, Clone)]
+pub(super) struct Attempt {
+    pub level: RelaxationLevel,
+    /// The sets that are retained, in the order of the targets.
+    pub whole: Vec<Obstacle>,
+    /// Metres by which each ship domain is reduced.
+    pub reductions: Vec<f64>,
+    /// Level sets of `whole` at the accepted risk: the sets that were planned against.
+    pub obstacles: Vec<Obstacle>,
+    /// The accepted risk.
+    pub risk: f64,
+    /// Seconds, per target: nothing is claimed of its set before.
+    pub released: Vec<Option<f64>>,
+    pub planned: Planned,
+    pub control: Option<ControlReport>,
+    /// Why the levels above have no plan.
+    pub why: Option<NoPlan>,
+}
+
+impl Attempt {
+    pub fn trajectory(&self) -> Option<&Trajectory> {
+        self.planned.outcome.plan().map(|plan| &plan.trajectory)
+    }
+
+    fn is_infeasible(&self) -> bool {
+        matches!(self.planned.outcome, Outcome::Infeasible(_))
+    }
+}
+
+/// A scenario, its sets, and the time budget that all levels share.
+pub(super) struct Relaxer<'a> {
+    pub scenario: &'a Scenario,
+    pub sets: &'a [TargetSets],
+    pub land_obstacle: &'a LandObstacle,
+    pub begun: Instant,
+}
+
+impl Relaxer<'_> {
+    /// The levels below [`RelaxationLevel::Compliant`], in the order in which they are tried.
+    ///
+    /// Each plans one level and returns `None` where it does not apply or has no plan. An attempt
+    /// without a plan says that the time ran out. The flag is true where ship domains are asked
+    /// for. When all fail, [`Self::leaving_sets`] answers.
+    const RELAXED_LEVELS: [fn(&Self, bool) -> Option<Attempt>; 7] = [
+        Self::by_the_rules,
+        Self::clear_of_domains,
+        Self::clear_of_hard_sets,
+        Self::around_hard_sets,
+        Self::clear_of_half_domains,
+        Self::waiting,
+        Self::at_least_risk,
+    ];
+
+    /// The answer of the first level that has one; without any, that of the first level.
+    pub fn answer(&self) -> Attempt {
+        let shaped = self.scenario.compliance.shapes();
+        let scale = if shaped { 1.0 } else { 0.0 };
+        let first = self.attempt(
+            RelaxationLevel::Compliant,
+            &self.scales(scale),
+            self.scenario.max_risk,
+        );
+        if self.scenario.planner == PlannerKind::OptimalControl {
+            return self.under_forces(first, shaped);
+        }
+        let why = match &first.planned.outcome {
+            Outcome::Solved(_) | Outcome::Deadline(Some(_)) => return first,
+            Outcome::Deadline(None) => return self.leaving_sets(first),
+            Outcome::Infeasible(reason) => reason.clone(),
+        };
+        let relaxed = self.relaxed(first, &why, shaped);
+        let why = (relaxed.level > RelaxationLevel::Compliant).then_some(why);
+        Attempt { why, ..relaxed }
+    }
+
+    /// The answer of the first of [`Self::RELAXED_LEVELS`] that has one.
+    fn relaxed(&self, first: Attempt, why: &NoPlan, shaped: bool) -> Attempt {
+        if matches!(
+            why,
+            NoPlan::StartInside { .. } | NoPlan::StartCovered { .. }
+        ) {
+            return self.leaving_sets(first);
+        }
+        if !why.is_for_the_sets() {
+            return first;
+        }
+        let found = Self::RELAXED_LEVELS
+            .iter()
+            .find_map(|plan| plan(self, shaped));
+        match found {
+            Some(found) if !matches!(found.planned.outcome, Outcome::Deadline(None)) => found,
+            Some(out_of_time) => self.leaving_sets(out_of_time),
+            None => self.leaving_sets(first),
+        }
+    }
+
+    /// [`RelaxationLevel::Rules`]: a plan by the rules that is clear of the hard sets, and of the
+    /// ship domains as far as it happens to be.
+    fn by_the_rules(&self, _: bool) -> Option<Attempt> {
+        if !self.are_rules_asked() || !self.has_domains() {
+            return None;
+        }
+        let (level, risk) = (RelaxationLevel::Rules, self.scenario.max_risk);
+        SCALES_BY_THE_RULES.into_iter().find_map(|scale| {
+            let found = self.attempt(level, &self.scales(scale), risk);
+            let retained = self.retained_along(found.trajectory()?, risk);
+            Some(self.clear_of(&found, &retained, level))
+        })
+    }
+
+    /// [`RelaxationLevel::Domains`]: a plan that is clear of the full domains, where the rules were
+    /// asked for as well.
+    fn clear_of_domains(&self, _: bool) -> Option<Attempt> {
+        if !self.are_rules_asked() {
+            return None;
+        }
+        let (level, risk) = (RelaxationLevel::Domains, self.scenario.max_risk);
+        let found = self.attempt(level, &self.scales(1.0), risk);
+        (!found.is_infeasible()).then_some(found)
+    }
+
+    /// [`RelaxationLevel::ReducedDomains`]: a plan against the hard sets that retains as much of
+    /// each domain as was found.
+    fn clear_of_hard_sets(&self, shaped: bool) -> Option<Attempt> {
+        if !self.has_domains() {
+            return None;
+        }
+        if shaped {
+            return self.clear_of_scaled(0.0);
+        }
+        // a plan along paths for a larger set is also found for the smaller one
+        if self.is_monotone() {
+            return None;
+        }
+        let found = SCALES_ABOVE_HARD_SETS
+            .into_iter()
+            .find_map(|scale| self.found(scale))?;
+        if found.trajectory().is_none() {
+            return Some(found);
+        }
+        Some(self.clear_of(&found, &self.scales(0.0), RelaxationLevel::Compliant))
+    }
+
+    /// [`RelaxationLevel::ReducedDomains`] by a wide detour around the hard sets, from hybrid A*.
+    fn around_hard_sets(&self, shaped: bool) -> Option<Attempt> {
+        if self.scenario.planner != PlannerKind::SpaceTime {
+            return None;
+        }
+        let risk = self.scenario.max_risk;
+        let whole: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
+        let obstacles = level_sets(&whole, risk);
+        let wide = space_time::hybrid_a_star(&self.problem(&obstacles))?;
+        let refined = space_time::warm_started(&self.problem(&obstacles), &wide.trajectory).outcome;
+        let plan = match refined.plan() {
+            Some(refined) if refined.cost < wide.cost => refined.clone(),
+            _ => wide,
+        };
+        let outcome = match refined {
+            Outcome::Deadline(_) => Outcome::Deadline(Some(plan)),
+            _ => Outcome::Solved(plan),
+        };
+        let level = if shaped {
+            RelaxationLevel::ReducedDomains
+        } else {
+            RelaxationLevel::Compliant
+        };
+        let found = Attempt {
+            level,
+            reductions: vec![0.0; whole.len()],
+            released: vec![None; whole.len()],
+            whole,
+            obstacles,
+            risk,
+            planned: Planned::of(outcome),
+            control: None,
+            why: None,
+        };
+        if !shaped {
+            return Some(self.clear_of(&found, &self.scales(0.0), level));
+        }
+        let retained = self.retained_along(found.trajectory()?, risk);
+        Some(self.with_larger_domains(self.clear_of(&found, &retained, level), &retained))
+    }
+
+    /// [`RelaxationLevel::ReducedDomains`] from half of each domain: the planner may find a way
+    /// around the larger sets that it misses for the smaller ones.
+    fn clear_of_half_domains(&self, shaped: bool) -> Option<Attempt> {
+        (shaped && self.has_domains() && !self.is_monotone()).then(|| self.clear_of_scaled(HALF))?
+    }
+
+    /// [`RelaxationLevel::Waiting`]: a motion along paths that does not arrive in time, clear of
+    /// the hard sets and of as much of the domains as was found.
+    fn waiting(&self, shaped: bool) -> Option<Attempt> {
+        if self.scenario.planner != PlannerKind::PathTime {
+            return None;
+        }
+        let (level, risk) = (RelaxationLevel::Waiting, self.scenario.max_risk);
+        let at = |scale: f64| {
+            let found = self.attempt(level, &self.scales(scale), risk);
+            (!found.is_infeasible()).then_some(found)
+        };
+        if shaped && let Some(found) = at(1.0) {
+            return Some(found);
+        }
+        let found = at(0.0)?;
+        match found.trajectory() {
+            Some(trajectory) if shaped => {
+                let retained = self.retained_along(trajectory, risk);
+                Some(self.clear_of(&found, &retained, level))
+            }
+            _ => Some(found),
+        }
+    }
+
+    /// [`RelaxationLevel::Risk`]: the plan at the least risk for which one was found, by bisection
+    /// to [`RISK_STEP`]. Along paths a motion that does not arrive counts as a plan.
+    fn at_least_risk(&self, _: bool) -> Option<Attempt> {
+        let level = RelaxationLevel::Risk;
+        let hard = self.scales(0.0);
+        let at = |risk: f64| {
+            let found = self.attempt(level, &hard, risk);
+            let along = self.scenario.planner == PlannerKind::PathTime;
+            if along && found.is_infeasible() {
+                return Attempt {
+                    level,
+                    ..self.attempt(RelaxationLevel::Waiting, &hard, risk)
+                };
+            }
+            found
+        };
+        let mut low = self.scenario.max_risk;
+        let mut high = 1.0 - RISK_STEP;
+        if low >= high {
+            return None;
+        }
+        let mut best = at(high);
+        if best.trajectory().is_none() {
+            let timed_out = matches!(best.planned.outcome, Outcome::Deadline(_));
+            return timed_out.then_some(best);
+        }
+        while high - low > RISK_STEP {
+            let risk = 0.5 * (low + high);
+            let tried = self.warm_started(&best, risk).unwrap_or_else(|| at(risk));
+            match tried.planned.outcome {
+                Outcome::Infeasible(_) => low = risk,
+                Outcome::Deadline(None) => return Some(out_of_time(best)),
+                Outcome::Solved(_) | Outcome::Deadline(Some(_)) => {
+                    best = tried;
+                    high = risk;
+                }
+            }
+        }
+        Some(best)
+    }
+
+    /// [`RelaxationLevel::Inside`]: the motion that leaves every set soonest for good, or continues
+    /// where none was found. Along paths: the motion with the least harm. Without a motion the
+    /// attempt is returned unchanged.
+    fn leaving_sets(&self, attempt: Attempt) -> Attempt {
+        let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
+        let problem = self.problem(&hard);
+        let Some(planned) = entered::motion(self.scenario, &problem) else {
+            return attempt;
+        };
+        let Some(plan) = planned.outcome.plan() else {
+            return attempt;
+        };
+        let is_up = || self.time_left().is_zero();
+        let left = |set| {
+            let left = entered::left_for_good(set, &plan.trajectory, is_up)?;
+            // nothing is claimed for a ship that has arrived
+            Some(if left > 0.0 { left } else { problem.horizon })
+        };
+        let released = hard.iter().map(left).collect();
+        let timed_out = matches!(attempt.planned.outcome, Outcome::Deadline(_)) || is_up();
+        let outcome = if timed_out {
+            Outcome::Deadline(Some(plan.clone()))
+        } else {
+            planned.outcome
+        };
+        let reductions = match self.scenario.compliance {
+            Compliance::Shape | Compliance::Rules => {
+                self.sets.iter().map(|s| s.shape_reach).collect()
+            }
+            Compliance::None => attempt.reductions,
+        };
+        Attempt {
+            level: RelaxationLevel::Inside,
+            obstacles: hard.clone(),
+            whole: hard,
+            reductions,
+            risk: 0.0,
+            released,
+            planned: Planned {
+                outcome,
+                path_time: planned.path_time,
+                ..attempt.planned
+            },
+            control: None,
+            why: attempt.why,
+        }
+    }
+
+    /// Optimal control has two levels: full domains, and none.
+    fn under_forces(&self, mut first: Attempt, shaped: bool) -> Attempt {
+        let blocked = match &first.planned.outcome {
+            // the ellipse around a domain may contain own ship where the domain does not
+            Outcome::Infeasible(NoPlan::StartInside { .. }) => true,
+            Outcome::Infeasible(reason) => reason.is_for_the_sets(),
+            Outcome::Solved(_) | Outcome::Deadline(_) => false,
+        };
+        if !(shaped && blocked && self.sets.iter().any(|s| s.shape_reach > 0.0)) {
+            return first;
+        }
+        let level = RelaxationLevel::ReducedDomains;
+        let again = self.attempt(level, &self.scales(0.0), self.scenario.max_risk);
+        // the report describes the pass that gave the answer
+        if !again.is_infeasible() {
+            first = again;
+        }
+        first
+    }
+
+    fn time_left(&self) -> Duration {
+        super::deadline(self.scenario).saturating_sub(self.begun.elapsed())
+    }
+
+    /// True where the rules ask something of own ship.
+    fn are_rules_asked(&self) -> bool {
+        self.scenario.compliance == Compliance::Rules
+            && !encountered(self.scenario, self.sets).is_empty()
+    }
+
+    fn has_domains(&self) -> bool {
+        self.sets.iter().any(TargetSets::has_domain)
+    }
+
+    /// True for a planner that has a plan for every subset of the sets that it has a plan for.
+    fn is_monotone(&self) -> bool {
+        self.scenario.planner == PlannerKind::PathTime
+    }
+
+    /// The planning problem of the scenario against these sets, with the time that is left.
+    fn problem<'b>(&'b self, obstacles: &'b [Obstacle]) -> Problem<'b> {
+        let shaped = self.scenario.compliance.shapes();
+        Problem {
+            deadline: self.time_left(),
+            first_turn: shaped.then(|| first_turn(self.sets)).flatten(),
+            ..super::problem(self.scenario, obstacles, self.land_obstacle)
+        }
+    }
+
+    /// Plans against domains of these scale factors at a risk.
+    fn attempt(&self, level: RelaxationLevel, scales: &[f64], risk: f64) -> Attempt {
+        let (whole, reductions) = self.scaled(scales);
+        let obstacles = level_sets(&whole, risk);
+        let forces = self.scenario.planner == PlannerKind::OptimalControl;
+        let obstacles = if forces {
+            optimal_control::outer_sets(&obstacles)
+        } else {
+            obstacles
+        };
+        let mut problem = self.problem(&obstacles);
+        let encounters = match (level, self.scenario.compliance) {
+            (RelaxationLevel::Compliant | RelaxationLevel::Rules, Compliance::Rules) => {
+                encountered(self.scenario, self.sets)
+            }
+            _ => Vec::new(),
+        };
+        problem.encountered = &encounters;
+        let mut control = None;
+        let planned = match (self.scenario.planner, self.scenario.objective) {
+            (PlannerKind::SpaceTime, _) => space_time::plan(&problem),
+            (PlannerKind::PathTime, _) if level == RelaxationLevel::Waiting => {
+                path_time::stay_clear(&problem, risk)
+            }
+            (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
+                let problem = Problem {
+                    obstacles: &whole,
+                    ..problem
+                };
+                path_time::plan_weighing_risk(&problem, weight, risk)
+            }
+            (PlannerKind::PathTime, _) => path_time::plan(&problem),
+            (PlannerKind::OptimalControl, _) => {
+                let Controlled { planned, report } =
+                    optimal_control::plan(&problem, &self.scenario.control);
+                control = Some(report);
+                planned
+            }
+        };
+        Attempt {
+            level,
+            released: vec![None; whole.len()],
+            whole,
+            // domains that nobody asked for are not given up
+            reductions: match self.scenario.compliance {
+                Compliance::Shape | Compliance::Rules => reductions,
+                Compliance::None => vec![0.0; self.sets.len()],
+            },
+            obstacles,
+            risk,
+            planned,
+            control,
+            why: None,
+        }
+    }
+
+    /// An attempt against domains of one scale factor; `None` where there is no plan.
+    fn found(&self, scale: f64) -> Option<Attempt> {
+        let level = RelaxationLevel::ReducedDomains;
+        let attempt = self.attempt(level, &self.scales(scale), self.scenario.max_risk);
+        (!attempt.is_infeasible()).then_some(attempt)
+    }
+
+    /// A plan against domains of one scale factor, with the largest domains that are found for it.
+    fn clear_of_scaled(&self, scale: f64) -> Option<Attempt> {
+        let found = self.found(scale)?;
+        let Some(trajectory) = found.trajectory() else {
+            return Some(found);
+        };
+        let retained = self.retained_along(trajectory, found.risk);
+        let clear = self.clear_of(&found, &retained, RelaxationLevel::ReducedDomains);
+        Some(self.with_larger_domains(clear, &retained))
+    }
+
+    /// The plan of an attempt refined for another risk, without a search; `None` where that fails.
+    fn warm_started(&self, attempt: &Attempt, risk: f64) -> Option<Attempt> {
+        if self.scenario.planner != PlannerKind::SpaceTime {
+            return None;
+        }
+        let obstacles = level_sets(&attempt.whole, risk);
+        let outcome =
+            space_time::warm_started(&self.problem(&obstacles), attempt.trajectory()?).outcome;
+        let mut refined = Attempt {
+            obstacles,
+            risk,
+            ..attempt.clone()
+        };
+        refined.planned.outcome = outcome;
+        matches!(refined.planned.outcome, Outcome::Solved(_)).then_some(refined)
+    }
+
+    /// One scale factor for every domain.
+    fn scales(&self, scale: f64) -> Vec<f64> {
+        vec![scale; self.sets.len()]
+    }
+
+    /// The sets with domains of these scale factors, and metres by which each domain is reduced.
+    fn scaled(&self, scales: &[f64]) -> (Vec<Obstacle>, Vec<f64>) {
+        let all = self.sets.iter().zip(&self.scenario.targets).zip(scales);
+        let scaled = all.map(|((sets, target), scale)| sets.scaled(self.scenario, target, *scale));
+        scaled.map(|s| (s.obstacle, s.reduction)).unzip()
+    }
+
+    /// The plan of an attempt, claimed to be clear of domains of these scale factors.
+    fn clear_of(&self, attempt: &Attempt, scales: &[f64], level: RelaxationLevel) -> Attempt {
+        let (whole, reductions) = self.scaled(scales);
+        Attempt {
+            level,
+            obstacles: level_sets(&whole, attempt.risk),
+            whole,
+            reductions: match self.scenario.compliance {
+                Compliance::Shape | Compliance::Rules => reductions,
+                Compliance::None => attempt.reductions.clone(),
+            },
+            ..attempt.clone()
+        }
+    }
+
+    /// Scale factor of each domain that a motion is clear of, from below, by bisection.
+    fn retained_along(&self, trajectory: &Trajectory, risk: f64) -> Vec<f64> {
+        let all = self.sets.iter().zip(&self.scenario.targets);
+        all.map(|(sets, target)| {
+            let clear = |scale: f64| {
+                let set = sets.scaled(self.scenario, target, scale).obstacle;
+                let set = if risk > 0.0 { set.at_risk(risk) } else { set };
+                let enters = |s| set.first_contact(s, crate::tolerance::TOUCH_M).is_some();
+                !trajectory.segments().iter().any(enters)
+            };
+            if !sets.has_domain() || clear(1.0) {
+                return 1.0;
+            }
+            let (mut retained, mut entered) = (0.0, 1.0);
+            for _ in 0..RETAINED_HALVINGS {
+                let scale = 0.5 * (retained + entered);
+                if clear(scale) {
+                    retained = scale;
+                } else {
+                    entered = scale;
+                }
+            }
+            retained
+        })
+        .collect()
+    }
+
+    /// Enlarges the smallest retained domain, and shrinks no other, by warm-started plans.
+    fn with_larger_domains(&self, found: Attempt, retained: &[f64]) -> Attempt {
+        let least = |scales: &[f64]| scales.iter().copied().fold(1.0, f64::min);
+        let (mut best, mut retained) = (found, retained.to_vec());
+        let (mut low, mut high) = (least(&retained), 1.0);
+        if self.scenario.planner != PlannerKind::SpaceTime {
+            return best;
+        }
+        for _ in 0..SCALE_HALVINGS {
+            let scale = 0.5 * (low + high);
+            let scales: Vec<f64> = retained.iter().map(|k| k.max(scale)).collect();
+            let obstacles = level_sets(&self.scaled(&scales).0, best.risk);
+            let Some(from) = best.trajectory() else {
+                return best;
+            };
+            let outcome = space_time::warm_started(&self.problem(&obstacles), from).outcome;
+            if matches!(outcome, Outcome::Deadline(_)) {
+                return out_of_time(best);
+            }
+            let Some(plan) = outcome.plan() else {
+                high = scale;
+                continue;
+            };
+            retained = self.retained_along(&plan.trajectory, best.risk);
+            low = least(&retained).max(scale);
+            best.planned.outcome = outcome;
+            best = self.clear_of(&best, &retained, RelaxationLevel::ReducedDomains);
+        }
+        best
+    }
+}
+
+/// The level sets of a risk.
+fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
+    if risk > 0.0 {
+        whole.iter().map(|set| set.at_risk(risk)).collect()
+    } else {
+        whole.to_vec()
+    }
+}
+
+/// Marks a plan as one that the deadline kept from being improved.
+fn out_of_time(mut attempt: Attempt) -> Attempt {
+    attempt.planned.outcome = match attempt.planned.outcome {
+        Outcome::Solved(plan) => Outcome::Deadline(Some(plan)),
+        other => other,
+    };
+    attempt
 }

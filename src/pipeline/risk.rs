@@ -1,14 +1,16 @@
-//! The risk that a motion takes.
+//! The risk of a motion.
 
 use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::tolerance;
 use crate::trajectory::Trajectory;
 
-/// The largest risk along a trajectory. One that is nowhere deeper than [`tolerance::DEPTH_M`] in the set, which it may
-/// touch, is at none: a set without spread is at risk 1 on its very boundary. For the same reason one that is nowhere
-/// deeper in the set of the `accepted` risk, in `[0, 1)`, is at no more than that.
+/// The largest risk along a trajectory.
+///
+/// The risk is 0 where the trajectory is nowhere deeper than [`tolerance::DEPTH_M`] in the set: a set
+/// without velocity spread has risk 1 on its boundary, and touching is allowed. Likewise it is at
+/// most `accepted`, in `[0, 1)`, where the trajectory is nowhere deeper in that level set.
 pub fn peak_risk(set: &Obstacle, trajectory: &Trajectory, accepted: f64) -> PeakRisk {
-    // a motion under forces is looked at instant by instant, there the depth is asked for
+    // a motion under forces is sampled, and the samples check the depth
     if trajectory.steered().is_some() {
         return set.peak_risk_along(trajectory);
     }

@@ -1,6 +1,6 @@
-//! The sets of every target, own ship's footprint folded in.
+//! The obstacles of every target, grown by own ship's footprint.
 
-use super::duty::without_shapes_stood_on_for;
+use super::rules::without_domains_of_give_way_targets;
 use crate::colregs::{self, Encounter, Shapes};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{
@@ -9,29 +9,29 @@ use crate::obstacle::{
 use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 
-/// The sets of one target, own ship's footprint folded in.
+/// The obstacles of one target, grown by own ship's footprint.
 #[derive(Debug, Clone)]
 pub struct TargetSets {
-    /// Hulls, margin and position uncertainty: safety is claimed on this one.
+    /// Hulls, margin and position uncertainty: safety is claimed for this one.
     pub hard: Obstacle,
-    /// With the domain's shape around it: what the planner keeps out of when shapes are asked for.
+    /// The hard set with the ship domain around it, used where domains are asked for.
     pub shaped: Obstacle,
-    /// The encounter that the shape is for, judged along the undisturbed desired trajectory.
+    /// The encounter that the domain is for, judged along the nominal desired trajectory.
     pub encounter: Encounter,
-    /// Metres that the shape was drawn back to let own ship start outside; 0 when it was not.
+    /// Metres by which the domain is reduced to let own ship start outside.
     pub shape_reduced: f64,
-    /// Metres from the hard set to the farthest point of the full shape.
+    /// Metres from the hard set to the farthest point of the full domain.
     pub shape_reach: f64,
-    /// What can be drawn back; `None` where the shaped set is the hard one.
+    /// The domain to be reduced; `None` where the shaped set equals the hard one.
     shapes: Option<Shapes>,
 }
 
-/// What is left of a target's shape.
+/// A target's obstacle with a reduced ship domain.
 #[derive(Debug, Clone)]
-pub(super) struct Kept {
+pub(super) struct ScaledDomain {
     pub obstacle: Obstacle,
-    /// Metres, the largest cut.
-    pub cut: f64,
+    /// Largest reduction, metres.
+    pub reduction: f64,
 }
 
 impl TargetSets {
@@ -40,57 +40,53 @@ impl TargetSets {
         if shaped { &self.shaped } else { &self.hard }
     }
 
-    /// The hard set, of its own.
-    pub(super) fn hard_set(&self) -> Obstacle {
-        self.hard.clone()
-    }
-
-    /// True where the shape is more than the hard set.
-    pub(super) fn has_shape(&self) -> bool {
+    /// True where the domain is larger than the hard set.
+    pub(super) fn has_domain(&self) -> bool {
         self.shapes.is_some()
     }
 
-    /// Leaves the hard set alone.
-    pub(super) fn give_up_shape(&mut self) {
+    /// Removes the ship domain.
+    pub(super) fn remove_domain(&mut self) {
         self.shaped = self.hard.clone();
         (self.shape_reduced, self.shape_reach) = (0.0, 0.0);
         self.shapes = None;
     }
 
-    /// The set with so much of the shape, from 0 to 1, of what own ship's start lets be.
-    pub(super) fn kept(&self, scenario: &Scenario, target: &Target, share: f64) -> Kept {
+    /// The set with a domain scale factor from 0, the hard set, to 1, the largest domain that own
+    /// ship's start permits.
+    pub(super) fn scaled(&self, scenario: &Scenario, target: &Target, scale: f64) -> ScaledDomain {
         match (&self.shapes, &target.motion) {
-            (Some(shapes), Motion::Ship(ship)) if share > 0.0 && share < 1.0 => {
-                let initial = shapes.drawn_back(share);
-                Kept {
-                    cut: shapes.cut(&initial),
+            (Some(shapes), Motion::Ship(ship)) if scale > 0.0 && scale < 1.0 => {
+                let initial = shapes.drawn_back(scale);
+                ScaledDomain {
+                    reduction: shapes.cut(&initial),
                     obstacle: with_initial(target, ship, &self.hard, initial, scenario.horizon),
                 }
             }
-            (Some(_), _) if share < 1.0 => Kept {
+            (Some(_), _) if scale < 1.0 => ScaledDomain {
                 obstacle: self.hard.clone(),
-                cut: self.shape_reach,
+                reduction: self.shape_reach,
             },
-            _ => Kept {
+            _ => ScaledDomain {
                 obstacle: self.shaped.clone(),
-                cut: self.shape_reduced,
+                reduction: self.shape_reduced,
             },
         }
     }
 }
 
-/// The sets and the encounter of every target, in the scenario's order.
+/// The obstacles and the encounter of every target, in the scenario's order.
 pub fn sets(scenario: &Scenario) -> Vec<TargetSets> {
     let of = |target| target_sets(scenario, target);
-    without_shapes_stood_on_for(scenario, scenario.targets.iter().map(of).collect())
+    without_domains_of_give_way_targets(scenario, scenario.targets.iter().map(of).collect())
 }
 
 fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
     let own = &scenario.own_ship;
     let (desired, horizon) = (&scenario.desired, scenario.horizon);
     let encounter = colregs::encounter(own, desired, target, horizon);
-    // taken as they are: own ship is a point, nothing is added
-    let outright = |obstacle: Obstacle| TargetSets {
+    // explicit sets are used unchanged: own ship is a point
+    let explicit = |obstacle: Obstacle| TargetSets {
         shaped: obstacle.clone(),
         hard: obstacle,
         encounter,
@@ -108,13 +104,13 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
             } else {
                 with_initial(target, ship, &hard, shapes.shaped.clone(), horizon)
             };
-            // the ellipse around a shape that was drawn back may contain own ship again
+            // the ellipse around a reduced domain may contain own ship again
             let start = own.pose.position;
             if shaped.contains(start, 0.0) && !hard.contains(start, 0.0) {
                 return TargetSets {
                     shape_reduced: shapes.reach,
                     shape_reach: shapes.reach,
-                    ..outright(hard)
+                    ..explicit(hard)
                 };
             }
             TargetSets {
@@ -126,15 +122,15 @@ fn target_sets(scenario: &Scenario, target: &Target) -> TargetSets {
                 shapes: (shapes.shaped != shapes.hard).then_some(shapes),
             }
         }
-        Motion::Sets { initial, velocity } => outright(represented(
+        Motion::Sets { initial, velocity } => explicit(represented(
             target.representation,
             PolytopeObstacle::new(target.name.clone(), initial.clone(), velocity.clone()),
         )),
         Motion::Ellipses { initial, velocity } => {
-            outright(EllipsoidObstacle::new(target.name.clone(), *initial, *velocity).into())
+            explicit(EllipsoidObstacle::new(target.name.clone(), *initial, *velocity).into())
         }
         Motion::Spells { initial, spells } => {
-            outright(one_after_another(target, initial.clone(), spells.clone()))
+            explicit(time_varying(target, initial.clone(), spells.clone()))
         }
     }
 }
@@ -154,13 +150,13 @@ fn ship_obstacle(
 ) -> Obstacle {
     if ship.turn_rate > 0.0 {
         let spells = ship.outer_velocity_spells(ship.turn_rate, horizon);
-        return one_after_another(target, initial, spells);
+        return time_varying(target, initial, spells);
     }
     let polytope = PolytopeObstacle::new(target.name.clone(), initial, ship.outer_velocity_set());
     represented(target.representation, polytope)
 }
 
-/// [`ship_obstacle`] where that for another initial set is known.
+/// [`ship_obstacle`] with the velocities of a known obstacle.
 fn with_initial(
     target: &Target,
     ship: &ShipTrack,
@@ -177,12 +173,8 @@ fn with_initial(
     }
 }
 
-fn one_after_another(
-    target: &Target,
-    initial: ConvexPolygon,
-    spells: Vec<VelocitySpell>,
-) -> Obstacle {
-    // one polytope of all velocities together contains the slabs: should their ends ever not increase
+fn time_varying(target: &Target, initial: ConvexPolygon, spells: Vec<VelocitySpell>) -> Obstacle {
+    // should the ends not increase: one polytope with all velocities contains the slabs
     let all: Vec<_> = spells
         .iter()
         .flat_map(|s| s.velocities.vertices().iter().copied())

@@ -1,65 +1,57 @@
-//! The space-time error: what the search minimises. Formulas section 7.
+//! Space-time error: the cost that the search minimises, docs/theory.md section 7.
 
 use std::f64::consts::PI;
 
 use super::line_error;
 use crate::frame::cross;
+use crate::numerics::{GAUSS_2, GAUSS_4};
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Mover, Nearest, Segment};
 
-/// Nodes and weights of the 4-point Gauss-Legendre rule on [0, 1].
-pub(crate) const GAUSS_4: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
-
-/// Two points, exact for cubics: the squared error along a line is quadratic.
-pub(crate) const GAUSS_2: [(f64, f64); 2] = [
-    (0.211_324_865_405_187_13, 0.5),
-    (0.788_675_134_594_812_9, 0.5),
-];
-
-/// Metres, radians. On flatter and shorter arcs the closed form loses digits.
+/// Largest radius (metres) and smallest turn (radians) of the closed form. It loses digits on
+/// flatter or shorter arcs.
 const FLAT_RADIUS_M: f64 = 3e3;
 const SHORT_RAD: f64 = 1e-3;
 
-/// How finely an arc is cut where no closed form holds.
+/// Subdivision of an arc that has no closed form.
 #[derive(Debug, Clone, Copy)]
-struct Cut {
-    /// Radians: the longest piece to begin with.
+struct Subdivision {
+    /// Longest initial piece, radians.
     arc: f64,
-    /// Pieces at least.
+    /// Least number of pieces.
     pieces: f64,
 }
 
-/// Halvings of a piece in which the nearest leg or its end changes: such changes are closed in on to a thousandth. Where
-/// rounding makes them, each piece costs this often two.
+/// Largest number of halvings of a piece in which the nearest leg or its clamp changes. They locate
+/// such a change to a thousandth of the piece. A change that only rounding makes costs two
+/// evaluations per halving.
 const MAX_HALVINGS: u32 = 10;
 
-/// Of a path of more legs those that cannot be nearest are left out first.
+/// Number of legs above which legs that cannot be nearest are left out first.
 const MANY_LEGS: usize = 6;
 
-/// While plans are looked for.
-const SEARCHED: Cut = Cut {
+/// Subdivision used during the search.
+const SEARCH_SUBDIVISION: Subdivision = Subdivision {
     arc: PI / 4.0,
     pieces: 1.0,
 };
 
-/// Of what is said of a plan.
-const TOLD: Cut = Cut {
+/// Subdivision used for reported costs.
+const REPORT_SUBDIVISION: Subdivision = Subdivision {
     arc: PI / 64.0,
     pieces: 64.0,
 };
 
-/// `(1/T_d) integral of e² dt` over one segment, m²: its part of the space-time error `J`. In closed form for
-/// one leg and on lines; elsewhere 4-point Gauss-Legendre on arcs up to pi/4, cut by halves to a thousandth of the
-/// stretch where the nearest leg or the clamp at its ends changes.
+/// Cost `(1/T_d) integral of e² dt` of one segment, m²: its part of the space-time error `J`.
+///
+/// A single leg and lines have a closed form. Other arcs use the 4-point Gauss-Legendre rule on
+/// pieces up to pi/4. A piece in which the nearest leg or the clamp at its ends changes is halved,
+/// down to a thousandth.
 pub fn space_time_error(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64) -> f64 {
-    integral(desired, segment, time_weight, SEARCHED) / desired.duration()
+    integral(desired, segment, time_weight, SEARCH_SUBDIVISION) / desired.duration()
 }
 
-/// The space-time error `J` of a whole motion, m², with arcs cut so finely that a nearest leg that lasts for a moment is seen: accurate to 1e-6 of itself.
+/// Space-time error `J` of a whole motion, m². Arcs are divided finely enough to see a leg that is
+/// nearest only briefly. Relative accuracy 1e-6.
 pub fn whole_space_time_error(
     desired: &DesiredTrajectory,
     motion: &[Segment],
@@ -67,14 +59,19 @@ pub fn whole_space_time_error(
 ) -> f64 {
     let parts = motion.iter();
     let sum: f64 = parts
-        .map(|segment| integral(desired, segment, time_weight, TOLD))
+        .map(|segment| integral(desired, segment, time_weight, REPORT_SUBDIVISION))
         .sum();
     sum / desired.duration()
 }
 
-fn integral(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64, cut: Cut) -> f64 {
+fn integral(
+    desired: &DesiredTrajectory,
+    segment: &Segment,
+    time_weight: f64,
+    subdivision: Subdivision,
+) -> f64 {
     if let [leg] = desired.legs()
-        && let Some(integral) = Alone::new(leg, segment, time_weight).integral()
+        && let Some(integral) = SingleLeg::new(leg, segment, time_weight).integral()
     {
         return integral;
     }
@@ -83,51 +80,52 @@ fn integral(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64, cu
     {
         return integral;
     }
-    let pieces = (segment.turn_rate.abs() * segment.duration / cut.arc)
+    let pieces = (segment.turn_rate.abs() * segment.duration / subdivision.arc)
         .ceil()
-        .max(cut.pieces);
+        .max(subdivision.pieces);
     let duration = segment.duration / pieces;
-    let mut stretch = Stretch {
+    let mut integrand = Integrand {
         desired,
         near: None,
         mover: Mover::new(segment),
         time_weight,
-        bent: segment.is_arc(),
+        is_arc: segment.is_arc(),
     };
     let legs = desired.legs().len();
     let near = (legs > MANY_LEGS).then(|| {
         let all: Vec<usize> = (0..legs).collect();
-        stretch.near(&all, segment.start_time, segment.duration)
+        integrand.near(&all, segment.start_time, segment.duration)
     });
     (0..pieces as usize)
         .map(|k| {
             let from = segment.start_time + duration * k as f64;
             if let Some(near) = &near {
-                stretch.near = Some(stretch.near(near, from, duration));
+                integrand.near = Some(integrand.near(near, from, duration));
             }
-            stretch.integral(from, duration, MAX_HALVINGS)
+            integrand.integral(from, duration, MAX_HALVINGS)
         })
         .sum()
 }
 
-/// A segment seen from the only leg. Where the nearest point is between the leg's ends, the error is
-/// `across² + kappa lag²`; where it is an end, the distance from that in space and time.
-struct Alone<'a> {
+/// Segment relative to the only leg. Where the nearest point lies between the leg's ends, the error
+/// is `across² + kappa lag²`. Where it is an end, the error is the space-time distance from that
+/// end.
+struct SingleLeg<'a> {
     leg: &'a DesiredLeg,
     segment: &'a Segment,
     time_weight: f64,
-    /// At the start: metres along and across the leg, seconds since the leg began.
+    /// State at the start: metres along and across the leg, seconds since the leg began.
     along: f64,
     across: f64,
     elapsed: f64,
-    /// Own ship's course in the frame of the leg.
+    /// Cosine and sine of own ship's course relative to the leg.
     cos: f64,
     sin: f64,
-    /// What the nearest point moves along the leg per metre of own ship.
+    /// Motion of the nearest point along the leg per metre of own ship.
     share: f64,
 }
 
-impl<'a> Alone<'a> {
+impl<'a> SingleLeg<'a> {
     fn new(leg: &'a DesiredLeg, segment: &'a Segment, time_weight: f64) -> Self {
         let offset = segment.start.position - leg.start;
         let ahead = segment.start.ahead();
@@ -152,12 +150,13 @@ impl<'a> Alone<'a> {
         self.leg.speed * self.elapsed - self.along
     }
 
-    /// Metres along the leg of the nearest point at the start, the leg's ends aside.
+    /// Position of the nearest point along the leg at the start, metres, without the clamp.
     fn nearest(&self) -> f64 {
         self.along + self.kappa() * self.lag()
     }
 
-    /// `None` on an arc that may come to where an end is nearest, or hardly bends.
+    /// Closed form. `None` for an arc on which an end may be nearest, and for a nearly straight
+    /// one.
     fn integral(&self) -> Option<f64> {
         if self.segment.is_arc() {
             let turn = (self.segment.turn_rate * self.segment.duration).abs();
@@ -173,7 +172,7 @@ impl<'a> Alone<'a> {
         let (ahead, aside) = (self.segment.speed * self.cos, self.segment.speed * self.sin);
         let nearest = self.nearest();
         let rate = ahead + self.kappa() * (leg.speed - ahead);
-        // a rate of nothing gives an infinite time or none: the maximum takes the number
+        // a zero rate gives an infinite time or a NaN: the maximum takes the number
         let passes = |end: f64| ((end - nearest) / rate).max(0.0).min(duration);
         let (start, end) = if rate < 0.0 {
             (leg.length, 0.0)
@@ -216,7 +215,7 @@ impl<'a> Alone<'a> {
         } else {
             self.share * radius.abs() * turn * turn / 8.0
         };
-        // she starts at the leg's first end: rounding is no way beyond it
+        // own ship may start at the leg's first end: rounding must not put it beyond
         let margin = margin - 1e-9;
         let within = |at: f64| at >= margin && at <= leg.length - margin;
         if !(within(from) && within(to)) {
@@ -242,16 +241,16 @@ impl<'a> Alone<'a> {
     }
 }
 
-struct Stretch<'a> {
+struct Integrand<'a> {
     desired: &'a DesiredTrajectory,
-    /// The legs that may be nearest, where there are many.
+    /// Legs that may be nearest, where there are many.
     near: Option<Vec<usize>>,
     mover: Mover,
     time_weight: f64,
-    bent: bool,
+    is_arc: bool,
 }
 
-impl Stretch<'_> {
+impl Integrand<'_> {
     fn at(&self, time: f64) -> Nearest {
         let (position, q) = (self.mover.position_at(time), self.time_weight);
         match &self.near {
@@ -260,8 +259,8 @@ impl Stretch<'_> {
         }
     }
 
-    /// Those of some legs that may be nearest for a while: in space-time no place of own ship is farther from that halfway than
-    /// half of its way.
+    /// Legs of the given ones that may be nearest during a time interval. In space-time, own ship
+    /// stays within half the length of its path from the midpoint.
     fn near(&self, legs: &[usize], from: f64, duration: f64) -> Vec<usize> {
         let (middle, q) = (from + 0.5 * duration, self.time_weight);
         let at = self.mover.position_at(middle);
@@ -271,14 +270,15 @@ impl Stretch<'_> {
             .collect();
         let speed = self.mover.velocity_at(middle).norm();
         let least = away.iter().copied().fold(f64::INFINITY, f64::min);
-        // far more than roundings
+        // much larger than rounding errors
         let most = (least + duration * speed.hypot(q.sqrt())) * (1.0 + 1e-6) + 1e-6;
-        // negated on purpose: a NaN may be
+        // negated on purpose: a NaN is retained
         let near = legs.iter().zip(away).filter(|(_, away)| !(*away > most));
         near.map(|(leg, _)| *leg).collect()
     }
 
-    /// Which leg is nearest, and whether one of its ends is.
+    /// Index of the nearest leg, and whether the nearest point is beyond its start and before its
+    /// end.
     fn regime(&self, time: f64) -> (usize, bool, bool) {
         let nearest = self.at(time);
         let leg = &self.desired.legs()[nearest.leg];
@@ -299,7 +299,7 @@ impl Stretch<'_> {
                 .iter()
                 .all(|f| self.regime(from + duration * f) == first)
         {
-            let nodes: &[(f64, f64)] = if self.bent { &GAUSS_4 } else { &GAUSS_2 };
+            let nodes: &[(f64, f64)] = if self.is_arc { &GAUSS_4 } else { &GAUSS_2 };
             return duration
                 * nodes
                     .iter()

@@ -1,16 +1,16 @@
-//! The graph that a search made, kept for pictures and as an oracle for tests.
+//! Graph explored by a search, for figures and for tests.
 
 use petgraph::graph::DiGraph;
 
 use crate::frame::Pose;
 use crate::trajectory::Segment;
 
-/// What a node of a graph is.
+/// Kind of a graph node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum NodeKind {
     /// Own ship at t = 0.
     Start,
-    /// On an edge of an obstacle: a moving vertex.
+    /// Moving vertex on the boundary of an obstacle.
     Vertex {
         /// Index of the obstacle.
         obstacle: usize,
@@ -19,59 +19,58 @@ pub enum NodeKind {
         /// Index of the velocity set's vertex.
         velocity: usize,
     },
-    /// Straight on from a vertex for a while.
+    /// Point reached by holding the course beyond a vertex.
     Held,
-    /// On a path: on the edge of an obstacle in distance and time, mostly at a corner.
+    /// Path-time graph: point on the boundary of an obstacle, mostly a corner.
     Corner {
         /// Index of the obstacle.
         obstacle: usize,
     },
-    /// On a path: the end of a leg, or a place on schedule.
+    /// Path-time graph: end of a leg, or a point on schedule.
     Waypoint,
-    /// The end of the desired path.
+    /// End of the desired path.
     End,
 }
 
-/// A node that the search made.
+/// Node of the explored graph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExploredNode {
-    /// What it is.
+    /// Kind.
     pub kind: NodeKind,
-    /// Where own ship is there.
+    /// Pose of own ship.
     pub pose: Pose,
-    /// And when, seconds.
+    /// Time, seconds.
     pub time: f64,
-    /// Cost of the best known way to it, m².
+    /// Cost of the best known path to it, m².
     pub cost: f64,
-    /// True when its successors were made.
+    /// True when its successors were generated.
     pub expanded: bool,
 }
 
-/// What is known of an edge.
+/// Result of the collision test of an edge.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EdgeVerdict {
     /// Clear of every set.
     Free,
-    /// Meets a set.
+    /// In contact with a set.
     Blocked {
-        /// Index of an obstacle that it meets: the first, in their order, that its first blocked segment
-        /// meets.
+        /// Index of the obstacle: the first, in their order, that the first blocked segment meets.
         obstacle: usize,
     },
-    /// Never reached by the search, so never tested.
+    /// Never reached by the search, hence not tested.
     Untested,
 }
 
-/// A motion between two nodes.
+/// Motion between two nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExploredEdge {
     /// Lines and arcs, in order.
     pub segments: Vec<Segment>,
-    /// Its part of the space-time error, m².
+    /// Space-time error of the edge, m².
     pub cost: f64,
-    /// Tested or not, free or not.
+    /// Result of its collision test.
     pub verdict: EdgeVerdict,
 }
 
-/// Every node and edge that a search made.
+/// All nodes and edges that a search generated.
 pub type ExploredGraph = DiGraph<ExploredNode, ExploredEdge>;

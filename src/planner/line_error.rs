@@ -1,13 +1,14 @@
-//! The squared error along a straight motion near several legs: the least of one function of time per leg.
+//! Squared error along a straight motion near several legs: a lower envelope of functions of time.
 //!
-//! The squared distance in space-time from a moving point to one leg is convex in time and made of at most three
-//! parabolas: nearest to the leg's first end, between its ends, nearest to its last end. From the leg that is nearest at
-//! the beginning on, the next time at which another becomes nearer is the root of a difference of parabolas.
+//! The squared space-time distance from a moving point to one leg is convex in time. It consists of
+//! at most three parabolas: nearest to the leg's first end, between its ends, nearest to its last
+//! end. The sweep starts with the leg that is nearest first. The next time at which another leg
+//! becomes nearer is the root of a difference of parabolas.
 
 use crate::frame::cross;
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Segment};
 
-/// `a + b t + c t²`, t from the beginning of the motion.
+/// Parabola `a + b t + c t²`, t from the start of the motion.
 #[derive(Debug, Clone, Copy)]
 struct Parabola {
     a: f64,
@@ -16,7 +17,7 @@ struct Parabola {
 }
 
 impl Parabola {
-    /// `(value + slope t)²`, weighed.
+    /// `weight (value + slope t)²`.
     fn square(value: f64, slope: f64, weight: f64) -> Self {
         Self {
             a: weight * value * value,
@@ -41,18 +42,18 @@ impl Parabola {
         self.b + 2.0 * t * self.c
     }
 
-    /// Simpson's rule is exact.
+    /// Integral from `from` to `to`; Simpson's rule is exact here.
     fn integral(&self, from: f64, to: f64) -> f64 {
         let middle = self.at(0.5 * (from + to));
         (self.at(from) + 4.0 * middle + self.at(to)) * (to - from) / 6.0
     }
 
-    /// The first time from `from` to `to` at which `other` comes from above to below this one.
-    fn passed_by(&self, other: &Self, from: f64, to: f64) -> Option<f64> {
+    /// First time in `[from, to]` at which `other` crosses this parabola from above.
+    fn crossing(&self, other: &Self, from: f64, to: f64) -> Option<f64> {
         let c = other.c - self.c;
         let b = other.slope(from) - self.slope(from);
         let a = (other.at(from) - self.at(from)).max(0.0);
-        // falls through nothing: the smaller root when it is convex, the larger when not
+        // downward zero crossing: the smaller root when convex, the larger one when concave
         let discriminant = b * b - 4.0 * a * c;
         if discriminant <= 0.0 && c > 0.0 {
             return None;
@@ -69,10 +70,10 @@ impl Parabola {
     }
 }
 
-/// The squared distance from one leg.
+/// Squared distance from one leg.
 #[derive(Debug, Clone, Copy)]
 struct FromLeg {
-    /// Until when each holds, and what does.
+    /// Parabolas, each with the time until which it holds.
     parts: [(f64, Parabola); 3],
 }
 
@@ -102,7 +103,7 @@ impl FromLeg {
         } else {
             (0.0, leg.length)
         };
-        // a rate of nothing: never, or at once
+        // a zero rate: never, or at once
         let passes = |end: f64| {
             let time = (end - nearest) / rate;
             if time.is_nan() { 0.0 } else { time }
@@ -117,19 +118,19 @@ impl FromLeg {
         }
     }
 
-    /// The part that holds just after a time.
+    /// Parabola that holds just after a time.
     fn part(&self, time: f64) -> &(f64, Parabola) {
         let index = self.parts.iter().position(|(until, _)| *until > time);
         &self.parts[index.unwrap_or(2)]
     }
 
-    /// The first time from `from` on at which `other` becomes nearer.
-    fn passed_by(&self, other: &Self, from: f64, to: f64) -> Option<f64> {
+    /// First time from `from` on at which `other` becomes nearer.
+    fn crossing(&self, other: &Self, from: f64, to: f64) -> Option<f64> {
         let mut time = from;
         while time < to {
             let (mine, theirs) = (self.part(time), other.part(time));
             let until = mine.0.min(theirs.0).min(to);
-            if let Some(passed) = mine.1.passed_by(&theirs.1, time, until) {
+            if let Some(passed) = mine.1.crossing(&theirs.1, time, until) {
                 return Some(passed);
             }
             time = until;
@@ -149,11 +150,12 @@ impl FromLeg {
     }
 }
 
-/// Relative. Legs that are as near as this are equally near.
+/// Relative tolerance within which two legs are equally near.
 const EQUAL: f64 = 1e-12;
 
-/// The integral of the squared error over a line, m² s, exact to rounding; `None` where the nearest leg changes more often than
-/// it can, which only rounding among legs that fall together makes. O(legs) for each leg that is the nearest for a while.
+/// Integral of the squared error over a line, m² s, exact to rounding. `None` where the nearest leg
+/// changes more often than is possible; only rounding among coincident legs causes that. O(legs)
+/// for each leg that is nearest in turn.
 pub(crate) fn integral(
     desired: &DesiredTrajectory,
     segment: &Segment,
@@ -161,7 +163,7 @@ pub(crate) fn integral(
 ) -> Option<f64> {
     let duration = segment.duration;
     let mut legs = near(desired, segment, time_weight);
-    // each pair of legs has at most one change of place within each pair of their parts
+    // each pair of legs changes order at most once within each pair of their parabolas
     let mut changes = 12 * legs.len() + 12;
     let (mut time, mut sum) = (0.0, 0.0);
     let mut nearest = nearest_at(&legs, time)?;
@@ -169,7 +171,7 @@ pub(crate) fn integral(
         let current = legs.swap_remove(nearest);
         let mut next = (duration, None);
         for (index, other) in legs.iter().enumerate() {
-            if let Some(passed) = current.passed_by(other, time, next.0)
+            if let Some(passed) = current.crossing(other, time, next.0)
                 && (next.1.is_none() || passed < next.0)
             {
                 next = (passed, Some(index));
@@ -184,8 +186,8 @@ pub(crate) fn integral(
     Some(sum)
 }
 
-/// The legs that may be the nearest at some time of a line: a distance in space-time changes by no more than the way in
-/// space-time.
+/// Legs that may be nearest at some time of a line. A space-time distance changes by at most the
+/// length of the path in space-time.
 fn near(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64) -> Vec<FromLeg> {
     let middle = 0.5 * segment.duration;
     let reach = middle * (segment.speed * segment.speed + time_weight).sqrt();
@@ -194,7 +196,7 @@ fn near(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64) -> Vec
     for leg in desired.legs() {
         let from = FromLeg::new(leg, segment, time_weight);
         let distance = from.part(middle).1.at(middle).max(0.0).sqrt();
-        // negated on purpose: a NaN stays, to be found out
+        // negated on purpose: a NaN is retained and found later
         if !(distance > closest + 2.0 * reach) {
             closest = closest.min(distance);
             legs.push((distance, from));
@@ -204,7 +206,7 @@ fn near(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64) -> Vec
     legs.into_iter().map(|(_, from)| from).collect()
 }
 
-/// The leg that is nearest just after a time: of equal ones the one that comes nearer.
+/// Nearest leg just after a time. Of equally near legs, the one that comes nearer.
 fn nearest_at(legs: &[FromLeg], time: f64) -> Option<usize> {
     let values: Vec<f64> = legs.iter().map(|l| l.part(time).1.at(time)).collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);

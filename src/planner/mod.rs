@@ -1,4 +1,4 @@
-//! A problem, a plan, an outcome: what every planner takes and gives.
+//! Planners, with their common input (problem) and output (plan, outcome).
 
 mod clock;
 mod control_settings;
@@ -18,32 +18,32 @@ use std::time::Duration;
 
 use crate::colregs::{Duty, Encountered};
 use crate::frame::{Side, Vector};
-use crate::obstacle::{Coast, Obstacle};
+use crate::obstacle::{LandObstacle, Obstacle};
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::OwnShip;
 
-/// Which search runs over the graph.
+/// Graph search algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchKind {
-    /// Best first by cost plus an admissible bound of the cost to go.
+    /// A*: best first by cost plus an admissible lower bound of the cost to go.
     AStar,
-    /// Best first by cost.
+    /// Dijkstra's algorithm: best first by cost.
     Dijkstra,
 }
 
-/// Which planner.
+/// Planner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlannerKind {
-    /// Chooses her way and her speed: [`space_time`].
+    /// Chooses path and speed: [`space_time`].
     SpaceTime,
-    /// Keeps to given paths and chooses her speed: [`path_time`].
+    /// Follows given paths and chooses the speed: [`path_time`].
     PathTime,
-    /// Chooses her forces: [`optimal_control`].
+    /// Chooses forces: [`optimal_control`].
     OptimalControl,
 }
 
 impl PlannerKind {
-    /// The word for it in files and on the command line.
+    /// Name in files and on the command line.
     pub fn word(self) -> &'static str {
         match self {
             Self::SpaceTime => "space-time",
@@ -53,24 +53,24 @@ impl PlannerKind {
     }
 }
 
-/// What a planner minimises.
+/// Quantity that a planner minimises.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
     /// The space-time error, docs/theory.md section 7, m².
     SpaceTimeError,
-    /// The time of arrival, s.
+    /// Arrival time, s.
     Time,
-    /// The length of the way, m; of ways of one length the time.
+    /// Path length, m; among paths of equal length the arrival time.
     Length,
-    /// The length of the way and its largest risk, m: what `weight` metres are to certainty.
+    /// Path length plus the weighted largest collision risk, m.
     LengthRisk {
-        /// Metres, not negative.
+        /// Metres equivalent to a risk of one; not negative.
         weight: f64,
     },
 }
 
 impl Objective {
-    /// The word for it in files.
+    /// Name in files.
     pub fn word(self) -> &'static str {
         match self {
             Self::SpaceTimeError => "space-time-error",
@@ -80,7 +80,7 @@ impl Objective {
         }
     }
 
-    /// The unit of what is minimised.
+    /// Unit of the minimised quantity.
     pub fn unit(self) -> &'static str {
         match self {
             Self::SpaceTimeError => "m²",
@@ -90,19 +90,19 @@ impl Objective {
     }
 }
 
-/// What a planner is asked: keep `own` clear of every obstacle, close to `desired`, until she arrives.
+/// Planning problem: keep `own` clear of every obstacle and close to `desired` until the arrival.
 ///
 /// # Examples
 ///
 /// ```
-/// use searoom::obstacle::Coast;
+/// use searoom::obstacle::LandObstacle;
 /// use searoom::pipeline;
 /// use searoom::planner::{Problem, space_time};
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
 /// let sets: Vec<_> = pipeline::sets(&scenario).into_iter().map(|target| target.hard).collect();
-/// let asked = pipeline::problem(&scenario, &sets, Coast::none());
+/// let asked = pipeline::problem(&scenario, &sets, LandObstacle::none());
 /// let clear = space_time::plan(&asked).outcome;
 /// // the same without anybody else
 /// let alone = space_time::plan(&Problem { obstacles: &[], ..asked }).outcome;
@@ -112,75 +112,77 @@ impl Objective {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
-    /// Own ship and her limits.
+    /// Own ship and its limits.
     pub own: &'a OwnShip,
-    /// Where she is meant to be, and when.
+    /// Desired trajectory.
     pub desired: &'a DesiredTrajectory,
-    /// Other paths that she may sail, metres: the path-time planner's.
+    /// Alternative paths, metres; used by the path-time planner.
     pub alternatives: &'a [Vec<Vector>],
-    /// What is minimised; the space-time planner knows the space-time error alone.
+    /// Minimised quantity. The space-time planner supports the space-time error only.
     pub objective: Objective,
-    /// The sets to stay out of, own ship's footprint folded in.
+    /// Sets to avoid, inflated by own ship's footprint.
     pub obstacles: &'a [Obstacle],
-    /// Land to stay off, own ship's footprint folded in.
-    pub coast: &'a Coast,
-    /// Seconds: arrival must not be later; the obstacles are known until then.
+    /// Land to avoid, inflated by own ship's footprint.
+    pub land_obstacle: &'a LandObstacle,
+    /// Latest arrival, seconds. The obstacles are known until then.
     pub horizon: f64,
-    /// `q` of eq. (30), m²/s².
+    /// Weight `q` of eq. (30), m²/s².
     pub time_weight: f64,
-    /// Search over the graph.
+    /// Graph search algorithm.
     pub search: SearchKind,
     /// Wall-clock budget of one plan.
     pub deadline: Duration,
-    /// Side to which own ship should turn first: a plan that first turns to the other has to be cheaper by
-    /// [`AGAINST_THE_RULES`].
+    /// Preferred side of the first turn. A plan that first turns to the other side must be cheaper
+    /// by [`AGAINST_THE_RULES`].
     pub first_turn: Option<Side>,
-    /// The targets toward which a plan has to comply with the rules of the road; empty where that is not asked.
+    /// Targets toward which a plan must comply with the collision regulations; empty where
+    /// compliance is not required.
     pub encountered: &'a [Encountered],
 }
 
 impl Problem<'_> {
-    /// What is asked of the first alteration.
+    /// Duty of own ship toward all encountered targets.
     pub(crate) fn duty(&self) -> Duty {
         Duty::of(self.encountered.iter().map(|e| e.role))
     }
 }
 
-/// Share of the cost by which a plan has to be cheaper whose first turn is to the side that the collision
-/// regulations discourage.
+/// Relative cost by which a plan must be cheaper when its first turn is to the side that the
+/// collision regulations discourage.
 pub const AGAINST_THE_RULES: f64 = 0.05;
 
-/// What the search did to find the cheapest plan on the graph.
+/// Search statistics up to the cheapest plan on the graph.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct SearchStats {
-    /// Nodes whose successors were made.
+    /// Expanded nodes.
     pub expanded: usize,
-    /// Nodes made.
+    /// Generated nodes.
     pub generated: usize,
     /// Edges tested against every obstacle.
     pub edges_checked: usize,
-    /// Nodes expanded after that, to find plans that pass the targets on other sides.
+    /// Nodes expanded afterwards, for plans that pass the targets on other sides.
     pub further_expanded: usize,
 }
 
 /// A collision-free trajectory to the end of the desired path.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// From own ship's pose at t = 0 to the last waypoint, or to the horizon.
+    /// Motion from own ship's pose at t = 0 to the last waypoint, or to the horizon.
     pub trajectory: Trajectory,
-    /// What was minimised, in the objective's unit.
+    /// Minimised quantity, in the objective's unit.
     pub cost: f64,
-    /// The first plan on the graph, before refinement, in the same unit: for one target its cheapest, among several at most four times that;
-    /// `None` where the graph had none.
+    /// Cost of the first plan on the graph before refinement, in the same unit. For one target it
+    /// is the graph's optimum; for several it is at most four times that. `None` where the graph
+    /// had no plan.
     pub graph_cost: Option<f64>,
-    /// Metres of the shortest way to the last waypoint that are left at the end: 0 for a plan that arrives. One that does not
-    /// goes on to the horizon.
+    /// Remaining length of the shortest path to the last waypoint at the end, metres; 0 for a plan
+    /// that arrives. A plan that does not arrive extends to the horizon.
     pub to_go: f64,
 }
 
 impl Plan {
-    /// A motion for the least space-time error, which is computed anew for all of it: searches compare by coarser quadrature.
-    /// `None` of what is no trajectory.
+    /// Plan with its space-time error, which is integrated anew: searches use coarser quadrature.
+    /// `None` for an invalid trajectory.
     pub(crate) fn measured(
         problem: &Problem,
         motion: Vec<Segment>,
@@ -195,30 +197,31 @@ impl Plan {
     }
 }
 
-/// What ends the hold of a ship that stands on: the plan is to hold course and speed until then, and this escape after it.
+/// Escape manoeuvre of a stand-on ship. Own ship holds course and speed until `latest`, then
+/// escapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Escape {
-    /// Seconds: the latest time at which an escape is known to be clear.
+    /// Latest time at which an escape is known to be clear, seconds.
     pub latest: f64,
-    /// Radians of its first turn, to port positive; 0 where it is by less speed.
+    /// First turn, radians, to port positive; 0 where the escape reduces speed.
     pub turn: f64,
-    /// m/s of its beginning.
+    /// Speed at the start of the escape, m/s.
     pub speed: f64,
 }
 
-/// What a planner answers. None of these is an error.
+/// Result of a planner. None of these is an error.
 #[derive(Debug, Clone)]
 pub enum Outcome {
     /// A plan, clear of every set.
     Solved(Plan),
-    /// No plan exists among the candidates.
+    /// No candidate is a plan.
     Infeasible(NoPlan),
-    /// The budget ran out; the best plan so far, if there is one.
+    /// The budget ran out. Holds the best plan so far, if any.
     Deadline(Option<Plan>),
 }
 
 impl Outcome {
-    /// The plan, where there is one.
+    /// The plan, if any.
     pub fn plan(&self) -> Option<&Plan> {
         match self {
             Self::Solved(plan) => Some(plan),
@@ -246,23 +249,23 @@ impl Outcome {
     }
 }
 
-/// The answer of a planner with what led to it.
+/// Result of a planner with its search statistics and by-products.
 #[derive(Debug, Clone)]
 pub struct Planned {
-    /// The verdict.
+    /// The result.
     pub outcome: Outcome,
-    /// What the search did.
+    /// Search statistics.
     pub stats: SearchStats,
-    /// Every node and edge that the search made.
+    /// All nodes and edges that the search generated.
     pub explored: ExploredGraph,
-    /// The diagram that the path-time planner planned in; boxed, as most plans have none.
+    /// Path-time diagram of the path-time planner; boxed because most plans have none.
     pub path_time: Option<Box<path_time::PathTimeDiagram>>,
-    /// Where own ship stands on (Rule 17).
+    /// Escape of a stand-on ship (Rule 17).
     pub escape: Option<Escape>,
 }
 
 impl Planned {
-    /// An answer that no search led to.
+    /// Result without a search.
     pub(crate) fn of(outcome: Outcome) -> Self {
         Self {
             outcome,

@@ -1,8 +1,8 @@
-//! Why a planner finds no plan.
+//! Reasons why a planner finds no plan.
 
 use crate::trajectory::NetworkError;
 
-/// Why there is no plan.
+/// Reason why there is no plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoPlan {
     /// Own ship starts inside an obstacle.
@@ -10,15 +10,15 @@ pub enum NoPlan {
     StartInside {
         /// Name of the obstacle.
         target: String,
-        /// Metres.
+        /// Depth, metres.
         depth: f64,
     },
-    /// Own ship starts nearer to land than she may be on some heading.
+    /// Own ship starts closer to land than it may be on some heading.
     #[error(
-        "own ship starts {depth:.1} m nearer to land than her half-diagonal and the land margin allow"
+        "own ship starts {depth:.1} m closer to land than its half-diagonal and the land margin allow"
     )]
     StartAshore {
-        /// Metres.
+        /// Depth, metres.
         depth: f64,
     },
     /// The end cannot be reached before the horizon even without obstacles.
@@ -26,21 +26,21 @@ pub enum NoPlan {
         "the last waypoint is reached after {earliest:.1} s at best, on the path found for the turning radius, without targets, but the horizon is {horizon:.1} s"
     )]
     HorizonTooShort {
-        /// Seconds.
+        /// Earliest arrival, seconds.
         earliest: f64,
-        /// Seconds.
+        /// Horizon, seconds.
         horizon: f64,
     },
-    /// The waypoints and own ship's pose cannot be joined by a path.
+    /// No path joins own ship's pose and the waypoints.
     #[error("no path joins own ship and the waypoints: a coordinate is out of range")]
     NoRoute,
-    /// A planner that keeps to a path begins on it.
+    /// Own ship does not start on the path, which a path-following planner requires.
     #[error("own ship is {away:.3} m from the first waypoint; the path-time planner begins there")]
     OffPath {
-        /// Metres.
+        /// Distance from the path, metres.
         away: f64,
     },
-    /// The alternatives and the main path are no network.
+    /// The main path and the alternatives do not form a network.
     #[error("the paths cannot be sailed: {0}")]
     NoNetwork(NetworkError),
     /// The end of the path cannot be reached before the horizon even without obstacles.
@@ -48,9 +48,9 @@ pub enum NoPlan {
         "the last waypoint is reached after {earliest:.1} s at best, on the shortest of the paths at the greatest speed, without targets, but the horizon is {horizon:.1} s"
     )]
     PathTooLong {
-        /// Seconds.
+        /// Earliest arrival, seconds.
         earliest: f64,
-        /// Seconds.
+        /// Horizon, seconds.
         horizon: f64,
     },
     /// The start of the path is in a set at t = 0.
@@ -61,12 +61,13 @@ pub enum NoPlan {
     StartCovered {
         /// Name of the obstacle.
         target: String,
-        /// Metres.
+        /// Depth, metres.
         depth: f64,
-        /// Seconds; `None` up to the horizon.
+        /// Time until which it is inside, seconds; `None` up to the horizon.
         until: Option<f64>,
     },
-    /// No motion along the paths is clear of every set; what bars the way where own ship came nearest to the end.
+    /// No motion along the paths is clear of every set. The fields describe the obstacle that
+    /// blocks the motion that came nearest to the end.
     #[error(
         "no motion along the path is clear of every set: {to_go:.0} m before its end own ship, at the earliest, meets the set of '{target}' after {time:.1} s, which is there or ahead {}",
         until_text(*until)
@@ -74,21 +75,22 @@ pub enum NoPlan {
     Barred {
         /// Name of the obstacle.
         target: String,
-        /// Metres to the end of the path.
+        /// Distance to the end of the path, metres.
         to_go: f64,
-        /// Seconds.
+        /// Time of the contact, seconds.
         time: f64,
-        /// Seconds, until when its set is there or ahead on that leg; `None` up to the horizon.
+        /// Time until which the set is there or ahead on that leg, seconds; `None` up to the
+        /// horizon.
         until: Option<f64>,
     },
-    /// The sets leave a way, but not within the horizon.
+    /// A motion along the path is clear of the sets, but not within the horizon.
     #[error(
         "no motion along the path is clear of every set, that of '{target}' on the way, and at the end before the horizon of {horizon:.1} s"
     )]
     OutOfTime {
-        /// Name of the obstacle that is met first on the shortest way at the greatest speed.
+        /// Name of the obstacle met first on the shortest path at the greatest speed.
         target: String,
-        /// Seconds.
+        /// Horizon, seconds.
         horizon: f64,
     },
     /// No candidate is clear of every set.
@@ -97,77 +99,77 @@ pub enum NoPlan {
          trajectory, own ship meets the set of '{target}' after {time:.1} s"
     )]
     NoCandidate {
-        /// Name of the obstacle that the undisturbed motion meets first.
+        /// Name of the obstacle that the nominal motion meets first.
         target: String,
-        /// Seconds.
+        /// Time of the contact, seconds.
         time: f64,
     },
-    /// No candidate that keeps the rules of own ship's roles is clear of every set.
+    /// No candidate that complies with the rules for own ship's roles is clear of every set.
     #[error(
         "no trajectory of the graph or its refinement keeps the rules toward all and is clear of every set until arrival; held on the \
          desired trajectory, own ship meets the set of '{target}' after {time:.1} s"
     )]
     NoneComplies {
-        /// Name of the obstacle that the undisturbed motion meets first.
+        /// Name of the obstacle that the nominal motion meets first.
         target: String,
-        /// Seconds.
+        /// Time of the contact, seconds.
         time: f64,
     },
-    /// No candidate came of the search at all, though the undisturbed motion meets no set.
+    /// The search produced no candidate, although the nominal motion meets no set.
     #[error(
         "no trajectory of the graph or its refinement arrives clear of every set, though the desired trajectory meets none: the numbers leave no digits for it"
     )]
     NoTrajectory,
-    /// No start of the optimal-control planner led out of every set.
+    /// No initial guess of the optimal-control planner led to a motion clear of every set.
     #[error(
-        "of {starts} starts none leads to a plan clear of every set; the least deep of those solved is {depth:.3} m inside the set of '{target}' at {time:.1} s"
+        "none of {starts} initial guesses leads to a plan clear of every set; the shallowest solution is {depth:.3} m inside the set of '{target}' at {time:.1} s"
     )]
     Locked {
-        /// Starts that were tried.
+        /// Number of initial guesses tried.
         starts: usize,
         /// Name of the obstacle.
         target: String,
-        /// Seconds.
+        /// Time of the deepest point, seconds.
         time: f64,
-        /// Metres.
+        /// Depth, metres.
         depth: f64,
     },
-    /// No start of the optimal-control planner was solved at all.
-    #[error("of {starts} starts none was solved: {why}")]
+    /// No initial guess of the optimal-control planner was solved.
+    #[error("none of {starts} initial guesses was solved: {why}")]
     Unsolved {
-        /// Starts that were tried.
+        /// Number of initial guesses tried.
         starts: usize,
-        /// How the first one ended.
+        /// Solver status of the first one.
         why: String,
     },
-    /// Plans of a coarse grid, but none on the finer one that the ship's motion needs.
+    /// There are plans on a coarse grid, but none on the finer grid that the ship's dynamics need.
     #[error(
-        "there are plans on {coarse} intervals, but they are too coarse for the ship, and on {intervals} the cheapest is lost: {why}"
+        "there are plans on {coarse} intervals, but they are too coarse for the ship, and on {intervals} the solver lost the cheapest: {why}"
     )]
     Lost {
-        /// Of the horizon, as asked for.
+        /// Number of intervals requested.
         coarse: usize,
-        /// Of the horizon, in the end.
+        /// Number of intervals of the last grid.
         intervals: usize,
-        /// How the solve on the finer grid ended.
+        /// Solver status on the finer grid.
         why: String,
     },
-    /// The motion between the nodes is not the ship's.
+    /// Between the nodes the motion deviates from the ship's dynamics.
     #[error(
-        "with {intervals} intervals, the most that were tried, the ship would be off the plan by {off:.1e} of her units at the end of an interval, {allowed:.0e} allowed; what may help: more intervals (planner.optimal_control), a shorter horizon"
+        "with {intervals} intervals, the most that were tried, the ship would be off the plan by {off:.1e} of its units at the end of an interval, {allowed:.0e} allowed; what may help: more intervals (planner.optimal_control), a shorter horizon"
     )]
     Coarse {
-        /// Of the horizon.
+        /// Number of intervals.
         intervals: usize,
-        /// In the ship's own units of length, speed and angle.
+        /// Largest deviation, in the ship's own units of length, speed and angle.
         off: f64,
-        /// In the same units.
+        /// Allowed deviation, in the same units.
         allowed: f64,
     },
 }
 
 impl NoPlan {
-    /// True when smaller sets might leave a way.
+    /// True when smaller sets might admit a plan.
     pub fn is_for_the_sets(&self) -> bool {
         match self {
             Self::NoCandidate { .. }

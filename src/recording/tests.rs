@@ -289,7 +289,7 @@ fn a_comparison_is_one_recording_with_every_motion() {
         .iter()
         .filter(|e| e.trajectory().is_some())
     {
-        let method = entry.contender.method.to_string();
+        let method = entry.candidate.method.to_string();
         let name = EntityPathPart::new(&method).escaped_string();
         let mut parts = vec![
             format!("/chart/map/methods/{name}/way"),
@@ -297,7 +297,7 @@ fn a_comparison_is_one_recording_with_every_motion() {
             format!("/space_time/methods/{name}/way"),
             format!("/curves/clearance_m/{name}"),
         ];
-        if let crate::study::compare::Method::Planner { kind, .. } = entry.contender.method {
+        if let crate::study::compare::Method::Planner { kind, .. } = entry.candidate.method {
             // no graph is searched for forces
             if kind != crate::planner::PlannerKind::OptimalControl {
                 parts.push(format!("/chart/map/methods/{name}/explored/free"));

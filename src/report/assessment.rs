@@ -1,38 +1,38 @@
-//! An assessment for the eye.
+//! An assessment as text.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Table, presets};
+use super::table::{Grid, plain, tenths};
+use crate::document::{AssessmentDocument, SectionDocument};
+use crate::frame::course_deg_from_heading;
+use crate::study::assess::Situation;
 
-use crate::frame::{Vector, course_deg_from_heading, deg_from_radians};
-use crate::obstacle::Section;
-use crate::study::assess::{Assessment, Situation};
-
-/// The title and the sets, holding course, the least alteration, and one table for what else was asked.
-pub fn assessment_text(
-    title: &str,
-    shaped: bool,
-    situation: &Situation,
-    assessment: &Assessment,
-) -> String {
+/// The title and the sets, holding course, the least alteration, and a table for every other
+/// question.
+pub fn assessment_text(situation: &Situation, assessment: &AssessmentDocument) -> String {
     let count = assessment.targets.len();
+    let plural = if count == 1 { "" } else { "s" };
+    let AssessmentDocument {
+        scenario,
+        sets,
+        horizon_s,
+        ..
+    } = assessment;
     let mut blocks = vec![format!(
-        "{title}: {count} target{}, {} sets, 0 to {} s",
-        if count == 1 { "" } else { "s" },
-        if shaped { "shaped" } else { "hard" },
-        situation.horizon,
+        "{scenario}: {count} target{plural}, {sets} sets, 0 to {horizon_s} s"
     )];
     if count > 0 {
         blocks.push(held(situation, assessment));
     }
     blocks.push(alteration(situation, assessment));
-    for (asked, block) in [
-        (assessment.points.len(), points(assessment)),
-        (assessment.velocities.len(), velocities(assessment)),
-        (sections_asked(assessment), sections(assessment)),
-    ] {
-        if asked > 0 && count > 0 {
-            blocks.push(block);
-        }
-    }
+    let asked = [
+        (!assessment.points.is_empty(), points(assessment)),
+        (!assessment.velocities.is_empty(), velocities(assessment)),
+        (
+            assessment.targets.iter().any(|t| !t.sections.is_empty()),
+            sections(assessment),
+        ),
+    ];
+    let asked = asked.into_iter().filter(|(asked, _)| *asked && count > 0);
+    blocks.extend(asked.map(|(_, block)| block));
     blocks.join("\n\n")
 }
 
@@ -42,117 +42,105 @@ fn course(heading: f64) -> String {
     format!("{:03}.{}°", tenths / 10, tenths % 10)
 }
 
-fn held(situation: &Situation, assessment: &Assessment) -> String {
-    let mut table = Tabular::new(&["target", "dCPA\n[m]", "tCPA\n[s]", "largest\nrisk"], 1);
-    for (target, held) in assessment.targets.iter().zip(&assessment.hold_course) {
-        table.row(vec![
-            target.name.clone(),
-            format!("{:.1}", held.approach.dcpa),
-            format!("{:.1}", held.approach.tcpa),
+fn held(situation: &Situation, assessment: &AssessmentDocument) -> String {
+    let rows = assessment.hold_course.targets.iter().map(|held| {
+        vec![
+            held.name.clone(),
+            tenths(held.dcpa_m),
+            tenths(held.tcpa_s),
             format!("{:.3}", held.max_risk),
-        ]);
-    }
+        ]
+    });
+    let header = ["target", "dCPA\n[m]", "tCPA\n[s]", "largest\nrisk"];
     format!(
         "Holding course {} at {:.2} m/s\n{}",
         course(situation.pose.heading),
         situation.speed,
-        table.text()
+        table(&header, 1..4, rows)
     )
 }
 
-fn alteration(situation: &Situation, assessment: &Assessment) -> String {
+fn alteration(situation: &Situation, assessment: &AssessmentDocument) -> String {
     let found = &assessment.alteration;
-    if found.speed == Some(0.0) {
-        return "Alteration: none needed, her velocity is in no velocity obstacle".to_owned();
+    if found.speed_mps == Some(0.0) {
+        return "Alteration: none needed, own velocity is in no velocity obstacle".to_owned();
     }
     let mut ways = Vec::new();
-    for (side, turn) in [("starboard", found.starboard), ("port", found.port)] {
+    for (side, turn) in [("starboard", found.starboard_deg), ("port", found.port_deg)] {
         ways.push(match turn {
-            Some(turn) => format!("{:.2}° to {side}", up(deg_from_radians(turn))),
+            Some(turn) => format!("{:.2}° to {side}", up(turn)),
             None => format!("no turn to {side}"),
         });
     }
-    ways.push(match found.speed {
+    ways.push(match found.speed_mps {
         Some(change) if change < 0.0 => format!("{:.2} m/s slower", up(-change)),
         Some(change) => format!("{:.2} m/s faster", up(change)),
         None => "no change of speed".to_owned(),
     });
     let alone = "Alteration that leaves every velocity obstacle, each alone: ";
-    if found.starboard.is_none() && found.port.is_none() && found.speed.is_none() {
+    if found.starboard_deg.is_none() && found.port_deg.is_none() && found.speed_mps.is_none() {
         let limit = situation.max_speed.max(situation.speed);
         return format!("{alone}none, neither a turn nor a speed up to {limit:.2} m/s");
     }
     format!("{alone}{}", ways.join("; "))
 }
 
-/// To the next hundredth above: what is read off must still be clear.
+/// Rounded up to hundredths, so that the printed value is still clear.
 fn up(value: f64) -> f64 {
     (value * 100.0 - 1e-6).ceil() / 100.0
 }
 
-fn points(assessment: &Assessment) -> String {
+fn points(assessment: &AssessmentDocument) -> String {
     let header = [
+        "target",
         "east\n[m]",
         "north\n[m]",
         "t\n[s]",
-        "target",
-        "inside",
         "alpha",
         "risk",
+        "inside",
     ];
-    let mut table = Tabular::new(&header, 0);
-    table.left(3);
-    for asked in &assessment.points {
-        for (target, risk) in assessment.targets.iter().zip(&asked.targets) {
-            table.row(vec![
-                number(asked.point.position.x),
-                number(asked.point.position.y),
-                number(asked.point.time),
-                target.name.clone(),
-                yes(risk.inside),
-                if risk.alpha.is_finite() {
-                    format!("{:.3}", risk.alpha)
-                } else {
-                    "–".to_owned()
-                },
+    let rows = assessment.points.iter().flat_map(|point| {
+        point.targets.iter().map(|risk| {
+            vec![
+                risk.name.clone(),
+                number(point.east_m),
+                number(point.north_m),
+                number(point.t_s),
+                (risk.alpha).map_or("–".to_owned(), |alpha| format!("{alpha:.3}")),
                 format!("{:.3}", risk.risk),
-            ]);
-        }
-    }
-    format!("Points\n{}", table.text())
+                yes(risk.inside),
+            ]
+        })
+    });
+    format!("Points\n{}", table(&header, 1..6, rows))
 }
 
-fn velocities(assessment: &Assessment) -> String {
+fn velocities(assessment: &AssessmentDocument) -> String {
     let header = [
+        "target",
         "east\n[m/s]",
         "north\n[m/s]",
-        "target",
         "dCPA\n[m]",
         "tCPA\n[s]",
         "in velocity\nobstacle",
     ];
-    let mut table = Tabular::new(&header, 0);
-    table.left(2);
-    for asked in &assessment.velocities {
-        for (target, nearest) in assessment.targets.iter().zip(&asked.targets) {
-            table.row(vec![
-                number(asked.velocity.x),
-                number(asked.velocity.y),
-                target.name.clone(),
-                format!("{:.1}", nearest.dcpa),
-                format!("{:.1}", nearest.tcpa),
-                yes(nearest.in_velocity_obstacle),
-            ]);
-        }
-    }
-    format!("Velocities, from t = 0 on\n{}", table.text())
+    let rows = assessment.velocities.iter().flat_map(|velocity| {
+        velocity.targets.iter().map(|approach| {
+            vec![
+                approach.name.clone(),
+                number(velocity.east_mps),
+                number(velocity.north_mps),
+                tenths(approach.dcpa_m),
+                tenths(approach.tcpa_s),
+                yes(approach.in_velocity_obstacle),
+            ]
+        })
+    });
+    format!("Velocities, from t = 0 on\n{}", table(&header, 1..5, rows))
 }
 
-fn sections_asked(assessment: &Assessment) -> usize {
-    assessment.targets.first().map_or(0, |t| t.sections.len())
-}
-
-fn sections(assessment: &Assessment) -> String {
+fn sections(assessment: &AssessmentDocument) -> String {
     let header = [
         "target",
         "t\n[s]",
@@ -162,69 +150,65 @@ fn sections(assessment: &Assessment) -> String {
         "north\n[m]",
         "made of",
     ];
-    let mut table = Tabular::new(&header, 1);
-    table.left(6);
-    for target in &assessment.targets {
-        for (time, section) in &target.sections {
-            let reach = |x: f64, y: f64| section.support(Vector::new(x, y));
-            table.row(vec![
-                target.name.clone(),
-                number(*time),
-                format!("{:.1}", -reach(-1.0, 0.0)),
-                format!("{:.1}", reach(1.0, 0.0)),
-                format!("{:.1}", -reach(0.0, -1.0)),
-                format!("{:.1}", reach(0.0, 1.0)),
-                match section {
-                    Section::Polygon(polygon) => format!("{} vertices", polygon.vertices().len()),
-                    Section::Ellipse(_) => "an ellipse".to_owned(),
-                },
-            ]);
+    let rows = assessment.targets.iter().flat_map(|target| {
+        target.sections.iter().map(|section| {
+            let (time, [x, y], made_of) = extent(section);
+            let [west, east, south, north] = [x[0], x[1], y[0], y[1]].map(tenths);
+            let name = target.name.clone();
+            vec![name, number(time), west, east, south, north, made_of]
+        })
+    });
+    format!("Extent of the sections\n{}", table(&header, 1..6, rows))
+}
+
+/// Time, intervals east and north, and kind of a section.
+fn extent(section: &SectionDocument) -> (f64, [[f64; 2]; 2], String) {
+    match section {
+        SectionDocument::Polygon { t_s, vertices_m } => {
+            let interval = |axis: usize| {
+                let all = vertices_m.iter().map(|vertex| vertex[axis]);
+                all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+                    [low.min(value), high.max(value)]
+                })
+            };
+            let intervals = [interval(0), interval(1)];
+            (*t_s, intervals, format!("{} vertices", vertices_m.len()))
+        }
+        SectionDocument::Ellipse {
+            t_s,
+            center_m,
+            shape_m2,
+        } => {
+            let interval = |axis: usize| {
+                let half = shape_m2[axis][axis].sqrt();
+                [center_m[axis] - half, center_m[axis] + half]
+            };
+            (*t_s, [interval(0), interval(1)], "an ellipse".to_owned())
         }
     }
-    format!("Sections, how far they reach\n{}", table.text())
 }
 
 fn yes(value: bool) -> String {
     if value { "yes" } else { "no" }.to_owned()
 }
 
-/// As it was given, without a negative zero.
+/// Without a negative zero.
 fn number(value: f64) -> String {
     (value + 0.0).to_string()
 }
 
-/// A table without colours: names to the left, numbers to the right.
-struct Tabular(Table);
-
-impl Tabular {
-    /// The first `names` columns are text.
-    fn new(header: &[&str], names: usize) -> Self {
-        let mut table = Table::new();
-        table
-            .load_style(presets::UTF8_HORIZONTAL_ONLY)
-            .set_content_arrangement(ContentArrangement::Disabled)
-            .set_header(header);
-        table.style_mut().row_separator = presets::NOTHING.row_separator;
-        table.force_no_tty();
-        for index in names..header.len() {
-            if let Some(column) = table.column_mut(index) {
-                column.set_cell_alignment(CellAlignment::Right);
-            }
-        }
-        Self(table)
-    }
-
-    fn left(&mut self, index: usize) {
-        if let Some(column) = self.0.column_mut(index) {
-            column.set_cell_alignment(CellAlignment::Left);
-        }
-    }
-
-    fn row(&mut self, cells: Vec<String>) {
-        self.0.add_row(cells.into_iter().map(Cell::new));
-    }
-
-    fn text(&self) -> String {
-        self.0.trim_fmt()
-    }
+/// A table without colours.
+fn table(
+    header: &[&'static str],
+    numbers: std::ops::Range<usize>,
+    rows: impl Iterator<Item = Vec<String>>,
+) -> String {
+    let grid = Grid {
+        header: header.to_vec(),
+        numbers,
+        rows: rows
+            .map(|row| row.into_iter().map(plain).collect())
+            .collect(),
+    };
+    grid.text(false)
 }

@@ -1,24 +1,9 @@
-//! A check of a plan document for the eye.
+//! The check of a plan document as text.
 
-use comfy_table::{Cell, Color};
-
-use super::table::{figures, metres};
+use super::table::{Grid, Tone, or_dash, plain, tenths};
 use crate::evaluation::{facts, outcome_word};
 use crate::text::printable;
 use crate::verification::Verification;
-
-/// Units below the names.
-const HEADER: [&str; 6] = [
-    "target",
-    "margin\n[m]",
-    "at\n[s]",
-    "clearance\n[m]",
-    "dCPA\n[m]",
-    "tCPA\n[s]",
-];
-
-/// Where there is no figure.
-const NOTHING: &str = "–";
 
 /// Violations that are listed; the rest is counted.
 const LISTED: usize = 20;
@@ -85,7 +70,7 @@ pub fn verification_text(checked: &Verification, colour: bool) -> String {
     if evaluation.min_land_distance.is_finite() {
         lines.push(format!(
             "Least distance from land {} m, at {:.1} s",
-            metres(evaluation.min_land_distance),
+            tenths(evaluation.min_land_distance),
             evaluation.min_land_distance_time
         ));
     }
@@ -102,26 +87,40 @@ fn plural(count: usize) -> &'static str {
 
 fn margins(checked: &Verification, colour: bool) -> String {
     let passages = checked.evaluation.as_ref().map_or(&[][..], |e| &e.passages);
-    let mut table = figures(&HEADER, 1..HEADER.len(), colour);
-    for (target, passage) in checked.targets.iter().zip(passages) {
-        // a NaN is shown
-        let claimed = passage.min_margin != f64::INFINITY;
-        let or_nothing = |text: String| if claimed { text } else { NOTHING.to_owned() };
-        let margin = Cell::new(or_nothing(millimetres(passage.min_margin)));
-        table.add_row(vec![
-            Cell::new(printable(target)),
-            if passage.min_margin >= -crate::tolerance::DEPTH_M {
-                margin
-            } else {
-                margin.fg(Color::Red)
-            },
-            Cell::new(or_nothing(format!("{:.1}", passage.min_margin_time))),
-            Cell::new(metres(passage.min_clearance)),
-            Cell::new(metres(passage.dcpa)),
-            Cell::new(format!("{:.1}", passage.tcpa)),
-        ]);
-    }
-    table.trim_fmt()
+    let rows = checked
+        .targets
+        .iter()
+        .zip(passages)
+        .map(|(target, passage)| {
+            // a NaN is shown
+            let claimed = passage.min_margin != f64::INFINITY;
+            let margin = or_dash(claimed.then(|| millimetres(passage.min_margin)));
+            vec![
+                plain(printable(target)),
+                if passage.min_margin >= -crate::tolerance::DEPTH_M {
+                    margin
+                } else {
+                    (margin.0, Tone::Bad)
+                },
+                or_dash(claimed.then(|| tenths(passage.min_margin_time))),
+                plain(tenths(passage.min_clearance)),
+                plain(tenths(passage.dcpa)),
+                plain(tenths(passage.tcpa)),
+            ]
+        });
+    let grid = Grid {
+        header: vec![
+            "target",
+            "margin\n[m]",
+            "at\n[s]",
+            "clearance\n[m]",
+            "dCPA\n[m]",
+            "tCPA\n[s]",
+        ],
+        numbers: 1..6,
+        rows: rows.collect(),
+    };
+    grid.text(colour)
 }
 
 /// With three decimals; what rounds to zero has no sign.

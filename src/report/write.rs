@@ -14,9 +14,9 @@ pub struct WriteError {
     pub source: std::io::Error,
 }
 
-/// Writes `contents` under a temporary name beside `file` and renames it, so that a crash leaves the
-/// old file or the new one, never half of it. The folder must exist. A link stays one, and what it leads to is replaced; a device
-/// or a pipe is written to and never replaced.
+/// Writes `contents` under a temporary name beside `file` and renames it, so that a crash leaves
+/// the old file or the new one, never half of it. The folder must exist. A link stays one, and what
+/// it leads to is replaced; a device or a pipe is written to and never replaced.
 pub fn write_atomically(file: &Path, contents: &[u8]) -> Result<(), WriteError> {
     write_whole(file, contents).map_err(|source| WriteError {
         file: file.to_owned(),

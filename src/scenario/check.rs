@@ -1,63 +1,66 @@
-//! File → [`Scenario`], noting every fault.
+//! Scenario file → [`Scenario`], noting every fault.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
-use toml::de::DeTable;
-
-use super::control::control_settings;
-use super::file::{Entry, Source};
 use super::plane::{POSITION, Plane};
-use super::section::Section;
+use super::planner::{PlannerSettings, planner};
 use super::targets::targets;
 use super::{Compliance, Land, Scenario, land, limits};
 use crate::frame::{Pose, Vector, heading_from_course_deg};
+use crate::input::{Faults, Field, Node, Table, from_toml};
 use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
 use crate::text::LINE;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip, VesselKind};
 
-/// What the reader of TOML says of brackets within too many brackets, and of those without an end.
-const TOO_DEEP: &str = "max recursion depth";
-const UNCLOSED: &str = "unclosed";
-
-/// Own ship's speeds where the file names none, as fractions of her own speed.
+/// Own ship's speeds if the file has none, as fractions of its own speed.
 const DEFAULT_SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
 
-/// Seconds after arrival that are looked at where the file does not say.
+/// Seconds after arrival for which own ship is observed by default.
 const DEFAULT_ARRIVAL_HOLD: f64 = 60.0;
 
-/// Seconds of wall clock for one plan where the file names none.
+/// Seconds of wall clock for one plan by default.
 const DEFAULT_DEADLINE: f64 = 5.0;
 
-/// The scenario of a file's outermost table. `None` only when a fault was noted; a scenario that
-/// comes with faults is of no use.
-pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
-    let title = root.require("title", LINE).and_then(|entry| entry.text());
+/// Reads the text of a scenario file in `folder`. A scenario that comes with faults is of no use.
+pub(super) fn parse(text: &str, folder: &Path, faults: &Faults) -> Option<Scenario> {
+    let root: Node = from_toml(text, faults)?;
+    let table = Field::root(&root, faults).table("a table")?;
+    let scenario = scenario(table, folder)?;
+    for mut fault in scenario.unfit() {
+        fault.line = root.line_at(&fault.path);
+        faults.note(fault);
+    }
+    Some(scenario)
+}
+
+/// The scenario of a file's outermost table. `None` only if a fault was noted.
+fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
+    let title = root
+        .require("title", LINE)
+        .and_then(|field| field.line_of_text());
     let horizon = root.required_number("horizon_s", limits::DURATION);
     let arrival_hold = root.number("arrival_hold_s", limits::HOLD);
     let plane = Plane::new(&mut root);
     let map = land::map(&mut root, &plane, folder);
     let own_ship = root
-        .require("own_ship", "a table")
-        .and_then(|entry| entry.section("a table"))
-        .map(|section| own_ship(section, &plane));
+        .required_table("own_ship")
+        .map(|table| own_ship(table, &plane));
     let speed = own_ship.as_ref().and_then(|own| own.speed);
     let margin = own_ship.as_ref().and_then(|own| own.land_margin);
     let own_ship = own_ship.and_then(|own| own.ship);
     let mission = root
-        .require("mission", "a table")
-        .and_then(|entry| entry.section("a table"))
-        .and_then(|section| mission(section, speed, &plane));
+        .required_table("mission")
+        .and_then(|table| mission(table, speed, &plane));
     let model = VesselKind::CyberShip2;
-    // without a length the file is at fault: then any will do
+    // without a length the file is faulty, and any length serves
     let length = own_ship
         .as_ref()
         .map_or(model.length(), |own| own.hull.length);
-    let planner = root
+    let planner: PlannerSettings = root
         .take("planner")
-        .and_then(|entry| entry.section("a table"))
-        .map(|section| planner(section, length))
+        .and_then(|field| field.table("a table"))
+        .map(|table| planner(table, length))
         .unwrap_or_default();
     let targets = targets(&mut root, &plane);
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
@@ -78,7 +81,7 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
     ) = (mission?, own_ship?);
     let mean_speed = desired.length() / desired.duration();
     Some(Scenario {
-        title: title?,
+        title: title?.to_owned(),
         horizon: horizon?,
         arrival_hold: arrival_hold.unwrap_or(DEFAULT_ARRIVAL_HOLD),
         time_weight: planner.time_weight.unwrap_or(mean_speed * mean_speed),
@@ -102,25 +105,25 @@ pub(super) fn scenario(mut root: Section, folder: &Path) -> Option<Scenario> {
 }
 
 /// A pose from the keys `position` and `course_deg`.
-pub(super) fn pose(section: &mut Section, plane: &Plane) -> Option<Pose> {
-    let position = section
+pub(super) fn pose(table: &mut Table, plane: &Plane) -> Option<Pose> {
+    let position = table
         .require("position", POSITION)
-        .and_then(|entry| plane.position(&entry));
-    let course = section.required_number("course_deg", limits::COURSE);
+        .and_then(|field| plane.position(&field));
+    let course = table.required_number("course_deg", limits::COURSE);
     Some(Pose::new(position?, heading_from_course_deg(course?)))
 }
 
 /// A hull from the keys `length_m` and `beam_m`.
-pub(super) fn hull(section: &mut Section) -> Option<Hull> {
-    let length = section.required_number("length_m", limits::LENGTH);
-    let beam = section.required_number("beam_m", limits::LENGTH);
+pub(super) fn hull(table: &mut Table) -> Option<Hull> {
+    let length = table.required_number("length_m", limits::LENGTH);
+    let beam = table.required_number("beam_m", limits::LENGTH);
     Some(Hull {
         length: length?,
         beam: beam?,
     })
 }
 
-/// Own ship, and her speed even where the rest of her is faulty.
+/// Own ship; its speed and margin are known even if another field is faulty.
 struct OwnShipFields {
     ship: Option<OwnShip>,
     speed: Option<f64>,
@@ -128,19 +131,19 @@ struct OwnShipFields {
     land_margin: Option<f64>,
 }
 
-fn own_ship(mut section: Section, plane: &Plane) -> OwnShipFields {
-    let pose = pose(&mut section, plane);
-    let speed = section.required_speed("speed", limits::SPEED);
-    let hull = hull(&mut section);
-    let turning_radius = section.required_number("turning_radius_m", limits::LENGTH);
-    let speeds = own_speeds(&mut section, speed);
-    let margin = section.number("safety_margin_m", limits::DISTANCE);
-    let land_margin = if section.has("land_margin_m") {
-        section.number("land_margin_m", limits::DISTANCE)
+fn own_ship(mut table: Table, plane: &Plane) -> OwnShipFields {
+    let pose = pose(&mut table, plane);
+    let speed = table.required_speed("speed", limits::SPEED);
+    let hull = hull(&mut table);
+    let turning_radius = table.required_number("turning_radius_m", limits::LENGTH);
+    let speeds = own_speeds(&mut table, speed);
+    let margin = table.number("safety_margin_m", limits::DISTANCE);
+    let land_margin = if table.has("land_margin_m") {
+        table.number("land_margin_m", limits::DISTANCE)
     } else {
         Some(0.0)
     };
-    section.finish();
+    table.finish();
     let ship = || {
         let hull = hull?;
         Some(OwnShip {
@@ -159,29 +162,29 @@ fn own_ship(mut section: Section, plane: &Plane) -> OwnShipFields {
     }
 }
 
-/// The finite set of speeds, increasing, each once; the largest is positive.
-fn own_speeds(section: &mut Section, speed: Option<f64>) -> Option<Vec<f64>> {
-    let mut speeds = match section.speeds("speeds", limits::CHOSEN_SPEED) {
-        Some((entry, speeds)) => {
+/// The finite set of speeds: increasing, each once, the largest positive.
+fn own_speeds(table: &mut Table, speed: Option<f64>) -> Option<Vec<f64>> {
+    let mut speeds = match table.speeds("speeds", limits::CHOSEN_SPEED) {
+        Some((field, speeds)) => {
             let speeds = speeds?;
             if !speeds.iter().any(|speed| *speed > 0.0) {
-                entry.fault("only zeros", "a list with at least one speed above 0");
+                field.fault("only zeros", "a list with at least one speed above 0");
                 return None;
             }
             if speeds.len() > limits::SPEEDS {
                 let found = format_args!("{} speeds", speeds.len());
-                entry.fault(found, format_args!("at most {}", limits::SPEEDS));
+                field.fault(found, format_args!("at most {}", limits::SPEEDS));
                 return None;
             }
             speeds
         }
-        None if section.has_speed("speeds") => return None,
+        None if table.has_speed("speeds") => return None,
         None => {
             let speed = speed?;
             if limits::CHOSEN_SPEED.contains(speed * DEFAULT_SPEEDS[0]) && speed > 0.0 {
                 DEFAULT_SPEEDS.map(|factor| factor * speed).to_vec()
             } else {
-                section.require_speed(
+                table.require_speed(
                     "speeds",
                     "a list of speeds, because own ship's speed is too small to derive them from",
                 );
@@ -194,24 +197,24 @@ fn own_speeds(section: &mut Section, speed: Option<f64>) -> Option<Vec<f64>> {
     Some(speeds)
 }
 
-/// The desired trajectory and the other paths.
+/// The desired trajectory and the alternative paths.
 struct Mission {
     desired: DesiredTrajectory,
     alternatives: Vec<Vec<Vector>>,
 }
 
-fn mission(mut section: Section, own_speed: Option<f64>, plane: &Plane) -> Option<Mission> {
-    let alternatives = match section.take("alternatives") {
-        Some(entry) => alternatives(&entry, plane),
+fn mission(mut table: Table, own_speed: Option<f64>, plane: &Plane) -> Option<Mission> {
+    let alternatives = match table.take("alternatives") {
+        Some(field) => alternatives(&field, plane),
         None => Some(Vec::new()),
     };
-    let entries = section
+    let fields = table
         .require("waypoints", "a list of at least 2 positions")
-        .and_then(|entry| positions(&entry));
-    let legs = entries.as_ref().map(|entries| entries.len() - 1);
-    let waypoints = entries.and_then(|entries| waypoints(&entries, plane));
-    let speeds = leg_speeds(&mut section, legs, own_speed);
-    section.finish();
+        .and_then(|field| positions(&field));
+    let legs = fields.as_ref().map(|fields| fields.len() - 1);
+    let waypoints = fields.and_then(|fields| waypoints(&fields, plane));
+    let speeds = leg_speeds(&mut table, legs, own_speed);
+    table.finish();
     // every leg is long and fast enough by now
     let desired = DesiredTrajectory::new(&waypoints?, &speeds?).ok()?;
     Some(Mission {
@@ -220,39 +223,27 @@ fn mission(mut section: Section, own_speed: Option<f64>, plane: &Plane) -> Optio
     })
 }
 
-/// A list of as many positions as a path may have.
-fn positions<'a, 'i>(entry: &Entry<'a, 'i>) -> Option<Vec<Entry<'a, 'i>>> {
-    let entries = entry.list(2, "positions")?;
-    if entries.len() > limits::WAYPOINTS {
-        let found = format_args!("{} positions", entries.len());
-        entry.fault(found, format_args!("at most {}", limits::WAYPOINTS));
-        return None;
-    }
-    Some(entries)
+fn positions<'a>(field: &Field<'a>) -> Option<Vec<Field<'a>>> {
+    field.list(2..=limits::WAYPOINTS, "positions")
 }
 
-fn alternatives(entry: &Entry, plane: &Plane) -> Option<Vec<Vec<Vector>>> {
-    let paths = entry.list(1, "paths, each a list of positions")?;
-    if paths.len() > limits::ALTERNATIVES {
-        let found = format_args!("{} paths", paths.len());
-        entry.fault(found, format_args!("at most {}", limits::ALTERNATIVES));
-        return None;
-    }
+fn alternatives(field: &Field, plane: &Plane) -> Option<Vec<Vec<Vector>>> {
+    let paths = field.list(1..=limits::ALTERNATIVES, "paths, each a list of positions")?;
     let read: Vec<_> = paths
         .iter()
-        .map(|path| positions(path).and_then(|entries| waypoints(&entries, plane)))
+        .map(|path| positions(path).and_then(|fields| waypoints(&fields, plane)))
         .collect();
     read.into_iter().collect()
 }
 
-fn waypoints(entries: &[Entry], plane: &Plane) -> Option<Vec<Vector>> {
-    let points: Vec<Option<Vector>> = entries.iter().map(|e| plane.position(e)).collect();
+fn waypoints(fields: &[Field], plane: &Plane) -> Option<Vec<Vector>> {
+    let points: Vec<Option<Vector>> = fields.iter().map(|e| plane.position(e)).collect();
     let mut sound = true;
-    for (pair, entry) in points.windows(2).zip(&entries[1..]) {
+    for (pair, field) in points.windows(2).zip(&fields[1..]) {
         if let [Some(before), Some(here)] = pair
             && (here - before).norm() < limits::LENGTH.low
         {
-            entry.fault(
+            field.fault(
                 "the waypoint before it again",
                 format_args!("a point at least {} m away", limits::LENGTH.low),
             );
@@ -263,16 +254,12 @@ fn waypoints(entries: &[Entry], plane: &Plane) -> Option<Vec<Vector>> {
     points.filter(|_| sound)
 }
 
-fn leg_speeds(
-    section: &mut Section,
-    legs: Option<usize>,
-    own_speed: Option<f64>,
-) -> Option<Vec<f64>> {
-    let one = section.speed("speed", limits::WAY);
-    let per_leg = section.speeds("leg_speeds", limits::WAY);
-    if let Some((entry, speeds)) = per_leg {
-        if section.has_speed("speed") {
-            entry.fault(
+fn leg_speeds(table: &mut Table, legs: Option<usize>, own_speed: Option<f64>) -> Option<Vec<f64>> {
+    let one = table.speed("speed", limits::WAY);
+    let per_leg = table.speeds("leg_speeds", limits::WAY);
+    if let Some((field, speeds)) = per_leg {
+        if table.has_speed("speed") {
+            field.fault(
                 "leg speeds beside a speed of the whole mission",
                 "one of the two, not both",
             );
@@ -280,7 +267,7 @@ fn leg_speeds(
         }
         let (speeds, legs) = (speeds?, legs?);
         if speeds.len() != legs {
-            entry.fault(
+            field.fault(
                 format_args!("{} speeds", speeds.len()),
                 format_args!("{legs}, one for each leg between two waypoints"),
             );
@@ -288,144 +275,17 @@ fn leg_speeds(
         }
         return Some(speeds);
     }
-    if section.has_speed("speed") {
+    if table.has_speed("speed") {
         return Some(vec![one?; legs?]);
     }
-    if section.has_speed("leg_speeds") {
+    if table.has_speed("leg_speeds") {
         return None;
     }
     let own_speed = own_speed?;
     if limits::WAY.contains(own_speed) {
         Some(vec![own_speed; legs?])
     } else {
-        section.require_speed("speed", limits::WAY);
+        table.require_speed("speed", limits::WAY);
         None
     }
-}
-
-/// What a file says of planning.
-#[derive(Debug, Default)]
-struct PlannerFields {
-    kind: Option<PlannerKind>,
-    objective: Option<Objective>,
-    control: Option<ControlSettings>,
-    search: Option<SearchKind>,
-    compliance: Option<Compliance>,
-    time_weight: Option<f64>,
-    max_risk: Option<f64>,
-    deadline: Option<f64>,
-}
-
-/// `length` is that of own ship, metres.
-fn planner(mut section: Section, length: f64) -> PlannerFields {
-    let fields = PlannerFields {
-        control: control_settings(&mut section, length),
-        kind: section.choice(
-            "kind",
-            &[
-                ("space-time", PlannerKind::SpaceTime),
-                ("path-time", PlannerKind::PathTime),
-                ("optimal-control", PlannerKind::OptimalControl),
-            ],
-        ),
-        objective: objective(&mut section),
-        search: section.choice(
-            "search",
-            &[
-                ("a-star", SearchKind::AStar),
-                ("dijkstra", SearchKind::Dijkstra),
-            ],
-        ),
-        compliance: section.choice(
-            "compliance",
-            &[
-                ("none", Compliance::None),
-                ("shape", Compliance::Shape),
-                ("rules", Compliance::Rules),
-            ],
-        ),
-        time_weight: section.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
-        max_risk: section.number("max_risk", limits::RISK),
-        deadline: section.number("deadline_s", limits::DURATION),
-    };
-    section.finish();
-    fields
-}
-
-/// The objective; the one that weighs risk needs its weight, the others have none.
-fn objective(section: &mut Section) -> Option<Objective> {
-    let weighed = Objective::LengthRisk { weight: 0.0 };
-    let objective = section.choice(
-        "objective",
-        &[
-            ("space-time-error", Objective::SpaceTimeError),
-            ("time", Objective::Time),
-            ("length", Objective::Length),
-            ("length-risk", weighed),
-        ],
-    );
-    if objective == Some(weighed) {
-        let weight = section.required_number("risk_weight_m", limits::DISTANCE)?;
-        return Some(Objective::LengthRisk { weight });
-    }
-    section.forbid(
-        "risk_weight_m",
-        "nothing: only the objective \"length-risk\" weighs risk",
-    );
-    objective
-}
-
-/// Reads a whole text, of a file in `folder`; the faults say what is wrong with it.
-pub(super) fn text(source: &Source, text: &str, folder: &Path) -> Option<Scenario> {
-    let (document, errors) = DeTable::parse_recoverable(text);
-    if errors.is_empty() {
-        let root = document.get_ref();
-        let scenario = scenario(Section::new(source, String::new(), None, root), folder)?;
-        for fault in scenario.unfit() {
-            source.fault(
-                &fault.path,
-                offset_of(root, &fault.path),
-                fault.found,
-                fault.allowed,
-            );
-        }
-        return Some(scenario);
-    }
-    // what could be recovered may be in the wrong table: only the grammar is judged
-    let mut said = BTreeSet::new();
-    let mut too_deep = false;
-    for error in errors {
-        let (message, offset) = (error.message(), error.span().map(|span| span.start));
-        // of a value that is nested too deep the rest is not read, so nothing of it is closed
-        let follows = too_deep && message.starts_with(UNCLOSED);
-        // brackets within brackets are all unclosed at one place
-        if !follows && said.insert((offset, message.to_owned())) {
-            source.fault("", offset, message, "TOML 1.0 without errors");
-        }
-        too_deep |= message.contains(TOO_DEEP);
-    }
-    None
-}
-
-/// Where the value at a path like `a.b[2]` begins.
-fn offset_of(root: &DeTable, path: &str) -> Option<usize> {
-    let mut table = root;
-    let mut found = None;
-    for part in path.split('.') {
-        let (key, index) = match part.split_once('[') {
-            Some((key, rest)) => (key, rest.trim_end_matches(']').parse::<usize>().ok()),
-            None => (part, None),
-        };
-        let value = table.get(key)?;
-        let value = match index {
-            Some(index) => value.get_ref().as_array()?.get(index)?,
-            None => value,
-        };
-        found = Some(value.span().start);
-        match value.get_ref().as_table() {
-            Some(inner) => table = inner,
-            None => break,
-        }
-    }
-    found
 }

@@ -1,41 +1,23 @@
-//! The map of a file, and what of the file is not to be on its land.
+//! The map of a scenario, and the parts of a scenario that must keep off its land.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use super::file::Entry;
 use super::plane::Plane;
-use super::section::Section;
 use crate::frame::{Pose, Vector, heading_of};
-use crate::map::{LandCrossing, Map, MapError};
+use crate::input::{Field, InputError, Table};
+use crate::map::{LandCrossing, Map};
 use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{Hull, OwnShip};
 
-/// Metres. What is missing for a turn on the spot is found to this, never less than it is.
+/// Metres: resolution of the room for a turn on the spot, which is never overestimated.
 const TURN_SETTLED_M: f64 = 1e-3;
 
 /// Faults of a map or a path that are listed: a map of another place has one in every feature.
 const MAX_LISTED: usize = 20;
 
-/// What own ship keeps off.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::scenario::Land;
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/harbour/munkholmen.toml".as_ref())?;
-/// let land: &Land = scenario.land.as_ref().expect("a map");
-/// // straight through the island
-/// let path = [Vector::new(-1500.0, 0.0), Vector::new(1500.0, 0.0)];
-/// assert!(!land.map.polygons().is_empty());
-/// assert!(land.clearance_along(&scenario.own_ship.hull) >= scenario.own_ship.hull.beam / 2.0);
-/// assert!(!land.crossings(&scenario.own_ship.hull, &path).is_empty());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Land, and the margin that own ship keeps from it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Land {
     /// Shared, not copied, by the copies of a scenario.
@@ -45,19 +27,20 @@ pub struct Land {
 }
 
 impl Land {
-    /// Metres that the middle line of a hull keeps from land while it sails along a straight path.
+    /// Least distance in metres between a straight path and land for a hull that follows the path.
     pub fn clearance_along(&self, hull: &Hull) -> f64 {
         0.5 * hull.beam + self.margin
     }
 
-    /// Every stretch of a path that own hull cannot sail: nearer to land than half of the beam and the margin.
+    /// Stretches of a path that are nearer to land than [`Land::clearance_along`].
     pub fn crossings(&self, hull: &Hull, path: &[Vector]) -> Vec<LandCrossing> {
         self.map.crossings(path, self.clearance_along(hull))
     }
 
-    /// Metres between own hull and land while she turns on the spot from a heading by `turn` radians: the least over all
-    /// headings between, at most a millimetre too small. By halving: in a turn no point of the hull moves farther than the angle
-    /// times its half-diagonal. Infinite where land is farther than the margin from all of them.
+    /// Least distance in metres between own hull and land while it turns on the spot by `turn`
+    /// radians, at most a millimetre too small. Branch and bound on the heading: in a turn no point
+    /// of the hull moves farther than the angle times the half-diagonal. Infinite if land is farther
+    /// than the margin on every heading.
     pub fn room_to_turn(&self, hull: &Hull, place: Vector, from: f64, turn: f64) -> f64 {
         let reach = hull.half_diagonal();
         if self.map.signed_distance(place) > reach + self.margin {
@@ -86,34 +69,39 @@ impl Land {
 }
 
 /// The map that the key `map` names, from `folder`; `None` without the key, or with a fault noted.
-pub(super) fn map(root: &mut Section, plane: &Plane, folder: &Path) -> Option<Arc<Map>> {
-    let entry = root.take("map")?;
+pub(super) fn map(root: &mut Table, plane: &Plane, folder: &Path) -> Option<Arc<Map>> {
+    let field = root.take("map")?;
     let earth = plane.need_earth();
-    let file = entry.file_in(folder)?;
+    let file = field.file_in(folder)?;
     match Map::read(&file, &earth?) {
         Ok(map) => Some(Arc::new(map)),
-        Err(MapError::Read { file, source }) => {
+        Err(InputError::Read { file, source }) => {
             let found = format_args!("{}, which cannot be read ({source})", file.display());
-            entry.fault(found, "a GeoJSON file of land polygons");
+            field.fault(found, "a GeoJSON file of land polygons");
             None
         }
-        Err(MapError::Faults { file, faults }) => {
+        Err(InputError::Faults { file, faults }) => {
             for fault in faults.iter().take(MAX_LISTED) {
-                let place = fault.place_and_found();
-                entry.fault(format_args!("{}: {place}", file.display()), &fault.allowed);
+                let place = if fault.path.is_empty() {
+                    String::new()
+                } else {
+                    format!("{}: ", fault.path)
+                };
+                let found = format_args!("{}: {place}{}", file.display(), fault.found);
+                field.fault(found, &fault.allowed);
             }
             if let Some(more) = faults.len().checked_sub(MAX_LISTED).filter(|n| *n > 0) {
                 let found = format_args!("{}: {more} more faults", file.display());
-                entry.fault(found, "none");
+                field.fault(found, "none");
             }
             None
         }
     }
 }
 
-/// Notes a start on land, and every stretch of the desired path that own hull cannot sail.
+/// Notes a start on land, and every stretch of a path that is too near to land.
 pub(super) fn check(
-    root: &mut Section,
+    root: &mut Table,
     land: &Land,
     plane: &Plane,
     own: Option<&OwnShip>,
@@ -124,14 +112,14 @@ pub(super) fn check(
     let apart = land.map.separation(&start, land.margin);
     // negated on purpose: a NaN is on land
     if !(apart >= land.margin - tolerance::DEPTH_M)
-        && let Some(entry) = table(root, "own_ship").and_then(|mut s| s.take("position"))
+        && let Some(field) = table(root, "own_ship").and_then(|mut s| s.take("position"))
     {
         let allowed = format_args!("at least {} m of water around own hull", land.margin);
         if apart < 0.0 {
             let depth = -apart;
-            entry.fault(format_args!("own hull on land, {depth:.1} m deep"), allowed);
+            field.fault(format_args!("own hull on land, {depth:.1} m deep"), allowed);
         } else {
-            entry.fault(format_args!("own hull {apart:.1} m from land"), allowed);
+            field.fault(format_args!("own hull {apart:.1} m from land"), allowed);
         }
     }
     let Some((desired, alternatives)) = paths else {
@@ -146,18 +134,18 @@ pub(super) fn check(
         .take("alternatives")
         .map(positions)
         .unwrap_or_default();
-    for (entry, path) in others.into_iter().zip(alternatives) {
-        check_path(&positions(entry), path, land, plane, &own.hull);
+    for (field, path) in others.into_iter().zip(alternatives) {
+        check_path(&positions(field), path, land, plane, &own.hull);
     }
 }
 
-/// Notes every stretch of a path that own hull cannot sail, at the waypoint where its leg ends, and every waypoint where
-/// it cannot lie on the course of a leg that begins or ends there.
-fn check_path(entries: &[Entry], path: &[Vector], land: &Land, plane: &Plane, hull: &Hull) {
+/// Notes stretches too near to land, at the waypoint where the leg ends, and waypoints where own
+/// hull has no room on the course of a leg that begins or ends there.
+fn check_path(fields: &[Field], path: &[Vector], land: &Land, plane: &Plane, hull: &Hull) {
     let clearance = land.clearance_along(hull);
     let crossings = land.crossings(hull, path);
     for crossing in crossings.iter().take(MAX_LISTED) {
-        let Some(entry) = entries.get(crossing.leg + 1) else {
+        let Some(field) = fields.get(crossing.leg + 1) else {
             continue;
         };
         let LandCrossing { from, to, .. } = crossing;
@@ -170,7 +158,7 @@ fn check_path(entries: &[Entry], path: &[Vector], land: &Land, plane: &Plane, hu
         let place = plane.earth().map_or_else(String::new, |earth| {
             format!(" ({})", earth.to_geographic(at))
         });
-        entry.fault(
+        field.fault(
             format_args!(
                 "a leg that {how} from {from:.1} m to {to:.1} m after its start; {:.1} m are missing at \
                  east {:.1} m, north {:.1} m{place}",
@@ -193,9 +181,9 @@ fn check_path(entries: &[Entry], path: &[Vector], land: &Land, plane: &Plane, hu
             // negated on purpose: a NaN is on land
             if !known
                 && !(apart >= land.margin - tolerance::DEPTH_M)
-                && let Some(entry) = entries.get(leg + end)
+                && let Some(field) = fields.get(leg + end)
             {
-                entry.fault(
+                field.fault(
                     format_args!(
                         "own hull {apart:.1} m from land on the course of the leg that {} here",
                         if end == 0 { "begins" } else { "ends" }
@@ -208,11 +196,11 @@ fn check_path(entries: &[Entry], path: &[Vector], land: &Land, plane: &Plane, hu
 }
 
 /// The positions of a path that was read before.
-fn positions<'a, 'i>(entry: Entry<'a, 'i>) -> Vec<Entry<'a, 'i>> {
-    entry.list(0, "positions").unwrap_or_default()
+fn positions<'a>(field: Field<'a>) -> Vec<Field<'a>> {
+    field.list(0..=usize::MAX, "positions").unwrap_or_default()
 }
 
 /// A table that was read before, to find the place of a value again.
-fn table<'a, 'i>(root: &mut Section<'a, 'i>, key: &str) -> Option<Section<'a, 'i>> {
-    root.take(key)?.section("a table")
+fn table<'a>(root: &mut Table<'a>, key: &str) -> Option<Table<'a>> {
+    root.take(key)?.table("a table")
 }

@@ -2,11 +2,11 @@
 //! what squares, products with the horizon and quotients of them can represent; lower limits above
 //! zero keep quotients finite.
 
-use super::file::Range;
-use crate::frame::{LARGEST_ORIGIN_LAT_DEG, mps_from_knots};
+use crate::frame::LARGEST_ORIGIN_LAT_DEG;
+use crate::input::Range;
 
-/// Bytes of a scenario file.
-pub(super) const FILE_BYTES: u64 = 16 * 1024 * 1024;
+/// Mebibytes of a scenario file.
+pub(super) const FILE_MEBIBYTES: u64 = 16;
 
 /// Waypoints of a ship of a foreign file at most: of each leg of a target one more velocity set follows.
 pub(super) const ROUTE_POINTS: usize = 200;
@@ -36,11 +36,11 @@ pub(super) const LENGTH: Range = Range::between(1e-3, 1e6);
 /// Metres: margins, domains, standard deviations.
 pub(super) const DISTANCE: Range = Range::between(0.0, 1e6);
 /// Metres, of a ship in a foreign file: no ship is longer than half a kilometre, no tow than two.
-pub(super) const SHIP_LENGTH: Range = Range::between(0.1, 2000.0);
+pub(super) const SHIP_LENGTH: Range = Range::between(0.1, 2000.0).in_unit("m");
 /// m/s of a ship in a foreign file: nearly 100 knots, beyond every ship.
-pub(super) const SHIP_SPEED: Range = Range::between(0.0, 50.0);
+pub(super) const SHIP_SPEED: Range = Range::between(0.0, 50.0).in_unit("m/s");
 /// The same where she has to make way.
-pub(super) const SHIP_WAY: Range = Range::between(1e-3, 50.0);
+pub(super) const SHIP_WAY: Range = Range::between(1e-3, 50.0).in_unit("m/s");
 /// Seconds: horizon, deadline.
 pub(super) const DURATION: Range = Range::between(1e-3, 1e6);
 /// Seconds that are looked at after arrival.
@@ -50,7 +50,7 @@ pub(super) const WAY: Range = Range::between(1e-3, 100.0);
 /// m/s, or standing still.
 pub(super) const SPEED: Range = Range::between(0.0, 100.0);
 /// m/s of the finite set: standing still, or a speed that makes way.
-pub(super) const CHOSEN_SPEED: Range = Range::zero_or_between(1e-3, 100.0);
+pub(super) const CHOSEN_SPEED: Range = Range::between(1e-3, 100.0).or_zero();
 /// m/s, one component of a vertex of a velocity set.
 pub(super) const VELOCITY: Range = Range::within(100.0);
 /// Degrees; a course below 0 or above 360 is the one a full circle away.
@@ -78,13 +78,3 @@ pub(super) const STATE_WEIGHT: Range = Range::between(0.0, 1e9);
 pub(super) const FORCE_WEIGHT: Range = Range::between(1e-24, 1e9);
 /// Intervals of an optimal control problem.
 pub(super) const INTERVALS: Range = Range::between(1.0, 2000.0);
-
-/// Limits for a number in knots: round ones, just inside those in m/s.
-pub(super) fn in_knots(range: Range) -> Range {
-    let knot = mps_from_knots(1.0);
-    Range {
-        low: (range.low / knot * 1e3).ceil() / 1e3,
-        high: (range.high / knot).floor(),
-        ..range
-    }
-}

@@ -1,34 +1,33 @@
-//! The targets of a file.
+//! The targets of a scenario file.
 
 use std::collections::BTreeMap;
 
 use super::check::{hull, pose};
 use super::explicit_sets;
-use super::file::Entry;
 use super::limits;
 use super::plane::Plane;
-use super::section::Section;
 use crate::frame::radians_from_deg;
+use crate::input::{Field, Table};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::text::LINE;
 
-/// The targets; none is a list of none.
-pub(super) fn targets(root: &mut Section, plane: &Plane) -> Option<Vec<Target>> {
-    let Some(entry) = root.take("targets") else {
+/// The list `targets`, which may be absent.
+pub(super) fn targets(root: &mut Table, plane: &Plane) -> Option<Vec<Target>> {
+    let Some(field) = root.take("targets") else {
         return Some(Vec::new());
     };
-    let entries = entry.list(0, "tables")?;
-    let mut names: BTreeMap<String, usize> = BTreeMap::new();
-    let mut targets = Vec::with_capacity(entries.len());
-    for (index, entry) in entries.iter().enumerate() {
-        let Some(mut section) = entry.section("a table") else {
+    let fields = field.list(0..=usize::MAX, "tables")?;
+    let mut names: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut targets = Vec::with_capacity(fields.len());
+    for (index, field) in fields.iter().enumerate() {
+        let Some(mut table) = field.table("a table") else {
             targets.push(None);
             continue;
         };
-        let name = section.require("name", LINE);
-        let text = name.as_ref().and_then(|name| name.text());
-        if let (Some(name), Some(text)) = (&name, &text)
-            && let first = *names.entry(text.clone()).or_insert(index)
+        let name = table.require("name", LINE);
+        let text = name.as_ref().and_then(|name| name.line_of_text());
+        if let (Some(name), Some(text)) = (&name, text)
+            && let first = *names.entry(text).or_insert(index)
             && first != index
         {
             name.fault(
@@ -36,10 +35,10 @@ pub(super) fn targets(root: &mut Section, plane: &Plane) -> Option<Vec<Target>> 
                 "a name that no other target has",
             );
         }
-        let known = known(&mut section, plane);
-        section.finish();
+        let known = known(&mut table, plane);
+        table.finish();
         targets.push(text.zip(known).map(|(name, known)| Target {
-            name,
+            name: name.to_owned(),
             motion: known.motion,
             representation: known.representation,
         }));
@@ -47,25 +46,25 @@ pub(super) fn targets(root: &mut Section, plane: &Plane) -> Option<Vec<Target>> 
     targets.into_iter().collect()
 }
 
-/// What a target is known by.
+/// Motion and representation of a target.
 struct Known {
     motion: Motion,
     representation: Representation,
 }
 
-fn known(section: &mut Section, plane: &Plane) -> Option<Known> {
-    let asked = section.take("representation");
-    let representation = asked.as_ref().map(|entry| {
-        entry.choice(&[
+fn known(table: &mut Table, plane: &Plane) -> Option<Known> {
+    let asked = table.take("representation");
+    let representation = asked.as_ref().map(|field| {
+        field.choice(&[
             ("polytope", Representation::Polytope),
             ("ellipsoid", Representation::Ellipsoid),
         ])
     });
-    let explicit = ["initial_set", "velocity_set", "velocity_sets"].map(|key| section.has(key));
+    let explicit = ["initial_set", "velocity_set", "velocity_sets"].map(|key| table.has(key));
     let motion = if explicit.contains(&true) {
-        explicit_sets::motion(section)
+        explicit_sets::motion(table)
     } else {
-        ship(section, plane).map(Motion::Ship)
+        ship(table, plane).map(Motion::Ship)
     };
     let representation = match representation {
         Some(chosen) => chosen?,
@@ -84,8 +83,8 @@ fn known(section: &mut Section, plane: &Plane) -> Option<Known> {
         }
         _ => "",
     };
-    if let Some(entry) = asked.filter(|_| !refused.is_empty()) {
-        return entry.refuse(refused);
+    if let Some(field) = asked.filter(|_| !refused.is_empty()) {
+        return field.refuse(refused);
     }
     Some(Known {
         motion,
@@ -93,16 +92,16 @@ fn known(section: &mut Section, plane: &Plane) -> Option<Known> {
     })
 }
 
-fn ship(section: &mut Section, plane: &Plane) -> Option<ShipTrack> {
-    let pose = pose(section, plane);
-    let speed = section.required_speed("speed", limits::SPEED);
-    let hull = hull(section);
-    let position_std = section.number("position_std_m", limits::DISTANCE);
-    let speed_spread = section.speed("speed_spread", limits::SPEED);
-    let course_spread = section.number("course_spread_deg", limits::COURSE_SPREAD);
-    let turn_rate = section.number("turn_rate_deg_per_s", limits::TURN_RATE);
-    let domain = match section.take("domain") {
-        Some(entry) => domain(&entry),
+fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
+    let pose = pose(table, plane);
+    let speed = table.required_speed("speed", limits::SPEED);
+    let hull = hull(table);
+    let position_std = table.number("position_std_m", limits::DISTANCE);
+    let speed_spread = table.speed("speed_spread", limits::SPEED);
+    let course_spread = table.number("course_spread_deg", limits::COURSE_SPREAD);
+    let turn_rate = table.number("turn_rate_deg_per_s", limits::TURN_RATE);
+    let domain = match table.take("domain") {
+        Some(field) => domain(&field),
         None => Some(DomainKind::Colregs),
     };
     Some(ShipTrack {
@@ -117,18 +116,18 @@ fn ship(section: &mut Section, plane: &Plane) -> Option<ShipTrack> {
     })
 }
 
-fn domain(entry: &Entry) -> Option<DomainKind> {
-    if !entry.is_table() {
-        return entry.choice(&[
+fn domain(field: &Field) -> Option<DomainKind> {
+    if !field.is_table() {
+        return field.choice(&[
             ("colregs", DomainKind::Colregs),
             ("paper", DomainKind::Paper),
             ("hull", DomainKind::Hull),
         ]);
     }
-    let mut section = entry.section("a table")?;
+    let mut table = field.table("a table")?;
     let [fore, aft, port, starboard] = ["fore_m", "aft_m", "port_m", "starboard_m"]
-        .map(|key| section.required_number(key, limits::DISTANCE));
-    section.finish();
+        .map(|key| table.required_number(key, limits::DISTANCE));
+    table.finish();
     Some(DomainKind::Custom {
         fore: fore?,
         aft: aft?,

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use crate::colregs::{Role, Sectors};
 use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
 use crate::geometry::outer_disc;
 use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
@@ -51,10 +52,9 @@ const COURSE_SPREAD: RangeInclusive<f64> = PI / 180.0..=8.0 * PI / 180.0;
 /// Metres.
 const POSITION_STD: RangeInclusive<f64> = 0.0..=5.0;
 
-/// Radians, 10°: bearings within which two ships meet head-on, docs/colregs.md section 1.3.
-const HEAD_ON: f64 = PI / 18.0;
-/// Radians, 112.5°: a ship abaft this bearing overtakes, Rule 13(b).
-const ABAFT: f64 = 0.625 * PI;
+/// Radians: bearings within which two ships meet head-on, and beyond which one overtakes.
+const HEAD_ON: f64 = Sectors::STANDARD.head_on;
+const ABAFT: f64 = Sectors::STANDARD.abaft_the_beam;
 /// Radians, 20° and 15°: bearing and course within which a ship ahead is drawn as overtaken.
 const OVERTAKEN_BEARING: f64 = PI / 9.0;
 const OVERTAKEN_COURSE: f64 = PI / 12.0;
@@ -91,14 +91,19 @@ impl EncounterKind {
     /// Every kind.
     pub const ALL: [Self; 4] = [Self::HeadOn, Self::GiveWay, Self::StandOn, Self::Overtaking];
 
-    /// In words.
-    pub fn name(self) -> &'static str {
+    /// Own ship's role toward the target.
+    pub fn role(self) -> Role {
         match self {
-            Self::HeadOn => "head-on",
-            Self::GiveWay => "give-way",
-            Self::StandOn => "stand-on",
-            Self::Overtaking => "overtaking",
+            Self::HeadOn => Role::HeadOn,
+            Self::GiveWay => Role::GiveWay,
+            Self::StandOn => Role::StandOn,
+            Self::Overtaking => Role::Overtaking,
         }
+    }
+
+    /// Name of the role.
+    pub fn name(self) -> &'static str {
+        self.role().name()
     }
 
     /// Relative bearings (clockwise, radians) at which the target is first seen.

@@ -6,7 +6,7 @@ use super::motion;
 use super::sets;
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
-use crate::geometry::{ConvexPolygon, Ellipse, Polygon};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::trajectory::{DesiredTrajectory, Segment, Steered};
 use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
@@ -343,26 +343,19 @@ fn own_ship(own: &OwnShipFile) -> Result<OwnShip, ClaimError> {
     })
 }
 
-/// A set of positions or of velocities.
-#[derive(Debug, Clone)]
-pub(super) enum PlaneSet {
-    Polygon(ConvexPolygon),
-    Ellipse(Ellipse),
-}
-
-pub(super) fn plane_set(path: &str, set: &SetFile) -> Result<PlaneSet, ClaimError> {
+pub(super) fn plane_set(path: &str, set: &SetFile) -> Result<ConvexSet, ClaimError> {
     match (&set.vertices_m, set.center_m, set.shape_m2) {
         (Some(vertices), None, None) => {
             let points: Vec<Vector> = vertices.iter().copied().map(vector).collect();
             ConvexPolygon::from_vertices(&points)
-                .map(PlaneSet::Polygon)
+                .map(ConvexSet::Polygon)
                 .map_err(|e| fault(path, e, "the vertices of a convex polygon"))
         }
         (None, Some(center), Some([a, b])) => Ellipse::new(
             vector(center),
             nalgebra::Matrix2::new(a[0], a[1], b[0], b[1]),
         )
-        .map(PlaneSet::Ellipse)
+        .map(ConvexSet::Ellipse)
         .map_err(|e| fault(path, e, "a centre and a shape matrix")),
         _ => Err(fault(
             path,
@@ -443,11 +436,11 @@ fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion
             ));
         }
         match plane_set(&field, &spell.set)? {
-            PlaneSet::Polygon(velocities) => spells.push(VelocitySpell {
+            ConvexSet::Polygon(velocities) => spells.push(VelocitySpell {
                 until: spell.until_s.unwrap_or(f64::INFINITY),
                 velocities,
             }),
-            PlaneSet::Ellipse(velocity) => ellipse = Some(velocity),
+            ConvexSet::Ellipse(velocity) => ellipse = Some(velocity),
         }
     }
     let ends = std::iter::once(0.0).chain(spells.iter().map(|spell| spell.until));
@@ -459,14 +452,14 @@ fn explicit(path: &str, initial: &SetFile, target: &TargetFile) -> Result<Motion
         ));
     }
     match (initial, ellipse, spells.as_slice()) {
-        (PlaneSet::Ellipse(initial), Some(velocity), []) => {
+        (ConvexSet::Ellipse(initial), Some(velocity), []) => {
             Ok(Motion::Ellipses { initial, velocity })
         }
-        (PlaneSet::Polygon(initial), None, [only]) => Ok(Motion::Sets {
+        (ConvexSet::Polygon(initial), None, [only]) => Ok(Motion::Sets {
             initial,
             velocity: only.velocities.clone(),
         }),
-        (PlaneSet::Polygon(initial), None, [_, ..]) => Ok(Motion::Spells { initial, spells }),
+        (ConvexSet::Polygon(initial), None, [_, ..]) => Ok(Motion::Spells { initial, spells }),
         _ => Err(fault(path, "a polygon with an ellipse", "sets of one kind")),
     }
 }

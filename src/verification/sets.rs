@@ -1,11 +1,11 @@
 //! The sets of a document, put together again where velocity sets follow one another.
 
-use super::claim::{ClaimError, PlaneSet, fault, plane_set};
+use super::claim::{ClaimError, fault, plane_set};
 use super::coverage::largest;
 use super::file::{ObstacleFile, RelaxationFile};
 use super::reached::in_order;
 use crate::evaluation::{SetShape, SpaceTimeSet, Violation};
-use crate::geometry::ConvexPolygon;
+use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::target::VelocitySpell;
 use crate::tolerance;
 
@@ -62,7 +62,7 @@ pub(super) fn read(
         let initial = plane_set(&format!("{path}.initial_set"), &entry.initial_set)?;
         let velocity = plane_set(&format!("{path}.velocity_set"), &entry.velocity_set)?;
         let shape = match (initial, velocity) {
-            (PlaneSet::Polygon(initial), PlaneSet::Polygon(velocities)) => {
+            (ConvexSet::Polygon(initial), ConvexSet::Polygon(velocities)) => {
                 if follows && !section.as_ref().is_some_and(|s| same(s, &initial)) {
                     note(
                         "its slabs do not begin with the section that the one before ends with"
@@ -96,7 +96,7 @@ pub(super) fn read(
                     spells: vec![spell],
                 }
             }
-            (PlaneSet::Ellipse(initial), PlaneSet::Ellipse(velocity)) => {
+            (ConvexSet::Ellipse(initial), ConvexSet::Ellipse(velocity)) => {
                 if follows || !last {
                     return Err(fault(&path, "ellipses one after another", "polygons"));
                 }

@@ -162,7 +162,7 @@ fn scenario_files_alone_are_compared_and_assessed() {
     let said = stderr(&compared);
     assert_eq!(said.lines().count(), 1, "{said}");
     assert!(
-        said.contains("2 files of foreign formats left out; `searoom import`"),
+        said.contains("2 files of other formats left out; `searoom import`"),
         "{said}"
     );
 }
@@ -232,7 +232,7 @@ fn a_lint_says_what_is_odd_about_the_published_cases() {
     assert_eq!(imazu["summary"]["targets"], 50);
     assert_eq!(
         findings(&imazu, "imazu-12")[0],
-        "ships are missing: 3 said, 2 found"
+        "ships are missing: 3 declared, 2 found"
     );
     assert!(findings(&imazu, "imazu-12")[1].starts_with("the same encounter as imazu-06 "));
     assert!(findings(&imazu, "imazu-08")[0].starts_with("the same encounter as imazu-05 "));
@@ -289,9 +289,9 @@ fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
     let assert = searoom(&["suite", "--lint", "--json", text(folder.path())]).code(2);
     let found = document(&assert);
     let said = findings(&found, "CR-SO, HO");
-    assert_eq!(said[0], "ships are missing: 2 said, 1 found");
+    assert_eq!(said[0], "ships are missing: 2 declared, 1 found");
     assert!(
-        said[1].ends_with("said to port, found to starboard: mirrored?"),
+        said[1].ends_with("declared to port, found to starboard: mirrored?"),
         "{said:?}"
     );
     assert!(
@@ -304,7 +304,9 @@ fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
     assert_eq!(found["summary"]["unreadable"], 1);
     searoom(&["suite", "--lint", text(folder.path())])
         .code(2)
-        .stdout(contains("CR-SO, HO: ships are missing: 2 said, 1 found"))
+        .stdout(contains(
+            "CR-SO, HO: ships are missing: 2 declared, 1 found",
+        ))
         .stdout(contains("4 scenarios, 3 targets"));
     searoom(&["suite", "--lint", "--plans", "x", "scenarios"]).code(2);
     // the same traffic met at three speeds is three encounters, give-way and stand-on are one in a mirror

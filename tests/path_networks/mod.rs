@@ -3,7 +3,7 @@
 mod scene;
 
 use searoom::document::PlanDocument;
-use searoom::pipeline::{self, Relaxation, Run, Rung};
+use searoom::pipeline::{self, Relaxation, RelaxationLevel, Run};
 use searoom::planner::{Objective, Outcome, PlannerKind};
 use searoom::scenario::Scenario;
 use searoom::trajectory::Trajectory;
@@ -87,10 +87,13 @@ fn plans_on_random_networks_pass_their_checks() {
             plan.to_go > 0.0,
             "{seed}"
         );
-        assert!(plan.to_go > 0.0 || run.rung != Rung::Waiting, "{seed}");
-        match run.rung {
-            Rung::Waiting => waiting += 1,
-            Rung::Inside => inside += 1,
+        assert!(
+            plan.to_go > 0.0 || run.level != RelaxationLevel::Waiting,
+            "{seed}"
+        );
+        match run.level {
+            RelaxationLevel::Waiting => waiting += 1,
+            RelaxationLevel::Inside => inside += 1,
             _ => solved += 1,
         }
     }
@@ -108,7 +111,7 @@ fn plans_on_random_networks_pass_their_checks() {
 #[test]
 fn out_of_a_set_the_plan_goes_on_to_the_end() {
     let run = verified(include_str!("../faults/exit3-path-time-stops-short.toml")).expect("sound");
-    assert_eq!(run.rung, Rung::Inside);
+    assert_eq!(run.level, RelaxationLevel::Inside);
     let plan = run.planned.outcome.plan().expect("a plan");
     let off = (plan.trajectory.end().position - run.scenario.desired.end()).norm();
     assert!(plan.to_go == 0.0 && off < 1e-6, "{off}");
@@ -163,7 +166,7 @@ fn the_error_on_an_alternative_is_that_against_the_mission() {
 #[test]
 fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     let run = verified(&shipped("scenarios/colregs/overtaking.toml")).expect("sound");
-    assert_eq!(run.rung, Rung::Waiting);
+    assert_eq!(run.level, RelaxationLevel::Waiting);
     let judged = run.evaluation.as_ref().expect("judged");
     assert!(
         judged.min_clearance > 20.0 && run.max_risk == 0.0,
@@ -225,7 +228,7 @@ fn where_a_ship_comes_down_the_path_own_ship_stops() {
         let mut scenario = Scenario::parse(&text).expect("sound");
         (scenario.planner, scenario.objective) = (PlannerKind::PathTime, objective);
         let run = pipeline::run(scenario);
-        assert_eq!(run.rung, Rung::Inside);
+        assert_eq!(run.level, RelaxationLevel::Inside);
         assert_eq!(faults(&document(&run)), "");
         let until = run.released[0].expect("it is entered");
         let hard = &run.sets[0].hard;
@@ -260,7 +263,7 @@ fn before_a_ship_over_the_end_own_ship_stops() {
     };
     for horizon in [130.0, 1000.0] {
         let run = anchored(horizon);
-        assert_eq!(run.rung, Rung::Waiting);
+        assert_eq!(run.level, RelaxationLevel::Waiting);
         let judged = run.evaluation.as_ref().expect("judged");
         assert!(judged.min_clearance >= run.scenario.own_ship.safety_margin - 1e-6);
         assert!(

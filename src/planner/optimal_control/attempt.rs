@@ -1,5 +1,5 @@
-//! One solve from one guess: the problem with rows at nodes and midpoints, then again with rows where the motion is
-//! deepest between them, until it is clear everywhere.
+//! Solution from one initial guess: rows at nodes and midpoints first, then more rows where the
+//! motion is deepest between them, until it is clear everywhere.
 
 use super::between::low_points;
 use super::solver::{Iterate, Matrix, Report, RowPoint, Settings, Status, Workspace, solve};
@@ -8,63 +8,65 @@ use super::transcription::Transcription;
 use crate::trajectory::Cubic;
 use crate::vessel::Manoeuvring;
 
-/// Rounds of rows between the nodes, at most. One or two are usual.
-const ROUNDS: usize = 12;
+/// Largest number of rounds that add rows between the nodes; one or two are usual.
+const MAX_ROUNDS: usize = 12;
 
-/// The barrier to go on with after rows were added.
+/// Initial barrier parameter after rows were added.
 const WARM_BARRIER: f64 = 1e-4;
 
-/// Tolerance of the solver as long as rows are still to be found.
-const LOOSE: f64 = 1e-3;
+/// Solver tolerance while rows are still being added.
+const LOOSE_TOLERANCE: f64 = 1e-3;
 
-/// Of the level of a set. A row that falls short by more is not the tolerance's doing.
-const SHORT: f64 = 1e-4;
+/// Largest constraint violation explained by the solver's tolerance, as a fraction of the set's
+/// level.
+const SOLVER_VIOLATION: f64 = 1e-4;
 
-/// The penalty is raised by this, once.
-const DEARER: f64 = 10.0;
+/// Factor by which the penalty is raised, once.
+const PENALTY_FACTOR: f64 = 10.0;
 
-/// Rows nearer than this in an interval are one, as a fraction.
-const SAME: f64 = 1e-4;
+/// Rows within this fraction of an interval from one another are the same row.
+const SAME_FRACTION: f64 = 1e-4;
 
-/// A place where a motion is in a set.
+/// Point of a motion inside a set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inside {
     /// Index of the set.
     pub obstacle: usize,
-    /// Seconds.
+    /// Time, seconds.
     pub time: f64,
-    /// `(x - p_t)' Q_t^-1 (x - p_t)`, below 1.
+    /// Level `(x - p_t)' Q_t^-1 (x - p_t)`, below 1.
     pub level: f64,
 }
 
-/// What came of one guess.
+/// Result of one initial guess.
 #[derive(Debug, Clone)]
 pub struct Attempt {
     /// The motion.
     pub profile: Profile,
-    /// How the last solve ended.
+    /// Report of the last solve.
     pub report: Report,
-    /// Steps of all solves.
+    /// Iterations of all solves.
     pub iterations: usize,
-    /// Solves after the first, for rows between the nodes.
+    /// Number of solves after the first, for rows between the nodes.
     pub rounds: usize,
-    /// The integral of the stage cost, in the units of the weights.
+    /// Integral of the stage cost, in the units of the weights.
     pub objective: f64,
-    /// The deepest place; `None` where the motion is clear of every set at all times.
+    /// Deepest point inside a set; `None` where the motion is clear of every set at all times.
     pub inside: Option<Inside>,
-    /// True where rows fell short and no solution was found at a higher price: the motion is that at the lower one.
+    /// True where rows were violated and no solution was found with a higher penalty: the motion is
+    /// the one with the lower penalty.
     pub priced_out: bool,
-    /// Where later solves may go on from.
+    /// Iterate for later warm starts.
     pub(super) iterate: Iterate<6, 3>,
-    /// Fractions and sets of the rows, per interval.
+    /// Rows of each interval: `(set, fraction)`.
     pub(super) rows: Vec<Vec<(usize, f64)>>,
 }
 
 impl Attempt {
-    /// True where the solver got nowhere. Exact second derivatives alone may: Gauss–Newton steps are poor where the weights
-    /// of the states are small beside those of the forces.
+    /// True where the solver made no progress. Exact second derivatives alone may succeed:
+    /// Gauss–Newton steps are poor where the state weights are small relative to the force weights.
     pub fn is_lost(&self) -> bool {
-        got_nowhere(self.report.status) || self.priced_out
+        failed(self.report.status) || self.priced_out
     }
 
     /// True when solved and clear.
@@ -73,7 +75,7 @@ impl Attempt {
     }
 }
 
-/// Solves from a guess. `settings` are those of the first solve.
+/// Solves from a guess; `settings` apply to the first solve.
 pub fn attempt<V: Manoeuvring>(
     task: &Task<V>,
     guess: &Profile,
@@ -93,11 +95,12 @@ pub fn attempt<V: Manoeuvring>(
         .collect();
     let iterate = Iterate::guess(states, forces);
     let work = Workspace::new(&problem);
-    go_on(task, problem, iterate, work, settings, keep_going)
+    resume(task, problem, iterate, work, settings, keep_going)
 }
 
-/// Solves from an iterate, warm or not, of a problem whose rows may already be more than the base ones.
-pub(super) fn go_on<V: Manoeuvring>(
+/// Solves from an iterate, with or without multipliers. The problem may already have more rows than
+/// the base ones.
+pub(super) fn resume<V: Manoeuvring>(
     task: &Task<V>,
     mut problem: Transcription<V>,
     mut iterate: Iterate<6, 3>,
@@ -107,24 +110,24 @@ pub(super) fn go_on<V: Manoeuvring>(
 ) -> Attempt {
     let tight = settings.tolerance;
     let mut settings = *settings;
-    // multipliers come with rows that were found already
+    // the multipliers include those of rows added earlier
     if iterate.multipliers.is_empty() {
-        settings.tolerance = tight.max(LOOSE);
+        settings.tolerance = tight.max(LOOSE_TOLERANCE);
     }
     let mut report = solve(&problem, &mut iterate, &mut work, &settings, keep_going);
     let (mut iterations, mut rounds, mut raised) = (report.iterations, 0, false);
-    // solved but short of rows, before the price was raised
+    // solved but with violated rows, before the penalty was raised
     let mut cheaper: Option<Attempt> = None;
     loop {
         let (deepest, added) = deepest(task, &problem, &iterate);
-        let found = Found {
+        let found = Progress {
             report,
             iterations,
             rounds,
             inside: deepest,
         };
         if let Some(short) = cheaper.take()
-            && got_nowhere(report.status)
+            && failed(report.status)
         {
             return Attempt {
                 iterations,
@@ -133,16 +136,17 @@ pub(super) fn go_on<V: Manoeuvring>(
                 ..short
             };
         }
-        let short = report.shortfall > SHORT.max(settings.tolerance);
-        if report.status != Status::Solved || rounds == ROUNDS || (short && raised) {
+        let short = report.shortfall > SOLVER_VIOLATION.max(settings.tolerance);
+        if report.status != Status::Solved || rounds == MAX_ROUNDS || (short && raised) {
             return found.attempt(&problem, iterate);
         }
         settings.barrier = WARM_BARRIER;
         if short {
-            // maybe the price was too low: locally infeasible only if a higher one does not help
+            // the penalty may be too low: the problem is locally infeasible only if a higher one
+            // does not help
             cheaper = Some(found.attempt(&problem, iterate.clone()));
             raised = true;
-            settings.penalty *= DEARER;
+            settings.penalty *= PENALTY_FACTOR;
             settings.barrier = 1e2 * WARM_BARRIER;
         }
         let fresh = add_rows(task, &mut problem, &mut iterate, &added, &settings);
@@ -161,16 +165,16 @@ pub(super) fn go_on<V: Manoeuvring>(
     }
 }
 
-/// What the solves so far came to.
+/// Result of the solves so far.
 #[derive(Debug, Clone, Copy)]
-struct Found {
+struct Progress {
     report: Report,
     iterations: usize,
     rounds: usize,
     inside: Option<Inside>,
 }
 
-impl Found {
+impl Progress {
     fn attempt<V: Manoeuvring>(
         self,
         problem: &Transcription<V>,
@@ -198,24 +202,24 @@ impl Found {
 }
 
 /// True where a solve ended away from any solution.
-fn got_nowhere(status: Status) -> bool {
+fn failed(status: Status) -> bool {
     matches!(status, Status::Iterations | Status::Stalled)
 }
 
-/// A row to be added.
+/// Row to be added.
 #[derive(Debug, Clone, Copy)]
-struct Added {
+struct NewRow {
     interval: usize,
     obstacle: usize,
     fraction: f64,
 }
 
-/// The deepest place of all, and every local minimum within a set.
+/// Deepest point of all, and every local minimum inside a set.
 fn deepest<V: Manoeuvring>(
     task: &Task<V>,
     problem: &Transcription<V>,
     iterate: &Iterate<6, 3>,
-) -> (Option<Inside>, Vec<Added>) {
+) -> (Option<Inside>, Vec<NewRow>) {
     let (mut deepest, mut added) = (None::<Inside>, Vec::new());
     let node = |k: usize| {
         super::task::node(
@@ -230,7 +234,7 @@ fn deepest<V: Manoeuvring>(
         let piece = Cubic::from_nodes(&before, &after);
         for (obstacle, keep) in task.keep_outs.iter().enumerate() {
             for point in low_points(&piece, keep, 1.0) {
-                added.push(Added {
+                added.push(NewRow {
                     interval,
                     obstacle,
                     fraction: point.part,
@@ -250,12 +254,12 @@ fn deepest<V: Manoeuvring>(
     (deepest, added)
 }
 
-/// False where all of them were there already.
+/// Adds rows; false where all of them exist already.
 fn add_rows<V: Manoeuvring>(
     task: &Task<V>,
     problem: &mut Transcription<V>,
     iterate: &mut Iterate<6, 3>,
-    added: &[Added],
+    added: &[NewRow],
     settings: &Settings,
 ) -> bool {
     let mut fresh = false;
@@ -264,11 +268,11 @@ fn add_rows<V: Manoeuvring>(
         let rows = &mut problem.rows_mut()[interval];
         for new in added.iter().filter(|a| a.interval == interval) {
             let fraction = new.fraction;
-            let known = rows
-                .iter()
-                .any(|r| r.obstacle == new.obstacle && (r.fraction - fraction).abs() < SAME);
-            // at the very start nothing can be moved
-            if known || (interval == 0 && fraction < SAME) {
+            let known = rows.iter().any(|r| {
+                r.obstacle == new.obstacle && (r.fraction - fraction).abs() < SAME_FRACTION
+            });
+            // at the start no state can be changed
+            if known || (interval == 0 && fraction < SAME_FRACTION) {
                 continue;
             }
             fresh = true;

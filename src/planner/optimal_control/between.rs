@@ -1,29 +1,32 @@
-//! Where a motion is deepest in a set between the instants at which it is constrained.
+//! Points between the constrained instants at which a motion is deepest in a set.
 
 use super::keep_out::KeepOut;
+use crate::numerics::GoldenSection;
 use crate::trajectory::Cubic;
 
-/// Parts that a piece is looked at in, at least, and most.
+/// Least and greatest number of parts in which a piece is sampled.
 const PARTS: f64 = 8.0;
 const MOST_PARTS: f64 = 256.0;
 
-/// A cubic is longer than its duration at the greater of the speeds at its ends by this at most, where it is no loop.
+/// Largest ratio of a cubic's length to its duration times the greater of its end speeds, unless it
+/// is a loop.
 const BULGE: f64 = 1.5;
 
-/// Sections of a bracket by the golden ratio: to 2e-6 of it, where the level is flat to rounding.
+/// Golden-section steps: they reduce a bracket to 2e-6, where the level is flat to rounding.
 const GOLDEN_STEPS: usize = 27;
 
-/// A least level on a piece.
+/// Local minimum of the level on a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LowPoint {
-    /// Of the duration.
+    /// Fraction of the duration.
     pub part: f64,
-    /// `(x - p_t)' Q_t^-1 (x - p_t)`: below 1 inside.
+    /// Level `(x - p_t)' Q_t^-1 (x - p_t)`, below 1 inside.
     pub level: f64,
 }
 
-/// The local minima of the level along a piece that lie below `below`. Parts are short against the time in which the set's
-/// narrowest half width is passed, so that none between is missed; what is missed is for the check of the plan to find.
+/// Local minima of the level along a piece that lie below `below`. The parts are short relative to
+/// the time in which the set's narrowest half width is passed, so that none should be missed. The
+/// final check of the plan finds any that is.
 pub fn low_points(piece: &Cubic, keep: &KeepOut, below: f64) -> Vec<LowPoint> {
     let level = |part: f64| {
         let time = piece.start_time + part * piece.duration;
@@ -32,7 +35,8 @@ pub fn low_points(piece: &Cubic, keep: &KeepOut, below: f64) -> Vec<LowPoint> {
     let drift = keep.set().velocity().center();
     let fastest = piece.velocities.map(|v| (v - drift).norm());
     let way = fastest[0].max(fastest[1]) * piece.duration;
-    // sections only grow: in the norm of the last one the piece is no nearer than its ends less its way
+    // sections only grow: in the norm of the last one, the piece is no nearer than its ends minus
+    // its length
     let last = keep.at(piece.end_time());
     let start = piece.positions[0] + drift * piece.duration;
     let nearest = last.level(start).min(last.level(piece.positions[1])).sqrt();
@@ -44,7 +48,7 @@ pub fn low_points(piece: &Cubic, keep: &KeepOut, below: f64) -> Vec<LowPoint> {
         .ceil();
     let count = parts as usize;
     let mut found = Vec::new();
-    // two before, one before, here
+    // the two samples before, and this one
     let mut levels = [f64::INFINITY, f64::INFINITY, level(0.0)];
     for k in 1..=count + 1 {
         let next = if k <= count {
@@ -54,7 +58,7 @@ pub fn low_points(piece: &Cubic, keep: &KeepOut, below: f64) -> Vec<LowPoint> {
         };
         levels = [levels[1], levels[2], next];
         let [before, here, after] = levels;
-        // the least of a parabola through the three may be far below them
+        // the minimum of a parabola through the three may be far below them
         let rise = (before.min(1e3) - here).max(after.min(1e3) - here).max(0.0);
         if here <= before && here <= after && here - rise < below {
             let low = (k as f64 - 2.0).max(0.0) / parts;
@@ -68,25 +72,13 @@ pub fn low_points(piece: &Cubic, keep: &KeepOut, below: f64) -> Vec<LowPoint> {
     found
 }
 
-fn least(mut low: f64, mut high: f64, level: &impl Fn(f64) -> f64) -> LowPoint {
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+fn least(low: f64, high: f64, level: &impl Fn(f64) -> f64) -> LowPoint {
     let ends = [(low, level(low)), (high, level(high))];
-    let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut at_left, mut at_right) = (level(left), level(right));
+    let mut search = GoldenSection::new(low, high, level);
     for _ in 0..GOLDEN_STEPS {
-        if at_left < at_right {
-            high = right;
-            (right, at_right) = (left, at_left);
-            left = high - golden * (high - low);
-            at_left = level(left);
-        } else {
-            low = left;
-            (left, at_left) = (right, at_right);
-            right = low + golden * (high - low);
-            at_right = level(right);
-        }
+        search.shorten(level);
     }
-    let (part, level) = [(left, at_left), (right, at_right)]
+    let (part, level) = [search.left, search.right]
         .into_iter()
         .chain(ends)
         .fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
@@ -101,7 +93,7 @@ mod tests {
 
     #[test]
     fn the_deepest_point_of_a_pass_is_found_and_a_clear_one_has_none() {
-        // past a disc at rest of 1 m, 0.8 m off its centre, closest at 3/4 of the piece
+        // past a fixed disc of 1 m, 0.8 m off its centre, closest at 3/4 of the piece
         let keep = ellipsoid([3.0, 0.8], [0.0, 0.0], [1.0, 1.0], [0.0, 0.0]);
         for speed in [0.2, 2.0, 40.0] {
             let duration = 4.0 / speed;

@@ -1,4 +1,4 @@
-//! How far the ship is from where a plan says, one interval at a time.
+//! Deviation of the ship from a plan, one interval at a time.
 
 use super::task::Profile;
 use crate::vessel::{ForceVector, Manoeuvring, StateVector};
@@ -6,8 +6,9 @@ use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 /// Steps of the classic Runge–Kutta method per interval.
 const STEPS: usize = 20;
 
-/// The largest component, in the ship's units, by which the ship is off the next node when she starts at each node with
-/// its forces. Intervals are judged one by one: a directionally unstable ship forgets no error.
+/// Largest component of the deviation at the next node, in the ship's units, when the ship starts
+/// at a node and applies its forces. Intervals are judged separately, because a directionally
+/// unstable ship amplifies every error.
 pub fn largest_defect<V: Manoeuvring>(vessel: &V, profile: &Profile, step: f64) -> f64 {
     let unit = vessel.scales().state;
     profile

@@ -1,4 +1,5 @@
-//! From a motion on one grid to the same one on a grid on which it is the ship's.
+//! Grid refinement: from a solution on one grid to a solution on a grid fine enough for the ship's
+//! dynamics.
 
 use super::attempt::{Attempt, attempt};
 use super::defect::largest_defect;
@@ -8,42 +9,42 @@ use crate::tolerance;
 use crate::trajectory::hermite;
 use crate::vessel::Manoeuvring;
 
-/// Grids that are tried after the first one, at most.
-const REFINEMENTS: usize = 6;
+/// Largest number of grids after the first one.
+const MAX_REFINEMENTS: usize = 6;
 
-/// A finer grid has so many times the intervals, at least and at most.
-const LEAST_FACTOR: f64 = 1.5;
-const MOST_FACTOR: f64 = 4.0;
+/// Least and greatest ratio of intervals between two grids.
+const MIN_FACTOR: f64 = 1.5;
+const MAX_FACTOR: f64 = 4.0;
 
-/// Deviations at the end of an interval fall with this power of its duration.
+/// Deviations at the end of an interval decrease with this power of its duration.
 const ORDER: f64 = 5.0;
 
-/// The barrier to begin with on a finer grid.
+/// Initial barrier parameter on a finer grid.
 const REFINED_BARRIER: f64 = 1e-2;
 
-/// How the search for a grid ended.
+/// Result of the grid refinement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Ended {
-    /// With one that is fine enough.
+pub(super) enum GridResult {
+    /// The grid is fine enough.
     Fine,
-    /// The last one that was tried, or that there was time for, is too coarse.
+    /// The last grid that was tried, or that time allowed, is too coarse.
     Coarse,
-    /// On the last one no plan was found any more.
+    /// No plan was found on the last grid.
     Lost,
 }
 
-/// A motion on the last grid that was tried.
+/// Solution on the last grid.
 #[derive(Debug)]
 pub(super) struct Refined {
     pub found: Attempt,
     pub intervals: usize,
-    /// The largest deviation of the ship at the end of an interval, in her units.
+    /// Largest deviation of the ship at the end of an interval, in its own units.
     pub defect: f64,
-    pub ended: Ended,
+    pub ended: GridResult,
 }
 
-/// Brings a feasible motion to a grid on which `exact` follows it to [`tolerance::DEFECT`].
-pub(super) fn brought_to<V: Manoeuvring>(
+/// Refines the grid of a feasible motion until `exact` follows it to [`tolerance::DEFECT`].
+pub(super) fn refine_grid<V: Manoeuvring>(
     coarse: &Task<V>,
     found: &Attempt,
     exact: &V,
@@ -55,11 +56,11 @@ pub(super) fn brought_to<V: Manoeuvring>(
     loop {
         let defect = largest_defect(exact, &found.profile, task.step());
         let ended = if !found.is_feasible() {
-            Some(Ended::Lost)
+            Some(GridResult::Lost)
         } else if defect <= tolerance::DEFECT {
-            Some(Ended::Fine)
-        } else if refinements == REFINEMENTS || !keep_going() {
-            Some(Ended::Coarse)
+            Some(GridResult::Fine)
+        } else if refinements == MAX_REFINEMENTS || !keep_going() {
+            Some(GridResult::Coarse)
         } else {
             None
         };
@@ -93,18 +94,18 @@ pub(super) fn brought_to<V: Manoeuvring>(
     }
 }
 
-/// Intervals with which a deviation should be small enough; a NaN takes the most.
+/// Number of intervals for which a deviation should be small enough; the greatest one for a NaN.
 fn finer(intervals: usize, defect: f64) -> usize {
     let factor = (defect / tolerance::DEFECT).powf(1.0 / ORDER);
-    let factor = if factor < MOST_FACTOR {
-        factor.max(LEAST_FACTOR)
+    let factor = if factor < MAX_FACTOR {
+        factor.max(MIN_FACTOR)
     } else {
-        MOST_FACTOR
+        MAX_FACTOR
     };
     (intervals as f64 * factor).ceil() as usize
 }
 
-/// The same motion on another grid: states on the cubics, forces as they are at the middle of each interval.
+/// Motion on another grid: states on the cubics, forces of the middle of each interval.
 fn resampled<V: Manoeuvring>(task: &Task<V>, profile: &Profile, to: &Task<V>) -> Profile {
     let h = task.step();
     let at = |time: f64| {

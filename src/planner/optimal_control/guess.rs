@@ -1,31 +1,32 @@
-//! Where solves start: motions that need not be possible nor clear.
+//! Initial guesses of the solver; they need be neither feasible nor clear.
 
 use super::keep_out::KeepOut;
 use super::task::{Profile, Task};
 use crate::frame::{Vector, heading_of, to_port, wrap};
 use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 
-/// Amplitudes of the lateral family as fractions of the way that is meant to be made.
+/// Amplitudes of the lateral family as fractions of the path length.
 const AMPLITUDES: [f64; 5] = [0.0, -0.135, 0.135, -0.27, 0.27];
 
-/// Sets in conflict with the desired trajectory that are passed on either side, in every combination: the worst ones.
-const SIDED: usize = 4;
+/// Number of the worst conflicting sets that are passed on either side, in every combination.
+const MAX_SIDED: usize = 4;
 
-/// Beyond the edge of a set, of its reach: how far a start passes it.
-const CLEAR: f64 = 0.3;
+/// Clearance from a set as a fraction of its extent.
+const CLEARANCE: f64 = 0.3;
 
-/// Which guess a solve started from.
+/// Kind of initial guess.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Start {
-    /// The space-time planner's trajectory.
+    /// Trajectory of the space-time planner.
     SpaceTime,
-    /// The desired trajectory, bent to one side; the index is that of the amplitude.
+    /// Desired trajectory, bent to one side; the index of the amplitude.
     Lateral(usize),
-    /// The desired trajectory, bent past the sets it meets; bit `k` says on which side of the `k`-th worst one.
+    /// Desired trajectory, bent around the sets it meets; bit `k` gives the side for the `k`-th
+    /// worst one.
     Sided(usize),
-    /// The result of another solve on a coarser grid.
+    /// Solution on a coarser grid.
     Refined,
-    /// Given by the caller.
+    /// Provided by the caller.
     Given,
 }
 
@@ -41,11 +42,12 @@ impl std::fmt::Display for Start {
     }
 }
 
-/// The states along positions at the nodes: heading and speed from the way made, forces that hold the speed.
+/// States along positions at the nodes: heading and speed follow from the displacement, forces hold
+/// the speed.
 pub fn profile_along<V: Manoeuvring>(task: &Task<V>, positions: &[Vector]) -> Profile {
     let n = task.intervals;
     let step = task.step();
-    // less way than this is no heading
+    // a shorter displacement defines no heading
     let least = 1e-3 * task.vessel.scales().state[0];
     let mut headings = vec![task.first[2]; n + 1];
     for k in 1..=n {
@@ -73,14 +75,14 @@ pub fn profile_along<V: Manoeuvring>(task: &Task<V>, positions: &[Vector]) -> Pr
     let forces = (0..n)
         .map(|k| {
             let held = task.vessel.steady(states[k + 1][3]);
-            // limits the wrong way round are for the solver to refuse
+            // the solver rejects reversed limits
             ForceVector::from_fn(|i, _| held[i].max(-limits[i]).min(limits[i]))
         })
         .collect();
     Profile { states, forces }
 }
 
-/// The desired positions at the nodes, from where the ship is: her offset at the start fades out.
+/// Desired positions at the nodes, plus own ship's initial offset, which decays.
 fn desired_positions<V: Manoeuvring>(task: &Task<V>) -> Vec<Vector> {
     let at = |k: usize| task.desired.position_at(task.time(k));
     let offset = Vector::new(task.first[0], task.first[1]) - at(0);
@@ -92,7 +94,7 @@ fn desired_positions<V: Manoeuvring>(task: &Task<V>) -> Vec<Vector> {
         .collect()
 }
 
-/// The starts that need no other planner, in a fixed order. Repetitions are left out.
+/// Initial guesses that need no other planner, in a fixed order and without repetition.
 pub fn family<V: Manoeuvring>(task: &Task<V>) -> Vec<(Start, Profile)> {
     let base = desired_positions(task);
     let way = base[base.len() - 1] - base[0];
@@ -125,22 +127,22 @@ pub fn family<V: Manoeuvring>(task: &Task<V>) -> Vec<(Start, Profile)> {
         .collect()
 }
 
-/// A set that the desired trajectory comes near.
+/// Set that the desired trajectory comes near.
 #[derive(Debug, Clone, Copy)]
 struct Conflict {
-    /// When it is deepest, seconds.
+    /// Time of the greatest depth, seconds.
     time: f64,
     level: f64,
     /// Unit vector to port of the motion relative to the set's centre.
     port: Vector,
-    /// Metres from the desired position to clear of the set: to port and to starboard.
+    /// Offset that clears the set from the desired position, to port and to starboard, metres.
     shift: [f64; 2],
-    /// Seconds in which own ship passes it.
+    /// Duration of the passage, seconds.
     passing: f64,
 }
 
 impl Conflict {
-    /// Moves positions to port, or to starboard, about the time of the conflict.
+    /// Moves positions to port or starboard around the time of the conflict.
     fn push<V: Manoeuvring>(&self, task: &Task<V>, positions: &mut [Vector], port: bool) {
         let shift = self.port * if port { self.shift[0] } else { -self.shift[1] };
         for (k, place) in positions.iter_mut().enumerate().skip(1) {
@@ -150,7 +152,7 @@ impl Conflict {
     }
 }
 
-/// The worst conflicts of given positions, the worst first.
+/// Conflicts of given positions, the worst first.
 fn conflicts<V: Manoeuvring>(task: &Task<V>, positions: &[Vector]) -> Vec<Conflict> {
     let mut found: Vec<Conflict> = task
         .keep_outs
@@ -158,7 +160,7 @@ fn conflicts<V: Manoeuvring>(task: &Task<V>, positions: &[Vector]) -> Vec<Confli
         .filter_map(|keep| conflict(task, positions, keep))
         .collect();
     found.sort_by(|a, b| a.level.total_cmp(&b.level));
-    found.truncate(SIDED);
+    found.truncate(MAX_SIDED);
     found
 }
 
@@ -170,7 +172,7 @@ fn conflict<V: Manoeuvring>(
     let level = |k: &usize| keep.at(task.time(*k)).level(positions[*k]);
     let k = (1..task.intervals).min_by(|a, b| level(a).total_cmp(&level(b)))?;
     let level = level(&k);
-    // beyond twice its size it is in nobody's way
+    // beyond twice its size the set is no obstacle
     if !(level < 4.0) {
         return None;
     }
@@ -180,7 +182,7 @@ fn conflict<V: Manoeuvring>(
     let port = to_port(relative.try_normalize(0.0)?);
     let section = keep.set().outer_section(time);
     let lateral = port.dot(&(positions[k] - section.center()));
-    let reach = (1.0 + CLEAR) * section.radius(port);
+    let reach = (1.0 + CLEARANCE) * section.radius(port);
     Some(Conflict {
         time,
         level,

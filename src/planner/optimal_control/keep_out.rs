@@ -1,4 +1,4 @@
-//! The sets that a plan of forces keeps out of: ellipses as they move and grow.
+//! Moving, growing ellipses that a plan of forces keeps out of.
 
 use nalgebra::Matrix2;
 
@@ -6,28 +6,28 @@ use crate::frame::{Vector, to_port};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 
-/// Metres. A set without interior cannot be kept out of by a function that vanishes on it: its initial ellipse is given
-/// this much to each side, an outer set.
+/// Least semi-axis in metres. The constraint needs a set with interior, so a narrower initial
+/// ellipse is widened: an outer set.
 const LEAST_SEMI_AXIS: f64 = 1e-3;
 
-/// An ellipsoid with interior at every time, and what it stands for.
+/// Ellipsoid with interior at every time, and the set it contains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeepOut {
     set: EllipsoidObstacle,
     enclosing: bool,
 }
 
-/// A section as the constraint sees it: `(x - center)' inverse (x - center) >= 1`.
+/// Section in the form of the constraint: `(x - center)' inverse (x - center) >= 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keep {
-    /// Metres.
+    /// Centre, metres.
     pub center: Vector,
-    /// Of the shape matrix, 1/m².
+    /// Inverse of the shape matrix, 1/m².
     pub inverse: Matrix2<f64>,
 }
 
 impl Keep {
-    /// `(x - center)' inverse (x - center)`: one on the edge, less inside.
+    /// Level `(x - center)' inverse (x - center)`: one on the edge, less inside.
     pub fn level(&self, position: Vector) -> f64 {
         let d = position - self.center;
         d.dot(&(self.inverse * d))
@@ -35,19 +35,19 @@ impl Keep {
 }
 
 impl KeepOut {
-    /// An ellipsoid as it is; of polytopes and slabs the smallest ellipses around their sets of positions and of
-    /// velocities: an outer set.
+    /// Outer ellipsoid of an obstacle: an ellipsoid itself; for polytopes and slabs the smallest
+    /// ellipses around their sets of positions and of velocities.
     pub fn outer_of(obstacle: &Obstacle) -> Self {
         let (set, enclosing) = match obstacle {
             Obstacle::Ellipsoid(o) => (o.as_ref().clone(), false),
             Obstacle::Polytope(o) => (EllipsoidObstacle::outer_of(o), true),
             Obstacle::Slabs(o) => {
                 let velocities: Vec<Vector> = o
-                    .spells()
+                    .velocity_sets()
                     .iter()
                     .flat_map(|s| s.velocities.vertices().iter().copied())
                     .collect();
-                // slabs are never without velocities
+                // slabs always have velocities
                 let all = ConvexPolygon::hull(&velocities)
                     .unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()));
                 let whole = PolytopeObstacle::new(o.name(), o.initial().clone(), all);
@@ -61,12 +61,12 @@ impl KeepOut {
         }
     }
 
-    /// The set that is kept out of.
+    /// The ellipsoid.
     pub fn set(&self) -> &EllipsoidObstacle {
         &self.set
     }
 
-    /// True where it is an ellipsoid around a set of another kind.
+    /// True where it encloses a set of another kind.
     pub fn encloses(&self) -> bool {
         self.enclosing
     }
@@ -82,14 +82,14 @@ impl KeepOut {
         }
     }
 
-    /// Half the width of the initial ellipse where it is narrowest, metres: the section is nowhere narrower.
+    /// Least half width of the initial ellipse, metres: no section is narrower.
     pub fn narrowest(&self) -> f64 {
         let [a, b] = self.set.initial().semi_axes();
         a.norm().min(b.norm())
     }
 }
 
-/// With each semi-axis at least [`LEAST_SEMI_AXIS`].
+/// Ellipse with each semi-axis at least [`LEAST_SEMI_AXIS`].
 fn outer_widened(ellipse: &Ellipse) -> Ellipse {
     let [a, b] = ellipse.semi_axes();
     let (long, short) = if a.norm() >= b.norm() { (a, b) } else { (b, a) };
@@ -104,7 +104,7 @@ fn outer_widened(ellipse: &Ellipse) -> Ellipse {
     Ellipse::from_axes(ellipse.center(), axes)
 }
 
-/// Shared by tests: sets named a, b, c, …
+/// Test ellipsoid at a position with a velocity; axes of both sets.
 #[cfg(test)]
 pub(super) fn ellipsoid(
     center: [f64; 2],
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_interior_is_widened_and_a_polytope_enclosed() {
+    fn flat_sets_are_widened_and_polytopes_enclosed() {
         let point = ConvexPolygon::point(Vector::new(5.0, 5.0));
         let wall =
             ConvexPolygon::hull(&[Vector::new(0.0, 0.0), Vector::new(0.0, 9.0)]).expect("finite");

@@ -1,10 +1,12 @@
-//! The optimal-control planner, paper section III.D: forces that keep a ship with dynamics clear of moving ellipsoids.
+//! Optimal-control planner, paper section III.D: forces that keep a ship with dynamics clear of
+//! moving ellipsoids.
 //!
 //! ```text
-//! starts ─► collocation ─► interior point ─► rows where the motion is deepest ─► again, warm ─► the best of all
+//! initial guesses ─► collocation ─► interior point ─► rows at deepest points ─► warm start ─► best
 //! ```
 //!
-//! A plan is a local optimum. The starts choose the sides on which sets are passed; the solver finds the numbers.
+//! A plan is a local optimum. The initial guess determines the sides on which sets are passed; the
+//! solver optimises the states and forces.
 
 mod attempt;
 mod between;
@@ -17,7 +19,7 @@ mod plan;
 mod receding;
 mod reference;
 mod report;
-// what tests and benches of the solver alone need; no part of what a user is promised
+// needed by tests and benches of the solver only; not part of the public interface
 #[doc(hidden)]
 pub mod solver;
 mod task;

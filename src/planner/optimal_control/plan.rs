@@ -1,4 +1,5 @@
-//! One problem: every start in parallel, the best plan of all, on a grid that is fine enough.
+//! Planning of one problem: all initial guesses in parallel, then the best plan on a grid that is
+//! fine enough.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -6,7 +7,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::attempt::{Attempt, attempt};
-use super::grid::{Ended, Refined, brought_to};
+use super::grid::{GridResult, Refined, refine_grid};
 use super::guess::{Start, family, profile_along};
 use super::keep_out::KeepOut;
 use super::passing::passing_sides;
@@ -21,18 +22,18 @@ use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
 use crate::vessel::{CyberShip2, Manoeuvring, StateVector, VesselKind};
 
-/// Of the time budget: the starts end by then, so that the best of them is brought to a grid that is fine enough. As long as
-/// none has led to a plan they go on: the first one's own grid may be fine enough.
+/// Fraction of the time budget for the initial guesses; the rest is for grid refinement. While none
+/// has led to a plan they continue: the grid of the first plan may be fine enough.
 const STARTS_SHARE: f64 = 0.6;
 
-/// Of the time budget: the space-time planner, which makes one start of many, ends by then.
+/// Fraction of the time budget for the space-time planner, which provides one initial guess.
 const SPACE_TIME_SHARE: f64 = 0.25;
 
-/// Relative. Plans this near in their objective are one plan.
-const SAME: f64 = 1e-6;
+/// Relative difference of the objective below which two plans are the same.
+const SAME_OBJECTIVE: f64 = 1e-6;
 
-/// The sets that are kept out of: ellipsoids as they are, of others the smallest ellipses around their two sets, and
-/// where a set has no interior one of a millimetre. Outer sets.
+/// Outer sets that the planner keeps out of. Ellipsoids are taken unchanged; other sets by the
+/// smallest ellipses around their two sets, at least a millimetre wide.
 pub fn outer_sets(obstacles: &[Obstacle]) -> Vec<Obstacle> {
     obstacles
         .iter()
@@ -40,13 +41,16 @@ pub fn outer_sets(obstacles: &[Obstacle]) -> Vec<Obstacle> {
         .collect()
 }
 
-/// Plans forces that keep own ship clear of [`outer_sets`] over the whole horizon at least cost near the desired
-/// trajectory.
+/// Plans forces that keep own ship clear of [`outer_sets`] over the whole horizon at least cost
+/// near the desired trajectory.
 ///
-/// The plan is a local optimum, the cheapest that the starts lead to: the space-time planner's trajectory, the desired one
-/// bent to the sides, and bent past the worst sets on either side in every combination. Along the cubics between its
-/// nodes it is clear of every set, and the ship, not smoothed, is at the next node to [`tolerance::DEFECT`] of her units.
-/// The same problem gives the same plan with any number of threads, unless the deadline strikes.
+/// The plan is a local optimum, the cheapest over all initial guesses. These are the space-time
+/// planner's trajectory, the desired one bent to the sides, and the desired one bent around the
+/// worst sets on either side in every combination.
+///
+/// The cubics between the nodes are clear of every set. The ship model without smoothing meets the
+/// next node to [`tolerance::DEFECT`] of its units. The same problem gives the same plan with any
+/// number of threads, unless the deadline is reached.
 pub fn plan(problem: &Problem, settings: &ControlSettings) -> Controlled {
     match settings.vessel {
         VesselKind::CyberShip2 => {
@@ -64,7 +68,7 @@ struct Planner<'a, V> {
     smooth: V,
     exact: V,
     keep_outs: Vec<KeepOut>,
-    begun: Instant,
+    started: Instant,
 }
 
 impl<'a, V: Manoeuvring> Planner<'a, V> {
@@ -82,16 +86,16 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             smooth,
             exact,
             keep_outs: problem.obstacles.iter().map(KeepOut::outer_of).collect(),
-            begun: Instant::now(),
+            started: Instant::now(),
         }
     }
 
     fn in_time(&self) -> bool {
-        self.begun.elapsed() < self.problem.deadline
+        self.started.elapsed() < self.problem.deadline
     }
 
     fn in_share(&self, share: f64) -> bool {
-        self.begun.elapsed() < self.problem.deadline.mul_f64(share)
+        self.started.elapsed() < self.problem.deadline.mul_f64(share)
     }
 
     fn task(&self, intervals: usize) -> Task<'_, V> {
@@ -146,32 +150,32 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     }
 
     fn find(&self, report: &mut ControlReport) -> Outcome {
-        let mut tried = self.tried(&Settings::default());
+        let mut attempts = self.attempts(&Settings::default());
         let lost =
             |(_, attempt): &(_, Option<Attempt>)| attempt.as_ref().is_none_or(Attempt::is_lost);
-        if tried.iter().all(lost) && self.in_share(STARTS_SHARE) {
-            tried = self.tried(&Settings {
+        if attempts.iter().all(lost) && self.in_share(STARTS_SHARE) {
+            attempts = self.attempts(&Settings {
                 gauss_newton: false,
                 ..Settings::default()
             });
         }
-        let late = tried
+        let late = attempts
             .iter()
             .any(|(report, _)| report.status == Status::OutOfTime);
         let (reports, attempts): (Vec<StartReport>, Vec<Option<Attempt>>) =
-            tried.into_iter().unzip();
+            attempts.into_iter().unzip();
         report.classes = classes(&reports);
         report.starts = reports;
         let attempts: Vec<Attempt> = attempts.into_iter().flatten().collect();
-        match self.finest(&attempts, report) {
+        match self.cheapest_on_fine_grid(&attempts, report) {
             Outcome::Solved(plan) if late || !self.in_time() => Outcome::Deadline(Some(plan)),
             _ if late || !self.in_time() => Outcome::Deadline(None),
             other => other,
         }
     }
 
-    /// What every start leads to, in their order.
-    fn tried(&self, settings: &Settings) -> Vec<(StartReport, Option<Attempt>)> {
+    /// Results of all initial guesses, in their order.
+    fn attempts(&self, settings: &Settings) -> Vec<(StartReport, Option<Attempt>)> {
         let task = self.task(self.intervals);
         let mut starts: Vec<(Start, Option<Profile>)> = family(&task)
             .into_iter()
@@ -186,15 +190,16 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         starts
             .into_par_iter()
             .filter_map(|(start, guess)| {
-                let tried = self.tried_from(&task, start, guess, settings, &keep_going)?;
-                any_feasible.fetch_or(tried.0.feasible, Ordering::Relaxed);
-                Some(tried)
+                let attempt = self.attempt_from(&task, start, guess, settings, &keep_going)?;
+                any_feasible.fetch_or(attempt.0.feasible, Ordering::Relaxed);
+                Some(attempt)
             })
             .collect()
     }
 
-    /// What a start leads to. `None` where the space-time planner has no plan to start from; no attempt where the time is up.
-    fn tried_from(
+    /// Result of one initial guess. `None` where the space-time planner has no plan; no attempt
+    /// after the deadline.
+    fn attempt_from(
         &self,
         task: &Task<V>,
         start: Start,
@@ -228,12 +233,13 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         Some((report, Some(found)))
     }
 
-    /// The cheapest attempt that can be brought to a grid that is fine enough; once the time is up, that is on one.
-    fn finest(&self, attempts: &[Attempt], report: &mut ControlReport) -> Outcome {
+    /// Cheapest attempt that can be refined to a fine enough grid; after the deadline, the cheapest
+    /// that is on one.
+    fn cheapest_on_fine_grid(&self, attempts: &[Attempt], report: &mut ControlReport) -> Outcome {
         let mut unrefined = None;
         for found in cheapest_first(attempts) {
             let fine = self.refined(found);
-            // of several that fail the cheapest is told of
+            // of several failures the cheapest is reported
             if unrefined.is_none() || fine.plan.is_ok() {
                 (report.intervals, report.defect) = (fine.intervals, fine.defect);
             }
@@ -242,13 +248,13 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
                 Err(reason) => unrefined = unrefined.or(Some(reason)),
             }
         }
-        Outcome::Infeasible(unrefined.unwrap_or_else(|| self.locked(attempts)))
+        Outcome::Infeasible(unrefined.unwrap_or_else(|| self.no_plan_reason(attempts)))
     }
 
-    /// The space-time planner's positions at the nodes; at its end after it has arrived.
+    /// Positions of the space-time planner's plan at the nodes; its end point after the arrival.
     fn space_time(&self, task: &Task<V>) -> Option<Profile> {
         let until = self.problem.deadline.mul_f64(SPACE_TIME_SHARE);
-        let left = until.saturating_sub(self.begun.elapsed());
+        let left = until.saturating_sub(self.started.elapsed());
         let planned = space_time::plan(&Problem {
             deadline: left,
             ..self.problem.clone()
@@ -264,30 +270,30 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         Steered::new(task.nodes(&profile.states, &profile.forces)).ok()
     }
 
-    /// An attempt brought to a grid that is fine enough.
+    /// Attempt refined to a fine enough grid.
     fn refined(&self, found: &Attempt) -> Fine {
         let first = self.task(self.intervals);
-        let grid = brought_to(&first, found, &self.exact, &|| self.in_time());
+        let grid = refine_grid(&first, found, &self.exact, &|| self.in_time());
         let Refined {
             intervals, defect, ..
         } = grid;
         let plan = match grid.ended {
-            Ended::Fine => self
+            GridResult::Fine => self
                 .steered(&self.task(intervals), &grid.found.profile)
                 .map(|motion| Plan {
                     trajectory: Trajectory::from(motion),
                     cost: grid.found.objective,
                     graph_cost: None,
-                    // no arrival is asked for
+                    // no arrival is required
                     to_go: 0.0,
                 })
                 .ok_or(NoPlan::NoRoute),
-            Ended::Coarse => Err(NoPlan::Coarse {
+            GridResult::Coarse => Err(NoPlan::Coarse {
                 intervals,
                 off: defect,
                 allowed: tolerance::DEFECT,
             }),
-            Ended::Lost => Err(NoPlan::Lost {
+            GridResult::Lost => Err(NoPlan::Lost {
                 intervals,
                 coarse: self.intervals,
                 why: match grid
@@ -300,7 +306,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
                         self.keep_outs[inside.obstacle].set().name(),
                         inside.time
                     ),
-                    None => said(grid.found.report.status),
+                    None => status_text(grid.found.report.status),
                 },
             }),
         };
@@ -311,8 +317,8 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         }
     }
 
-    /// Why none of the attempts is a plan.
-    fn locked(&self, attempts: &[Attempt]) -> NoPlan {
+    /// Reason why none of the attempts is a plan.
+    fn no_plan_reason(&self, attempts: &[Attempt]) -> NoPlan {
         let starts = attempts.len();
         let solved = attempts
             .iter()
@@ -323,11 +329,11 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             let status = attempts.first().map(|a| a.report.status);
             return NoPlan::Unsolved {
                 starts,
-                why: status.map_or_else(|| "no start".to_owned(), said),
+                why: status.map_or_else(|| "no start".to_owned(), status_text),
             };
         };
         let set = self.keep_outs[inside.obstacle].set();
-        // in the direction of the narrower half width at least this deep
+        // least depth in the direction of the narrower half width
         let section = set.outer_section(inside.time);
         let narrow = section
             .semi_axes()
@@ -343,15 +349,15 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     }
 }
 
-/// A plan on a grid that is fine enough, or why there is none.
+/// Plan on a fine enough grid, or the reason why there is none.
 struct Fine {
     plan: Result<Plan, NoPlan>,
     intervals: usize,
     defect: f64,
 }
 
-/// How a solve ended, and what may be done about it.
-fn said(status: Status) -> String {
+/// Solver status in words, with a remedy.
+fn status_text(status: Status) -> String {
     match hint(status) {
         Some(hint) => format!("{status}; {hint}"),
         None => status.to_string(),
@@ -372,12 +378,12 @@ fn hint(status: Status) -> Option<&'static str> {
     }
 }
 
-/// The feasible ones, the cheapest first; of equals the earlier one.
+/// Feasible attempts, cheapest first; among equals the earlier one.
 fn cheapest_first(attempts: &[Attempt]) -> Vec<&Attempt> {
     let mut left: Vec<&Attempt> = attempts.iter().filter(|a| a.is_feasible()).collect();
-    // stable; then those that are one plan in the order of their starts
+    // stable; then attempts with the same plan in the order of their initial guesses
     left.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-    let same = |a: &Attempt, b: &Attempt| !(a.objective < b.objective * (1.0 - SAME));
+    let same = |a: &Attempt, b: &Attempt| !(a.objective < b.objective * (1.0 - SAME_OBJECTIVE));
     left.dedup_by(|next, kept| same(kept, next));
     left
 }

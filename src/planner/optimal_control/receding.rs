@@ -1,33 +1,33 @@
-//! The same plan a moment later: solved again from where it was, for a controller that looks ahead.
+//! Receding-horizon control: repeats the optimisation as the ship moves, with a warm start.
 
-use super::attempt::{Attempt, attempt, go_on};
+use super::attempt::{Attempt, attempt, resume};
 use super::keep_out::KeepOut;
 use super::solver::{Iterate, RowPoint, Settings, Workspace};
 use super::task::{Profile, Task};
 use crate::vessel::{Manoeuvring, StateVector};
 
-/// The barrier to begin with after one interval.
+/// Initial barrier parameter after one interval.
 const BARRIER: f64 = 1e-4;
 
-/// A plan that moves on with the ship: each step drops the first interval, adds one at the end and solves again from the
-/// states, forces and multipliers at hand.
+/// Plan that moves with the ship. Each step drops the first interval, adds one at the end, and
+/// solves again from the current states, forces and multipliers.
 #[derive(Debug, Clone)]
 pub struct RecedingHorizon {
     attempt: Attempt,
     settings: Settings,
 }
 
-/// What is new after an interval.
+/// Measurements after an interval.
 #[derive(Debug, Clone, Copy)]
 pub struct Measured<'a> {
-    /// Where the ship is.
+    /// Measured state.
     pub state: StateVector,
-    /// The sets, as many as before and in the same order, on the clock of the task.
+    /// Sets in the same number and order as before, in the clock of the task.
     pub keep_outs: &'a [KeepOut],
 }
 
 impl RecedingHorizon {
-    /// The first plan, from a guess.
+    /// First plan, from a guess.
     pub fn new<V: Manoeuvring>(
         task: &Task<V>,
         guess: &Profile,
@@ -40,13 +40,13 @@ impl RecedingHorizon {
         }
     }
 
-    /// The plan at hand.
+    /// Current plan.
     pub fn plan(&self) -> &Attempt {
         &self.attempt
     }
 
-    /// Moves `task` on by one interval and solves again. A plan with another number of sets than the rows know is
-    /// solved without their multipliers.
+    /// Moves `task` on by one interval and solves again. With another number of sets, the
+    /// multipliers of the rows are discarded.
     pub fn step<'a, V: Manoeuvring>(
         &mut self,
         task: &Task<'a, V>,
@@ -62,7 +62,7 @@ impl RecedingHorizon {
         let mut problem = next.transcription();
         let mut iterate = shifted(&self.attempt.iterate);
         let known = measured.keep_outs.len();
-        // rows between the nodes stay where they are in their interval
+        // rows between the nodes keep their fraction of the interval
         let mut rows = Vec::new();
         let mut taken = 0;
         for (k, old) in self.attempt.rows.iter().enumerate() {
@@ -95,12 +95,12 @@ impl RecedingHorizon {
             barrier: BARRIER,
             ..self.settings
         };
-        self.attempt = go_on(&next, problem, iterate, work, &settings, keep_going);
+        self.attempt = resume(&next, problem, iterate, work, &settings, keep_going);
         next
     }
 }
 
-/// One interval on: the last one twice.
+/// Iterate moved on by one interval; the last one is repeated.
 fn shifted(old: &Iterate<6, 3>) -> Iterate<6, 3> {
     fn on<T: Clone>(values: &[T]) -> Vec<T> {
         values

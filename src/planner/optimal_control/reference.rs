@@ -1,20 +1,20 @@
-//! What the stage cost measures from: the desired trajectory as a state at a time.
+//! Reference of the stage cost: the desired trajectory as a state over time.
 
 use crate::frame::heading_of;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::StateVector;
 
-/// Which leg counts where two meet.
+/// Leg that counts at a waypoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
-    /// The one that ends.
+    /// Leg that ends there.
     Before,
-    /// The one that begins.
+    /// Leg that begins there.
     After,
 }
 
-/// The state of the desired trajectory at `time`: its position, the heading and speed of its leg, neither sway nor
-/// turn; standing still at its end once it is over.
+/// State of the desired trajectory at `time`: position, heading and speed of its leg, zero sway and
+/// yaw rate. After its end, at rest there.
 pub fn reference(desired: &DesiredTrajectory, time: f64, side: Side) -> StateVector {
     let legs = desired.legs();
     let index = match side {
@@ -40,7 +40,7 @@ mod tests {
     use crate::frame::Vector;
 
     #[test]
-    fn corners_and_the_end_belong_to_the_side_asked_for() {
+    fn corners_and_the_end_belong_to_the_requested_side() {
         let points = [(0.0, 0.0), (10.0, 0.0), (10.0, 6.0)].map(|(x, y)| Vector::new(x, y));
         let desired = DesiredTrajectory::new(&points, &[1.0, 2.0]).expect("valid");
         let at = |time, side| reference(&desired, time, side);

@@ -1,58 +1,60 @@
-//! How a plan of forces was found.
+//! Report of an optimal-control plan.
 
 use super::guess::Start;
 use super::solver::Status;
 use crate::frame::Side;
 use crate::planner::Planned;
 
-/// What came of one start.
+/// Result of one initial guess.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartReport {
-    /// Which.
+    /// Kind of guess.
     pub start: Start,
-    /// How its solve ended.
+    /// Solver status.
     pub status: Status,
     /// True when solved and clear of every set.
     pub feasible: bool,
-    /// The integral of the stage cost.
+    /// Integral of the stage cost.
     pub objective: f64,
-    /// Steps of the solver.
+    /// Solver iterations.
     pub iterations: usize,
-    /// Per set the side on which it is passed.
+    /// Side on which each set is passed.
     pub sides: Vec<Option<Side>>,
 }
 
-/// Plans that pass every set alike.
+/// Plans that pass every set on the same side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HomotopyClass {
-    /// Per set the side on which it lies when nearest; `None` where it is far.
+    /// Side of each set at its closest approach; `None` where it stays far away.
     pub sides: Vec<Option<Side>>,
-    /// The least objective found.
+    /// Least objective found.
     pub objective: f64,
-    /// Starts that led there.
+    /// Number of initial guesses that led to it.
     pub starts: usize,
 }
 
-/// How a plan of forces was found.
+/// Report of an optimal-control plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControlReport {
-    /// Every start, in their order.
+    /// Results of all initial guesses, in their order.
     pub starts: Vec<StartReport>,
-    /// The classes of the feasible plans, the cheapest first.
+    /// Classes of the feasible plans, cheapest first.
     pub classes: Vec<HomotopyClass>,
-    /// Intervals of the grid of the starts: their objectives, and those of the classes, are on it.
+    /// Number of intervals for the initial guesses; their objectives, and those of the classes,
+    /// refer to it.
     pub start_intervals: usize,
-    /// Intervals of the plan's grid; without a plan of the last one that was tried.
+    /// Number of intervals of the plan; without a plan, of the last grid tried.
     pub intervals: usize,
-    /// The largest deviation at the end of an interval on that grid, in the ship's units; NaN where no start led to a plan.
+    /// Largest deviation at the end of an interval on that grid, in the ship's units; NaN where no
+    /// initial guess led to a plan.
     pub defect: f64,
 }
 
-/// A plan of forces and how it was found.
+/// Optimal-control plan with its report.
 #[derive(Debug, Clone)]
 pub struct Controlled {
-    /// The verdict; the cost of a plan is the integral of the stage cost, its horizon the problem's.
+    /// Result; a plan's cost is the integral of the stage cost up to the problem's horizon.
     pub planned: Planned,
-    /// How.
+    /// Report.
     pub report: ControlReport,
 }

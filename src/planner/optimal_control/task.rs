@@ -1,4 +1,4 @@
-//! What one solve is asked, and how it becomes stages.
+//! Optimal control task, and its conversion to stages.
 
 use super::keep_out::KeepOut;
 use super::reference::{Side, reference};
@@ -8,60 +8,61 @@ use crate::frame::{Pose, Vector as Place};
 use crate::trajectory::{DesiredTrajectory, Node};
 use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 
-/// Of the interval: where every set is kept out of before it is known where it is deepest.
+/// Fractions of every interval at which all sets are constrained from the start.
 const BASE_FRACTIONS: [f64; 2] = [0.5, 1.0];
 
-/// How the cost weighs and what the forces may be.
+/// Cost weights and force limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Controls {
-    /// To either side of zero: newtons, newtons, newton metres.
+    /// Force limits to either side of zero: newtons, newtons, newton metres.
     pub force_limits: ForceVector,
-    /// Of the stage cost.
+    /// Weights of the stage cost.
     pub weights: Weights,
 }
 
-/// From a state at a time on: stay near the desired trajectory, out of every set, at least cost.
+/// Task from a state at a time on: stay near the desired trajectory and out of every set, at least
+/// cost.
 #[derive(Debug, Clone, Copy)]
 pub struct Task<'a, V> {
-    /// The ship, smooth.
+    /// Ship model with smoothed damping.
     pub vessel: &'a V,
     /// Cost and limits.
     pub controls: Controls,
-    /// Where she is meant to be, and when.
+    /// Desired trajectory.
     pub desired: &'a DesiredTrajectory,
-    /// The sets.
+    /// Sets to keep out of.
     pub keep_outs: &'a [KeepOut],
-    /// Where she is.
+    /// Initial state.
     pub first: StateVector,
-    /// When that is, seconds on the clock of sets and desired trajectory.
+    /// Initial time in the clock of the sets and the desired trajectory, seconds.
     pub start_time: f64,
-    /// Seconds.
+    /// Duration, seconds.
     pub duration: f64,
-    /// Of the duration, at least one.
+    /// Number of intervals, at least one.
     pub intervals: usize,
 }
 
 /// States at the nodes and forces between them, SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// One more than intervals.
+    /// States, one more than intervals.
     pub states: Vec<StateVector>,
-    /// Per interval.
+    /// Forces, one per interval.
     pub forces: Vec<ForceVector>,
 }
 
 impl<'a, V: Manoeuvring> Task<'a, V> {
-    /// Seconds of one interval.
+    /// Length of one interval, seconds.
     pub fn step(&self) -> f64 {
         self.duration / self.intervals as f64
     }
 
-    /// The time at the start of an interval, or at the end for the number of intervals.
+    /// Time at the start of an interval; with the number of intervals, at the end.
     pub fn time(&self, interval: usize) -> f64 {
         self.start_time + self.duration * interval as f64 / self.intervals as f64
     }
 
-    /// The stages, with rows at the middle and end of every interval.
+    /// Stages with rows at the middle and end of every interval.
     #[doc(hidden)]
     pub fn transcription(&self) -> Transcription<'a, V> {
         let half = 0.5 * self.step();
@@ -88,7 +89,8 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
         stages
     }
 
-    /// The largest weight in the ship's own units, those of time included: ships of every size are one problem to the solver.
+    /// Largest weight in the ship's own units, including time. Scaling by it makes ships of every
+    /// size the same problem to the solver.
     fn cost_unit(&self) -> f64 {
         let (scales, weights) = (self.vessel.scales(), self.controls.weights);
         let time = scales.state[0] / scales.state[3];
@@ -98,20 +100,20 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
         if most > 0.0 { most * time } else { 1.0 }
     }
 
-    /// The rows that an interval has from the start.
+    /// Rows of an interval before any are added.
     pub(super) fn base_rows(&self, interval: usize) -> impl Iterator<Item = Row> + '_ {
         BASE_FRACTIONS.into_iter().flat_map(move |fraction| {
             (0..self.keep_outs.len()).map(move |i| self.row(interval, i, fraction))
         })
     }
 
-    /// A row at a fraction of an interval.
+    /// Row at a fraction of an interval.
     pub(super) fn row(&self, interval: usize, obstacle: usize, fraction: f64) -> Row {
         let time = self.time(interval) + fraction * self.step();
         Row::new(obstacle, fraction, self.keep_outs[obstacle].at(time))
     }
 
-    /// The nodes of a motion; the last one holds no force.
+    /// Nodes of a motion; the last one has zero force.
     pub fn nodes(&self, states: &[StateVector], forces: &[ForceVector]) -> Vec<Node> {
         states
             .iter()
@@ -124,7 +126,7 @@ impl<'a, V: Manoeuvring> Task<'a, V> {
     }
 }
 
-/// A state and forces as a node of a trajectory.
+/// State and forces as a node of a trajectory.
 pub fn node(time: f64, state: &StateVector, force: &ForceVector) -> Node {
     Node {
         time,

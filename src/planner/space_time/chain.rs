@@ -1,14 +1,14 @@
-//! Lines and arcs put one after another at one speed.
+//! Trajectory of consecutive lines and arcs at constant speed.
 
 use crate::frame::Pose;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// A motion while it is put together.
+/// Motion under construction.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
     pub segments: Vec<Segment>,
-    /// Where and when it ends so far.
+    /// Pose and time at its current end.
     pub pose: Pose,
     pub time: f64,
     speed: f64,
@@ -16,7 +16,7 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    /// An empty motion from a pose at a time, at a positive speed, with a turning radius.
+    /// Empty motion from a pose and time, with a positive speed and a turning radius.
     pub(crate) fn new(pose: Pose, time: f64, speed: f64, radius: f64) -> Self {
         Self {
             segments: Vec::with_capacity(6),
@@ -27,12 +27,12 @@ impl Chain {
         }
     }
 
-    /// An arc of a signed length in metres, to port positive.
+    /// Appends an arc of signed length in metres, to port positive.
     pub(crate) fn arc(&mut self, length: f64) {
         self.push(length.abs(), length.signum() / self.radius);
     }
 
-    /// A line of a length in metres.
+    /// Appends a line of the given length in metres.
     pub(crate) fn line(&mut self, length: f64) {
         self.push(length, 0.0);
     }

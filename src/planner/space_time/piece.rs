@@ -1,52 +1,55 @@
-//! A part of an obstacle that is convex in space-time, and when it is in force.
+//! Convex piece: a part of an obstacle that is convex in space-time, with its time window.
 //!
-//! A polytope and an ellipsoid are one part each, in force for ever. Velocity sets one after another are one
-//! polytope per slab; its time counts from the slab's start. Every point of an obstacle up to the horizon is in
-//! a part that is in force at its time, and in none else, but that those without an interior are grown: to be clear of
-//! the parts is to be clear of the obstacle.
+//! A polytope and an ellipsoid are one piece each, without a window. Consecutive velocity sets give
+//! one polytope per slab, whose time counts from the slab's start. Until the horizon, the union of
+//! the pieces that exist at a time is the obstacle's section. The only exceptions are pieces
+//! without an interior, which are enlarged. A motion that is clear of the pieces is clear of the
+//! obstacle.
 
 use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 
-/// The graph aims at a polytope that contains the ellipsoid, unless that takes a greater factor than this: then at
-/// one that does not, and what meets the ellipsoid is refused by the contact test.
-const MOST_GROWTH: f64 = 2.0;
+/// The graph uses a polytope that contains the ellipsoid, unless that needs a larger factor than
+/// this. Then it uses one that does not; the contact test rejects motions that meet the ellipsoid.
+const MAX_GROWTH: f64 = 2.0;
 
-/// See the head of the file.
+/// Convex piece of an obstacle.
 #[derive(Debug)]
 pub(crate) struct Piece {
     /// Index of the obstacle.
     pub obstacle: usize,
-    /// Until when it is in force, and since when: `None` for ever.
+    /// Time window; `None` for ever.
     pub window: Option<Window>,
     pub body: Body,
 }
 
-/// Seconds.
+/// Time window, seconds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Window {
     pub start: f64,
     pub end: f64,
 }
 
-/// What a part is made of.
+/// Shape of a convex piece.
 #[derive(Debug)]
 pub(crate) enum Body {
     Polytope(PolytopeObstacle),
-    Ellipsoid(Box<Rounded>),
+    Ellipsoid(Box<BoundedEllipsoid>),
 }
 
-/// An ellipsoid between two polytopes.
+/// Ellipsoid between two polytopes.
 #[derive(Debug)]
-pub(crate) struct Rounded {
+pub(crate) struct BoundedEllipsoid {
     pub exact: EllipsoidObstacle,
-    /// Two 16-gons around its sets, grown by what the ellipsoid exceeds their sum.
+    /// Outer polytope: two 16-gons around its sets, enlarged by the excess of the ellipsoid over
+    /// their sum.
     pub around: PolytopeObstacle,
-    /// Two polygons of 16 points of the edges of its sets: within the sum, which is within the ellipsoid.
+    /// Inner polytope: two polygons of 16 boundary points of its sets. It is within their sum,
+    /// which is within the ellipsoid.
     pub within: PolytopeObstacle,
 }
 
-/// The parts of all obstacles until the horizon, in their order.
+/// Convex pieces of all obstacles until the horizon, in their order.
 pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
     let mut pieces = Vec::with_capacity(obstacles.len());
     for (obstacle, o) in obstacles.iter().enumerate() {
@@ -59,7 +62,7 @@ pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
         };
         match o.outer_with_interior() {
             Obstacle::Polytope(polytope) => push(None, Body::Polytope(polytope)),
-            Obstacle::Ellipsoid(ellipsoid) => push(None, rounded(*ellipsoid, horizon)),
+            Obstacle::Ellipsoid(ellipsoid) => push(None, bounded_ellipsoid(*ellipsoid, horizon)),
             Obstacle::Slabs(slabs) => {
                 for slab in slabs.slabs() {
                     let window = (slabs.slabs().len() > 1).then_some(Window {
@@ -76,18 +79,18 @@ pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
     pieces
 }
 
-fn rounded(exact: EllipsoidObstacle, horizon: f64) -> Body {
-    let growth = exact.largest_ratio_to_sum(horizon).min(MOST_GROWTH);
+fn bounded_ellipsoid(exact: EllipsoidObstacle, horizon: f64) -> Body {
+    let growth = exact.largest_ratio_to_sum(horizon).min(MAX_GROWTH);
     let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(DISC_SIDES);
     let within = |e: &Ellipse| {
-        // points of a finite ellipse are finite
+        // boundary points of a finite ellipse are finite
         ConvexPolygon::hull(&e.sampled_boundary(DISC_SIDES))
             .unwrap_or_else(|_| ConvexPolygon::point(e.center()))
     };
     let polytope = |set: &dyn Fn(&Ellipse) -> ConvexPolygon| {
         PolytopeObstacle::new("", set(exact.initial()), set(exact.velocity()))
     };
-    Body::Ellipsoid(Box::new(Rounded {
+    Body::Ellipsoid(Box::new(BoundedEllipsoid {
         around: polytope(&around),
         within: polytope(&within),
         exact,

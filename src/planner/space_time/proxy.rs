@@ -1,32 +1,30 @@
-//! The parts of the obstacles of one problem with what a quick test needs.
+//! Obstacle proxies: convex pieces with the data of a fast contact test.
 
 use crate::frame::{Pose, Vector, cross, to_port};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
 use crate::planner::Problem;
 use crate::planner::space_time::piece::{Body, Piece, Window};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
 
-/// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of what a checker
-/// rejects.
-pub(crate) const TOUCH_M: f64 = 1e-7;
-
-/// Metres by which a disc stays out of own ship's reach that she cannot meet: far more than roundings.
+/// Metres by which a disc must stay out of own ship's reach to be ignored: much larger than
+/// rounding errors.
 const REACH_M: f64 = 1e-3;
 
-/// A part of an obstacle inside a growing disc that moves with its middle.
+/// Convex piece inside a growing, moving disc.
 #[derive(Debug)]
 pub(crate) struct Proxy<'a> {
     /// Index of the obstacle.
     pub obstacle: usize,
-    /// The part, where it is a polytope; of an ellipsoid, the polytope around it. Its time counts from the window's
-    /// start.
+    /// Polytope of the piece; for an ellipsoid its outer polytope. Its time counts from the
+    /// window's start.
     pub body: &'a PolytopeObstacle,
-    /// A polytope within the part: to be clear of the part is to be clear of it.
+    /// Polytope within the piece: a motion clear of the piece is clear of it.
     pub within: &'a PolytopeObstacle,
-    /// The part, where it is an ellipsoid.
-    pub round: Option<&'a EllipsoidObstacle>,
-    /// When the part is in force; `None` for ever.
+    /// Ellipsoid of the piece, where it is one.
+    pub ellipsoid: Option<&'a EllipsoidObstacle>,
+    /// Time window of the piece; `None` for ever.
     pub window: Option<Window>,
     centre: Vector,
     drift: Vector,
@@ -36,13 +34,13 @@ pub(crate) struct Proxy<'a> {
 
 impl<'a> Proxy<'a> {
     pub(crate) fn new(part: &'a Piece) -> Self {
-        let (body, within, round) = match &part.body {
+        let (body, within, ellipsoid) = match &part.body {
             Body::Polytope(polytope) => (polytope, polytope, None),
             Body::Ellipsoid(e) => (&e.around, &e.within, Some(&e.exact)),
         };
         let (centre, drift) = (body.initial().centroid(), body.velocity().centroid());
-        let (radius, growth) = match round {
-            // the root of the trace of the outer section is the sum of those of the two sets
+        let (radius, growth) = match ellipsoid {
+            // the root of the trace of the outer section is the sum of the roots of the two sets
             Some(e) => (root_of_trace(e.initial()), root_of_trace(e.velocity())),
             None => (
                 body.initial().translated(-centre).reach(),
@@ -53,7 +51,7 @@ impl<'a> Proxy<'a> {
             obstacle: part.obstacle,
             body,
             within,
-            round,
+            ellipsoid,
             window: part.window,
             centre,
             drift,
@@ -62,14 +60,14 @@ impl<'a> Proxy<'a> {
         }
     }
 
-    /// A polytope that does not move and is in force for ever.
+    /// Polytope at rest, without a time window.
     pub(crate) fn at_rest(obstacle: usize, body: &'a PolytopeObstacle) -> Self {
         let centre = body.initial().centroid();
         Self {
             obstacle,
             body,
             within: body,
-            round: None,
+            ellipsoid: None,
             window: None,
             centre,
             drift: Vector::zeros(),
@@ -78,31 +76,32 @@ impl<'a> Proxy<'a> {
         }
     }
 
-    /// False where own ship cannot meet it until the horizon, whatever she does: as fast as she is, the disc around it stays out
-    /// of her reach. True where that is not known.
+    /// False where own ship cannot meet it until the horizon: the enclosing disc stays out of own
+    /// ship's reach at the greatest speed. True where that is unknown.
     fn is_within_reach(&self, own: &OwnShip, horizon: f64) -> bool {
         let start = self.start();
         let (from, to) = self
             .window
             .map_or((0.0, horizon), |w| (w.start, w.end.min(horizon)));
-        // at time t the disc is so far from where own ship started, less her way by then
+        // distance of the disc from own ship's start, minus the distance that own ship can have
+        // sailed
         let apart = self.centre - self.drift * start - own.pose.position;
         let closing = self.growth + own.max_speed();
         let spare = |t: f64| {
             (apart + self.drift * t).norm() - (self.radius - self.growth * start) - closing * t
         };
-        // convex in time: least at an end, or where its rate is zero
+        // convex in time: the minimum is at an end, or where the rate is zero
         let square = self.drift.norm_squared() - closing * closing;
         let along = apart.dot(&self.drift) / self.drift.norm_squared();
         let across = cross(self.drift, apart).abs() / self.drift.norm();
         let least = closing * across / (self.drift.norm() * square.max(0.0).sqrt()) - along;
-        // a NaN is the beginning
+        // a NaN becomes the beginning
         let least = least.max(from).min(to);
-        // negated on purpose: a NaN is within
+        // negated on purpose: a NaN is within reach
         ![from, least, to].into_iter().all(|t| spare(t) > REACH_M)
     }
 
-    /// A disc around it at a time, metres; `None` while it is not in force.
+    /// Enclosing disc at a time, metres; `None` outside the time window.
     pub(crate) fn disc_at(&self, time: f64) -> Option<(Vector, f64)> {
         let is_over = |w: Window| !(time >= w.start && time <= w.end);
         if self.window.is_some_and(is_over) {
@@ -115,25 +114,25 @@ impl<'a> Proxy<'a> {
         ))
     }
 
-    /// m/s, of the middle of the disc.
+    /// Velocity of the disc's centre, m/s.
     pub(crate) fn drift(&self) -> Vector {
         self.drift
     }
 
-    /// An upper bound of how fast any of it moves, m/s.
+    /// Upper bound of the speed of all its points, m/s.
     pub(crate) fn speed(&self) -> f64 {
         self.drift.norm() + self.growth
     }
 
-    /// Seconds: when the clock of the part starts.
+    /// Start of the piece's clock, seconds.
     pub(crate) fn start(&self) -> f64 {
         self.window.map_or(0.0, |w| w.start)
     }
 
-    /// What of a segment is sailed while the part is in force, by the clock of the part.
+    /// Part of a segment within the time window, in the clock of the piece.
     #[cold]
     #[inline(never)]
-    fn meanwhile(window: &Window, segment: &Segment) -> Option<Segment> {
+    fn during(window: &Window, segment: &Segment) -> Option<Segment> {
         if segment.start_time > window.end || segment.end_time() < window.start {
             return None;
         }
@@ -144,18 +143,18 @@ impl<'a> Proxy<'a> {
         })
     }
 
-    /// A lower bound of the distance between the segment and the part, metres; negative says nothing, and
-    /// infinity that the part is not in force.
+    /// Lower bound of the distance between the segment and the piece, metres. A negative value says
+    /// nothing; infinity means that the piece does not exist then.
     #[inline]
     pub(crate) fn clearance_bound(&self, segment: &Segment) -> f64 {
         match &self.window {
             None => self.local_clearance_bound(segment),
-            Some(window) => Self::meanwhile(window, segment)
+            Some(window) => Self::during(window, segment)
                 .map_or(f64::INFINITY, |s| self.local_clearance_bound(&s)),
         }
     }
 
-    /// The same for one whose place halfway is known.
+    /// [`Self::clearance_bound`] for a segment with a known midpoint.
     #[inline]
     pub(crate) fn clearance_bound_about(&self, segment: &Segment, middle: Vector) -> f64 {
         match &self.window {
@@ -177,8 +176,8 @@ impl<'a> Proxy<'a> {
         apart.norm() - closing - self.radius - self.growth * segment.end_time()
     }
 
-    /// Metres from the section, negative inside: of a polytope the slack, of an ellipsoid the distance; `None` while the
-    /// part is not in force.
+    /// Signed distance from the section in metres, negative inside: the slack of a polytope, the
+    /// distance of an ellipsoid. `None` outside the time window.
     pub(crate) fn slack(&self, position: Vector, time: f64) -> Option<f64> {
         if let Some(w) = &self.window
             && !(time >= w.start && time <= w.end)
@@ -186,14 +185,14 @@ impl<'a> Proxy<'a> {
             return None;
         }
         let local = time - self.start();
-        Some(match self.round {
+        Some(match self.ellipsoid {
             Some(ellipsoid) => ellipsoid.signed_distance(position, local).distance,
             None => self.body.slack(position, local).value,
         })
     }
 
-    /// Metres between a hull at a pose and the section, by the axes of both: negative in overlap, else at most so far;
-    /// `None` while the part is not in force.
+    /// Separation between a hull at a pose and the section along the axes of both, metres: negative
+    /// in overlap, else a lower bound of the distance. `None` outside the time window.
     pub(crate) fn clearance_of(&self, hull: &Hull, pose: &Pose, time: f64) -> Option<f64> {
         self.disc_at(time)?;
         let (local, ahead) = (time - self.start(), pose.ahead());
@@ -210,8 +209,8 @@ impl<'a> Proxy<'a> {
         Some(theirs.chain(ours).fold(f64::NEG_INFINITY, f64::max))
     }
 
-    /// Metres from a point inside to the boundary of the section in a direction.
-    pub(crate) fn way_out(&self, position: Vector, time: f64, toward: Vector) -> f64 {
+    /// Distance from a point inside to the boundary of the section in a direction, metres.
+    pub(crate) fn exit_distance(&self, position: Vector, time: f64, toward: Vector) -> f64 {
         let local = time - self.start();
         self.body
             .faces()
@@ -221,7 +220,7 @@ impl<'a> Proxy<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Position and velocity relative to the middle of the part; `None` while it is not in force.
+    /// Position and velocity relative to the centre of the piece; `None` outside the time window.
     pub(crate) fn relative(
         &self,
         position: Vector,
@@ -239,12 +238,12 @@ impl<'a> Proxy<'a> {
         ))
     }
 
-    /// The first instant at which the segment is inside, deeper than touching.
+    /// First instant at which the segment is inside, deeper than touching.
     pub(crate) fn first_contact(&self, segment: &Segment) -> Option<f64> {
         let Some(window) = &self.window else {
             return self.local_contact(segment);
         };
-        let local = Self::meanwhile(window, segment)?;
+        let local = Self::during(window, segment)?;
         self.local_contact(&local).map(|t| t + window.start)
     }
 
@@ -252,25 +251,25 @@ impl<'a> Proxy<'a> {
         if self.local_clearance_bound(segment) > 0.0 {
             return None;
         }
-        match self.round {
-            Some(ellipsoid) => round_contact(ellipsoid, segment),
+        match self.ellipsoid {
+            Some(ellipsoid) => ellipsoid_contact(ellipsoid, segment),
             None => contact::first_contact(self.body, segment, TOUCH_M),
         }
     }
 
-    /// True when the segment, whose place halfway is `middle`, is inside, deeper than touching.
+    /// True when the segment with midpoint `middle` is inside, deeper than touching.
     fn meets_about(&self, segment: &Segment, middle: Vector) -> bool {
         match &self.window {
             None => self.local_meets(segment, middle),
-            Some(window) => Self::meanwhile(window, segment)
+            Some(window) => Self::during(window, segment)
                 .is_some_and(|s| self.local_meets(&s, s.middle().position)),
         }
     }
 
     fn local_meets(&self, segment: &Segment, middle: Vector) -> bool {
         self.bound_about(segment, middle) <= 0.0
-            && match self.round {
-                Some(ellipsoid) => round_contact(ellipsoid, segment).is_some(),
+            && match self.ellipsoid {
+                Some(ellipsoid) => ellipsoid_contact(ellipsoid, segment).is_some(),
                 None => contact::meets(self.body, segment, TOUCH_M),
             }
     }
@@ -281,15 +280,15 @@ fn root_of_trace(set: &crate::geometry::Ellipse) -> f64 {
     a.norm().hypot(b.norm())
 }
 
-/// A line that does not touch at all is decided in closed form.
-fn round_contact(ellipsoid: &EllipsoidObstacle, segment: &Segment) -> Option<f64> {
+/// First contact with an ellipsoid. A line that does not touch it is decided in closed form.
+fn ellipsoid_contact(ellipsoid: &EllipsoidObstacle, segment: &Segment) -> Option<f64> {
     if !segment.is_arc() {
         ellipsoid.first_contact(segment, 0.0)?;
     }
     ellipsoid.first_contact(segment, TOUCH_M)
 }
 
-/// The first obstacle, in their order, that the first segment to meet any meets deeper than touching.
+/// First obstacle, in their order, that the first segment in contact meets deeper than touching.
 pub(crate) fn first_met(proxies: &[Proxy], segments: &[Segment]) -> Option<usize> {
     segments.iter().find_map(|s| {
         let middle = s.middle().position;
@@ -298,8 +297,8 @@ pub(crate) fn first_met(proxies: &[Proxy], segments: &[Segment]) -> Option<usize
     })
 }
 
-/// The first contact of a chain of segments with any obstacle: `(obstacle, time)`; of several at one
-/// instant the first obstacle.
+/// First contact of a chain of segments with any obstacle: `(obstacle, time)`. Among simultaneous
+/// contacts the first obstacle counts.
 pub(crate) fn first_contact(proxies: &[Proxy], segments: &[Segment]) -> Option<(usize, f64)> {
     for segment in segments {
         let hit = proxies
@@ -313,7 +312,8 @@ pub(crate) fn first_contact(proxies: &[Proxy], segments: &[Segment]) -> Option<(
     None
 }
 
-/// The proxies that own ship can meet until the horizon: the broad phase. What follows costs as much as these.
+/// Broad phase: proxies that own ship can meet until the horizon. All later costs are proportional
+/// to their number.
 pub(crate) fn within_reach<'a>(problem: &Problem, pieces: &'a [Piece]) -> Vec<Proxy<'a>> {
     let proxies = pieces.iter().map(Proxy::new);
     proxies
@@ -321,7 +321,7 @@ pub(crate) fn within_reach<'a>(problem: &Problem, pieces: &'a [Piece]) -> Vec<Pr
         .collect()
 }
 
-/// The proxies of each obstacle, in their order.
+/// Proxies grouped by obstacle, in their order.
 pub(crate) fn by_obstacle<'h, 'a>(
     proxies: &'h [Proxy<'a>],
 ) -> impl Iterator<Item = &'h [Proxy<'a>]> {
@@ -335,9 +335,10 @@ mod tests {
     use crate::geometry::{ConvexPolygon, outer_disc};
     use rand::{Rng, SeedableRng};
 
-    /// Against the same at many instants, for sets that move, stand still, come toward own ship and go away, and parts of them.
+    /// Compares with sampling, for sets that move, rest, approach and recede, and for pieces with
+    /// time windows.
     #[test]
-    fn what_is_out_of_reach_is_never_in_it() {
+    fn proxies_out_of_reach_are_never_met() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
         let (mut within, mut beyond) = (0, 0);
         for case in 0..4000 {
@@ -386,7 +387,7 @@ mod tests {
                 .fold(f64::INFINITY, f64::min);
             if proxy.is_within_reach(&own, horizon) {
                 within += 1;
-                // an instant is at most so far from those that were looked at
+                // distance of an instant from the nearest sample
                 assert!(least <= REACH_M + 0.05 * 30.0, "{least}");
             } else {
                 beyond += 1;

@@ -1,5 +1,5 @@
-//! The route: the desired path as own ship can sail it, from her own pose to the last waypoint, with
-//! the time at which she is due at each place; and the policy that follows it.
+//! Route: the desired path as own ship can sail it, from its own pose to the last waypoint, with a
+//! schedule and the policy that follows it.
 
 use crate::frame::{Pose, cross, heading_of, wrap};
 use crate::planner::Problem;
@@ -9,48 +9,51 @@ use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::dubins;
 
-/// Seconds. Less lateness than this is on time.
+/// Seconds. A smaller deviation from the schedule counts as on time.
 const ON_TIME_S: f64 = 1e-6;
 
-/// Places ahead of the nearest one at which own ship may join the path, in turning radii.
+/// Joining points ahead of the nearest point of the path, in turning radii.
 const JOINS: [f64; 10] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0, 14.0];
 
-/// Turning radii. A waypoint nearer than this to the last one, without room for its corner, is not passed.
+/// Turning radii. A waypoint nearer than this to the last one, without room for its corner, is
+/// skipped.
 const SKIPPED_RADII: f64 = 4.0;
 
-/// Metres. No change of speed is closer to another: what is left of a piece shrinks below its rounding otherwise.
+/// Least distance between two changes of speed, metres. Shorter remainders of a piece would vanish
+/// in rounding.
 const SHORTEST_M: f64 = 1e-3;
 
 /// Metres between two returns to schedule where the desired speed is not one of own ship's.
 const ALTERNATION_M: f64 = 400.0;
 
-/// Metres of the faster part at least: a speed that is nearly own ship's would be mixed from thousands of parts.
+/// Least length of the faster part, metres. A speed very close to own ship's would otherwise be
+/// mixed from thousands of parts.
 const LEAST_ALTERNATION_M: f64 = 50.0;
 
-/// A line or an arc of the route.
+/// Line or arc of the route.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
+struct RoutePiece {
     start: Pose,
-    /// Metres along the route at which it begins.
+    /// Distance along the route at its start, metres.
     distance: f64,
     length: f64,
-    /// Radians per metre, to port positive.
+    /// Curvature, radians per metre, to port positive.
     curvature: f64,
-    /// Seconds at which own ship is due at its start, and how many more per metre.
+    /// Scheduled time at its start, and seconds per metre along it.
     due: f64,
     slowness: f64,
-    /// The leg that it lies on, where it is straight on one.
+    /// Leg that it lies on, where it is straight on one.
     leg: Option<usize>,
-    /// Speed at which it is sailed whatever is due: the joining manoeuvre.
+    /// Speed regardless of the schedule: set for the joining manoeuvre.
     speed: Option<f64>,
 }
 
-impl Piece {
+impl RoutePiece {
     fn end(&self) -> Pose {
         self.pose_after(self.length)
     }
 
-    /// Metres that are left of it at a distance along the route; of the whole its own length, to the last digit.
+    /// Remaining length at a distance along the route, metres; at its start exactly its own length.
     fn left(&self, at: f64) -> f64 {
         self.length - (at - self.distance)
     }
@@ -70,28 +73,28 @@ fn segment(start: Pose, start_time: f64, length: f64, speed: f64, curvature: f64
     }
 }
 
-/// The straight stretch of the route on one leg.
+/// Straight stretch of the route on one leg.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stretch {
-    /// Metres along the route at its start.
+pub(crate) struct StraightStretch {
+    /// Distance along the route at its start, metres.
     pub distance: f64,
-    /// Metres along the leg at its start and end.
+    /// Distances along the leg at its start and end, metres.
     pub from: f64,
     pub to: f64,
 }
 
-/// The sailable path with its timetable.
+/// Sailable path with its schedule.
 #[derive(Debug, Clone)]
 pub(crate) struct Route {
-    pieces: Vec<Piece>,
-    /// Increasing, as of own ship.
+    pieces: Vec<RoutePiece>,
+    /// Own ship's speeds, increasing.
     speeds: Vec<f64>,
 }
 
 impl Route {
-    /// The cheapest route of those that join the path at [`JOINS`] at each speed; corners are rounded
-    /// with the turning radius where the legs are long enough, otherwise sailed through on the mean
-    /// course. `None` only when nothing is finite. When the clock is up, what was found so far.
+    /// Cheapest route of those that join the path at [`JOINS`] at each speed. Corners are rounded
+    /// with the turning radius where the legs are long enough; otherwise the mean course leads
+    /// through them. `None` only when nothing is finite. After the deadline, the best route so far.
     pub(crate) fn new(problem: &Problem, clock: Clock) -> Option<Self> {
         let own = problem.own;
         let desired = problem.desired;
@@ -131,7 +134,7 @@ impl Route {
                 {
                     let direct = route.pieces.first().is_some_and(|p| p.leg.is_some());
                     best = Some((rank, route));
-                    // already on the path: every join is the same
+                    // already on the path: every joining point is the same
                     if direct {
                         return best.map(|(_, r)| r);
                     }
@@ -172,7 +175,7 @@ impl Route {
                     tangent,
                 )
             } else if (after.start - at.0.position).norm() < SKIPPED_RADII * radius {
-                // no room to turn onto a course here: the path is cut short to the next corner
+                // no room to turn onto a course here: the path is shortened to the next corner
                 continue;
             } else {
                 let mean = Pose::new(after.start, heading(next - 1) + turn / 2.0);
@@ -192,7 +195,7 @@ impl Route {
             at = (exit, exit_due, offset);
         }
         let last = legs.len() - 1;
-        // the last waypoint is reached on any course: on a short last leg, the course that leads there
+        // the last waypoint may be reached on any course: on a short last leg, on the direct course
         let chord = desired.end() - at.0.position;
         let short =
             legs[last].length < SKIPPED_RADII * radius && chord.norm() > tolerance::LENGTH_M;
@@ -215,7 +218,7 @@ impl Route {
         (!route.pieces.is_empty()).then_some(route)
     }
 
-    /// Appends the shortest path between two poses; own ship is due at its end at `due`.
+    /// Appends the shortest path between two poses; `due` is the scheduled time at its end.
     fn connect(
         &mut self,
         from: Pose,
@@ -247,7 +250,7 @@ impl Route {
                     && cross(l.direction, pose.position - l.start).abs() < tolerance::JOINT_M
                     && wrap(pose.heading - heading_of(l.direction)).abs() < 1e-7
             });
-            let piece = Piece {
+            let piece = RoutePiece {
                 start: on_leg.map_or(pose, |(_, l)| {
                     Pose::new(pose.position, heading_of(l.direction))
                 }),
@@ -267,7 +270,7 @@ impl Route {
         Some(())
     }
 
-    /// Metres.
+    /// Length, metres.
     pub(crate) fn length(&self) -> f64 {
         self.pieces.last().map_or(0.0, |p| p.distance + p.length)
     }
@@ -284,8 +287,12 @@ impl Route {
         (piece.pose_after(distance - piece.distance), piece.curvature)
     }
 
-    /// The straight stretch on a leg, where there is one.
-    pub(crate) fn stretch(&self, leg: usize, desired: &DesiredTrajectory) -> Option<Stretch> {
+    /// Straight stretch on a leg, if any.
+    pub(crate) fn stretch(
+        &self,
+        leg: usize,
+        desired: &DesiredTrajectory,
+    ) -> Option<StraightStretch> {
         let piece = self
             .pieces
             .iter()
@@ -293,14 +300,14 @@ impl Route {
             .max_by(|a, b| a.length.total_cmp(&b.length))?;
         let l = desired.legs().get(leg)?;
         let from = l.direction.dot(&(piece.start.position - l.start));
-        Some(Stretch {
+        Some(StraightStretch {
             distance: piece.distance,
             from,
             to: from + piece.length,
         })
     }
 
-    /// Runs `length` metres along the route at one speed; gives the distance reached.
+    /// Follows `length` metres of the route at one speed; returns the distance reached.
     pub(crate) fn run(
         &self,
         from: f64,
@@ -332,14 +339,15 @@ impl Route {
         at
     }
 
-    /// Where a run of `duration` seconds at one speed ends.
+    /// Scheduled time at a distance along the route.
     pub(crate) fn due_at(&self, distance: f64) -> f64 {
         let piece = &self.pieces[self.piece_at(distance)];
         piece.due + piece.slowness * (distance - piece.distance)
     }
 
-    /// Follows the route to its end: at the greatest speed while late, at the least while early, then
-    /// on schedule; where the desired speed is not one of own ship's, by turns slower and faster.
+    /// Follows the route to its end: at the greatest speed while late, at the least while early,
+    /// then on schedule. Where the desired speed is not one of own ship's, the speed alternates
+    /// between slower and faster.
     pub(crate) fn follow(&self, from: f64, time: f64, out: &mut Vec<Segment>) {
         let (mut at, mut time) = (from, time);
         let end = self.length();
@@ -351,7 +359,7 @@ impl Route {
                 at = past(at, left);
                 continue;
             }
-            let (speed, length) = self.pace(piece, at, left, time);
+            let (speed, length) = self.speed_and_length(piece, at, left, time);
             let step = if left - length < SHORTEST_M {
                 left
             } else {
@@ -378,22 +386,22 @@ impl Route {
         }
     }
 
-    /// Seconds of arrival when the route is followed from a distance at a time.
+    /// Arrival time when the route is followed from a distance at a time, seconds.
     pub(crate) fn arrival(&self, from: f64, time: f64) -> f64 {
         let mut segments = Vec::new();
         self.follow(from, time, &mut segments);
         segments.last().map_or(time, Segment::end_time)
     }
 
-    /// Speed, and the metres for which to keep it.
-    fn pace(&self, piece: &Piece, at: f64, left: f64, time: f64) -> (f64, f64) {
+    /// Speed, and the distance for which to keep it, metres.
+    fn speed_and_length(&self, piece: &RoutePiece, at: f64, left: f64, time: f64) -> (f64, f64) {
         if let Some(speed) = piece.speed {
             return (speed, left);
         }
         let late = time - self.due_at(at);
         let slowness = piece.slowness;
         let (slowest, fastest) = (self.speeds[0], self.speeds[self.speeds.len() - 1]);
-        // on an arc own ship keeps her speed unless she is far off schedule
+        // on an arc own ship keeps its speed unless it is far off schedule
         if piece.curvature != 0.0 && late.abs() < 0.5 * slowness * piece.length {
             return (self.nearest_speed(1.0 / slowness), left);
         }
@@ -422,7 +430,8 @@ impl Route {
                 },
             );
         }
-        // what is due at once, or was due before, is to be sailed: a wait there would be of no duration, again and again
+        // a stretch that is due at once, or was due before, is not waited for: zero-length waits
+        // would repeat for ever
         if slowness <= 0.0 {
             return (fastest, left);
         }
@@ -431,7 +440,7 @@ impl Route {
         if let Some(same) = moving.find(|u| (*u - speed).abs() <= 1e-9 * speed) {
             return (*same, left);
         }
-        // faster first: she then falls back to schedule within the same cycle
+        // faster first: own ship then falls back to schedule within the same cycle
         let cycle = left / (left / ALTERNATION_M).ceil().max(1.0);
         let faster = |u: &&f64| **u > speed && **u > 0.0;
         match self.speeds.iter().find(faster) {
@@ -454,12 +463,12 @@ impl Route {
     }
 }
 
-/// A distance after a remainder that may be less than a rounding: always a greater one.
+/// Distance after a step, which may be smaller than a rounding; always greater than before.
 fn past(at: f64, step: f64) -> f64 {
     (at + step).max(at.next_up())
 }
 
-/// Places on the path at which own ship may join it: `(leg, metres along it)`.
+/// Candidate joining points on the path: `(leg, metres along it)`.
 fn joins(problem: &Problem) -> Vec<(usize, f64)> {
     let (own, desired) = (problem.own, problem.desired);
     let here = own.pose.position;

@@ -1,15 +1,18 @@
-//! The place, the direction and the size at which a problem is planned.
+//! Normalisation of a problem by a similarity transformation: position, direction, reflection and
+//! size.
 //!
-//! Own ship starts at the origin with heading zero. Lengths and times of the graph and the refinement suit encounters in a harbour, so
-//! other problems are made alike first; where the two sides are alike, the first target is to starboard. Numbers are laid on
-//! a grid that is coarse beside the roundings of all this, sets from outside: the same scene elsewhere is the same problem to the last
-//! digit. The plan is brought back to where, which way and how large the scene is.
+//! In the normalised problem own ship starts at the origin with heading zero. The lengths and times
+//! of the graph and the refinement suit harbour encounters, so other problems are scaled to that
+//! size. Where both sides are equivalent, a reflection puts the first target to starboard. Numbers
+//! are rounded to a grid that is coarse relative to the rounding of all this; sets are rounded
+//! outward. So the same scene elsewhere is the same problem to the last digit. The plan is
+//! transformed back.
 
 use crate::colregs::{Encountered, SteadyShip};
 use crate::frame::{Pose, Vector, cross, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{
-    Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    EllipsoidObstacle, LandObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use crate::planner::space_time::proxy::{Proxy, by_obstacle};
 use crate::planner::{EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem};
@@ -18,113 +21,116 @@ use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{Hull, OwnShip};
 
-/// Metres and m/s. The turning radius and the desired speed at which problems are planned.
-const USUAL_TURN_M: f64 = 300.0;
-const USUAL_MPS: f64 = 5.0;
+/// Turning radius (metres) and desired speed (m/s) of a normalised problem.
+const NORMAL_TURN_M: f64 = 300.0;
+const NORMAL_MPS: f64 = 5.0;
 
-/// Metres at that size. Where the first set met has a radius, when it is met, that is not between these, it decides on the size.
+/// Radii in metres at that size. Where the first set met has a radius at contact outside this
+/// interval, the set determines the size.
 const SMALLEST_M: f64 = 30.0;
 const LARGEST_M: f64 = 640.0;
 
-/// Metres. What other radii are brought to.
-const USUAL_M: f64 = 130.0;
+/// Normalised radius of such sets, metres.
+const NORMAL_SET_M: f64 = 130.0;
 
-/// Grids at that size, powers of two, so that what is on one is exact: metres of sets, 0.06 mm, and of waypoints, on which plans have to
-/// end; m/s, and seconds.
+/// Grids at that size, powers of two, so that grid numbers are exact: positions of sets (0.06 mm),
+/// waypoints, on which plans must end, velocities (m/s), and times (s).
 const SET_GRID_M: f64 = 1.0 / 16_384.0;
 const WAYPOINT_GRID_M: f64 = 1.0 / 2_097_152.0;
 const VELOCITY_GRID_MPS: f64 = 1.0 / 17_179_869_184.0;
 const TIME_GRID_S: f64 = 1.0 / 1_073_741_824.0;
 
-/// Seconds, of motions to begin from.
+/// Grid of the durations of an initial motion, seconds.
 const DURATION_GRID_S: f64 = 1.0 / 1_048_576.0;
 
-/// Metres of the problem. Its waypoints are on no coarser grid.
+/// Largest rounding of the problem's waypoints, metres of the problem.
 const WAYPOINTS_OFF_M: f64 = 0.7 * tolerance::ARRIVAL_M;
 
-/// Relative, of other numbers: 40 binary digits.
+/// Significant binary digits of other numbers.
 const DIGITS: i32 = 40;
 
-/// Beyond this a number is left as it is.
+/// Numbers beyond this are not rounded.
 const LARGEST_ON_GRID: f64 = 1e7;
 
-/// Metres at that size. Sets with less room about their middle are left as they are.
+/// Metres at that size. Sets with less room around their centre are not rounded.
 const LEAST_ROOM_M: f64 = 1.0;
 
 /// The size by a set is a power of this times the size by the turning radius.
 const STEP: f64 = std::f64::consts::SQRT_2;
 
-/// Metres. The desired way is made no longer than this, lest a speck on it asks for more instants than there is memory.
+/// Longest normalised path, metres. Without this limit, a tiny set on the path could require more
+/// time steps than fit in memory.
 const LONGEST_M: f64 = 5e5;
 
-/// Larger or smaller at most, each way.
-const MOST: f64 = 1e12;
+/// Largest scale factor in either direction.
+const MAX_SCALE: f64 = 1e12;
 
-/// Metres. A desired path that has to be moved by no more than this to lead through own ship's pose does: what a rounding put her
-/// beside it is not sailed.
+/// Metres. A desired path within this distance of own ship's pose is moved to lead through it, so
+/// that rounding adds no joining manoeuvre.
 const ON_PATH_M: f64 = 1e-7;
 
-/// Metres at the size that is planned. Nothing is to one side that is no farther from own ship's line ahead.
+/// Metres at the normalised size. Points this close to own ship's line ahead are on neither side.
 const AHEAD_M: f64 = 1e-3;
 
-/// Instants at which the desired trajectory is looked at.
-const LOOKS: usize = 64;
+/// Samples of the desired trajectory.
+const SAMPLES: usize = 64;
 
-/// From the problem that is planned to the one that was asked.
+/// Similarity transformation from the normalised problem to the original one.
 #[derive(Debug, Clone)]
 pub(crate) struct Similarity {
     origin: Pose,
-    /// Unit vector.
+    /// Unit vector ahead.
     ahead: Vector,
-    /// -1 where port and starboard change places, or 1.
-    hand: f64,
-    /// Metres and seconds of the problem per metre and second of the one that is planned.
+    /// -1 for a reflection of port and starboard, otherwise 1.
+    mirror: f64,
+    /// Metres and seconds of the problem per normalised metre and second.
     length: f64,
     time: f64,
-    /// m/s, own ship's.
+    /// Own ship's speeds, m/s.
     speeds: Vec<f64>,
-    /// The indices of the obstacles that are planned around, and how many there are in all.
+    /// Indices of the obstacles within reach, and the number of all obstacles.
     within: Vec<usize>,
     all: usize,
 }
 
-/// A problem in another place and of another size.
-pub(crate) struct Alike {
+/// Normalised problem.
+pub(crate) struct NormalisedProblem {
     own: OwnShip,
     desired: DesiredTrajectory,
     obstacles: Vec<Obstacle>,
-    coast: Option<Coast>,
+    land_obstacle: Option<LandObstacle>,
     encountered: Vec<Encountered>,
     horizon: f64,
     time_weight: f64,
 }
 
 impl Similarity {
-    /// Of a problem, with the proxies that own ship can meet. Land and rules know metres and seconds of their own: those problems are of their own size.
+    /// Transformation of a problem, given the proxies within reach. Problems with land or rules are
+    /// not scaled: these contain lengths and times of their own.
     pub(crate) fn of(problem: &Problem, proxies: &[Proxy]) -> Self {
         let own = problem.own;
         let mut of = Self {
             origin: own.pose,
             ahead: own.pose.ahead(),
-            hand: 1.0,
+            mirror: 1.0,
             length: 1.0,
             time: 1.0,
             speeds: own.speeds.clone(),
             within: by_obstacle(proxies).map(|h| h[0].obstacle).collect(),
             all: problem.obstacles.len(),
         };
-        if !problem.coast.is_empty() || !problem.encountered.is_empty() {
+        if !problem.land_obstacle.is_empty() || !problem.encountered.is_empty() {
             return of;
         }
         (of.length, of.time) = size(problem, proxies);
         if problem.first_turn.is_none() {
-            of.hand = of.handed(problem, proxies);
+            of.mirror = of.mirror_sign(problem, proxies);
         }
         of
     }
 
-    /// The same place and direction, of the problem's own size.
-    pub(crate) fn of_its_own_size(self) -> Option<Self> {
+    /// Same position and direction without scaling.
+    pub(crate) fn without_scaling(self) -> Option<Self> {
         let is_scaled = self.length != 1.0 || self.time != 1.0;
         is_scaled.then_some(Self {
             length: 1.0,
@@ -133,13 +139,13 @@ impl Similarity {
         })
     }
 
-    /// -1 where the first thing that is to a side is to port.
-    fn handed(&self, problem: &Problem, proxies: &[Proxy]) -> f64 {
+    /// Sign of the reflection: -1 where the first object off the line ahead is to port.
+    fn mirror_sign(&self, problem: &Problem, proxies: &[Proxy]) -> f64 {
         let places = proxies.iter().filter_map(|h| h.disc_at(h.start()));
         let places = places.map(|(centre, _)| self.place(centre).y);
         let ways = proxies
             .iter()
-            .map(|h| self.velocity(h.drift()).y * USUAL_TURN_M / USUAL_MPS);
+            .map(|h| self.velocity(h.drift()).y * NORMAL_TURN_M / NORMAL_MPS);
         let bends = problem
             .desired
             .waypoints()
@@ -154,7 +160,7 @@ impl Similarity {
     }
 
     fn turned(&self, v: Vector) -> Vector {
-        Vector::new(self.ahead.dot(&v), self.hand * cross(self.ahead, v))
+        Vector::new(self.ahead.dot(&v), self.mirror * cross(self.ahead, v))
     }
 
     fn place(&self, place: Vector) -> Vector {
@@ -166,20 +172,20 @@ impl Similarity {
     }
 
     fn pose(&self, pose: Pose) -> Pose {
-        let heading = self.hand * wrap(pose.heading - self.origin.heading);
+        let heading = self.mirror * wrap(pose.heading - self.origin.heading);
         Pose::new(self.place(pose.position), heading)
     }
 
     fn polygon(&self, set: &ConvexPolygon, to: impl Fn(Vector) -> Vector) -> ConvexPolygon {
         let mut vertices: Vec<Vector> = set.vertices().iter().map(|p| to(*p)).collect();
-        if self.hand < 0.0 {
+        if self.mirror < 0.0 {
             vertices.reverse();
         }
         ConvexPolygon::from_ccw(vertices)
     }
 
-    /// A set of positions at t = 0 with more around it than the grids take away, until the horizon; as it is where there is no room, or no
-    /// more for own ship.
+    /// Set of positions at t = 0, enlarged by more than the grids remove until the horizon;
+    /// unchanged where it has too little room, or own ship has.
     fn places(&self, set: &ConvexPolygon, horizon: f64) -> ConvexPolygon {
         let exact = self.polygon(set, |p| self.place(p));
         let middle = on_grid(exact.centroid(), SET_GRID_M);
@@ -188,7 +194,7 @@ impl Similarity {
         if !(room >= LEAST_ROOM_M) {
             return exact;
         }
-        let grown = 1.0 + taken(horizon / self.time) / room;
+        let grown = 1.0 + rounding_loss(horizon / self.time) / room;
         let vertex = |p: &Vector| on_grid(middle + (p - middle) * grown, SET_GRID_M);
         let vertices: Vec<Vector> = exact.vertices().iter().map(vertex).collect();
         match ConvexPolygon::hull(&vertices) {
@@ -204,11 +210,11 @@ impl Similarity {
         ConvexPolygon::hull(&vertices).unwrap_or(exact)
     }
 
-    /// The problem, planned so; `None` where it leaves no digits.
-    pub(crate) fn alike(&self, problem: &Problem) -> Option<Alike> {
+    /// Normalised problem; `None` where no digits would remain.
+    pub(crate) fn normalised(&self, problem: &Problem) -> Option<NormalisedProblem> {
         let (own, speed, horizon) = (problem.own, self.speed(), problem.horizon);
         let legs = problem.desired.legs().iter();
-        let speeds: Vec<f64> = legs.map(|l| digits(l.speed / speed)).collect();
+        let speeds: Vec<f64> = legs.map(|l| rounded(l.speed / speed)).collect();
         let obstacles = self
             .within
             .iter()
@@ -220,29 +226,33 @@ impl Similarity {
             },
             ..*e
         };
-        Some(Alike {
+        Some(NormalisedProblem {
             own: OwnShip {
                 pose: Pose::new(Vector::zeros(), 0.0),
-                speed: digits(own.speed / speed),
+                speed: rounded(own.speed / speed),
                 hull: Hull {
                     length: own.hull.length / self.length,
                     beam: own.hull.beam / self.length,
                 },
-                turning_radius: digits(own.turning_radius / self.length),
-                speeds: own.speeds.iter().map(|u| digits(u / speed)).collect(),
+                turning_radius: rounded(own.turning_radius / self.length),
+                speeds: own.speeds.iter().map(|u| rounded(u / speed)).collect(),
                 safety_margin: own.safety_margin / self.length,
             },
             desired: DesiredTrajectory::new(&self.waypoints(problem), &speeds).ok()?,
             obstacles: obstacles.collect::<Option<_>>()?,
-            coast: (!problem.coast.is_empty())
-                .then(|| problem.coast.mapped(|block| self.places(block, horizon))),
+            land_obstacle: (!problem.land_obstacle.is_empty()).then(|| {
+                problem
+                    .land_obstacle
+                    .mapped(|block| self.places(block, horizon))
+            }),
             encountered: problem.encountered.iter().map(ship).collect(),
-            horizon: digits(horizon / self.time) * (1.0 - 2.0_f64.powi(-DIGITS)),
-            time_weight: digits(problem.time_weight / (speed * speed)),
+            horizon: rounded(horizon / self.time) * (1.0 - 2.0_f64.powi(-DIGITS)),
+            time_weight: rounded(problem.time_weight / (speed * speed)),
         })
     }
 
-    /// Of the desired path, through own ship's pose where that is beside it by a rounding.
+    /// Waypoints of the desired path, moved through own ship's pose where they miss it by a
+    /// rounding.
     fn waypoints(&self, problem: &Problem) -> Vec<Vector> {
         let mut waypoints = problem.desired.waypoints();
         for w in &mut waypoints {
@@ -258,7 +268,7 @@ impl Similarity {
                 *w = Vector::new(along.dot(w), cross(along, *w) - beside);
             }
         }
-        // a plan has to end on the last one of the problem
+        // a plan must end on the problem's last waypoint
         let coarse = WAYPOINT_GRID_M * self.length / WAYPOINTS_OFF_M;
         let grid = WAYPOINT_GRID_M / coarse.max(1.0).log2().ceil().exp2();
         waypoints.into_iter().map(|w| on_grid(w, grid)).collect()
@@ -285,7 +295,7 @@ impl Similarity {
                 .into()
             }
             Obstacle::Slabs(o) => {
-                let spells = o.spells().iter().map(|s| VelocitySpell {
+                let spells = o.velocity_sets().iter().map(|s| VelocitySpell {
                     until: number_on_grid(s.until / self.time, TIME_GRID_S),
                     velocities: self.velocities(&s.velocities),
                 });
@@ -300,19 +310,19 @@ impl Similarity {
         })
     }
 
-    /// A motion of the problem, planned so, to the digits that it can be told apart by: a beginning, not a plan.
+    /// Motion in the normalised problem, rounded: an initial guess, not a plan.
     pub(crate) fn motion(&self, motion: &[Segment]) -> Vec<Segment> {
         let segment = |s: &Segment| Segment {
             start: self.pose(s.start),
             start_time: s.start_time / self.time,
             duration: number_on_grid(s.duration / self.time, DURATION_GRID_S),
-            speed: digits(s.speed / self.speed()),
-            turn_rate: self.hand * s.turn_rate * self.time,
+            speed: rounded(s.speed / self.speed()),
+            turn_rate: self.mirror * s.turn_rate * self.time,
         };
         motion.iter().map(segment).collect()
     }
 
-    /// What was planned, brought back.
+    /// Transforms a result back.
     pub(crate) fn restored(&self, planned: Planned, horizon: f64) -> Planned {
         let outcome = match planned.outcome {
             Outcome::Solved(plan) => self
@@ -333,17 +343,17 @@ impl Similarity {
     }
 
     fn restored_pose(&self, pose: Pose) -> Pose {
-        let (along, port) = (self.ahead, to_port(self.ahead) * self.hand);
+        let (along, port) = (self.ahead, to_port(self.ahead) * self.mirror);
         let from = (along * pose.position.x + port * pose.position.y) * self.length;
         Pose::new(
             self.origin.position + from,
-            self.origin.heading + self.hand * pose.heading,
+            self.origin.heading + self.mirror * pose.heading,
         )
     }
 
     fn segment(&self, s: &Segment) -> Segment {
         let speed = s.speed * self.speed();
-        // not a digit off own ship's
+        // exactly one of own ship's speeds
         let known = self.speeds.iter().copied();
         let known = known.min_by(|a, b| (a - speed).abs().total_cmp(&(b - speed).abs()));
         Segment {
@@ -351,7 +361,7 @@ impl Similarity {
             start_time: s.start_time * self.time,
             duration: s.duration * self.time,
             speed: known.unwrap_or(speed),
-            turn_rate: self.hand * s.turn_rate / self.time,
+            turn_rate: self.mirror * s.turn_rate / self.time,
         }
     }
 
@@ -397,20 +407,21 @@ impl Similarity {
                 target,
                 time: time * self.time,
             },
-            // of land or rules, which are of their own size, of other planners, or without a number
+            // cases with land or rules, which are not scaled, of other planners, or without a
+            // length
             other => other,
         }
     }
 }
 
-impl Alike {
-    /// As a problem; what has no place and no size is that of the original.
+impl NormalisedProblem {
+    /// Normalised problem as a [`Problem`]; fields without length or position are the original's.
     pub(crate) fn problem<'a>(&'a self, of: &Problem<'a>) -> Problem<'a> {
         Problem {
             own: &self.own,
             desired: &self.desired,
             obstacles: &self.obstacles,
-            coast: self.coast.as_ref().unwrap_or(of.coast),
+            land_obstacle: self.land_obstacle.as_ref().unwrap_or(of.land_obstacle),
             encountered: &self.encountered,
             horizon: self.horizon,
             time_weight: self.time_weight,
@@ -419,19 +430,20 @@ impl Alike {
     }
 }
 
-/// Metres and seconds of a problem per metre and second of the one that is planned: from own ship's turning radius and the desired
-/// speed, or from the set that own ship, on schedule, meets first, where beside her turning circle that is very small or large.
+/// Metres and seconds of a problem per normalised metre and second. They follow from own ship's
+/// turning radius and desired speed. Where the first set met is very small or large relative to the
+/// turning circle, they follow from that set.
 fn size(problem: &Problem, proxies: &[Proxy]) -> (f64, f64) {
     let desired = problem.desired;
-    let by_turn = problem.own.turning_radius / USUAL_TURN_M;
+    let by_turn = problem.own.turning_radius / NORMAL_TURN_M;
     let usual = SMALLEST_M..=LARGEST_M;
     let radius = radius_met(desired, proxies).map(|radius| radius / by_turn);
     let radius = radius.filter(|r| *r > 0.0 && !usual.contains(r));
     let longer = (desired.length() / by_turn / LONGEST_M).max(1.0);
-    let larger = radius.map_or(1.0, |r| r / USUAL_M).max(longer);
+    let larger = radius.map_or(1.0, |r| r / NORMAL_SET_M).max(longer);
     let length = by_turn * STEP.powf(larger.log(STEP).round());
-    let time = length * USUAL_MPS / desired.legs()[0].speed;
-    let sound = |x: f64| x > 1.0 / MOST && x < MOST;
+    let time = length * NORMAL_MPS / desired.legs()[0].speed;
+    let sound = |x: f64| x > 1.0 / MAX_SCALE && x < MAX_SCALE;
     if sound(length) && sound(time) {
         (length, time)
     } else {
@@ -439,8 +451,9 @@ fn size(problem: &Problem, proxies: &[Proxy]) -> (f64, f64) {
     }
 }
 
-/// Metres that roundings take from a set until a time: of its vertices, of its velocities, and of when they change.
-fn taken(time: f64) -> f64 {
+/// Largest reduction of a set by rounding until a time, metres: of its vertices, its velocities,
+/// and the times of their changes.
+fn rounding_loss(time: f64) -> f64 {
     SET_GRID_M + VELOCITY_GRID_MPS * time
 }
 
@@ -448,7 +461,7 @@ fn on_grid(v: Vector, grid: f64) -> Vector {
     v.map(|x| number_on_grid(x, grid))
 }
 
-/// The nearest number on a grid; never -0.
+/// Nearest number on a grid; never -0.
 fn number_on_grid(x: f64, grid: f64) -> f64 {
     if x.abs() < LARGEST_ON_GRID {
         (x / grid).round() * grid + 0.0
@@ -457,8 +470,8 @@ fn number_on_grid(x: f64, grid: f64) -> f64 {
     }
 }
 
-/// A number to so many binary digits as are no rounding.
-fn digits(x: f64) -> f64 {
+/// Number rounded to a fixed count of binary digits.
+fn rounded(x: f64) -> f64 {
     let unit = 2.0_f64.powi(x.abs().max(f64::MIN_POSITIVE).log2().floor() as i32 - DIGITS);
     if unit > 0.0 && x.is_finite() {
         (x / unit).round() * unit
@@ -467,10 +480,10 @@ fn digits(x: f64) -> f64 {
     }
 }
 
-/// Metres: the radius of the disc around the section that contains own ship on schedule first.
+/// Radius of the disc around the section that first contains own ship on schedule, metres.
 fn radius_met(desired: &DesiredTrajectory, proxies: &[Proxy]) -> Option<f64> {
-    (0..=LOOKS).find_map(|look| {
-        let time = desired.duration() * look as f64 / LOOKS as f64;
+    (0..=SAMPLES).find_map(|index| {
+        let time = desired.duration() * index as f64 / SAMPLES as f64;
         let place = desired.position_at(time);
         let met = proxies.iter().filter_map(|h| {
             let (centre, radius) = h.disc_at(time)?;

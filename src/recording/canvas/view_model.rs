@@ -1,7 +1,7 @@
 //! One run, prepared for the views.
 
 use super::{Canvas, Motion, Palette};
-use crate::colregs::conduct::Conduct;
+use crate::colregs::compliance::ComplianceReport;
 use crate::pipeline::Run;
 
 /// A run on its canvas.
@@ -14,7 +14,7 @@ pub struct ViewModel<'a> {
     pub canvas: Canvas<'a>,
     /// How own ship behaves toward each target, in the order of the scenario; `None` for a target
     /// that is no ship, and without a plan.
-    pub conduct: Vec<Option<Conduct>>,
+    pub conduct: Vec<Option<ComplianceReport>>,
 }
 
 impl<'a> ViewModel<'a> {

@@ -6,7 +6,7 @@ use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D, RecordingStreamResult
 
 use super::chart::polyline;
 use crate::frame::Vector;
-use crate::obstacle::{Coast, SpaceTimeObstacle};
+use crate::obstacle::{LandObstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
 use crate::recording::canvas::{Canvas, flat, style};
@@ -96,15 +96,15 @@ pub fn log_explored(
 /// Finds why an edge was blocked.
 struct Judge<'a> {
     run: &'a Run,
-    /// Made for the first edge that meets land.
-    coast: OnceCell<Coast>,
+    /// Made for the first edge that runs aground.
+    land_obstacle: OnceCell<LandObstacle>,
 }
 
 impl<'a> Judge<'a> {
     fn new(run: &'a Run) -> Self {
         Self {
             run,
-            coast: OnceCell::new(),
+            land_obstacle: OnceCell::new(),
         }
     }
 
@@ -112,11 +112,13 @@ impl<'a> Judge<'a> {
     /// [`Run::obstacles`], or behind the last for land.
     fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
         let Some(set) = self.run.obstacles.get(obstacle) else {
-            let coast = self
-                .coast
-                .get_or_init(|| pipeline::coast(&self.run.scenario, &self.run.land));
+            let land_obstacle = self
+                .land_obstacle
+                .get_or_init(|| pipeline::land_obstacle(&self.run.scenario, &self.run.land));
             let depth = tolerance::GRAZE_M;
-            let met = edge.iter().find_map(|s| coast.first_contact(s, depth));
+            let met = edge
+                .iter()
+                .find_map(|s| land_obstacle.first_contact(s, depth));
             return reason("land", met, "nearer than the hull and the margin allow");
         };
         let enters = |set: &dyn Fn(&Segment) -> Option<f64>| edge.iter().find_map(set);

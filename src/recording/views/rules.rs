@@ -6,7 +6,7 @@ use rerun::{
 };
 
 use super::chart::Lines;
-use crate::colregs::conduct::{Conduct, Finding, Measure, Verdict};
+use crate::colregs::compliance::{ComplianceReport, Measure, MonitorResult, Verdict};
 use crate::frame::{Side, Vector, clockwise_deg, deg_from_radians, knots_from_mps};
 use crate::planner::Escape;
 use crate::recording::canvas::style::{self, SpeedClass};
@@ -60,14 +60,14 @@ struct Broken {
     what: String,
 }
 
-fn broken(conduct: &Conduct) -> Vec<Broken> {
-    let breaches = conduct.breaches.iter().map(|breach| Broken {
+fn broken(conduct: &ComplianceReport) -> Vec<Broken> {
+    let breaches = conduct.violations.iter().map(|breach| Broken {
         time: breach.time,
         rule: breach.rule.to_owned(),
         what: format!("{} at {:.0} s: {}", breach.rule, breach.time, breach.what),
     });
-    let is_violated = |f: &&Finding| f.verdict == Verdict::Violated;
-    let monitors = conduct.findings.iter().filter(is_violated).map(|finding| {
+    let is_violated = |f: &&MonitorResult| f.verdict == Verdict::Violated;
+    let monitors = conduct.monitors.iter().filter(is_violated).map(|finding| {
         let time = finding.time.unwrap_or(0.0);
         // 0.0 - x is never a negative zero
         let short = 0.0 - finding.robustness.unwrap_or(0.0);
@@ -89,7 +89,9 @@ fn broken(conduct: &Conduct) -> Vec<Broken> {
 }
 
 /// The targets toward which own ship has a role or breaks a rule, with their index and name.
-fn judged<'a>(model: &'a ViewModel) -> impl Iterator<Item = (usize, &'a str, &'a Conduct)> {
+fn judged<'a>(
+    model: &'a ViewModel,
+) -> impl Iterator<Item = (usize, &'a str, &'a ComplianceReport)> {
     let both = model.scenario.targets.iter().zip(&model.conduct);
     both.enumerate().filter_map(|(index, (target, conduct))| {
         let conduct = conduct.as_ref()?;
@@ -180,7 +182,7 @@ fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()>
     let several = judged(model).count() > 1;
     let mut marks: Vec<(f64, String, Color)> = Vec::new();
     for (_, name, conduct) in judged(model) {
-        for each in conduct.breaches.iter() {
+        for each in conduct.violations.iter() {
             let toward = if several {
                 format!(", toward {name}")
             } else {
@@ -313,7 +315,7 @@ mod tests {
         let run = stand_on(Compliance::Shape);
         let model = ViewModel::new(&run);
         let conduct = model.conduct[0].as_ref().expect("a ship");
-        let breach = conduct.breaches.iter().find(|b| b.rule == "17(c)");
+        let breach = conduct.violations.iter().find(|b| b.rule == "17(c)");
         let breach = breach.expect("a turn to port");
         let [roles, broken] = &lanes(&model)[..] else {
             panic!("two lanes");

@@ -105,7 +105,7 @@ fn region_outline(model: &ViewModel, set: &Obstacle, time: f64) -> Strip {
             .velocity_obstacle(own, ahead)
             .outer_half_planes(limit, TOLERANCE * limit),
         Obstacle::Slabs(o) => {
-            let to_come = o.spells().iter().filter(|s| s.until > time);
+            let to_come = o.velocity_sets().iter().filter(|s| s.until > time);
             let velocities = hull(to_come.flat_map(|s| s.velocities.vertices().iter().copied()));
             from(set, time, velocities).velocity_obstacle(own, ahead)
         }

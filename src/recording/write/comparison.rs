@@ -20,15 +20,15 @@ use crate::recording::views::ships::{self, OwnShip};
 use crate::recording::views::{land, space_time};
 use crate::recording::{COMPARISON, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, Look, Method, Sailed};
+use crate::study::compare::{Entry, EntryResult, LineStyle, Method};
 
-/// The folder of the methods, on the chart and in the volume.
+/// The folder of the candidates, on the chart and in the volume.
 const METHODS: &str = "methods";
 
 /// Length of a dash as a fraction of the bounds.
 const DASH: f64 = 1.0 / 60.0;
 
-/// Most points of the graph of one method.
+/// Most points of the graph of one candidate.
 const POINT_BUDGET: usize = 1200;
 
 /// Keys in a row of the legend: their names are long.
@@ -65,12 +65,12 @@ pub struct Compared<'a> {
 /// # Examples
 ///
 /// ```
-/// use searoom::study::compare::{Contender, Method};
+/// use searoom::study::compare::{Candidate, Method};
 /// use searoom::recording::{Compared, Recorded, write_comparison};
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
-/// let entries = [Contender { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario)];
+/// let entries = [Candidate { method: Method::HoldCourse, max_risk: 0.0 }.run(&scenario)];
 /// # let folder = tempfile::tempdir()?;
 /// let file = folder.path().join("compared.rrd");
 /// let (table, document) = ("hold course", "{}");
@@ -87,10 +87,10 @@ pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), Recordin
 }
 
 /// One motion and its style.
-struct Contender<'a> {
+struct Candidate<'a> {
     entry: &'a Entry,
     own: OwnShip<'a>,
-    style: Look,
+    style: LineStyle,
 }
 
 fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
@@ -99,10 +99,10 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
     let Compared {
         scenario, entries, ..
     } = *compared;
-    let contenders = contenders(entries);
+    let candidates = candidates(entries);
     let sets = pipeline::sets(scenario);
-    let is_plan = |c: &&Contender| matches!(c.entry.contender.method, Method::Planner { .. });
-    let plans: Vec<Motion> = contenders
+    let is_plan = |c: &&Candidate| matches!(c.entry.candidate.method, Method::Planner { .. });
+    let plans: Vec<Motion> = candidates
         .iter()
         .filter(is_plan)
         .map(|c| c.own.motion)
@@ -112,9 +112,9 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
     let end = end.max(scenario.desired.duration()).min(scenario.horizon);
     let canvas = Canvas::new(scenario, &sets, &plans, end, Palette::OwnShips);
 
-    let legend = legend(&canvas, &contenders, &sets);
+    let legend = legend(&canvas, &candidates, &sets);
     let rows = legend.len().div_ceil(KEYS);
-    let own: Vec<OwnShip> = contenders.iter().map(|c| c.own.clone()).collect();
+    let own: Vec<OwnShip> = candidates.iter().map(|c| c.own.clone()).collect();
     land::log_land(rec, &canvas)?;
     chart::log_waters(rec, &canvas)?;
     chart::log_legend(rec, &canvas, legend, rows)?;
@@ -124,20 +124,20 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
     space_time::log_now(rec, &canvas, &own)?;
     let mut graphs = Vec::new();
     let mut hidden = [Vec::new(), Vec::new()];
-    for (index, contender) in contenders.iter().enumerate() {
+    for (index, candidate) in candidates.iter().enumerate() {
         // the first row on top
-        let order = (contenders.len() - index) as f32;
-        log_way(rec, &canvas, contender, order)?;
-        let ship = path(&[MAP, METHODS, &contender.own.name, "own_ship"]);
-        ships::log_own_ship(rec, &canvas, ship, &contender.own, false)?;
-        let Sailed::Planned(run) = &contender.entry.result else {
+        let order = (candidates.len() - index) as f32;
+        log_way(rec, &canvas, candidate, order)?;
+        let ship = path(&[MAP, METHODS, &candidate.own.name, "own_ship"]);
+        ships::log_own_ship(rec, &canvas, ship, &candidate.own, false)?;
+        let EntryResult::Planned(run) = &candidate.entry.result else {
             continue;
         };
         let folders =
-            [MAP, VOLUME].map(|view| path(&[view, METHODS, &contender.own.name, "explored"]));
+            [MAP, VOLUME].map(|view| path(&[view, METHODS, &candidate.own.name, "explored"]));
         let folders_of_sets =
-            [MAP, VOLUME].map(|view| path(&[view, METHODS, &contender.own.name, "sets"]));
-        log_kept_out_of(rec, &canvas, contender, run, &folders_of_sets)?;
+            [MAP, VOLUME].map(|view| path(&[view, METHODS, &candidate.own.name, "sets"]));
+        log_kept_out_of(rec, &canvas, candidate, run, &folders_of_sets)?;
         if !has_sets_of_its_own(run, &sets) {
             for (folders, folder) in hidden.iter_mut().zip(folders_of_sets) {
                 folders.push(folder);
@@ -145,14 +145,14 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
         }
         let drawn = log_explored(rec, &canvas, run, folders.clone(), POINT_BUDGET)?;
         if drawn.edges > 0 {
-            let (name, shown, tested) = (&contender.own.name, drawn.edges, drawn.tested);
+            let (name, shown, tested) = (&candidate.own.name, drawn.edges, drawn.tested);
             graphs.push(format!("{name} {shown} of {tested} edges"));
             for (folders, folder) in hidden.iter_mut().zip(folders) {
                 folders.push(folder);
             }
         }
     }
-    let plots = log_curves(rec, &canvas, &contenders)?;
+    let plots = log_curves(rec, &canvas, &candidates)?;
     let text = text(compared.table, &graphs);
     let text = TextDocument::new(text).with_media_type(MediaType::MARKDOWN);
     rec.log_static(SUMMARY, &text)?;
@@ -161,36 +161,36 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
 }
 
 /// The entries with a motion. In a sweep a method keeps its colour, weaker with more risk.
-fn contenders(entries: &[Entry]) -> Vec<Contender<'_>> {
+fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
     let risks = |method: Method| {
-        let of_method = entries.iter().filter(move |e| e.contender.method == method);
-        of_method.map(|e| e.contender.max_risk)
+        let of_method = entries.iter().filter(move |e| e.candidate.method == method);
+        of_method.map(|e| e.candidate.max_risk)
     };
     let sailing = entries.iter().filter_map(|entry| {
         let motion = Motion::Planned(entry.trajectory()?);
-        let contender = entry.contender;
-        let style = Look::of(contender.method);
-        let all: Vec<f64> = risks(contender.method).collect();
-        let place = all.iter().position(|r| *r == contender.max_risk);
+        let candidate = entry.candidate;
+        let style = LineStyle::of(candidate.method);
+        let all: Vec<f64> = risks(candidate.method).collect();
+        let place = all.iter().position(|r| *r == candidate.max_risk);
         let share = place.unwrap_or(0) as f32 / (all.len().max(2) - 1) as f32;
         let [r, g, b] = style.rgb();
         let color = Color::from_rgb(r, g, b);
         let name = if all.len() > 1 {
-            format!("{} at risk {}", contender.method, contender.max_risk)
+            format!("{} at risk {}", candidate.method, candidate.max_risk)
         } else {
-            contender.method.to_string()
+            candidate.method.to_string()
         };
         let own = OwnShip {
             motion,
             name,
             color: style::toward_background(color, 1.0 - share * (1.0 - WEAKEST)),
         };
-        Some(Contender { entry, own, style })
+        Some(Candidate { entry, own, style })
     });
     sailing.collect()
 }
 
-fn radius(style: &Look) -> rerun::Radius {
+fn radius(style: &LineStyle) -> rerun::Radius {
     style::points((RADIUS * style.width) as f32)
 }
 
@@ -205,19 +205,19 @@ fn has_sets_of_its_own(run: &Run, sets: &[TargetSets]) -> bool {
 fn log_kept_out_of(
     rec: &mut Recorder,
     canvas: &Canvas,
-    contender: &Contender,
+    candidate: &Candidate,
     run: &Run,
     [on_chart, in_volume]: &[EntityPath; 2],
 ) -> RecordingStreamResult<()> {
-    let color = style::toward_background(contender.own.color, SET_STRENGTH);
+    let color = style::toward_background(candidate.own.color, SET_STRENGTH);
     for set in &run.obstacles {
         let below = |folder: &EntityPath| folder.join(&path(&["", set.name()]));
-        let name = format!("{} avoids: {}", contender.own.name, set.name());
+        let name = format!("{} avoids: {}", candidate.own.name, set.name());
         let style = ships::set_style(color, ships::SHAPED_RADIUS)
             .with_labels([name])
             .with_show_labels(false);
         ships::log_sections(rec, canvas, below(on_chart), set, &style)?;
-        let style = (contender.own.color, space_time::SHAPED_ALPHA);
+        let style = (candidate.own.color, space_time::SHAPED_ALPHA);
         space_time::log_body(rec, canvas, below(in_volume), set, style)?;
     }
     Ok(())
@@ -226,16 +226,16 @@ fn log_kept_out_of(
 /// Strength of a method's colour for the sets that it avoids, of 1.
 const SET_STRENGTH: f32 = 0.7;
 
-fn legend(canvas: &Canvas, contenders: &[Contender], sets: &[TargetSets]) -> Vec<Key> {
-    let mut keys: Vec<Key> = contenders
+fn legend(canvas: &Canvas, candidates: &[Candidate], sets: &[TargetSets]) -> Vec<Key> {
+    let mut keys: Vec<Key> = candidates
         .iter()
         .map(|c| (c.own.name.clone(), c.own.color, radius(&c.style)))
         .collect();
-    let of_its_own = |c: &Contender| match &c.entry.result {
-        Sailed::Planned(run) => has_sets_of_its_own(run, sets),
-        Sailed::Baseline(_) | Sailed::Nothing(_) => false,
+    let of_its_own = |c: &Candidate| match &c.entry.result {
+        EntryResult::Planned(run) => has_sets_of_its_own(run, sets),
+        EntryResult::Baseline(_) | EntryResult::Nothing(_) => false,
     };
-    if let Some(first) = contenders.iter().find(|c| of_its_own(c)) {
+    if let Some(first) = candidates.iter().find(|c| of_its_own(c)) {
         let color = style::toward_background(first.own.color, SET_STRENGTH);
         let name = "a method's own sets".to_owned();
         keys.push((name, color, ships::SHAPED_RADIUS));
@@ -249,10 +249,10 @@ fn legend(canvas: &Canvas, contenders: &[Contender], sets: &[TargetSets]) -> Vec
 fn log_way(
     rec: &mut Recorder,
     canvas: &Canvas,
-    contender: &Contender,
+    candidate: &Candidate,
     order: f32,
 ) -> RecordingStreamResult<()> {
-    let Contender { own, style, .. } = contender;
+    let Candidate { own, style, .. } = candidate;
     let Motion::Planned(trajectory) = own.motion else {
         return Ok(());
     };
@@ -330,9 +330,9 @@ fn dashes(canvas: &Canvas, line: &[(Vector, f64)]) -> Vec<Vec<(Vector, f64)>> {
 fn log_curves(
     rec: &mut Recorder,
     canvas: &Canvas,
-    contenders: &[Contender],
+    candidates: &[Candidate],
 ) -> RecordingStreamResult<Vec<(&'static str, &'static str, [f64; 2])>> {
-    let series = |c: &Contender, values: Vec<f64>| Series {
+    let series = |c: &Candidate, values: Vec<f64>| Series {
         name: c.own.name.clone(),
         color: c.own.color,
         width: (c.style.width as f32).min(WIDEST),
@@ -341,7 +341,7 @@ fn log_curves(
     let targets = &canvas.scenario.targets;
     let mut plots = Vec::new();
     if !targets.is_empty() {
-        let nearest = |c: &Contender| -> Vec<f64> {
+        let nearest = |c: &Candidate| -> Vec<f64> {
             let all = targets
                 .iter()
                 .map(|t| curves::clearances(canvas, &c.own.motion, t));
@@ -349,7 +349,7 @@ fn log_curves(
                 |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a.min(*b)).collect();
             all.reduce(nearer).unwrap_or_default()
         };
-        let mut curves: Vec<Series> = contenders.iter().map(|c| series(c, nearest(c))).collect();
+        let mut curves: Vec<Series> = candidates.iter().map(|c| series(c, nearest(c))).collect();
         let least = |s: &Series| s.values.iter().copied().fold(f64::INFINITY, f64::min);
         let farthest = curves.iter().map(least).fold(0.0, f64::max);
         curves.push(curves::safety_margin(canvas));
@@ -363,8 +363,8 @@ fn log_curves(
         let range = layout::near_zero(canvas, farthest, margin);
         plots.push(("Distance from the nearest target (m)", CLEARANCE, range));
     }
-    let times = curves::step_times(canvas, contenders.iter().map(|c| &c.own.motion));
-    let speeds: Vec<Series> = contenders
+    let times = curves::step_times(canvas, candidates.iter().map(|c| &c.own.motion));
+    let speeds: Vec<Series> = candidates
         .iter()
         .map(|c| series(c, curves::speeds(&c.own.motion, &times)))
         .collect();

@@ -1,15 +1,15 @@
 //! The figure of an assessment.
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
-use super::names::{Named, places};
 use super::outline::{Stroke, curve, mark};
+use super::panel::AREA;
 use super::sections::{seconds, sections_beside};
 use super::{Figure, Panel, Window};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::study::assess::Situation;
 
-/// Velocities shown, of the greatest speed.
+/// Velocities are shown up to this multiple of the greatest speed.
 const FASTEST: f64 = 1.3;
 
 /// Own ship's track.
@@ -19,14 +19,16 @@ const OWN: Stroke = Stroke {
     dashed: false,
 };
 
-/// Points of the track that names keep clear of.
-const TRACK: usize = 200;
+/// Pixels between a set and the base line of its name, from line to line, and of a letter's width.
+const GAP: f64 = 5.0;
+const LINE: f64 = 14.0;
+const LETTER: f64 = 6.6;
 
 /// Panels beside one another.
 const COLUMNS: usize = 2;
 
-/// Sections at `times`, seconds, dCPA over the velocities, and the risk at every one of the times. Without times: the
-/// start, a third, two thirds and the end of the horizon.
+/// Sections at `times`, seconds, dCPA over the velocities, and the risk at each of the times.
+/// Without times: the start, a third, two thirds and the end of the horizon.
 pub fn assessment_figure(situation: &Situation, times: &[f64]) -> Figure {
     let thirds: Vec<f64> = (0..4)
         .map(|i| situation.horizon * f64::from(i) / 3.0)
@@ -39,7 +41,7 @@ pub fn assessment_figure(situation: &Situation, times: &[f64]) -> Figure {
     let mut sections = sections_beside("Sections", targets, times, &track);
     sections.plots.push(curve(&track, false, OWN));
     sections.line_key("own course held", OWN);
-    name(&mut sections, situation, track);
+    name(&mut sections, situation);
     let window = sections.window();
     let limit = FASTEST * situation.max_speed.max(situation.speed).max(1.0);
     let velocities = VelocityWindow {
@@ -68,31 +70,46 @@ pub fn assessment_figure(situation: &Situation, times: &[f64]) -> Figure {
     Figure::new(COLUMNS, panels)
 }
 
-/// The same on dark.
+/// On a dark field.
 const OWN_ON_FIELD: Stroke = Stroke {
     colour: field::OWN,
     ..OWN
 };
 
-/// The targets' names beside where they begin, rather on the side that they leave.
-fn name(panel: &mut Panel, situation: &Situation, track: [Vector; 2]) {
-    let [east, north] = [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
-    let named = situation.obstacles.iter().map(|target| {
-        let section = target.section(0.0);
-        let rate = |n: Vector| target.support(n, 0.0).rate;
-        Named {
-            name: target.name(),
-            extent: Window {
-                low: -Vector::new(section.support(-east), section.support(-north)),
-                high: Vector::new(section.support(east), section.support(north)),
-            },
-            below: rate(north) > rate(-north),
+/// The targets' names above their first sections. A name that would overlap one before stands a
+/// line higher, or below its set where the panel ends.
+fn name(panel: &mut Panel, situation: &Situation) {
+    let window = panel.window();
+    let pixel = window.size().x / AREA[0];
+    let mut taken: Vec<(Vector, f64)> = Vec::new();
+    for target in situation.obstacles {
+        let reach = |x: f64, y: f64| target.section(0.0).support(Vector::new(x, y));
+        let half = 0.5 * LETTER * pixel * target.name().chars().count() as f64;
+        let middle = 0.5 * (reach(1.0, 0.0) - reach(-1.0, 0.0));
+        let (left, right) = (window.low.x + half, window.high.x - half);
+        let east = if left < right {
+            middle.clamp(left, right)
+        } else {
+            middle
+        };
+        let mut at = Vector::new(east, reach(0.0, 1.0) + GAP * pixel);
+        let overlaps = |at: Vector| {
+            let line = LINE * pixel * (1.0 - 1e-9);
+            let hides = |(other, wide): &(Vector, f64)| {
+                (at.y - other.y).abs() < line && (at.x - other.x).abs() < half + wide
+            };
+            taken.iter().any(hides)
+        };
+        while overlaps(at) {
+            at.y += LINE * pixel;
         }
-    });
-    let named: Vec<Named> = named.collect();
-    let along = |k: usize| track[0].lerp(&track[1], k as f64 / TRACK as f64);
-    let track: Vec<Vector> = (0..=TRACK).map(along).collect();
-    for (set, at) in named.iter().zip(places(panel.window(), &named, &track)) {
-        panel.note(set.name, at);
+        if at.y + LINE * pixel > window.high.y {
+            at.y = -reach(0.0, -1.0) - (GAP + LINE) * pixel;
+            while overlaps(at) {
+                at.y -= LINE * pixel;
+            }
+        }
+        taken.push((at, half));
+        panel.note(target.name(), at);
     }
 }

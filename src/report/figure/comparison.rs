@@ -1,4 +1,4 @@
-//! Contenders side by side: where they go, how near they come, and in a sweep what a risk buys.
+//! Candidates side by side: where they go, how near they come, and in a sweep what a risk buys.
 
 use super::outline::{SYMBOLS, Stroke, area, curve, sampled_boundary, symbols};
 use super::path_time::{ProfileLine, path_time_panel};
@@ -10,9 +10,9 @@ use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, Look, Method, Sailed};
+use crate::study::compare::{Entry, EntryResult, LineStyle, Method};
 
-/// Of the targets' sets.
+/// The colour of the targets' sets.
 const SETS: &str = "#888888";
 
 /// Instants at which the sets are drawn, the start among them.
@@ -21,14 +21,14 @@ const MOMENTS: usize = 4;
 /// Seconds between two points of a curve.
 const STEP: f64 = 2.0;
 
-/// Of the largest least distance: how far up distances are shown.
+/// Distances are shown up to this multiple of the largest least distance.
 const SHOWN: f64 = 4.0;
 
 /// Pixels of the smallest symbol.
 const LEAST_SYMBOL: f64 = 3.4;
 
-/// One row of panels per scenario: chart, distance from the nearest target over time, and where several risks were accepted cost
-/// over risk.
+/// One row of panels per scenario: the chart, the distance from the nearest target over time, and
+/// in a sweep the cost over the accepted risk.
 pub fn comparison_figure(compared: &[(&Scenario, &[Entry])]) -> Figure {
     let sweep = compared.iter().any(|(_, entries)| is_sweep(entries));
     let rows = compared
@@ -46,17 +46,17 @@ pub fn comparison_panels(scenario: &Scenario, entries: &[Entry], sweep: bool) ->
     panels
 }
 
-/// The diagrams that the contenders along paths planned in; sets of one representation have one. Empty without such.
+/// The path-time diagrams of the candidates that have one.
 pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
     entries
         .iter()
         .filter_map(|entry| match &entry.result {
-            Sailed::Planned(run) => Some((entry, run, run.planned.path_time.as_deref()?)),
-            Sailed::Baseline(_) | Sailed::Nothing(_) => None,
+            EntryResult::Planned(run) => Some((entry, run, run.planned.path_time.as_deref()?)),
+            EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
         })
         .map(|(entry, run, diagram)| {
             let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
-            let method = entry.contender.method;
+            let method = entry.candidate.method;
             let line = ProfileLine {
                 label: match run.planned.outcome.plan() {
                     Some(_) => named(method, std::slice::from_ref(entry)),
@@ -65,7 +65,7 @@ pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
                 diagram,
                 stroke: stroke(method),
             };
-            let title = match entry.contender.max_risk {
+            let title = match entry.candidate.max_risk {
                 risk if risk > 0.0 => format!("Path and time: {method} at risk {risk}"),
                 _ => format!("Path and time: {method}"),
             };
@@ -75,16 +75,16 @@ pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
 }
 
 fn is_sweep(entries: &[Entry]) -> bool {
-    let risk = |e: &Entry| e.contender.max_risk;
+    let risk = |e: &Entry| e.candidate.max_risk;
     entries.iter().any(|e| risk(e) != risk(&entries[0]))
 }
 
 fn stroke(method: Method) -> Stroke {
-    let Look {
+    let LineStyle {
         colour,
         width,
         dashed,
-    } = Look::of(method);
+    } = LineStyle::of(method);
     Stroke {
         colour,
         width,
@@ -101,7 +101,7 @@ fn times(entry: &Entry) -> Vec<f64> {
 fn keys(panel: &mut Panel, entries: &[Entry]) {
     let mut last = None;
     for entry in entries.iter().filter(|e| e.trajectory().is_some()) {
-        let method = entry.contender.method;
+        let method = entry.candidate.method;
         if last != Some(method) {
             panel.line_key(&named(method, entries), stroke(method));
             last = Some(method);
@@ -109,9 +109,9 @@ fn keys(panel: &mut Panel, entries: &[Entry]) {
     }
 }
 
-/// A method, and the worst that its motions come to where one of them is not safe.
+/// A method, with its worst result where one of its motions is not safe.
 fn named(method: Method, entries: &[Entry]) -> String {
-    let own = entries.iter().filter(|e| e.contender.method == method);
+    let own = entries.iter().filter(|e| e.candidate.method == method);
     let risk = |e: &Entry| e.risks().iter().map(|peak| peak.risk).fold(0.0, f64::max);
     let unsafe_ones = own.filter(|e| e.safety() > Some(Safety::Safe));
     match unsafe_ones.max_by_key(|e| e.safety()) {
@@ -123,14 +123,15 @@ fn named(method: Method, entries: &[Entry]) -> String {
     }
 }
 
-/// The ways, the desired one, and at some instants the sets of the first contender that sails.
+/// All motions, the desired trajectory, and at some instants the sets of the first candidate with a
+/// motion.
 fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let ways: Vec<(Stroke, Vec<Vector>)> = entries
         .iter()
         .map(|entry| {
             let at = |time| entry.position_at(time);
             let way = times(entry).into_iter().filter_map(at).collect();
-            (stroke(entry.contender.method), way)
+            (stroke(entry.candidate.method), way)
         })
         .collect();
     let waypoints = scenario.desired.waypoints();
@@ -188,7 +189,8 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     panel
 }
 
-/// To the nearest target that keeps course and speed: between the hulls, or from own position to the set.
+/// Distance to the nearest target on its nominal motion: between the hulls, or from own position to
+/// the set.
 fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let own = &scenario.own_ship.hull;
     let lines: Vec<(Stroke, Vec<Vector>)> = entries
@@ -206,7 +208,7 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
                 let nearest = apart.fold(f64::INFINITY, f64::min);
                 nearest.is_finite().then(|| Vector::new(time, nearest))
             });
-            (stroke(entry.contender.method), line.collect())
+            (stroke(entry.candidate.method), line.collect())
         })
         .collect();
     let least = |line: &[Vector]| line.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
@@ -255,13 +257,13 @@ fn parts_below(line: &[Vector], top: f64) -> Vec<Vec<Vector>> {
     parts
 }
 
-/// Cost over accepted risk, a line per planner: the baselines, which do not follow the mission, would flatten them. A plan that goes
-/// beyond the risk has no point.
+/// Cost over accepted risk, one line per planner. The baselines are left out: their costs would
+/// flatten the lines. A plan that exceeds the risk has no point.
 fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let mut lines: Vec<(Method, Vec<Vector>)> = Vec::new();
-    let is_planned = |e: &&Entry| matches!(e.contender.method, Method::Planner { .. });
+    let is_planned = |e: &&Entry| matches!(e.candidate.method, Method::Planner { .. });
     for entry in entries.iter().filter(is_planned) {
-        let method = entry.contender.method;
+        let method = entry.candidate.method;
         let known = lines.iter().position(|(m, _)| *m == method);
         let index = known.unwrap_or_else(|| {
             lines.push((method, Vec::new()));
@@ -270,7 +272,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
         let cost = cost_within_risk(entry);
         lines[index]
             .1
-            .extend(cost.map(|cost| Vector::new(entry.contender.max_risk, cost)));
+            .extend(cost.map(|cost| Vector::new(entry.candidate.max_risk, cost)));
     }
     for (_, line) in &mut lines {
         line.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -315,14 +317,14 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
     panel
 }
 
-/// What a verified plan costs that keeps to the accepted risk, and arrives where its planner asks for that.
+/// The cost of a verified plan that keeps to the accepted risk and arrives.
 fn cost_within_risk(entry: &Entry) -> Option<f64> {
-    let Sailed::Planned(run) = &entry.result else {
+    let EntryResult::Planned(run) = &entry.result else {
         return None;
     };
     let enters = run.released.iter().any(Option::is_some);
     let is_left = run.planned.outcome.plan().is_some_and(|p| p.to_go > 0.0);
-    if enters || is_left || run.max_risk > entry.contender.max_risk {
+    if enters || is_left || run.max_risk > entry.candidate.max_risk {
         return None;
     }
     let verified = run.evaluation.as_ref().filter(|e| e.verified());
@@ -337,7 +339,7 @@ mod tests {
 
     use super::*;
     use crate::planner::{PlannerKind, SearchKind};
-    use crate::study::compare::Contender;
+    use crate::study::compare::Candidate;
     use crate::target::Representation;
 
     /// Head-on there is no way along the path, whatever may be risked.
@@ -354,7 +356,7 @@ mod tests {
                     search: SearchKind::AStar,
                     representation: Some(Representation::Polytope),
                 };
-                Contender { method, max_risk }.run(&scenario)
+                Candidate { method, max_risk }.run(&scenario)
             })
             .collect();
         let costs: Vec<Option<f64>> = entries.iter().map(cost_within_risk).collect();
@@ -364,9 +366,9 @@ mod tests {
         assert!(clear > risked && costs[2..] == [None, None], "{costs:?}");
         // a plan that does not arrive has none either
         let forces = Scenario::read(&root.join("scenarios/forces/give-way.toml")).expect("valid");
-        let along = Contender {
+        let along = Candidate {
             max_risk: 0.2,
-            ..entries[2].contender
+            ..entries[2].candidate
         };
         assert_eq!(cost_within_risk(&along.run(&forces)), None);
         let svg = comparison_figure(&[(&scenario, &entries)]).svg();

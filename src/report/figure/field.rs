@@ -1,6 +1,6 @@
-//! Fields: risk over the sea at a time, dCPA over the velocities. In bands, each of which is a set that is known
-//! outright: where the risk is at least a value is a section, the velocities that come within a distance are the
-//! velocity obstacle of a wider set.
+//! Fields: risk over the sea at a time, dCPA over the velocities. In bands, each of which is a set
+//! that is known outright: where the risk is at least a value is a section, the velocities that
+//! come within a distance are the velocity obstacle of a wider set.
 
 use kuva::plot::{ColorMap, ContourPlot};
 use kuva::render::plots::Plot;
@@ -46,8 +46,8 @@ pub struct VelocityWindow {
     pub own: Option<Vector>,
 }
 
-/// The largest risk of any target at `time`, seconds, in twentieths, with the boundaries of the sections. The colours go
-/// from risk 0 to risk 1 in every panel.
+/// The largest risk of any target at `time`, seconds, in twentieths, with the boundaries of the
+/// sections. The colours go from risk 0 to risk 1 in every panel.
 pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: Window) -> Panel {
     let mut panel = Panel::plan(title.to_owned(), PLAN, window);
     panel.plots.push(scale(panel.window(), 1.0, "risk"));
@@ -75,8 +75,8 @@ pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: Window) 
     panel
 }
 
-/// The least dCPA to any target for every velocity kept from `position` over `[0, horizon]` seconds, with the
-/// velocity obstacles in white.
+/// The least dCPA to any target for every velocity kept from `position` over `[0, horizon]`
+/// seconds, with the velocity obstacles in white.
 pub fn dcpa_panel(
     title: &str,
     targets: &[Obstacle],

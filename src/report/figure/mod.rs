@@ -1,27 +1,24 @@
 //! Figures: panels in a grid, drawn as SVG or PNG. The same panels give the same bytes.
 //!
-//! Plans of the sea have equal axes; every axis has its unit. Fields are coloured by viridis, whose lightness rises
-//! with the value, so it survives print in grey.
+//! Charts have equal axes, and every axis has its unit. Fields are coloured by viridis, whose
+//! lightness rises with the value, so that it survives print in grey.
 
 mod assessment;
 mod comparison;
 mod field;
-mod motion;
-mod names;
+mod forces;
 mod outline;
 mod panel;
 mod path_time;
 mod plan;
 mod render;
 mod sections;
-mod volume;
 mod window;
 
 pub use assessment::assessment_figure;
 pub use comparison::comparison_figure;
 pub(super) use comparison::{comparison_panels, diagram_panels};
 pub use field::{VelocityWindow, dcpa_panel, risk_panel};
-pub use motion::moments_figure;
 pub use outline::Stroke;
 pub use panel::Panel;
 pub use path_time::{ProfileLine, path_time_panel};
@@ -29,5 +26,4 @@ pub(super) use plan::plan_panels;
 pub use plan::{chart_panel, explored_panel, path_panel, plan_figure};
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
-pub use volume::volume_panel;
 pub use window::Window;

@@ -4,13 +4,14 @@ use kuva::plot::{BandPlot, LinePlot, MarkerShape, ScatterPlot};
 use kuva::render::plots::Plot;
 
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, Ellipse};
-use crate::obstacle::{Obstacle, PolytopeObstacle, Section};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
+use crate::obstacle::{Obstacle, PolytopeObstacle};
 
 /// Points of an ellipse's boundary.
 const ELLIPSE_POINTS: usize = 96;
 
-/// Of what is drawn: how far the outline of a velocity obstacle of ellipses may be from it, a fraction of a pixel.
+/// Distance of a drawn velocity obstacle of ellipses from the exact one, as a fraction of the
+/// limit.
 const FINENESS: f64 = 5e-4;
 
 /// How a curve is drawn.
@@ -25,10 +26,10 @@ pub struct Stroke {
 }
 
 /// The boundary of a section, counter-clockwise; of an ellipse some points of it.
-pub fn sampled_boundary(section: &Section) -> Vec<Vector> {
+pub fn sampled_boundary(section: &ConvexSet) -> Vec<Vector> {
     match section {
-        Section::Polygon(polygon) => polygon.vertices().to_vec(),
-        Section::Ellipse(ellipse) => ellipse.sampled_boundary(ELLIPSE_POINTS),
+        ConvexSet::Polygon(polygon) => polygon.vertices().to_vec(),
+        ConvexSet::Ellipse(ellipse) => ellipse.sampled_boundary(ELLIPSE_POINTS),
     }
 }
 
@@ -53,7 +54,7 @@ pub fn mark(at: Vector, colour: &str) -> Plot {
     Plot::Scatter(point.with_color(colour).with_size(4.5))
 }
 
-/// What tells the points of one curve from those of another where both lie in one place.
+/// Symbols that distinguish the points of curves that lie in one place.
 pub(super) const SYMBOLS: [MarkerShape; 8] = [
     MarkerShape::Circle,
     MarkerShape::Square,
@@ -65,14 +66,15 @@ pub(super) const SYMBOLS: [MarkerShape; 8] = [
     MarkerShape::Plus,
 ];
 
-/// Points with a symbol each, `size` pixels from its middle to its edge.
+/// Points with a symbol each, `size` pixels from its centre to its edge.
 pub(super) fn symbols(at: &[Vector], symbol: MarkerShape, size: f64, colour: &str) -> Plot {
     let points = ScatterPlot::new().with_data(at.iter().map(|p| (p.x, p.y)));
     let points = points.with_color(colour).with_size(size);
     Plot::Scatter(points.with_marker(symbol))
 }
 
-/// A filled convex polygon: the band between its lower and its upper chain. `None` where it has no area.
+/// A filled convex polygon: the band between its lower and its upper chain. `None` where it has no
+/// area.
 pub fn area(polygon: &ConvexPolygon, colour: &str, opacity: f64) -> Option<Plot> {
     let vertices = polygon.vertices();
     let mut xs: Vec<f64> = vertices.iter().map(|v| v.x).collect();
@@ -113,9 +115,10 @@ pub fn area(polygon: &ConvexPolygon, colour: &str, opacity: f64) -> Option<Plot>
     Some(Plot::Band(band))
 }
 
-/// The velocities that come within `distance` metres of a target, as convex polygons, drawn as far as `limit` m/s east
-/// and north; at distance 0 the velocity obstacle. Exact for polygons at distance 0, otherwise a disc of 64 sides wide,
-/// 0.1 % more; of ellipses from outside, to [`FINENESS`] of `limit`.
+/// The velocities that come within `distance` metres of a target, as convex polygons up to `limit`
+/// m/s east and north. At distance 0 this is the velocity obstacle. Polygons are exact at distance
+/// 0 and otherwise widened by a disc of 64 sides, 0.1 % too large; ellipses are outer
+/// approximations to [`FINENESS`] of `limit`.
 pub fn outer_velocities_within(
     target: &Obstacle,
     approach: &Approaching,
@@ -148,7 +151,7 @@ pub fn outer_velocities_within(
     regions.iter().filter_map(|r| r.clipped(limit)).collect()
 }
 
-/// Own ship's position at t = 0 and how long she keeps her velocity.
+/// Own ship's position at t = 0 and how long it holds its velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approaching {
     /// Metres.
@@ -180,7 +183,7 @@ mod tests {
         ConvexPolygon::from_ccw(corners.to_vec())
     }
 
-    /// What is drawn against the closest approach itself.
+    /// The drawn regions against the closest approach itself.
     #[test]
     fn the_velocities_drawn_are_those_that_come_so_near() {
         let (place, way) = (Vector::new(300.0, 80.0), Vector::new(-2.0, -0.5));

@@ -22,7 +22,7 @@ const ALONE: f64 = 18.0;
 /// Pixels for the numbers and the name of the lower axis.
 const AXIS: f64 = 64.0;
 
-/// Pixels that the name of the lower axis is brought nearer to it.
+/// Pixels by which the name of the lower axis is raised.
 const LIFT: f64 = 16.0;
 
 /// Pixels of a line of the legend, and around them.
@@ -30,7 +30,7 @@ const LEGEND_LINE: f64 = 20.0;
 const LEGEND_FRAME: f64 = 26.0;
 
 /// Pixels of a note's letters.
-pub(super) const NOTE_SIZE: u32 = 11;
+const NOTE_SIZE: u32 = 11;
 
 /// One pair of axes with what is drawn between them.
 pub struct Panel {
@@ -38,15 +38,14 @@ pub struct Panel {
     axes: [String; 2],
     window: Window,
     equal: bool,
-    /// A frame without numbers: what is drawn has its own axes.
-    bare: bool,
     pub(super) plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
     notes: Vec<TextAnnotation>,
 }
 
 impl Panel {
-    /// A plan with equal axes: the window is widened until it fills the panel. `axes` carry their units.
+    /// A plan with equal axes: the window is widened until it fills the panel. `axes` carry their
+    /// units.
     pub(super) fn plan(title: String, axes: [&str; 2], window: Window) -> Self {
         Self {
             window: window.with_ratio(AREA[0] / AREA[1]),
@@ -62,27 +61,18 @@ impl Panel {
             axes: axes.map(str::to_owned),
             window,
             equal: false,
-            bare: false,
             plots: Vec::new(),
             legend: Vec::new(),
             notes: Vec::new(),
         }
     }
 
-    /// A picture with equal scales in a frame without numbers.
-    pub(super) fn picture(title: String, window: Window) -> Self {
-        Self {
-            bare: true,
-            ..Self::plan(title, ["", ""], window)
-        }
-    }
-
-    /// What it is called.
+    /// The title.
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// What it shows.
+    /// The part of the plane that it shows.
     pub fn window(&self) -> Window {
         self.window
     }
@@ -105,7 +95,7 @@ impl Panel {
         });
     }
 
-    /// What [`super::outline::symbols`] draws.
+    /// A symbol of [`super::outline::symbols`].
     pub(super) fn symbol_key(&mut self, label: &str, symbol: MarkerShape, colour: &str) {
         self.legend.push(LegendEntry {
             label: label.to_owned(),
@@ -121,7 +111,7 @@ impl Panel {
         self.notes.push(note);
     }
 
-    /// Pixels below the area for a legend of so many lines.
+    /// Pixels below the area for a legend with this many lines.
     pub(super) fn below(lines: usize) -> f64 {
         AXIS + if lines == 0 {
             0.0
@@ -143,7 +133,7 @@ impl Panel {
         }
     }
 
-    /// The layout in a cell with so many pixels to the right of the area and below it.
+    /// The layout in a cell, with the pixels to the right of the area and below it.
     pub(super) fn layout(&self, right: f64, below: f64) -> Layout {
         let Window { low, high } = self.window;
         let [left, _, top] = MARGIN;
@@ -164,7 +154,6 @@ impl Panel {
             .with_body_size(11)
             .with_force_margins(left, right)
             .with_force_margins_y(top, below);
-        (layout.suppress_x_ticks, layout.suppress_y_ticks) = (self.bare, self.bare);
         layout.show_colorbar = self.plots.iter().any(|p| p.colorbar_info(false).is_some());
         // the name of the axis belongs to it, above the legend
         layout = layout.with_x_label_offset(0.0, AXIS - below - LIFT);

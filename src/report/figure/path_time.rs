@@ -14,7 +14,7 @@ const JOINT: Stroke = Stroke {
     dashed: true,
 };
 
-/// Of targets one after another: colours that differ in lightness, too.
+/// Colours of successive targets; they differ in lightness, too.
 const COLOURS: [&str; 7] = [
     "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31",
 ];
@@ -22,7 +22,7 @@ const COLOURS: [&str; 7] = [
 /// Time shown after what is to be seen, as a share of it.
 const AFTER: f64 = 0.08;
 
-/// Of the last arrival: how much longer an obstacle may last to be shown whole.
+/// How much longer than the last arrival an obstacle may last to be shown whole, as a fraction.
 const MUCH: f64 = 0.5;
 
 /// The colour of a target by its index.
@@ -40,8 +40,8 @@ pub struct ProfileLine<'a> {
     pub stroke: Stroke,
 }
 
-/// The obstacles of the first diagram, filled, and the profiles of all; `names` are those of the obstacles, by
-/// their index. Without a plan up to the horizon.
+/// The obstacles of the first diagram, filled, and the profiles of all; `names` are those of the
+/// obstacles, by their index. Without a plan up to the horizon.
 pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) -> Panel {
     let point = |p: &PathTime| Vector::new(p.distance, p.time);
     let arrival = profiles

@@ -1,13 +1,14 @@
-//! The figure of a plan: the chart, and of a path-time plan its diagram.
+//! The figure of a plan: the chart, the diagram of a path-time plan, the forces of a plan under
+//! forces.
 
 use kuva::render::plots::Plot;
 
-use super::motion::moments_panels;
+use super::forces::force_panels;
 use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
 use super::{Figure, Panel, Window};
-use crate::document::words;
+use crate::document;
 use crate::evaluation::Safety;
 use crate::frame::Vector;
 use crate::geometry::{self, ConvexPolygon};
@@ -24,7 +25,7 @@ pub(super) const DESIRED: Stroke = Stroke {
     dashed: true,
 };
 
-/// Where own ship goes.
+/// The planned way.
 pub(super) const PLANNED: Stroke = Stroke {
     colour: "#000000",
     width: 2.4,
@@ -38,14 +39,14 @@ const ALTERNATIVE: Stroke = Stroke {
     dashed: false,
 };
 
-/// What a search found.
+/// Motions that a search found.
 const FOUND: Stroke = Stroke {
     colour: "#009e73",
     width: 0.8,
     dashed: false,
 };
 
-/// Of land.
+/// The colour of land.
 pub(super) const LAND: &str = "#d9cba3";
 
 /// Around pieces of land.
@@ -62,8 +63,8 @@ const MOMENTS: usize = 4;
 const STEP: f64 = 1.0;
 const MOST_POINTS: u32 = 5_000;
 
-/// The chart of a run, and its path-time diagram where it has one; of a plan of forces, its moments. Under the
-/// scenario's title, and of a plan that is not safe that it is not.
+/// The chart of a run with its path-time diagram, or its velocities and forces, where it has such.
+/// The title is the scenario's; for a plan that is not safe, it says so.
 pub fn plan_figure(run: &Run) -> Figure {
     let title = match run.safety() {
         None | Some(Safety::Safe) => run.scenario.title.clone(),
@@ -74,16 +75,16 @@ pub fn plan_figure(run: &Run) -> Figure {
 
 /// The panels of [`plan_figure`].
 pub fn plan_panels(run: &Run) -> Vec<Panel> {
-    let plan = run.planned.outcome.plan();
-    if let Some(plan) = plan.filter(|p| p.trajectory.steered().is_some()) {
-        return moments_panels(run, &plan.trajectory);
-    }
     let scenario = &run.scenario;
+    let plan = run.planned.outcome.plan();
     let mut panels = vec![chart_panel("Chart", run)];
+    if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
+        panels.extend(force_panels(motion, &scenario.control.force_limits));
+    }
     if let Some(diagram) = run.planned.path_time.as_deref() {
         let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
         let line = ProfileLine {
-            label: match run.planned.outcome.plan() {
+            label: match plan {
                 Some(_) => "planned".to_owned(),
                 None => "no plan".to_owned(),
             },
@@ -93,7 +94,7 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
         let title = if scenario.alternatives.is_empty() {
             "Path and time".to_owned()
         } else {
-            format!("Path and time: {}", words::paths(diagram))
+            format!("Path and time: {}", document::paths(diagram))
         };
         panels.push(path_time_panel(&title, &names, &[line]));
     }
@@ -108,7 +109,8 @@ pub fn path_panel(title: &str, obstacles: &[Obstacle], times: &[f64], path: &[Ve
     panel
 }
 
-/// Desired and planned way, the sets at some times of the plan, each with own ship's place at that time.
+/// Desired and planned way, the sets at some times of the plan, each with own ship's place at that
+/// time.
 pub fn chart_panel(title: &str, run: &Run) -> Panel {
     chart(title, run, Vec::new())
 }
@@ -134,7 +136,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let paths = scenario.alternatives.iter().flatten();
     let mut shown: Vec<Vector> = waypoints.iter().chain(&way).chain(paths).copied().collect();
     let reach = Window::around(shown.iter().copied(), 0.3);
-    // of what goes far away the beginning is enough
+    // sets that go far away are cut off
     let within = |p: &Vector| reach.contains(*p);
     let mut sets: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
     for (index, obstacle) in run.obstacles.iter().enumerate() {
@@ -201,7 +203,8 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     panel
 }
 
-/// The chart of a run of the space-time planner with every motion that its search found clear of all sets.
+/// The chart of a run of the space-time planner with every motion that its search found clear of
+/// all sets.
 pub fn explored_panel(title: &str, run: &Run) -> Panel {
     let edges = run.planned.explored.edge_weights();
     let free = edges.filter(|edge| edge.verdict == EdgeVerdict::Free);
@@ -216,8 +219,8 @@ pub fn explored_panel(title: &str, run: &Run) -> Panel {
     panel
 }
 
-/// The land within a window, filled, piece by piece. Each has an outline too: without one the water would shine through
-/// where two meet.
+/// The land within a window, filled, piece by piece. Each has an outline too: without one the water
+/// would shine through where two meet.
 pub(super) fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
     let window = geometry::Window {
         low: shown.low,

@@ -18,10 +18,10 @@ const PNG_SCALE: f32 = 2.0;
 const TITLE_SIZE: u32 = 18;
 const LETTERS: usize = 54;
 
-/// What the drawing library calls its clip paths, before a number that counts on through a process.
+/// The name of clip paths in the drawing library, before a number that counts on through a process.
 const CLIP: &str = "kuva-clip-";
 
-/// What a figure is written as.
+/// The format of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigureFormat {
     /// Scalable, the text kept as text.
@@ -44,7 +44,7 @@ impl FigureFormat {
     }
 }
 
-/// Why there is no figure.
+/// Why a figure is not written.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
     /// Neither ending.
@@ -79,7 +79,7 @@ impl Figure {
         }
     }
 
-    /// With a title above all panels; what does not fit is left out, and three dots say so.
+    /// With a title above all panels, shortened to their width.
     pub fn titled(self, title: &str) -> Self {
         let fits = self.columns.max(1) * LETTERS;
         let title = if title.chars().count() > fits {

@@ -3,8 +3,8 @@
 use super::outline::{Stroke, area, curve, sampled_boundary};
 use super::{Panel, Window};
 use crate::frame::Vector;
-use crate::geometry::ConvexPolygon;
-use crate::obstacle::{Obstacle, Section};
+use crate::geometry::{ConvexPolygon, ConvexSet};
+use crate::obstacle::Obstacle;
 
 /// The names of a plan's axes.
 pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
@@ -30,17 +30,18 @@ const COVERED: Stroke = Stroke {
     dashed: true,
 };
 
-/// Sections that the covered part of ellipses is drawn from; between them its sides are all but straight.
+/// Sections that the covered part of ellipses is drawn from; between them its sides are all but
+/// straight.
 const SWEEP: usize = 12;
 
 /// Pieces of a side of the space-time body; dashes need some length.
 const SIDE: usize = 25;
 
-/// Of the greater side, around what is shown: room for a name.
+/// Margin as a fraction of the greater side: room for a name.
 const MARGIN: f64 = 0.1;
 
 /// One set alone: `O_0` or `V`, with its unit in `axes`.
-pub fn set_panel(title: &str, axes: [&str; 2], set: &Section) -> Panel {
+pub fn set_panel(title: &str, axes: [&str; 2], set: &ConvexSet) -> Panel {
     let boundary = sampled_boundary(set);
     let window = Window::around(boundary.iter().copied(), 0.25);
     let mut panel = Panel::plan(title.to_owned(), axes, window);
@@ -53,13 +54,13 @@ pub fn set_panel(title: &str, axes: [&str; 2], set: &Section) -> Panel {
     panel
 }
 
-/// Sections of all targets at `times`, seconds, the first of them apart from the others, with all that they cover
-/// until the last, dashed. What slabs cover is drawn slab by slab as their hulls.
+/// Sections of all targets at `times`, seconds, the first in its own style. Dashed is the area
+/// covered until the last; for slabs it is drawn as the hull of each slab.
 pub fn sections_panel(title: &str, targets: &[Obstacle], times: &[f64]) -> Panel {
     sections_beside(title, targets, times, &[])
 }
 
-/// The same, in a window that holds `others`, too.
+/// [`sections_panel`] in a window that holds `others`, too.
 pub(super) fn sections_beside(
     title: &str,
     targets: &[Obstacle],
@@ -93,7 +94,8 @@ pub(super) fn sections_beside(
     panel
 }
 
-/// How far the sections reach east over time, until `end` seconds: the space-time body from the side.
+/// How far the sections reach east over time, until `end` seconds: the space-time body from the
+/// side.
 pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> Panel {
     let reach = |time: f64| {
         let section = target.section(time);
@@ -130,8 +132,7 @@ pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> 
     panel
 }
 
-/// What a target covers from 0 to `end` seconds, as boundaries of convex sets: bodies that are convex in space-time
-/// cover a convex set.
+/// The area that a target covers from 0 to `end` seconds, as boundaries of convex sets.
 fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
     let hull = |from: f64, to: f64, steps: usize| {
         let points: Vec<Vector> = (0..=steps)
@@ -154,7 +155,7 @@ fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
     }
 }
 
-/// Seconds as they are said, to a tenth.
+/// Seconds, rounded to a tenth.
 pub(super) fn seconds(time: f64) -> String {
     ((time * 10.0).round() / 10.0).to_string()
 }

@@ -12,8 +12,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Around points, with a margin of `share` of the greater side; a window of 1 around the origin without any
-    /// point that is a number.
+    /// Around points, with a margin of `share` of the greater side; a window of 1 around the origin
+    /// without any point that is a number.
     pub fn around(points: impl IntoIterator<Item = Vector>, share: f64) -> Self {
         let (mut low, mut high) = (
             Vector::repeat(f64::INFINITY),

@@ -1,52 +1,50 @@
-//! A report as a folder for a browser: one page and its figures, which need no network and no script.
+//! A report as a folder for a browser: one page and its figures, without network and script.
 //!
-//! The same runs give the same bytes: no clock is in it.
+//! No clock is in it: the same runs give the same bytes.
 
-mod parts;
+mod link;
 
 use std::fs;
 use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::comparison::{self, ComparisonRow};
+use super::comparison::{comparison_grid, remarks};
 use super::figure::{Figure, Panel, comparison_panels, diagram_panels, plan_panels};
-use super::summary::Summary;
-use super::table::{self, Tone, plan_lines};
+use super::plan::{TIME_COLUMN, TIME_LINE, headline, plan_lines, suite_grid};
+use super::table::{Grid, Styled, Tone, verdict};
 use super::write::{WriteError, write_atomically};
-use crate::evaluation::outcome;
+use crate::document::{PlanDocument, ScenarioComparisonDocument, SuiteRunDocument};
 use crate::pipeline::Run;
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, Inapplicable};
-use parts::{Link, address, list, table_of};
+use crate::study::compare::Entry;
 
-pub use parts::link_from;
+pub use link::link_from;
 
 /// The page.
 const INDEX: &str = "index.html";
 
-/// How it looks.
+/// Its style sheet.
 const STYLE: &str = include_str!("style.css");
 
-/// One scenario of a report: what its files are called, where it came from, and what else was written of it.
+/// One scenario of a report: the names of its files and links to other results.
 #[derive(Debug, Clone, Default)]
 pub struct Subject {
     /// Begins the names of its figures.
     pub stem: String,
     /// The scenario file.
     pub file: String,
-    /// What is linked, with its address: a recording, a plan document.
+    /// Names and addresses of linked files: a recording, a plan document.
     pub links: Vec<(String, String)>,
 }
 
 /// A report that grows scenario by scenario.
 #[derive(Debug, Default)]
 pub struct Report {
-    rows: Vec<Markup>,
+    /// The rows of the table over all plans: row i belongs to section i.
+    runs: Vec<SuiteRunDocument>,
     sections: Vec<Markup>,
     figures: Vec<(String, String)>,
-    /// Of the table over all; none where every scenario has its own.
-    header: Option<Markup>,
 }
 
 impl Report {
@@ -56,90 +54,60 @@ impl Report {
     }
 
     /// Adds a plan: a row of the table, its verdict and costs, its chart and diagram.
-    pub fn add_run(&mut self, subject: &Subject, run: &Run) {
-        self.head();
-        let texts = without(table::TIME, table::texts(&Summary::of(run)));
-        let names = without(table::TIME, table::HEADER);
-        let id = self.sections.len() + 1;
-        self.rows
-            .push(parts::row(&names, &texts, Some(id), parts::plan_number));
-        let (head, lines) = plan_lines(run);
-        let lines = lines.iter().filter(|(name, _)| *name != table::TIME_LINE);
+    pub fn add_run(&mut self, subject: &Subject, plan: &PlanDocument, run: &Run) {
+        let file = subject.file.clone();
+        self.runs.push(SuiteRunDocument::of(file, plan, Vec::new()));
+        let lines = plan_lines(plan).into_iter();
+        let lines = lines.filter(|(name, _)| *name != TIME_LINE);
         let figures = self.draw(subject, plan_panels(run));
-        self.sections.push(html! {
-            section id=(format!("s{id}")) {
-                h2 { (head) }
-                (origin(subject))
-                dl {
-                    @for (name, value) in lines { dt { (name) } dd { (value) } }
-                }
-                (figures)
+        self.section(html! {
+            h2 { (headline(plan)) }
+            (origin(subject))
+            dl {
+                @for (name, value) in lines { dt { (name) } dd { (value) } }
             }
+            (figures)
         });
     }
 
     /// Adds a file that gave no plan: a row, and why.
-    pub fn add_failure(&mut self, file: &str, ended: &str, error: &str) {
-        self.head();
-        let (word, tone) = outcome(ended, None, 0.0);
-        let mut texts = vec![(file.to_owned(), Tone::Plain), (word.clone(), tone)];
-        let names = without(table::TIME, table::HEADER);
-        texts.resize(names.len(), ("–".to_owned(), Tone::Plain));
-        let id = self.sections.len() + 1;
-        self.rows
-            .push(parts::row(&names, &texts, Some(id), parts::plan_number));
-        self.sections.push(html! {
-            section id=(format!("s{id}")) {
-                h2 { (file) ": " (word) }
-                p class=(if tone == Tone::Bad { "bad" } else { "quiet" }) { (error) }
-            }
+    pub fn add_failure(&mut self, file: &str, outcome: &str, error: &str) {
+        let failed = SuiteRunDocument::failed(file.to_owned(), outcome, error.to_owned());
+        let (word, tone) = verdict(&failed.verdict);
+        self.runs.push(failed);
+        self.section(html! {
+            h2 { (file) ": " (word) }
+            p class=(if tone == Tone::Bad { "bad" } else { "quiet" }) { (error) }
         });
     }
 
-    /// Adds a comparison: its table, its charts and the diagrams of those that keep to paths.
+    /// Adds a comparison: its table, its charts and the diagrams of plans along paths.
     pub fn add_comparison(
         &mut self,
         subject: &Subject,
+        compared: &ScenarioComparisonDocument,
         scenario: &Scenario,
         entries: &[Entry],
-        inapplicable: &[Inapplicable],
     ) {
-        let rows: Vec<ComparisonRow> = entries
-            .iter()
-            .map(|entry| ComparisonRow::of(scenario, entry))
-            .collect();
-        let sweep = comparison::is_sweep(&rows);
-        let mut names = without(comparison::TIME, comparison::HEADER);
-        if sweep {
-            names.insert(2, comparison::ACCEPTED);
-        }
-        let lines = rows.iter().map(|row| {
-            let mut texts = without(comparison::TIME, comparison::texts(row));
-            if sweep {
-                texts.insert(2, (row.max_risk.to_string(), Tone::Plain));
-            }
-            parts::row(&names, &texts, None, parts::comparison_number)
-        });
-        let lines: Vec<Markup> = lines.collect();
+        let sweep = (entries.iter()).any(|e| e.candidate.max_risk != entries[0].candidate.max_risk);
         let mut panels = comparison_panels(scenario, entries, sweep);
         panels.extend(diagram_panels(entries));
         let figures = self.draw(subject, panels);
-        let id = self.sections.len() + 1;
-        self.sections.push(html! {
-            section id=(format!("s{id}")) {
-                h2 { (scenario.title) }
-                (origin(subject))
-                (table_of(&parts::header(&names, parts::comparison_number), &lines))
-                (list(&comparison::remarks(&rows, inapplicable)))
-                (figures)
+        let remarks = remarks(compared);
+        self.section(html! {
+            h2 { (scenario.title) }
+            (origin(subject))
+            (table(comparison_grid(&compared.entries), false))
+            @if !remarks.is_empty() {
+                ul.quiet { @for line in remarks { li { (line) } } }
             }
+            (figures)
         });
     }
 
-    fn head(&mut self) {
-        self.header.get_or_insert_with(|| {
-            parts::header(&without(table::TIME, table::HEADER), parts::plan_number)
-        });
+    fn section(&mut self, contents: Markup) {
+        let id = format!("s{}", self.sections.len() + 1);
+        self.sections.push(html! { section id=(id) { (contents) } });
     }
 
     /// Keeps the panels as figures of their own, and shows them.
@@ -150,7 +118,7 @@ impl Report {
             let name = format!("{}-{}.svg", subject.stem, index + 1);
             self.figures
                 .push((name.clone(), Figure::new(1, vec![panel]).svg()));
-            let address = address(&name);
+            let address = link::address(&name);
             shown.push(html! {
                 figure { a href=(address) { img src=(address) alt=(title) loading="lazy"; } }
             });
@@ -172,7 +140,7 @@ impl Report {
                 body {
                     h1 { (title) }
                     p { (lead) }
-                    @if let Some(header) = &self.header { (table_of(header, &self.rows)) }
+                    @if !self.runs.is_empty() { (table(suite_grid(&self.runs), true)) }
                     @for section in &self.sections { (section) }
                     p.quiet { "Lengths in metres, times in seconds from the start, courses clockwise from true north." }
                 }
@@ -181,8 +149,8 @@ impl Report {
         page.into_string()
     }
 
-    /// Writes the figures and then the page into `folder`, which is made: each file is whole or not there, and the page never
-    /// shows a figure that is not. Files of an earlier report that this one has not are left.
+    /// Writes the figures and then the page into `folder`, which is made. Each file is whole or
+    /// absent, and the page never shows a missing figure. Files of an earlier report stay.
     pub fn write(&self, folder: &Path, title: &str, lead: &str) -> Result<(), WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError {
             file: folder.to_owned(),
@@ -196,23 +164,69 @@ impl Report {
     }
 }
 
-/// Where a scenario came from, and what was written of it.
+/// The file of a scenario, and links to other results.
 fn origin(subject: &Subject) -> Markup {
     html! {
         p.quiet {
             (subject.file)
             @for (name, address) in &subject.links {
-                " · " (Link { name, address })
+                " · " a href=(address) { (name) }
             }
         }
     }
 }
 
-/// All but one of a row.
-fn without<T: Clone, const N: usize>(left_out: usize, all: [T; N]) -> Vec<T> {
-    let mut all = all.to_vec();
-    all.remove(left_out);
-    all
+/// A table that may be wider than the page. The first cell of a row names it, and leads to its
+/// section where `linked`. Narrow pages show the columns' names in every row.
+fn table(grid: Grid, linked: bool) -> Markup {
+    // no clock is on the page
+    let Grid {
+        header,
+        numbers,
+        rows,
+    } = grid.without(TIME_COLUMN);
+    let number = |column: usize| numbers.contains(&column);
+    html! {
+        div.scroll {
+            table {
+                thead {
+                    tr {
+                        @for (i, name) in header.iter().enumerate() {
+                            th scope="col" class=[number(i).then_some("number")] { (name) }
+                        }
+                    }
+                }
+                tbody {
+                    @for (section, row) in rows.iter().enumerate() {
+                        tr {
+                            @for (i, (cell, name)) in row.iter().zip(&header).enumerate() {
+                                @if i > 0 {
+                                    td data-name=(name.replace('\n', " ")) class=[class(cell, number(i))] {
+                                        span { (cell.0) }
+                                    }
+                                } @else if linked {
+                                    th scope="row" { a href=(format!("#s{}", section + 1)) { (cell.0) } }
+                                } @else {
+                                    th scope="row" { (cell.0) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn class(cell: &Styled, number: bool) -> Option<String> {
+    let tone = match cell.1 {
+        Tone::Plain => None,
+        Tone::Good => Some("good"),
+        Tone::Fair => Some("fair"),
+        Tone::Bad => Some("bad"),
+    };
+    let classes: Vec<&str> = number.then_some("number").into_iter().chain(tone).collect();
+    (!classes.is_empty()).then(|| classes.join(" "))
 }
 
 #[cfg(test)]

@@ -28,18 +28,23 @@ fn subject(stem: &str) -> Subject {
     Subject {
         stem: stem.to_owned(),
         file: NASTY.to_owned(),
-        links: vec![(NASTY.to_owned(), address("a \"b\"#?.rrd"))],
+        links: vec![(NASTY.to_owned(), link::address("a \"b\"#?.rrd"))],
     }
 }
 
-/// What is text stays text, every figure that is shown is there, and nothing comes from elsewhere.
+fn add(report: &mut Report, stem: &str, kind: &str) {
+    let run = pipeline::run(scenario(kind));
+    report.add_run(&subject(stem), &PlanDocument::of(&run), &run);
+}
+
+/// Texts are escaped, every figure on the page exists, and nothing is loaded from elsewhere.
 fn assert_sound(report: &Report, page: &str) {
     assert!(!page.contains("<script") && !page.contains("alert(\"x\")"));
     assert!(page.contains("&lt;script&gt;"));
     assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("//"));
     for (name, svg) in &report.figures {
         assert!(
-            page.contains(&format!("src=\"{}\"", address(name))),
+            page.contains(&format!("src=\"{}\"", link::address(name))),
             "{name}"
         );
         assert!(
@@ -58,8 +63,8 @@ fn assert_sound(report: &Report, page: &str) {
 fn a_report_of_plans_has_rows_sections_and_figures() {
     let build = || {
         let mut report = Report::new();
-        report.add_run(&subject("a"), &pipeline::run(scenario("space-time")));
-        report.add_run(&subject("b"), &pipeline::run(scenario("path-time")));
+        add(&mut report, "a", "space-time");
+        add(&mut report, "b", "path-time");
         report.add_failure(NASTY, "unreadable", NASTY);
         report
     };
@@ -87,7 +92,8 @@ fn a_report_of_a_comparison_has_a_table_and_the_diagrams() {
     let scenario = scenario("space-time");
     let entries = crate::study::compare::compare(&scenario, &[0.0, 0.2]);
     let mut report = Report::new();
-    report.add_comparison(&subject("c"), &scenario, &entries, &[]);
+    let compared = ScenarioComparisonDocument::of("c".to_owned(), &scenario, &entries, &[]);
+    report.add_comparison(&subject("c"), &compared, &scenario, &entries);
     let page = report.html("Compared", "");
     assert_sound(&report, &page);
     assert!(page.contains("hold course") && page.contains("accepted"));
@@ -102,7 +108,7 @@ fn a_report_is_written_whole_and_its_links_lead_from_its_folder() {
     let folder = tempfile::tempdir().expect("a folder");
     let inside = folder.path().join("deep/report");
     let mut report = Report::new();
-    report.add_run(&subject("a"), &pipeline::run(scenario("space-time")));
+    add(&mut report, "a", "space-time");
     report.write(&inside, "A", "b").expect("written");
     let mut names: Vec<String> = std::fs::read_dir(&inside)
         .expect("there")

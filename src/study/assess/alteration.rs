@@ -1,8 +1,9 @@
 //! The least alteration of course or speed that leaves every velocity obstacle.
 //!
-//! On the circle of velocities at own speed, and on the ray of velocities on own course, every velocity obstacle
-//! covers closed arcs and intervals. From own velocity on, the first of them that covers it is followed to its
-//! end; where that end is covered by another one, that is followed, until nothing covers it.
+//! On the circle of velocities at own speed, and on the ray of velocities on own course, every
+//! velocity obstacle covers closed arcs and intervals. From own velocity on, the first of them that
+//! covers it is followed to its end; where that end is covered by another one, that is followed,
+//! until nothing covers it.
 
 use std::f64::consts::{FRAC_PI_8, PI};
 
@@ -14,26 +15,28 @@ use crate::tolerance;
 /// Most ends of arcs that are followed; each obstacle has a few.
 const MAX_ENDS: usize = 100_000;
 
-/// The least alterations, each alone. Zero where own velocity is out of every velocity obstacle already.
+/// The least alterations, each alone. Zero where own velocity is out of every velocity obstacle
+/// already.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Alteration {
     /// Turn to starboard at own speed, radians, in `[0, pi]`; `None` when no turn helps.
     pub starboard: Option<f64>,
     /// Turn to port at own speed, radians, in `[0, pi]`; `None` when no turn helps.
     pub port: Option<f64>,
-    /// Change of speed on own course, m/s: negative is slower. The smaller of the two, the slower one of two
-    /// equal ones; the new speed is in `[0, max_speed]`. `None` when no speed helps.
+    /// Change of speed on own course, m/s: negative is slower. The smaller of the two, the slower
+    /// one of two equal ones; the new speed is in `[0, max_speed]`. `None` when no speed helps.
     pub speed: Option<f64>,
 }
 
-/// The least turn to either side at own speed and the least change of speed on own course after which own ship, on
-/// a straight line from t = 0, meets no obstacle within the horizon. Turns and changes take no time.
+/// The least turn to either side at own speed and the least change of speed on own course after
+/// which own ship, on a straight line from t = 0, meets no obstacle within the horizon. Turns and
+/// changes take no time.
 ///
-/// Found on the regions themselves: for half-planes by the angles and speeds at which a boundary is crossed, for
-/// ellipses by halving arcs, of which one is known to be covered whole when the region, which is convex, holds the
-/// corners of a triangle around it. The answer is out of the closed sets: beyond the boundary by
-/// [`tolerance::ALTERATION_RAD`] or [`tolerance::ALTERATION_MPS`], a few of them for ellipses. Gaps narrower than
-/// that are none.
+/// Found on the regions themselves: for half-planes by the angles and speeds at which a boundary is
+/// crossed, for ellipses by halving arcs, of which one is known to be covered whole when the
+/// region, which is convex, holds the corners of a triangle around it. The answer is out of the
+/// closed sets: beyond the boundary by [`tolerance::ALTERATION_RAD`] or
+/// [`tolerance::ALTERATION_MPS`], a few of them for ellipses. Gaps narrower than that are none.
 /// O(half-planes) per arc; some hundred memberships per arc for ellipses.
 ///
 /// Source: velocity obstacles, paper eq. (26).
@@ -159,7 +162,8 @@ impl Search<'_> {
         None
     }
 
-    /// Where a convex region that holds `at` ends towards `limit`: bisection is exact on an interval.
+    /// Where a convex region that holds `at` ends towards `limit`: bisection is exact on an
+    /// interval.
     fn end_of_interval(&self, cover: &Cover, ahead: Vector, at: f64, limit: f64) -> Option<f64> {
         if self.covered_by(cover, ahead * limit) {
             return None;
@@ -177,8 +181,8 @@ impl Search<'_> {
     }
 }
 
-/// The first turn from `turn` on at which one of the half-planes excludes the velocity. `turned` gives the turn of
-/// a heading.
+/// The first turn from `turn` on at which one of the half-planes excludes the velocity. `turned`
+/// gives the turn of a heading.
 fn turn_out_of(
     region: &VelocityObstacle,
     turned: impl Fn(f64) -> f64,
@@ -204,7 +208,8 @@ fn turn_out_of(
     first
 }
 
-/// The first speed from `at` on, upwards or downwards, at which one of the half-planes excludes the velocity.
+/// The first speed from `at` on, upwards or downwards, at which one of the half-planes excludes the
+/// velocity.
 fn speed_out_of(region: &VelocityObstacle, ahead: Vector, way: f64, at: f64) -> Option<f64> {
     region
         .half_planes()
@@ -215,8 +220,8 @@ fn speed_out_of(region: &VelocityObstacle, ahead: Vector, way: f64, at: f64) -> 
         .filter(|speed| *speed >= 0.0)
 }
 
-/// The first turn from `turn` on at which a convex region is left. `on_circle` gives the velocity after a turn, times
-/// a factor.
+/// The first turn from `turn` on at which a convex region is left. `on_circle` gives the velocity
+/// after a turn, times a factor.
 fn first_out(
     on_circle: &impl Fn(f64, f64) -> Vector,
     inside: &impl Fn(Vector) -> bool,
@@ -234,8 +239,8 @@ fn first_out(
     None
 }
 
-/// The same on an arc of less than half a turn: two tangents meet beyond its middle, and the triangle of that corner
-/// and the ends contains the arc.
+/// [`first_out`] on an arc of less than half a turn. Two tangents meet beyond its middle, and the
+/// triangle of that corner and the ends contains the arc.
 fn first_out_within(
     on_circle: &impl Fn(f64, f64) -> Vector,
     inside: &impl Fn(Vector) -> bool,

@@ -1,8 +1,13 @@
-//! Everything that is asked of a situation, and the answers.
+//! A query about a situation and its answers.
 
-use super::{Alteration, Situation, least_alteration};
-use crate::frame::Vector;
-use crate::obstacle::{Obstacle, Section, SpaceTimeObstacle};
+use super::{Situation, least_alteration};
+use crate::document::{
+    AlterationDocument, ApproachDocument, AssessmentDocument, HeldDocument, HoldCourseDocument,
+    PointDocument, PointRiskDocument, SectionDocument, TargetSectionsDocument, VelocityDocument,
+};
+use crate::frame::{Vector, deg_from_radians};
+use crate::geometry::ConvexSet;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
 /// A position at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,160 +18,106 @@ pub struct SpaceTimePoint {
     pub time: f64,
 }
 
-/// What is asked beside holding course and the alteration.
+/// Questions beside holding course and the least alteration.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Query {
     /// Times of the sections, seconds, not negative.
     pub sections: Vec<f64>,
-    /// Where and when the risk is asked.
+    /// Points at which the risk is asked.
     pub points: Vec<SpaceTimePoint>,
     /// Own ship's velocities from t = 0 on, m/s.
     pub velocities: Vec<Vector>,
 }
 
-/// Where a target may be.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TargetSections {
-    /// Her name.
-    pub name: String,
-    /// `"polytope"` or `"ellipsoid"`.
-    pub representation: &'static str,
-    /// Times, seconds, and sections, in the order asked.
-    pub sections: Vec<(f64, Section)>,
-}
-
-/// Risk at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PointRisk {
-    /// In the closed set.
-    pub inside: bool,
-    /// `alpha*`, paper eq. (25) without its bound: above 1 outside, infinite where no scaling reaches.
-    pub alpha: f64,
-    /// `1 - alpha*`, clipped to `[0, 1]`.
-    pub risk: f64,
-}
-
-/// One point against every target, in their order.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointAssessment {
-    /// Where and when.
-    pub point: SpaceTimePoint,
-    /// One per target.
-    pub targets: Vec<PointRisk>,
-}
-
-/// How near own ship comes to one target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Approach {
-    /// Metres; 0 in contact.
-    pub dcpa: f64,
-    /// Seconds: the earliest instant at that distance, the first contact where there is one.
-    pub tcpa: f64,
-    /// True when the velocity meets the set within the horizon.
-    pub in_velocity_obstacle: bool,
-}
-
-/// One velocity against every target, in their order.
-#[derive(Debug, Clone, PartialEq)]
-pub struct VelocityAssessment {
-    /// m/s.
-    pub velocity: Vector,
-    /// One per target.
-    pub targets: Vec<Approach>,
-}
-
-/// What holding course and speed comes to with one target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HoldCourse {
-    /// Closest approach.
-    pub approach: Approach,
-    /// The largest risk on the way, in `[0, 1]`.
-    pub max_risk: f64,
-}
-
-/// The answers; every list per target is in the order of the situation's obstacles.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Assessment {
-    /// One per target.
-    pub targets: Vec<TargetSections>,
-    /// One per point asked.
-    pub points: Vec<PointAssessment>,
-    /// One per target.
-    pub hold_course: Vec<HoldCourse>,
-    /// Least alteration that leaves every velocity obstacle.
-    pub alteration: Alteration,
-    /// One per velocity asked.
-    pub velocities: Vec<VelocityAssessment>,
-}
-
-/// Answers a query. Per target: a point O(n + m), a velocity O(n + m), the largest risk of holding course
-/// O((n + m)²) at worst; for the alteration see [`least_alteration`].
-pub fn assess(situation: &Situation, query: &Query) -> Assessment {
+/// Answers a query about the scenario `title`. `sets` is `"hard"` or `"shaped"`. Per target: a point
+/// O(n + m), a velocity O(n + m), the largest risk of holding course O((n + m)²) at worst; for the
+/// alteration see [`least_alteration`].
+pub fn assess(title: &str, sets: &str, situation: &Situation, query: &Query) -> AssessmentDocument {
     let obstacles = situation.obstacles;
     let held = situation.held();
-    let approaches = |velocity| -> Vec<Approach> {
-        obstacles
-            .iter()
-            .map(|target| approach(situation, target, velocity))
-            .collect()
-    };
-    Assessment {
-        targets: obstacles
-            .iter()
-            .map(|target| TargetSections {
-                name: target.name().to_owned(),
-                representation: target.representation(),
-                sections: query
-                    .sections
-                    .iter()
-                    .map(|time| (*time, target.section(*time)))
-                    .collect(),
-            })
+    let alteration = least_alteration(situation);
+    let degrees = |turn: Option<f64>| turn.map(deg_from_radians);
+    let targets = obstacles.iter().map(|target| TargetSectionsDocument {
+        name: target.name().to_owned(),
+        representation: target.representation().to_owned(),
+        sections: (query.sections.iter())
+            .map(|time| section(*time, &target.section(*time)))
             .collect(),
-        points: query
-            .points
-            .iter()
-            .map(|point| PointAssessment {
-                point: *point,
-                targets: obstacles.iter().map(|o| risk_at(o, point)).collect(),
-            })
+    });
+    let points = query.points.iter().map(|point| PointDocument {
+        east_m: point.position.x,
+        north_m: point.position.y,
+        t_s: point.time,
+        targets: obstacles.iter().map(|o| risk_at(o, point)).collect(),
+    });
+    let hold_course = obstacles.iter().map(|target| {
+        let approach = approach(situation, target, situation.velocity());
+        HeldDocument {
+            name: approach.name,
+            dcpa_m: approach.dcpa_m,
+            tcpa_s: approach.tcpa_s,
+            max_risk: target.peak_risk(&held).risk,
+        }
+    });
+    let velocities = query.velocities.iter().map(|velocity| VelocityDocument {
+        east_mps: velocity.x,
+        north_mps: velocity.y,
+        targets: (obstacles.iter())
+            .map(|target| approach(situation, target, *velocity))
             .collect(),
-        hold_course: obstacles
-            .iter()
-            .zip(approaches(situation.velocity()))
-            .map(|(target, approach)| HoldCourse {
-                approach,
-                max_risk: target.peak_risk(&held).risk,
-            })
-            .collect(),
-        alteration: least_alteration(situation),
-        velocities: query
-            .velocities
-            .iter()
-            .map(|velocity| VelocityAssessment {
-                velocity: *velocity,
-                targets: approaches(*velocity),
-            })
-            .collect(),
+    });
+    AssessmentDocument {
+        scenario: title.to_owned(),
+        horizon_s: situation.horizon,
+        sets: sets.to_owned(),
+        targets: targets.collect(),
+        points: points.collect(),
+        hold_course: HoldCourseDocument {
+            targets: hold_course.collect(),
+        },
+        alteration: AlterationDocument {
+            starboard_deg: degrees(alteration.starboard),
+            port_deg: degrees(alteration.port),
+            speed_mps: alteration.speed,
+        },
+        velocities: velocities.collect(),
     }
 }
 
-fn risk_at(target: &Obstacle, point: &SpaceTimePoint) -> PointRisk {
-    let obstacle = target;
-    PointRisk {
-        inside: obstacle.contains(point.position, point.time),
-        alpha: obstacle.alpha(point.position, point.time),
-        risk: obstacle.risk(point.position, point.time),
+fn risk_at(target: &Obstacle, point: &SpaceTimePoint) -> PointRiskDocument {
+    PointRiskDocument {
+        name: target.name().to_owned(),
+        inside: target.contains(point.position, point.time),
+        alpha: Some(target.alpha(point.position, point.time)).filter(|alpha| alpha.is_finite()),
+        risk: target.risk(point.position, point.time),
     }
 }
 
-fn approach(situation: &Situation, target: &Obstacle, velocity: Vector) -> Approach {
+fn approach(situation: &Situation, target: &Obstacle, velocity: Vector) -> ApproachDocument {
     let (from, horizon) = (situation.pose.position, situation.horizon);
-    let obstacle = target;
-    let nearest = obstacle.closest_approach(from, velocity, horizon);
-    Approach {
-        dcpa: nearest.distance,
-        tcpa: nearest.time,
-        in_velocity_obstacle: obstacle.in_velocity_obstacle(from, velocity, horizon),
+    let nearest = target.closest_approach(from, velocity, horizon);
+    ApproachDocument {
+        name: target.name().to_owned(),
+        dcpa_m: nearest.distance,
+        tcpa_s: nearest.time,
+        in_velocity_obstacle: target.in_velocity_obstacle(from, velocity, horizon),
+    }
+}
+
+fn section(time: f64, section: &ConvexSet) -> SectionDocument {
+    let pair = |p: &Vector| [p.x, p.y];
+    match section {
+        ConvexSet::Polygon(polygon) => SectionDocument::Polygon {
+            t_s: time,
+            vertices_m: polygon.vertices().iter().map(pair).collect(),
+        },
+        ConvexSet::Ellipse(ellipse) => {
+            let q = ellipse.shape();
+            SectionDocument::Ellipse {
+                t_s: time,
+                center_m: pair(&ellipse.center()),
+                shape_m2: [[q[(0, 0)], q[(0, 1)]], [q[(1, 0)], q[(1, 1)]]],
+            }
+        }
     }
 }

@@ -1,8 +1,8 @@
-//! What a navigator asks of the sets without planning: where a target may be, how large the risk is at a point,
-//! how near a velocity comes, and the least alteration that leaves every velocity obstacle.
+//! Questions about the sets without planning: possible positions of targets, risk at a point,
+//! closest approach of a velocity, and the least alteration that leaves every velocity obstacle.
 //!
 //! ```text
-//! Situation (own ship, obstacles, horizon) + Query (times, points, velocities) ─► Assessment
+//! Situation (own ship, obstacles, horizon) + Query (times, points, velocities) ─► AssessmentDocument
 //! ```
 
 mod alteration;
@@ -10,8 +10,5 @@ mod answer;
 mod situation;
 
 pub use alteration::{Alteration, least_alteration};
-pub use answer::{
-    Approach, Assessment, HoldCourse, PointAssessment, PointRisk, Query, SpaceTimePoint,
-    TargetSections, VelocityAssessment, assess,
-};
+pub use answer::{Query, SpaceTimePoint, assess};
 pub use situation::Situation;

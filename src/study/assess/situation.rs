@@ -4,23 +4,24 @@ use crate::frame::{Pose, Vector, direction};
 use crate::obstacle::Obstacle;
 use crate::trajectory::Segment;
 
-/// Own ship at t = 0 and the obstacles that she meets.
+/// Own ship at t = 0 and the obstacles around it.
 #[derive(Debug, Clone, Copy)]
 pub struct Situation<'a> {
-    /// Position, metres, and heading, radians; her course is her heading.
+    /// Position, metres, and heading, radians; the course is the heading.
     pub pose: Pose,
     /// m/s, not negative.
     pub speed: f64,
-    /// The greatest speed that an alteration may ask for, m/s; a lower one than `speed` counts as that.
+    /// The greatest speed of an alteration, m/s; at least `speed` is used.
     pub max_speed: f64,
-    /// Everything is asked over `[0, horizon]`, seconds; may be infinite but for the risk of holding course.
+    /// The interval is `[0, horizon]`, seconds. It may be infinite except for the risk of holding
+    /// course.
     pub horizon: f64,
-    /// Own ship's footprint folded in.
+    /// They include own ship's footprint.
     pub obstacles: &'a [Obstacle],
 }
 
 impl Situation<'_> {
-    /// Her velocity if she holds course and speed, m/s.
+    /// The velocity if course and speed are held, m/s.
     pub fn velocity(&self) -> Vector {
         self.velocity_on(self.pose.heading, self.speed)
     }

@@ -1,11 +1,11 @@
-//! Which methods a scenario can be sailed with.
+//! The methods that apply to a scenario.
 
 use super::Method;
 use crate::planner::{PlannerKind, SearchKind};
 use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, Target};
 
-/// A method that a scenario has no use for.
+/// A method that does not apply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inapplicable {
     /// Which.
@@ -14,7 +14,7 @@ pub struct Inapplicable {
     pub reason: String,
 }
 
-/// What applies, in the order of the rows, and what does not.
+/// The methods of a scenario, in the order of the rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Methods {
     /// These can be run.
@@ -23,8 +23,8 @@ pub struct Methods {
     pub inapplicable: Vec<Inapplicable>,
 }
 
-/// Every method, as it applies to a scenario. Polytopes and ellipsoids are two methods where a target can be given as either;
-/// a planner applies where it would plan the scenario.
+/// Sorts every method into those that apply and those that do not. Polytopes and ellipsoids are two
+/// methods where a target can be given as either.
 pub fn methods(scenario: &Scenario) -> Methods {
     let representations: &[Option<Representation>] = if scenario.targets.iter().any(has_choice) {
         &[
@@ -72,7 +72,7 @@ pub fn methods(scenario: &Scenario) -> Methods {
     found
 }
 
-/// True for what is neither given as ellipses nor in several sets.
+/// True for targets that are given neither as ellipses nor by several velocity sets.
 fn has_choice(target: &Target) -> bool {
     match &target.motion {
         Motion::Ship(ship) => ship.turn_rate == 0.0,

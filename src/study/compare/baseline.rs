@@ -1,4 +1,5 @@
-//! Two motions that need no planner: hold course, and one velocity that is out of every velocity obstacle.
+//! Two baselines without a planner: hold course, and one constant velocity outside every velocity
+//! obstacle.
 
 use crate::evaluation::Evaluation;
 use crate::frame::{Pose, direction};
@@ -16,7 +17,7 @@ pub struct Baseline {
     pub trajectory: Trajectory,
     /// Level sets of the accepted risk, in the order of the targets.
     pub obstacles: Vec<Obstacle>,
-    /// The judgement: sets, hulls and land. Own ship's limits are not asked for, her velocity changes at once.
+    /// Sets, hulls and land are checked. Own limits are not: the velocity changes at once.
     pub evaluation: Evaluation,
     /// The largest risk, per target.
     pub risks: Vec<PeakRisk>,
@@ -30,13 +31,14 @@ pub fn hold_course(scenario: &Scenario) -> Baseline {
     baseline(scenario, &Sets::of(scenario), own.pose.heading, own.speed)
 }
 
-/// The constant velocity with the least space-time error of those that meet no set within the horizon.
+/// The constant velocity with the least space-time error of those that meet no set within the
+/// horizon.
 ///
-/// At each of own ship's speeds, her speed at t = 0 among them, the least turns to starboard and to port out of every velocity obstacle;
-/// and the least change of speed on her course: the ends of what is forbidden, exact to
-/// [`tolerance::ALTERATION_RAD`]. The turn is from the course to the last waypoint as well as from her own, so that a mission
-/// off her course is not missed. `None` when no such velocity exists, as from inside a set. Velocities that run
-/// aground are chosen only where all do.
+/// Candidates are, at each of own ship's speeds and the speed at t = 0, the least turns out of
+/// every velocity obstacle to either side, and on its course the least change of speed; these are
+/// exact to [`tolerance::ALTERATION_RAD`]. Turns start from the course to the last waypoint as well
+/// as from own course, so that a mission off the course is not missed. `None` when no such velocity
+/// exists, as from inside a set. Velocities that run aground are chosen only where all do.
 pub fn constant_velocity(scenario: &Scenario) -> Option<Baseline> {
     let own = &scenario.own_ship;
     let sets = Sets::of(scenario);
@@ -77,7 +79,8 @@ pub fn constant_velocity(scenario: &Scenario) -> Option<Baseline> {
         })
 }
 
-/// What a planner would keep out of, at the accepted risk and whole: risk is measured against these.
+/// What a planner would keep out of, at the accepted risk and whole: risk is measured against
+/// these.
 pub(super) struct Sets {
     level: Vec<Obstacle>,
     whole: Vec<Obstacle>,

@@ -1,4 +1,4 @@
-//! Ways to sail a scenario, and their names.
+//! The methods of a comparison and their names.
 
 use crate::planner::{Objective, PlannerKind, SearchKind};
 use crate::scenario::{Compliance, Scenario};
@@ -11,20 +11,21 @@ pub enum Method {
     Planner {
         /// Which.
         kind: PlannerKind,
-        /// Over its graph; of no meaning for optimal control.
+        /// The search over its graph; without effect on optimal control.
         search: SearchKind,
-        /// What the sets of the targets are made of; `None` where that is settled by the targets.
+        /// The representation of the sets; `None` where the targets determine it.
         representation: Option<Representation>,
     },
-    /// Own course and speed from t = 0, whatever is in the way.
+    /// Own course and speed from t = 0.
     HoldCourse,
-    /// The best constant velocity out of every velocity obstacle.
+    /// The best constant velocity outside every velocity obstacle.
     ConstantVelocity,
 }
 
 impl Method {
-    /// The scenario with what this method changes in it. What keeps to no rules keeps out of the shapes. The objective of a planner that knows the space-time error alone becomes
-    /// that, and other paths are left to the planner that keeps to paths.
+    /// The scenario with the settings of this method. Planners other than the space-time planner
+    /// cannot filter by rules and use ship domains alone. Only the path-time planner keeps the
+    /// objective and the alternative paths.
     pub fn asked(self, scenario: &Scenario) -> Scenario {
         let mut asked = scenario.clone();
         if let Self::Planner {

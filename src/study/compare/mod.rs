@@ -1,20 +1,20 @@
-//! Every way to sail a scenario side by side: each planner that applies, and two baselines that users know.
+//! Every planner that applies and two baselines on one scenario.
 //!
 //! ```text
-//! Scenario + accepted risks ─► contenders ─► Entry, Entry, … (same targets, same figures)
+//! Scenario + accepted risks ─► candidates ─► Entry, Entry, … (same targets, same figures)
 //! ```
 
 mod applies;
 mod baseline;
-mod look;
+mod line_style;
 mod method;
 
 pub use applies::{Inapplicable, Methods, methods};
 pub use baseline::{Baseline, constant_velocity, hold_course};
-pub(crate) use look::Look;
+pub(crate) use line_style::LineStyle;
 pub use method::Method;
 
-use crate::colregs::conduct::{Conduct, Meeting};
+use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::evaluation::{Evaluation, Safety, counted_error};
 use crate::frame::Vector;
 use crate::obstacle::{Obstacle, PeakRisk};
@@ -25,36 +25,36 @@ use crate::trajectory::Trajectory;
 
 /// One method at one accepted risk, before it is run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contender {
-    /// Who.
+pub struct Candidate {
+    /// The planner or baseline.
     pub method: Method,
-    /// The risk of eq. (25) that is accepted, in `[0, 1)`.
+    /// The accepted risk of eq. (25), in `[0, 1)`.
     pub max_risk: f64,
 }
 
-/// What one contender came to.
+/// The result of one candidate.
 #[derive(Debug, Clone)]
 pub struct Entry {
-    /// Who, and at which risk.
-    pub contender: Contender,
-    /// What came of it.
-    pub result: Sailed,
+    /// The method and the accepted risk.
+    pub candidate: Candidate,
+    /// Its result.
+    pub result: EntryResult,
 }
 
-/// What is sailed.
+/// The motion of a candidate, if it has one.
 #[derive(Debug, Clone)]
-pub enum Sailed {
-    /// By a planner, or nothing.
+pub enum EntryResult {
+    /// The run of a planner, with or without a plan.
     Planned(Box<Run>),
-    /// By a baseline.
+    /// A baseline.
     Baseline(Box<Baseline>),
-    /// By a baseline that found nothing, in words.
+    /// A baseline found no motion; the reason.
     Nothing(&'static str),
 }
 
-/// Every contender of a scenario, in the order of their rows: by method, then by risk. Holding course asks for no
-/// risk, so it is there once.
-pub fn contenders(methods: &[Method], risks: &[f64]) -> Vec<Contender> {
+/// Every candidate of a scenario, by method, then by risk. Holding course accepts no risk, so it
+/// appears once.
+pub fn candidates(methods: &[Method], risks: &[f64]) -> Vec<Candidate> {
     methods
         .iter()
         .flat_map(|&method| {
@@ -64,13 +64,13 @@ pub fn contenders(methods: &[Method], risks: &[f64]) -> Vec<Contender> {
             };
             risks
                 .iter()
-                .map(move |&max_risk| Contender { method, max_risk })
+                .map(move |&max_risk| Candidate { method, max_risk })
         })
         .collect()
 }
 
-/// Counts the space-time error as that of all methods: until own ship's length from the last waypoint, or where the motion does not
-/// come so near, as [`Counted`](crate::evaluation::Counted) says.
+/// Counts the space-time error of all methods alike: until own ship's length from the last
+/// waypoint. For a motion that does not come so near see [`Counted`](crate::evaluation::Counted).
 fn count_alike(evaluation: &mut Evaluation, scenario: &Scenario, trajectory: &Trajectory) {
     let (desired, q) = (&scenario.desired, scenario.time_weight);
     let within = scenario.own_ship.hull.length;
@@ -78,9 +78,9 @@ fn count_alike(evaluation: &mut Evaluation, scenario: &Scenario, trajectory: &Tr
         counted_error(trajectory, desired, q, within);
 }
 
-impl Contender {
-    /// Plans and judges. The space-time error is counted alike for all methods, not to the end of each motion. The same scenario gives the same entry, but for the time that planning took; contenders may run at
-    /// the same time.
+impl Candidate {
+    /// Plans and evaluates. The space-time error of all methods is counted alike. Results are
+    /// deterministic but for the time that planning took; candidates may run in parallel.
     pub fn run(self, scenario: &Scenario) -> Entry {
         let result = match self.method {
             Method::Planner { .. } => {
@@ -89,21 +89,25 @@ impl Contender {
                 {
                     count_alike(found, scenario, &plan.trajectory);
                 }
-                Sailed::Planned(Box::new(run))
+                EntryResult::Planned(Box::new(run))
             }
-            Method::HoldCourse => Sailed::Baseline(Box::new(hold_course(&self.scenario(scenario)))),
+            Method::HoldCourse => {
+                EntryResult::Baseline(Box::new(hold_course(&self.scenario(scenario))))
+            }
             Method::ConstantVelocity => match constant_velocity(&self.scenario(scenario)) {
-                Some(found) => Sailed::Baseline(Box::new(found)),
-                None => Sailed::Nothing("no constant velocity is out of every velocity obstacle"),
+                Some(found) => EntryResult::Baseline(Box::new(found)),
+                None => {
+                    EntryResult::Nothing("no constant velocity is out of every velocity obstacle")
+                }
             },
         };
         Entry {
-            contender: self,
+            candidate: self,
             result,
         }
     }
 
-    /// The scenario as this contender sees it.
+    /// The scenario with the settings of this candidate.
     fn scenario(self, scenario: &Scenario) -> Scenario {
         let asked = self.method.asked(scenario);
         Scenario {
@@ -117,75 +121,77 @@ impl Entry {
     /// The motion; `None` without one.
     pub fn trajectory(&self) -> Option<&Trajectory> {
         match &self.result {
-            Sailed::Planned(run) => run.planned.outcome.plan().map(|plan| &plan.trajectory),
-            Sailed::Baseline(baseline) => Some(&baseline.trajectory),
-            Sailed::Nothing(_) => None,
+            EntryResult::Planned(run) => run.planned.outcome.plan().map(|plan| &plan.trajectory),
+            EntryResult::Baseline(baseline) => Some(&baseline.trajectory),
+            EntryResult::Nothing(_) => None,
         }
     }
 
-    /// The judgement; `None` without a motion.
+    /// The evaluation; `None` without a motion.
     pub fn evaluation(&self) -> Option<&Evaluation> {
         match &self.result {
-            Sailed::Planned(run) => run.evaluation.as_ref(),
-            Sailed::Baseline(baseline) => Some(&baseline.evaluation),
-            Sailed::Nothing(_) => None,
+            EntryResult::Planned(run) => run.evaluation.as_ref(),
+            EntryResult::Baseline(baseline) => Some(&baseline.evaluation),
+            EntryResult::Nothing(_) => None,
         }
     }
 
-    /// What the motion enters from start to arrival; `None` without one.
+    /// Whether the motion enters sets, hulls or land; `None` without one.
     pub fn safety(&self) -> Option<Safety> {
         match &self.result {
-            Sailed::Planned(run) => run.safety(),
-            Sailed::Baseline(baseline) => Some(baseline.evaluation.safety),
-            Sailed::Nothing(_) => None,
+            EntryResult::Planned(run) => run.safety(),
+            EntryResult::Baseline(baseline) => Some(baseline.evaluation.safety),
+            EntryResult::Nothing(_) => None,
         }
     }
 
-    /// The sets that were kept out of; empty where nothing was found.
+    /// The obstacles; empty where no motion was found.
     pub fn obstacles(&self) -> &[Obstacle] {
         match &self.result {
-            Sailed::Planned(run) => &run.obstacles,
-            Sailed::Baseline(baseline) => &baseline.obstacles,
-            Sailed::Nothing(_) => &[],
+            EntryResult::Planned(run) => &run.obstacles,
+            EntryResult::Baseline(baseline) => &baseline.obstacles,
+            EntryResult::Nothing(_) => &[],
         }
     }
 
     /// The largest risk along the motion, per target; empty without a motion.
     pub fn risks(&self) -> &[PeakRisk] {
         match &self.result {
-            Sailed::Planned(run) => &run.risks,
-            Sailed::Baseline(baseline) => &baseline.risks,
-            Sailed::Nothing(_) => &[],
+            EntryResult::Planned(run) => &run.risks,
+            EntryResult::Baseline(baseline) => &baseline.risks,
+            EntryResult::Nothing(_) => &[],
         }
     }
 
-    /// What two judges say of own ship toward each target that is a ship, by the thresholds that the scenario asks for; empty
-    /// without a motion. They see the motion and the target's nominal track alone. O(targets x seconds).
-    pub fn conduct(&self, scenario: &Scenario) -> Vec<Conduct> {
-        let (Some(trajectory), Some(thresholds)) = (self.trajectory(), scenario.judged_by()) else {
+    /// Rule violations and monitors toward each target that is a ship, by the thresholds of the
+    /// scenario; empty without a motion. Targets follow their nominal motion. O(targets × seconds).
+    pub fn conduct(&self, scenario: &Scenario) -> Vec<ComplianceReport> {
+        let Some(trajectory) = self.trajectory() else {
             return Vec::new();
         };
+        let thresholds = scenario.judged_by();
         let ships = scenario.targets.iter().filter_map(|target| target.ship());
-        let meetings = ships.map(|ship| Meeting::along(trajectory, scenario.own_ship.hull, ship));
-        meetings
-            .map(|meeting| Conduct::judge(&meeting, thresholds))
+        let samples =
+            ships.map(|ship| EncounterSamples::along(trajectory, scenario.own_ship.hull, ship));
+        samples
+            .map(|samples| ComplianceReport::judge(&samples, thresholds))
             .collect()
     }
 
     /// True when the motion ends at the last waypoint.
     pub fn arrived(&self) -> bool {
         match &self.result {
-            Sailed::Planned(run) => {
+            EntryResult::Planned(run) => {
                 let plan = run.planned.outcome.plan();
                 plan.is_some_and(|plan| plan.to_go == 0.0)
                     && run.scenario.planner != PlannerKind::OptimalControl
             }
-            Sailed::Baseline(baseline) => baseline.arrived,
-            Sailed::Nothing(_) => false,
+            EntryResult::Baseline(baseline) => baseline.arrived,
+            EntryResult::Nothing(_) => false,
         }
     }
 
-    /// Where the motion is at a time, metres; where it ends after its end.
+    /// The position at a time, metres; the last one after the end.
     pub fn position_at(&self, time: f64) -> Option<Vector> {
         let trajectory = self.trajectory()?;
         let within = time.clamp(trajectory.start_time(), trajectory.end_time());
@@ -193,12 +199,12 @@ impl Entry {
     }
 }
 
-/// Every contender one after another; a program may run them at the same time, the entries are the same.
+/// Runs every candidate one after another.
 pub fn compare(scenario: &Scenario, risks: &[f64]) -> Vec<Entry> {
     let found = methods(scenario);
-    contenders(&found.methods, risks)
+    candidates(&found.methods, risks)
         .into_iter()
-        .map(|contender| contender.run(scenario))
+        .map(|candidate| candidate.run(scenario))
         .collect()
 }
 

@@ -1,4 +1,4 @@
-//! Baselines against what can be said of them without a search; contenders against single runs.
+//! Baselines against answers that need no search; candidates against single runs.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn holding_course_arrives_where_the_course_leads_and_meets_the_target() {
     assert!(held.evaluation.space_time_error > 1e3);
 }
 
-/// On the edge of the velocity obstacle: clear, and not a hair nearer to own course.
+/// On the edge of the velocity obstacle: clear, while any smaller alteration is not.
 #[test]
 fn the_constant_velocity_is_clear_and_any_less_alteration_is_not() {
     for name in [
@@ -126,8 +126,8 @@ fn what_applies_depends_on_targets_start_land_and_ship() {
     assert!(other.is_some_and(|o| o.reason.starts_with("map:")));
 }
 
-/// The error of no method goes on after its arrival or the end of the desired time, and the vessel of optimal control is as long as
-/// own ship.
+/// No error is counted beyond arrival or the end of the desired time, and the vessel of optimal
+/// control is as long as own ship.
 #[test]
 fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
     for name in ["head-on", "give-way", "overtaking", "stand-on"] {
@@ -144,11 +144,11 @@ fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
         };
         let baselines = [Method::HoldCourse, Method::ConstantVelocity];
         for method in kinds.map(first).into_iter().chain(baselines) {
-            let contender = Contender {
+            let candidate = Candidate {
                 method,
                 max_risk: 0.0,
             };
-            let entry = contender.run(&scenario);
+            let entry = candidate.run(&scenario);
             let found = entry.evaluation().expect("a motion");
             let trajectory = entry.trajectory().expect("a motion");
             let (desired, q) = (&scenario.desired, scenario.time_weight);
@@ -185,8 +185,8 @@ fn a_contender_is_what_a_run_of_its_own_is() {
     let entry = entries
         .iter()
         .find(|e| {
-            e.contender
-                == Contender {
+            e.candidate
+                == Candidate {
                     method,
                     max_risk: 0.3,
                 }
@@ -208,7 +208,7 @@ fn a_contender_is_what_a_run_of_its_own_is() {
         assert!(
             cost(&pair[1]) <= cost(&pair[0]) * 1.001,
             "{}",
-            pair[0].contender.method
+            pair[0].candidate.method
         );
     }
 }

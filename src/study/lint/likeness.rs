@@ -12,13 +12,14 @@ const SAME_COURSE: f64 = std::f64::consts::PI / 900.0;
 /// How a scenario is like one before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Likeness {
-    /// The same ships on the same courses, seen from own ship.
+    /// Equal ships on equal courses, relative to own ship.
     Same,
-    /// The same with port and starboard exchanged.
+    /// Equal after port and starboard are exchanged.
     Mirrored,
 }
 
-/// A ship seen from own ship at the start: ahead and to port, metres; course from hers; speed.
+/// A ship relative to own ship at the start: position ahead and to port, metres; course relative
+/// to own course; speed.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     place: Vector,
@@ -42,8 +43,8 @@ impl Seen {
     }
 }
 
-/// Of every scenario the first one before it that it is like: own ship is meant to run as fast, and the targets are the same;
-/// routes are not compared. Scenarios without targets are like none. O(scenarios² targets²).
+/// For every scenario the first earlier one that it repeats: own speed and all targets are equal.
+/// Routes are not compared. A scenario without targets repeats none. O(scenarios² targets²).
 pub fn likenesses(scenarios: &[&Scenario]) -> Vec<Option<(usize, Likeness)>> {
     let all: Vec<Option<Vec<Seen>>> = scenarios.iter().map(|s| seen(s)).collect();
     let run = |index: usize| {
@@ -83,7 +84,7 @@ fn seen(scenario: &Scenario) -> Option<Vec<Seen>> {
     (!ships.is_empty()).then_some(ships)
 }
 
-/// The same ships in any order.
+/// Equal ships in any order.
 fn are(some: &[Seen], others: &[Seen]) -> bool {
     let mut left: Vec<&Seen> = others.iter().collect();
     some.len() == others.len()

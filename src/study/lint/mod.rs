@@ -1,17 +1,17 @@
-//! What is odd about scenarios, looked at without planning: where the ships would meet if nobody altered, who never
-//! matters, ships that are missing, geometry that is mirrored, scenarios that repeat others.
+//! Faults of scenarios that are found without planning: targets that never matter, missing ships,
+//! mirrored geometry, repeated scenarios.
 
 mod likeness;
 
 pub use likeness::{Likeness, likenesses};
 
-use crate::colregs::Role;
+use crate::document::{LintScenarioDocument, LintTargetDocument, finite};
 use crate::frame::{Side, relative_bearing};
 use crate::geometry::DISC_SIDES;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::sets;
 use crate::scenario::Scenario;
-use crate::scenario::formats::Declared;
+use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
 
 /// Instants at which sets and own ship are compared.
@@ -20,61 +20,23 @@ const INSTANTS: usize = 400;
 /// Radians. A target nearer to ahead or astern than this is on no side: 2°.
 const ON_NO_SIDE: f64 = std::f64::consts::PI / 90.0;
 
-/// How much a target matters to own ship within the horizon, at sampled instants.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Weight {
-    /// Own ship, undisturbed, comes into her hard set.
-    Meets,
-    /// She does not, but could: at one of her speeds, on some course.
-    Reachable,
-    /// She could not, whatever she did: the target never matters.
-    Never,
-}
+/// On the desired trajectory own ship enters the hard set of the target.
+const MEETS: &str = "meets";
+/// Own ship could not enter it at any of its speeds on any course.
+const NEVER: &str = "never";
 
-impl Weight {
-    /// In one word.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Meets => "meets",
-            Self::Reachable => "clear",
-            Self::Never => "never",
-        }
-    }
-}
-
-/// One target of a scenario, undisturbed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TargetLint {
-    /// Her name.
-    pub name: String,
-    /// Own ship's role.
-    pub role: Role,
-    /// Least distance of the hulls, metres; of explicit sets, of own position to the set.
-    pub dcpa: f64,
-    /// And when, seconds.
-    pub tcpa: f64,
-    /// Least distance of own ship's centre, undisturbed, to the hard set, metres; negative inside.
-    pub to_set: f64,
-    /// How much she matters.
-    pub weight: Weight,
-}
-
-/// What was found about one scenario.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Lint {
-    /// In the scenario's order.
-    pub targets: Vec<TargetLint>,
-    /// What is odd, in sentences.
-    pub findings: Vec<String>,
-}
-
-/// Looks at a scenario, and at what its file says of it besides. O(targets × instants).
-pub fn lint(scenario: &Scenario, declared: &Declared) -> Lint {
+/// Checks a scenario against itself and against what its file declares. O(targets × instants).
+pub fn lint(
+    file: String,
+    scenario: &Scenario,
+    declared: &Declared,
+    notes: Vec<String>,
+) -> LintScenarioDocument {
     let sets = sets(scenario);
     let fastest = scenario.own_ship.max_speed();
     let start = scenario.own_ship.pose.position;
     let step = scenario.horizon / INSTANTS as f64;
-    let targets: Vec<TargetLint> = scenario
+    let targets: Vec<LintTargetDocument> = scenario
         .targets
         .iter()
         .zip(&sets)
@@ -90,25 +52,25 @@ pub fn lint(scenario: &Scenario, declared: &Declared) -> Lint {
                 }
             }
             // negated on purpose: a NaN matters
-            let weight = if !(to_set > 0.0) {
-                Weight::Meets
+            let matters = if !(to_set > 0.0) {
+                MEETS
             } else if !(to_reach > (fastest + top_speed(target)) * step) {
-                Weight::Reachable
+                "clear"
             } else {
-                Weight::Never
+                NEVER
             };
-            TargetLint {
+            LintTargetDocument {
                 name: target.name.clone(),
-                role: sets.encounter.role,
-                dcpa: sets.encounter.undisturbed_dcpa,
-                tcpa: sets.encounter.undisturbed_tcpa,
-                to_set,
-                weight,
+                role: sets.encounter.role.name().to_owned(),
+                undisturbed_dcpa_m: finite(sets.encounter.undisturbed_dcpa),
+                undisturbed_tcpa_s: finite(sets.encounter.undisturbed_tcpa),
+                to_set_m: finite(to_set),
+                matters: matters.to_owned(),
             }
         })
         .collect();
     let mut findings = against_declared(scenario, declared);
-    for target in targets.iter().filter(|t| t.weight == Weight::Never) {
+    for target in targets.iter().filter(|t| t.matters == NEVER) {
         findings.push(format!(
             "{}: never matters, out of reach within the horizon",
             target.name
@@ -116,16 +78,26 @@ pub fn lint(scenario: &Scenario, declared: &Declared) -> Lint {
     }
     if targets.is_empty() {
         findings.push("no targets".to_owned());
-    } else if targets.iter().all(|t| t.weight != Weight::Meets) {
-        findings.push("no target in the way: own ship may hold her course".to_owned());
+    } else if targets.iter().all(|t| t.matters != MEETS) {
+        findings.push("no target in the way: own ship may hold its course".to_owned());
     }
-    for target in targets.iter().filter(|t| t.dcpa < 0.0 && t.tcpa == 0.0) {
+    let overlaps = |t: &&LintTargetDocument| {
+        t.undisturbed_dcpa_m.is_some_and(|d| d < 0.0) && t.undisturbed_tcpa_s == Some(0.0)
+    };
+    for target in targets.iter().filter(overlaps) {
         findings.push(format!("{}: overlaps own ship at the start", target.name));
     }
-    Lint { targets, findings }
+    LintScenarioDocument {
+        file,
+        scenario: Some(scenario.title.clone()),
+        error: None,
+        targets,
+        findings,
+        notes,
+    }
 }
 
-/// m/s that the target never exceeds, but for what polygons are larger than arcs.
+/// Upper bound of the speed of the target, m/s.
 fn top_speed(target: &Target) -> f64 {
     match &target.motion {
         Motion::Ship(ship) => ship.speed + ship.speed_spread,
@@ -147,11 +119,11 @@ fn against_declared(scenario: &Scenario, declared: &Declared) -> Vec<String> {
         let what = if found < ships {
             "ships are missing"
         } else {
-            "more ships than said"
+            "more ships than declared"
         };
-        findings.push(format!("{what}: {ships} said, {found} found"));
+        findings.push(format!("{what}: {ships} declared, {found} found"));
     }
-    for (target, said) in scenario.targets.iter().zip(&declared.sides) {
+    for (target, stated) in scenario.targets.iter().zip(&declared.sides) {
         let bearing = relative_bearing(&scenario.own_ship.pose, target.position_at(0.0));
         let off = bearing.abs().min(std::f64::consts::PI - bearing.abs());
         let side = if bearing > 0.0 {
@@ -159,12 +131,12 @@ fn against_declared(scenario: &Scenario, declared: &Declared) -> Vec<String> {
         } else {
             Side::Port
         };
-        if let Some(said) = said
+        if let Some(stated) = stated
             && off > ON_NO_SIDE
-            && side != *said
+            && side != *stated
         {
             findings.push(format!(
-                "{}: said to {said}, found to {side}: mirrored?",
+                "{}: declared to {stated}, found to {side}: mirrored?",
                 target.name
             ));
         }

@@ -1,12 +1,13 @@
-//! Small dense matrices of fixed size: the factorisations that nalgebra bounds by type-level arithmetic.
+//! Small dense matrices of fixed size. nalgebra's factorisations need bounds on the dimension that
+//! const generics cannot state.
 
-/// `R` rows, `C` columns.
+/// Matrix with `R` rows and `C` columns.
 pub type Matrix<const R: usize, const C: usize> = nalgebra::SMatrix<f64, R, C>;
 
-/// `R` rows.
+/// Vector with `R` rows.
 pub type Vector<const R: usize> = nalgebra::SVector<f64, R>;
 
-/// `P A = L U` with row exchanges. O(N³/3).
+/// LU factorisation `P A = L U` with row exchanges. O(N³/3).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lu<const N: usize> {
     factors: Matrix<N, N>,
@@ -21,7 +22,7 @@ impl<const N: usize> Lu<N> {
         }
     }
 
-    /// `None` where the matrix is singular or not of numbers.
+    /// `None` where the matrix is singular or not finite.
     pub fn new(mut a: Matrix<N, N>) -> Option<Self> {
         let mut pivots = [0; N];
         for k in 0..N {
@@ -99,7 +100,7 @@ impl<const N: usize> Lu<N> {
     }
 }
 
-/// `A = L L'`. O(M³/6).
+/// Cholesky factorisation `A = L L'`. O(M³/6).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cholesky<const M: usize> {
     lower: Matrix<M, M>,
@@ -112,7 +113,7 @@ impl<const M: usize> Cholesky<M> {
         }
     }
 
-    /// From the lower half; `None` where the matrix is not positive definite by a margin of rounding.
+    /// Factorises the lower half; `None` where the matrix is not positive definite beyond rounding.
     pub fn new(a: &Matrix<M, M>) -> Option<Self> {
         let mut lower = Matrix::zeros();
         for j in 0..M {
@@ -165,7 +166,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     #[test]
-    fn factors_solve_both_ways_and_refuse_what_is_singular() {
+    fn factors_solve_both_systems_and_reject_singular_matrices() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         for _ in 0..200 {
             let a = Matrix::<5, 5>::from_fn(|_, _| rng.random_range(-1.0..1.0));

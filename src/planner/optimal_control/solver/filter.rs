@@ -1,19 +1,20 @@
-//! The filter of a line search: pairs of infeasibility and objective that no later point may be worse than in both.
+//! Filter of a line search: pairs of infeasibility and objective that no later point may exceed in
+//! both.
 
-/// What a point is judged by.
+/// Infeasibility and objective of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Merit {
     /// Sum of the absolute defects.
     pub infeasibility: f64,
-    /// Objective with barrier.
+    /// Barrier objective.
     pub objective: f64,
 }
 
-/// Margins by which a point has to be better, of its infeasibility; Wächter and Biegler 2006, section 3.
+/// Required decrease as a fraction of the infeasibility; Wächter and Biegler 2006, section 3.
 const LESS_INFEASIBLE: f64 = 1e-5;
 const LESS_OBJECTIVE: f64 = 1e-8;
 
-/// Pairs that are taken, with room for a given number: it never grows beyond.
+/// Stored pairs, with a fixed capacity.
 #[derive(Debug, Clone)]
 pub(super) struct Filter {
     taken: Vec<Merit>,
@@ -28,13 +29,13 @@ impl Filter {
         }
     }
 
-    /// Forgets all but the greatest infeasibility that may be.
+    /// Removes all pairs; keeps the largest permitted infeasibility.
     pub fn clear(&mut self, most: f64) {
         self.taken.clear();
         self.most = most;
     }
 
-    /// False for what is worse in both than a pair taken, and for what is not a number.
+    /// False for a point that is worse in both than a stored pair, and for a NaN.
     pub fn accepts(&self, point: Merit) -> bool {
         point.infeasibility <= self.most
             && point.objective.is_finite()
@@ -44,7 +45,7 @@ impl Filter {
                 .all(|t| point.infeasibility < t.infeasibility || point.objective < t.objective)
     }
 
-    /// Takes a pair, with its margins. At the end of the room the oldest is forgotten.
+    /// Stores a pair with its margins. At full capacity the oldest is removed.
     pub fn take(&mut self, point: Merit) {
         if self.taken.len() == self.taken.capacity() {
             self.taken.remove(0);
@@ -55,7 +56,7 @@ impl Filter {
         });
     }
 
-    /// True where a point is enough better than another in one of the two.
+    /// True where a point is sufficiently better than another in one of the two.
     pub fn improves(point: Merit, on: Merit) -> bool {
         point.infeasibility <= (1.0 - LESS_INFEASIBLE) * on.infeasibility
             || point.objective <= on.objective - LESS_OBJECTIVE * on.infeasibility
@@ -74,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_worse_in_both_is_refused_and_the_room_is_kept() {
+    fn points_worse_in_both_are_rejected_and_the_capacity_is_kept() {
         let mut filter = Filter::new(2);
         filter.clear(10.0);
         filter.take(merit(1.0, 1.0));

@@ -1,4 +1,4 @@
-//! The iteration: errors, barrier, step, multipliers.
+//! Interior-point iteration: errors, barrier, step, multipliers.
 
 use super::dense::Vector;
 use super::iterate::{Iterate, RowPoint};
@@ -8,25 +8,26 @@ use super::stage::{StageProblem, Triple};
 use super::workspace::Workspace;
 use super::{Report, Settings, Status};
 
-/// The barrier is lowered once the error is this many times it.
+/// The barrier is reduced once the error is below this multiple of it.
 const BARRIER_ERROR: f64 = 10.0;
-/// It falls to the smaller of a fraction and a power of itself.
+/// Fraction and power of itself to the smaller of which the barrier falls.
 const BARRIER_FRACTION: f64 = 0.2;
 const BARRIER_POWER: f64 = 1.5;
-/// Multipliers above this on average scale the error down.
+/// Mean multiplier above which the error is scaled down.
 const LARGE_MULTIPLIER: f64 = 100.0;
-/// A dual may be off its central value by this factor after a step.
+/// Largest ratio of a dual to its central value after a step.
 const DUAL_SPREAD: f64 = 1e10;
-/// Least fraction of the way to a limit that is kept.
-const TO_LIMIT: f64 = 0.99;
-/// Of the width between the limits: a control is pushed this far inside at the start, from nowhere and warm.
-const PUSH: f64 = 1e-2;
-const PUSH_WARM: f64 = 1e-5;
-/// An objective or a state beyond this has run away.
-const FAR: f64 = 1e12;
+/// Least fraction-to-boundary parameter.
+const FRACTION_TO_BOUNDARY: f64 = 0.99;
+/// Least initial distance of a control from its limits, as a fraction of their distance: for a cold
+/// and for a warm start.
+const BOUND_PUSH: f64 = 1e-2;
+const BOUND_PUSH_WARM: f64 = 1e-5;
+/// Objective or state beyond which the problem counts as unbounded.
+const DIVERGED: f64 = 1e12;
 
-/// Solves from an iterate and leaves the result there, whatever the status. `keep_going` is asked before each step
-/// and between the trial points of its line search.
+/// Solves from an iterate and leaves the result there, whatever the status. `keep_going` is called
+/// before each step and between the trial points of its line search.
 ///
 /// Deterministic. Each step costs `O(stages (N + M)³ + rows (N + M)²)` and allocates nothing.
 pub fn solve<const N: usize, const M: usize>(
@@ -65,7 +66,7 @@ pub fn solve<const N: usize, const M: usize>(
         barrier: settings.barrier,
         last_shift: 0.0,
     };
-    method.begin();
+    method.initialise();
     report.status = method.run(&mut report, keep_going);
     report.shortfall = method
         .work
@@ -96,13 +97,13 @@ pub(super) struct Method<'a, P, const N: usize, const M: usize> {
 struct Errors {
     dual: f64,
     primal: f64,
-    /// Largest product of a pair.
+    /// Largest complementarity products.
     products: [f64; 2],
     scale: f64,
 }
 
 impl Errors {
-    /// The scaled error at a barrier: products are within `products` of it.
+    /// Scaled error at a barrier: distance of the products from it.
     fn at(&self, barrier: f64) -> f64 {
         let [least, most] = self.products;
         let off = (most - barrier).max(barrier - least).max(0.0);
@@ -113,8 +114,9 @@ impl Errors {
 }
 
 impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> {
-    /// Controls within their limits, the first state as given, and a full set of multipliers.
-    fn begin(&mut self) {
+    /// Moves controls within their limits, sets the given first state, and completes the
+    /// multipliers.
+    fn initialise(&mut self) {
         let n = self.problem.stages();
         let warm = self.at.is_warm();
         self.at.states[0] = self.problem.first();
@@ -124,10 +126,12 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
             for i in 0..M {
                 let width = high[i] - low[i];
                 let width = if width.is_finite() { width } else { 1.0 };
-                // warm: where the product with the old multiplier is the barrier
+                // warm start: the product with the old multiplier is the barrier
                 let keep = |dual: Option<f64>| match dual {
-                    Some(dual) => (barrier / dual).clamp(PUSH_WARM * width, PUSH * width),
-                    None => PUSH * width,
+                    Some(dual) => {
+                        (barrier / dual).clamp(BOUND_PUSH_WARM * width, BOUND_PUSH * width)
+                    }
+                    None => BOUND_PUSH * width,
                 };
                 let (below, above) = if warm {
                     (Some(self.at.low[k][i]), Some(self.at.high[k][i]))
@@ -202,8 +206,8 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                 return Status::Solved;
             }
             let objective = self.objective();
-            let far = |v: &Vector<N>| v.amax() > FAR;
-            if objective < -FAR || self.at.states.iter().any(far) {
+            let far = |v: &Vector<N>| v.amax() > DIVERGED;
+            if objective < -DIVERGED || self.at.states.iter().any(far) {
                 return Status::Unbounded;
             }
             if report.iterations >= self.settings.max_iterations {
@@ -217,7 +221,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                 let next = (BARRIER_FRACTION * self.barrier)
                     .min(self.barrier.powf(BARRIER_POWER))
                     .max(floor);
-                // at the floor the tolerance decides
+                // at the least barrier the tolerance decides
                 if next >= self.barrier {
                     break;
                 }
@@ -234,7 +238,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                 .for_each(|(t, v)| *t = v.defect);
             self.set_row_targets();
             self.step();
-            let to_limit = TO_LIMIT.max(1.0 - self.barrier);
+            let to_limit = FRACTION_TO_BOUNDARY.max(1.0 - self.barrier);
             let longest = self.longest(to_limit);
             if !longest[0].is_finite() {
                 return Status::NotANumber;
@@ -245,11 +249,11 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                     self.take(primal, longest[1]);
                     forced = false;
                 }
-                // the exact step may be a poor one: once more with the convex model
+                // the exact step may be poor: try again with the convex model
                 Accepted::Not if used == Curvature::Exact && self.settings.gauss_newton => {
                     forced = true;
                 }
-                Accepted::Not => match search.jump(&mut self.work.filter) {
+                Accepted::Not => match search.forced_step(&mut self.work.filter) {
                     Some(fraction) => {
                         self.trial_along(fraction * longest[0]);
                         self.take(fraction * longest[0], longest[1]);
@@ -262,7 +266,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         }
     }
 
-    /// Values at the iterate.
+    /// Evaluates the functions at the iterate.
     fn evaluate(&mut self) {
         for k in 0..self.problem.stages() {
             let range = self.work.rows_of(k);
@@ -272,7 +276,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         }
     }
 
-    /// Derivatives at the iterate with its multipliers.
+    /// Evaluates the derivatives at the iterate with its multipliers.
     fn differentiate(&mut self) {
         for (to, row) in self.work.row_multipliers.iter_mut().zip(&self.at.rows) {
             *to = row.multiplier;
@@ -294,7 +298,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         self.work.values.iter().map(|v| v.cost).sum()
     }
 
-    /// Sum of the absolute defects, of equations and rows.
+    /// Sum of the absolute defects of equations and rows.
     pub(super) fn infeasibility(&self) -> f64 {
         let equations: f64 = self.work.values.iter().map(|v| v.defect.lp_norm(1)).sum();
         let rows = self.work.rows.iter().zip(&self.at.rows);
@@ -375,7 +379,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         }
     }
 
-    /// Takes the trial point, `primal` and `dual` being the steps' fractions.
+    /// Accepts the trial point; `primal` and `dual` are the fractions of the steps.
     fn take(&mut self, primal: f64, dual: f64) {
         let [low, high] = self.limits;
         let barrier = self.barrier;

@@ -1,14 +1,14 @@
-//! A point of the interior-point method: primal and dual, kept from one solve to the next.
+//! Primal-dual iterate of the interior-point method, which later solves can reuse.
 
 use super::dense::Vector;
 use super::stage::{Multipliers, Point, StageProblem};
 
-/// A row `row + elastic - slack = 0`, both not negative, the elastic at a price.
+/// Row `row + elastic - slack = 0` with a priced elastic; slack and elastic are not negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RowPoint {
-    /// What the row exceeds zero by.
+    /// Excess of the row above zero.
     pub slack: f64,
-    /// What it falls short by.
+    /// Shortfall of the row below zero.
     pub elastic: f64,
     /// Multiplier of the row and of its slack, below the penalty.
     pub multiplier: f64,
@@ -17,11 +17,11 @@ pub struct RowPoint {
 }
 
 impl RowPoint {
-    /// Where both products are `barrier` and the row's equation holds: the root of a quadratic, in the form that does
-    /// not cancel.
+    /// Central point: both products equal `barrier` and the row's equation holds. Root of a
+    /// quadratic, in the form without cancellation.
     pub fn central(row: f64, barrier: f64, penalty: f64) -> Self {
         let spread = (row * penalty).hypot(2.0 * barrier);
-        // z or penalty - z, whichever is the smaller, from a sum
+        // z or penalty - z, whichever is smaller, from a sum
         let small = 2.0 * barrier * penalty / (row.abs() * penalty + 2.0 * barrier + spread);
         let (multiplier, price) = if row >= 0.0 {
             (small, penalty - small)
@@ -37,26 +37,26 @@ impl RowPoint {
     }
 }
 
-/// States, controls and every multiplier. Start of a solve and, afterwards, its result: a later solve may go on
-/// from it.
+/// States, controls and all multipliers: initial guess of a solve and, afterwards, its result. A
+/// later solve can start from it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Iterate<const N: usize, const M: usize> {
-    /// One more than stages; the first is the given one.
+    /// States, one more than stages; the first is given.
     pub states: Vec<Vector<N>>,
-    /// Per stage.
+    /// Controls, one per stage.
     pub controls: Vec<Vector<M>>,
-    /// Of the defects, per stage.
+    /// Multipliers of the defects, per stage.
     pub multipliers: Vec<Vector<N>>,
-    /// Of the lower limits of the controls, per stage.
+    /// Multipliers of the lower control limits, per stage.
     pub low: Vec<Vector<M>>,
-    /// Of the upper ones.
+    /// Multipliers of the upper control limits, per stage.
     pub high: Vec<Vector<M>>,
-    /// All rows, stage after stage.
+    /// All rows, stage by stage.
     pub rows: Vec<RowPoint>,
 }
 
 impl<const N: usize, const M: usize> Iterate<N, M> {
-    /// A guess without multipliers: the solve makes its own.
+    /// Guess without multipliers; the solve initialises them.
     pub fn guess(states: Vec<Vector<N>>, controls: Vec<Vector<M>>) -> Self {
         Self {
             states,
@@ -68,7 +68,7 @@ impl<const N: usize, const M: usize> Iterate<N, M> {
         }
     }
 
-    /// The variables of one stage.
+    /// Variables of one stage.
     pub fn point(&self, stage: usize) -> Point<'_, N, M> {
         Point {
             x: &self.states[stage],
@@ -77,7 +77,8 @@ impl<const N: usize, const M: usize> Iterate<N, M> {
         }
     }
 
-    /// Multipliers of the defect and of the rows of a stage; `row_values` are the rows' multipliers, all stages'.
+    /// Multipliers of the defect and of the rows of a stage; `row_values` are the rows' multipliers
+    /// of all stages.
     pub(super) fn multipliers<'a>(
         &'a self,
         stage: usize,
@@ -89,7 +90,7 @@ impl<const N: usize, const M: usize> Iterate<N, M> {
         }
     }
 
-    /// True when sizes and numbers fit the problem; multipliers may be missing altogether.
+    /// True when sizes and numbers fit the problem; all multipliers may be missing.
     pub(super) fn fits(&self, problem: &impl StageProblem<N, M>, rows: usize) -> bool {
         let n = problem.stages();
         let sized = self.states.len() == n + 1
@@ -105,7 +106,7 @@ impl<const N: usize, const M: usize> Iterate<N, M> {
             && self.multipliers.iter().all(|x| finite(x.as_slice()))
     }
 
-    /// True when multipliers came with it.
+    /// True when it contains multipliers.
     pub(super) fn is_warm(&self) -> bool {
         !self.multipliers.is_empty()
     }

@@ -1,73 +1,77 @@
-//! The filter line search along a Newton step, with a second-order correction.
+//! Filter line search along a Newton step, with second-order correction.
 
 use super::filter::{Filter, Merit};
 use super::interior::Method;
 use super::stage::{Point, StageProblem};
 
-/// Numbers of Wächter and Biegler 2006, section 3.3.
+/// Constants of Wächter and Biegler 2006, section 3.3.
 const SUFFICIENT: f64 = 1e-8;
 const SWITCH_INFEASIBILITY: f64 = 1.1;
 const SWITCH_OBJECTIVE: f64 = 2.3;
 const LEAST_STEP: f64 = 0.05;
-/// Of the infeasibility at the start, or of one: the most that is ever accepted, and below which descent is asked for.
-const MOST: f64 = 1e4;
-const LITTLE: f64 = 1e-4;
-/// A correction has to shrink the infeasibility to this of the one before.
-const CORRECTED: f64 = 0.99;
-const CORRECTIONS: usize = 2;
-/// Steps are halved this often at most.
-const HALVINGS: usize = 40;
-/// Where no step is acceptable this much of it is taken and the filter forgotten, so often.
-const JUMP: f64 = 0.1;
-const JUMPS: usize = 6;
-/// Relative. Differences of the objective below this are rounding.
+/// Largest accepted infeasibility, and the one below which descent is required, as multiples of the
+/// initial infeasibility or of one.
+const MAX_INFEASIBILITY: f64 = 1e4;
+const SMALL_INFEASIBILITY: f64 = 1e-4;
+/// Factor by which a correction must reduce the infeasibility of the one before.
+const CORRECTION_DECREASE: f64 = 0.99;
+const MAX_CORRECTIONS: usize = 2;
+/// Largest number of step halvings.
+const MAX_HALVINGS: usize = 40;
+/// Fraction of the step taken where none is acceptable, after which the filter is cleared, and the
+/// largest number of such steps.
+const FORCED_STEP: f64 = 0.1;
+const MAX_FORCED_STEPS: usize = 6;
+/// Relative differences of the objective below this are rounding.
 const ROUNDING: f64 = 10.0 * f64::EPSILON;
 
-/// Whether a step was found.
+/// Result of a line search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Accepted {
-    /// The fraction of the step; the trial point is in the workspace.
+    /// Fraction of the step; the trial point is in the workspace.
     Step(f64),
     Not,
-    /// The caller's clock ran out before one was found.
+    /// The deadline was reached first.
     OutOfTime,
 }
 
-/// What a line search remembers from one to the next.
+/// State kept between line searches.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Search {
     most: f64,
     little: f64,
-    jumps: usize,
+    forced_steps: usize,
 }
 
 impl Search {
-    /// From the infeasibility at the start.
+    /// From the initial infeasibility.
     pub fn new(infeasibility: f64) -> Self {
         let size = infeasibility.max(1.0);
         Self {
-            most: MOST * size,
-            little: LITTLE * size,
-            jumps: 0,
+            most: MAX_INFEASIBILITY * size,
+            little: SMALL_INFEASIBILITY * size,
+            forced_steps: 0,
         }
     }
 
-    /// Forgets what the filter took: for a new barrier.
+    /// Clears the filter for a new barrier.
     pub fn restart(&mut self, filter: &mut Filter) {
         filter.clear(self.most);
     }
 
-    /// The fraction of the longest step to take although no step is acceptable; `None` after too many of these.
-    pub fn jump(&mut self, filter: &mut Filter) -> Option<f64> {
-        self.jumps += 1;
-        if self.jumps > JUMPS {
+    /// Fraction of the longest step to take although no step is acceptable; `None` after too many
+    /// of these.
+    pub fn forced_step(&mut self, filter: &mut Filter) -> Option<f64> {
+        self.forced_steps += 1;
+        if self.forced_steps > MAX_FORCED_STEPS {
             return None;
         }
         self.restart(filter);
-        Some(JUMP)
+        Some(FORCED_STEP)
     }
 
-    /// Looks for an acceptable fraction of the step, the longest first. `keep_going` is asked before each but the first.
+    /// Finds an acceptable fraction of the step, the longest first. `keep_going` is called before
+    /// each but the first.
     pub fn run<P: StageProblem<N, M>, const N: usize, const M: usize>(
         &self,
         method: &mut Method<'_, P, N, M>,
@@ -93,7 +97,7 @@ impl Search {
             (LEAST_STEP * by_descent).min(filter)
         };
         let mut step = longest[0];
-        for halving in 0..HALVINGS {
+        for halving in 0..MAX_HALVINGS {
             if halving > 0 && !keep_going() {
                 return Accepted::OutOfTime;
             }
@@ -113,7 +117,7 @@ impl Search {
                 break;
             }
         }
-        // nothing left to gain but rounding: what there is, is taken
+        // only rounding is left to gain: accept the step
         if theta <= 1e-9 && descent.abs() <= 1e3 * ROUNDING * phi.abs().max(1.0) {
             method.trial_along(longest[0]);
             return Accepted::Step(longest[0]);
@@ -134,7 +138,8 @@ impl Search {
         Accepted::Step(step)
     }
 
-    /// `None` for a point that is refused; otherwise whether it is accepted for its descent of the objective.
+    /// `None` for a rejected point; otherwise whether it is accepted for its descent of the
+    /// objective.
     fn judge<P: StageProblem<N, M>, const N: usize, const M: usize>(
         &self,
         method: &Method<'_, P, N, M>,
@@ -157,7 +162,7 @@ impl Search {
         Filter::improves(found, from).then_some(false)
     }
 
-    /// Second-order corrections: the step to where the defects of the full step vanish, too.
+    /// Second-order corrections: steps after which the defects of the full step vanish as well.
     fn correct<P: StageProblem<N, M>, const N: usize, const M: usize>(
         &self,
         method: &mut Method<'_, P, N, M>,
@@ -168,7 +173,7 @@ impl Search {
     ) -> Option<(f64, bool)> {
         let mut step = first;
         let mut before = f64::INFINITY;
-        for _ in 0..CORRECTIONS {
+        for _ in 0..MAX_CORRECTIONS {
             method.add_trial_to_targets(step);
             method.step();
             step = method.longest(to_limit)[0];
@@ -176,11 +181,11 @@ impl Search {
                 break;
             }
             let found = method.trial_along(step);
-            // the test's descent is that of the step it corrects
+            // the test uses the descent of the step it corrects
             if let Some(descends) = self.judge(method, from, descent, first, found) {
                 return Some((step, descends));
             }
-            if !(found.infeasibility <= CORRECTED * before) {
+            if !(found.infeasibility <= CORRECTION_DECREASE * before) {
                 break;
             }
             before = found.infeasibility;
@@ -192,7 +197,7 @@ impl Search {
 }
 
 impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> {
-    /// Of the iterate.
+    /// Infeasibility and barrier objective of the iterate.
     fn merit(&self) -> Merit {
         let [low, high] = self.limits;
         let mut rooms = Logarithms::new();
@@ -233,7 +238,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         slope
     }
 
-    /// The point a fraction of the step ahead, and its merit.
+    /// Point at a fraction of the step, and its merit.
     pub(super) fn trial_along(&mut self, step: f64) -> Merit {
         let [low, high] = self.limits;
         let n = self.problem.stages();
@@ -279,7 +284,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         }
     }
 
-    /// `target = step target + defect of the trial`.
+    /// Sets `target = step target + defect of the trial`.
     fn add_trial_to_targets(&mut self, step: f64) {
         let work = &mut *self.work;
         for (to, values) in work.target.iter_mut().zip(&work.trial.values) {
@@ -303,7 +308,8 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
     }
 }
 
-/// A sum of logarithms, some of them together as that of a product: numbers between 1e-30 and 1e30 overflow in none.
+/// Sum of logarithms, several of them at a time as the logarithm of a product: factors between
+/// 1e-30 and 1e30 cannot overflow.
 #[derive(Debug, Clone, Copy)]
 struct Logarithms {
     sum: f64,
@@ -311,7 +317,7 @@ struct Logarithms {
     factors: u32,
 }
 
-/// Factors of one product.
+/// Number of factors of one product.
 const FACTORS: u32 = 8;
 
 impl Logarithms {
@@ -323,7 +329,8 @@ impl Logarithms {
         }
     }
 
-    /// Adds the logarithm of a distance; none of an infinite one, and NaN of one that is not positive.
+    /// Adds the logarithm of a distance; nothing for an infinite one, NaN for one that is not
+    /// positive.
     fn add(&mut self, room: f64) {
         if room == f64::INFINITY {
             return;

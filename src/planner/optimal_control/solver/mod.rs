@@ -1,10 +1,13 @@
-//! A primal-dual interior-point method for problems that come in stages. It knows no ship.
+//! Primal-dual interior-point method for multistage problems, independent of ships.
 //!
-//! Newton steps on the barrier problem by a Riccati recursion (cost linear in the stages), a filter line search with
-//! a second-order correction, exact second derivatives with Gauss–Newton where these have the wrong inertia and a
-//! shift where that is singular, rows at an exact penalty (elastic), the barrier lowered monotonically. After
-//! A. Wächter and L. T. Biegler (2006), doi:10.1007/s10107-004-0559-y; the recursion as in C. V. Rao, S. J. Wright and
-//! J. B. Rawlings (1998), doi:10.1023/A:1021711402723. There is no restoration phase: the elastic rows stand in.
+//! Newton steps on the barrier problem use a Riccati recursion, linear in the stages. A filter line
+//! search with a second-order correction accepts them. Second derivatives are exact. Where these
+//! have the wrong inertia the method uses Gauss–Newton, and a shift where that is singular. Rows
+//! have an exact penalty (elastic), which replaces a restoration phase. The barrier decreases
+//! monotonically.
+//!
+//! After A. Wächter and L. T. Biegler (2006), doi:10.1007/s10107-004-0559-y; the recursion as in C.
+//! V. Rao, S. J. Wright and J. B. Rawlings (1998), doi:10.1023/A:1021711402723.
 
 mod dense;
 mod filter;
@@ -22,18 +25,19 @@ pub use iterate::{Iterate, RowPoint};
 pub use stage::{Blocks, Derivatives, Multipliers, Point, StageProblem, Triple, Values};
 pub use workspace::Workspace;
 
-/// How to solve.
+/// Solver settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Largest scaled error of the optimality conditions at the end.
+    /// Largest scaled error of the optimality conditions of a solution.
     pub tolerance: f64,
-    /// The barrier to begin with: 0.1 from nowhere, some thousandths from the solution of a problem nearby.
+    /// Initial barrier parameter: 0.1 for a cold start, some thousandths near the solution of a
+    /// similar problem.
     pub barrier: f64,
-    /// Price of one unit by which a row falls short: exact above the row's multiplier.
+    /// Penalty per unit of a row's shortfall: exact above the row's multiplier.
     pub penalty: f64,
-    /// Steps at most.
+    /// Largest number of steps.
     pub max_iterations: usize,
-    /// False: exact second derivatives only, shifted where they have the wrong inertia.
+    /// False: only exact second derivatives, shifted where they have the wrong inertia.
     pub gauss_newton: bool,
 }
 
@@ -49,24 +53,25 @@ impl Default for Settings {
     }
 }
 
-/// Why the solver stopped. Only [`Status::Solved`] is a solution.
+/// Reason why the solver stopped. Only [`Status::Solved`] is a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// The optimality conditions hold to the tolerance; rows may still fall short, see [`Report::shortfall`].
+    /// The optimality conditions hold to the tolerance; rows may still have a
+    /// [`Report::shortfall`].
     Solved,
-    /// The steps were spent.
+    /// Step limit reached.
     Iterations,
-    /// No step along the search direction was acceptable, several times.
+    /// Repeatedly, no step along the search direction was acceptable.
     Stalled,
-    /// The objective or the point ran away.
+    /// The objective or the point diverged.
     Unbounded,
-    /// A function or a step was not a number.
+    /// A function or a step was a NaN.
     NotANumber,
-    /// A stage's equations do not determine its state after.
+    /// A stage's equations do not determine its next state.
     Singular,
-    /// The caller's clock ran out.
+    /// Deadline reached.
     OutOfTime,
-    /// No stage, limits without interior, or a start of the wrong size or not of numbers.
+    /// No stage, limits without interior, or a guess of the wrong size or not finite.
     BadProblem,
 }
 
@@ -87,20 +92,20 @@ impl std::fmt::Display for Status {
     }
 }
 
-/// What a solve came to; the point itself is in the iterate.
+/// Report of a solve; the point itself is in the iterate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
-    /// Why it stopped.
+    /// Reason for stopping.
     pub status: Status,
-    /// Steps taken.
+    /// Number of steps.
     pub iterations: usize,
-    /// The objective, without penalties.
+    /// Objective without penalties.
     pub objective: f64,
     /// Scaled error of the optimality conditions.
     pub error: f64,
-    /// The most by which a row is below zero; 0 where none is.
+    /// Largest shortfall of a row below zero; 0 where there is none.
     pub shortfall: f64,
-    /// The largest multiplier of a row: the penalty is exact above it.
+    /// Largest multiplier of a row: the penalty is exact above it.
     pub row_multiplier: f64,
 }
 

@@ -1,16 +1,17 @@
-//! The Newton step on the barrier problem, and how far along it one may go.
+//! Newton step on the barrier problem, and its largest permitted fraction.
 
 use super::interior::Method;
 use super::riccati::{self, RightSide};
 use super::stage::StageProblem;
 use super::workspace::RowStep;
 
-/// Factor and first value of a shift, relative to the largest second derivative of the controls.
+/// Factor between shifts, first shift relative to the largest second derivative of the controls,
+/// and largest number of shifts.
 const SHIFT_FACTOR: f64 = 6.0;
-const SHIFT_FIRST: f64 = 1e-4;
-const SHIFTS: usize = 40;
+const FIRST_SHIFT: f64 = 1e-4;
+const MAX_SHIFTS: usize = 40;
 
-/// Which second derivatives a step used.
+/// Second derivatives of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Curvature {
     Exact,
@@ -18,7 +19,7 @@ pub(super) enum Curvature {
 }
 
 impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> {
-    /// Factorises with the best second derivatives that have the right inertia. `None` where nothing does.
+    /// Factorises with the best second derivatives of the right inertia; `None` where none has it.
     pub(super) fn factorise(&mut self, convex_only: bool) -> Option<Curvature> {
         if !riccati::eliminate(&mut self.work.factors, &self.work.derivatives) {
             return None;
@@ -47,9 +48,9 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         let mut shift = if self.last_shift > 0.0 {
             self.last_shift / SHIFT_FACTOR / SHIFT_FACTOR
         } else {
-            SHIFT_FIRST * size.max(f64::MIN_POSITIVE)
+            FIRST_SHIFT * size.max(f64::MIN_POSITIVE)
         };
-        for _ in 0..SHIFTS {
+        for _ in 0..MAX_SHIFTS {
             self.assemble(kind, shift);
             if riccati::factorise(&mut self.work.factors, &self.work.hessian) {
                 self.last_shift = shift;
@@ -60,7 +61,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         None
     }
 
-    /// Second derivatives of the barrier problem, the rows and limits eliminated.
+    /// Second derivatives of the barrier problem with rows and limits eliminated.
     fn assemble(&mut self, curvature: Curvature, shift: f64) {
         let [low, high] = self.limits;
         for k in 0..self.problem.stages() {
@@ -98,7 +99,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         }
     }
 
-    /// The Newton step from the targets, with the factors at hand.
+    /// Newton step from the targets with the current factors.
     pub(super) fn step(&mut self) {
         let [low, high] = self.limits;
         let (barrier, penalty) = (self.barrier, self.settings.penalty);
@@ -140,7 +141,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         }
     }
 
-    /// What the linearised row is to be brought to zero from, slack and elastic eliminated.
+    /// Residual of the linearised row, slack and elastic eliminated.
     fn row_goal(&self, r: usize) -> f64 {
         let p = &self.at.rows[r];
         let unbalanced = self.settings.penalty - p.multiplier - p.price;
@@ -149,8 +150,8 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
             - p.elastic / p.price * unbalanced
     }
 
-    /// The longest primal and dual steps that keep the fraction `1 - to_limit` of every distance; NaN for a step that
-    /// is not a number.
+    /// Longest primal and dual steps that keep the fraction `1 - to_limit` of every distance; NaN
+    /// for a step that is a NaN.
     pub(super) fn longest(&self, to_limit: f64) -> [f64; 2] {
         let [low, high] = self.limits;
         let (mut primal, mut dual) = (1.0_f64, 1.0_f64);

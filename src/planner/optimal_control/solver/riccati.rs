@@ -1,29 +1,30 @@
-//! The Newton step by a recursion over the stages: the cost is linear in their number.
+//! Newton step by a Riccati recursion over the stages; the cost is linear in their number.
 
 use super::dense::{Cholesky, Lu, Matrix, Vector};
 use super::stage::{Blocks, Derivatives, Triple};
 
-/// One stage of the equations
+/// Factorised stage of the equations
 ///
 /// ```text
 /// min  sum 1/2 d' H d + g . d     s.t.  defect + C d = 0,    d = (dx, du, dy)
 /// ```
 ///
-/// factorised: `dy = A dx + B du + b` from the stage's own equations, `du = K dx + k` from the cost to go.
+/// with `dy = A dx + B du + b` from the stage's own equations and `du = K dx + k` from the cost to
+/// go.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StageFactor<const N: usize, const M: usize> {
     equations: Lu<N>,
     by_state: Matrix<N, N>,
     by_control: Matrix<N, M>,
     constant: Vector<N>,
-    /// Of the stage, the part of `H` that holds the state after with the cost to go from there added to `yy`.
+    /// Blocks of `H` that involve the next state; `yy` includes the cost to go from there.
     after: Blocks<N, M>,
     cholesky: Cholesky<M>,
     gain: Matrix<M, N>,
     feed: Vector<M>,
-    /// `ux` of the condensed stage.
+    /// Block `ux` of the condensed stage.
     mixed: Matrix<M, N>,
-    /// Linear part of the cost to go from the state after, with the stage's own.
+    /// Gradient of the cost to go from the next state, including the stage's own.
     slope: Vector<N>,
 }
 
@@ -44,7 +45,8 @@ impl<const N: usize, const M: usize> StageFactor<N, M> {
     }
 }
 
-/// Solves every stage's equations for the state after. False where they do not determine it. O(stages N³).
+/// Solves every stage's equations for the next state. False where they do not determine it.
+/// O(stages N³).
 pub(super) fn eliminate<const N: usize, const M: usize>(
     factors: &mut [StageFactor<N, M>],
     derivatives: &[Derivatives<N, M>],
@@ -62,8 +64,8 @@ pub(super) fn eliminate<const N: usize, const M: usize>(
     true
 }
 
-/// Factorises from the last stage to the first. False where a condensed control block is not positive definite: then
-/// the equations have the wrong inertia. O(stages (N + M)³).
+/// Factorises from the last stage to the first. False where a condensed control block is not
+/// positive definite: the equations then have the wrong inertia. O(stages (N + M)³).
 pub(super) fn factorise<const N: usize, const M: usize>(
     factors: &mut [StageFactor<N, M>],
     hessian: &[Blocks<N, M>],
@@ -73,7 +75,7 @@ pub(super) fn factorise<const N: usize, const M: usize>(
         let (a, b) = (&factor.by_state, &factor.by_control);
         factor.after = *h;
         factor.after.yy += to_go;
-        // the products with the state after, each once
+        // products with the next state, each computed once
         let half_a = factor.after.yy * a * 0.5 + h.yx;
         let full_b = factor.after.yy * b + h.yu;
         let mixed = h.ux + full_b.tr_mul(a) + b.tr_mul(&h.yx);
@@ -94,7 +96,7 @@ pub(super) fn factorise<const N: usize, const M: usize>(
     true
 }
 
-/// The part of `h' b + b' h` that `(yy b + h)' b`, made symmetric, has not.
+/// The part of `h' b + b' h` that is missing from `(yy b + h)' b`, made symmetric.
 fn symmetric_half<const N: usize, const M: usize>(
     h: &Matrix<N, M>,
     b: &Matrix<N, M>,
@@ -103,16 +105,17 @@ fn symmetric_half<const N: usize, const M: usize>(
     0.5 * (across + across.transpose())
 }
 
-/// What changes from one solution with the same factors to another.
+/// Right-hand side of a solve with given factors.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RightSide<'a, const N: usize, const M: usize> {
-    /// `g`, per stage.
+    /// Gradients `g`, per stage.
     pub gradient: &'a [Triple<N, M>],
-    /// Per stage.
+    /// Defects, per stage.
     pub defect: &'a [Vector<N>],
 }
 
-/// The step and the new multipliers of the equations; `steps[k].y` is `steps[k + 1].x`. O(stages N²).
+/// Solves for the step and the new multipliers of the equations; `steps[k].y` is `steps[k + 1].x`.
+/// O(stages N²).
 pub(super) fn solve<const N: usize, const M: usize>(
     factors: &mut [StageFactor<N, M>],
     right: RightSide<N, M>,

@@ -1,15 +1,15 @@
-//! The stage problem: what the solver is asked, one stage after another.
+//! Multistage problem: the interface of the solver.
 
 use super::dense::{Matrix, Vector};
 
-/// One stage's variables, a gradient by them or a step in them: the state before, the control, the state after.
+/// Variables of one stage, or a gradient or step in them: state, control, next state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triple<const N: usize, const M: usize> {
-    /// By the state before.
+    /// State component.
     pub x: Vector<N>,
-    /// By the control.
+    /// Control component.
     pub u: Vector<M>,
-    /// By the state after.
+    /// Next-state component.
     pub y: Vector<N>,
 }
 
@@ -34,20 +34,20 @@ impl<const N: usize, const M: usize> Triple<N, M> {
     }
 }
 
-/// A symmetric matrix over one stage's variables, by its lower blocks.
+/// Symmetric matrix over one stage's variables, by its lower blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blocks<const N: usize, const M: usize> {
-    /// State before with itself.
+    /// State by state.
     pub xx: Matrix<N, N>,
-    /// Control with the state before.
+    /// Control by state.
     pub ux: Matrix<M, N>,
-    /// Control with itself.
+    /// Control by control.
     pub uu: Matrix<M, M>,
-    /// State after with the state before.
+    /// Next state by state.
     pub yx: Matrix<N, N>,
-    /// State after with the control.
+    /// Next state by control.
     pub yu: Matrix<N, M>,
-    /// State after with itself.
+    /// Next state by next state.
     pub yy: Matrix<N, N>,
 }
 
@@ -73,7 +73,7 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
         self.yy += other.yy;
     }
 
-    /// Adds `weight v v'`. Rows seldom hold all three.
+    /// Adds `weight v v'`. Rows rarely have all three components.
     pub(super) fn add_square(&mut self, weight: f64, v: &Triple<N, M>) {
         let any = |part: &[f64]| part.iter().any(|value| *value != 0.0);
         self.yy.ger(weight, &v.y, &v.y, 1.0);
@@ -89,12 +89,12 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
     }
 }
 
-/// What a stage is worth at a point.
+/// Function values of a stage at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Values<const N: usize> {
-    /// Its part of the objective.
+    /// Stage cost.
     pub cost: f64,
-    /// What has to vanish.
+    /// Equation defect, which must vanish.
     pub defect: Vector<N>,
 }
 
@@ -108,20 +108,20 @@ impl<const N: usize> Values<N> {
     }
 }
 
-/// The derivatives of a stage at a point.
+/// Derivatives of a stage at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Derivatives<const N: usize, const M: usize> {
-    /// Of the cost.
+    /// Gradient of the cost.
     pub gradient: Triple<N, M>,
-    /// Of the defect by the state before.
+    /// Jacobian of the defect in the state.
     pub defect_x: Matrix<N, N>,
-    /// Of the defect by the control.
+    /// Jacobian of the defect in the control.
     pub defect_u: Matrix<N, M>,
-    /// Of the defect by the state after: regular.
+    /// Jacobian of the defect in the next state: regular.
     pub defect_y: Matrix<N, N>,
     /// Positive semidefinite part of the second derivative of the cost (Gauss–Newton).
     pub convex: Blocks<N, M>,
-    /// What is missing from it to the second derivative of `cost + multipliers . defect - row multipliers . rows`.
+    /// Rest of the second derivative of `cost + multipliers . defect - row multipliers . rows`.
     pub curvature: Blocks<N, M>,
 }
 
@@ -139,46 +139,47 @@ impl<const N: usize, const M: usize> Derivatives<N, M> {
     }
 }
 
-/// A point in one stage's variables.
+/// Point in one stage's variables.
 #[derive(Debug, Clone, Copy)]
 pub struct Point<'a, const N: usize, const M: usize> {
-    /// The state before.
+    /// State.
     pub x: &'a Vector<N>,
-    /// The control.
+    /// Control.
     pub u: &'a Vector<M>,
-    /// The state after.
+    /// Next state.
     pub y: &'a Vector<N>,
 }
 
 /// Multipliers of one stage.
 #[derive(Debug, Clone, Copy)]
 pub struct Multipliers<'a, const N: usize> {
-    /// Of the defect.
+    /// Multipliers of the defect.
     pub defect: &'a Vector<N>,
-    /// Of the rows.
+    /// Multipliers of the rows.
     pub rows: &'a [f64],
 }
 
-/// The problem
+/// Multistage problem
 ///
 /// ```text
 /// min  sum cost_k(x_k, u_k, x_k+1)     x_0 given
 /// s.t. defect_k(x_k, u_k, x_k+1) = 0                 N equations that determine x_k+1
 ///      rows_k(x_k, u_k, x_k+1) >= 0                  as many as the stage says, at an exact penalty
 ///      low <= u_k <= high                            strictly within; infinite where there is none
+/// ```
 ///
 /// with `N` states and `M` controls. Every function is twice differentiable.
 pub trait StageProblem<const N: usize, const M: usize> {
-    /// Their number, at least one.
+    /// Number of stages, at least one.
     fn stages(&self) -> usize;
 
-    /// The given first state.
+    /// Given first state.
     fn first(&self) -> Vector<N>;
 
-    /// The least and the greatest control.
+    /// Lower and upper control limits.
     fn limits(&self) -> [Vector<M>; 2];
 
-    /// How many rows a stage has.
+    /// Number of rows of a stage.
     fn rows(&self, stage: usize) -> usize;
 
     /// Cost and defect; writes the rows.

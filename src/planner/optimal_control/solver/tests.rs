@@ -1,4 +1,4 @@
-//! Small problems with known answers, and a dense solve of the same equations.
+//! Small problems with known solutions, and a dense solve of the same equations.
 
 use super::riccati::{RightSide, StageFactor, eliminate, factorise};
 use super::*;
@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// `1/2 w' H w + g . w`, `y = A x + B u + c`, linear rows `G w - d >= 0`; and how much the dynamics bend.
+/// Test problem: `1/2 w' H w + g . w`, `y = A x + B u + c`, linear rows `G w - d >= 0`, and the
+/// nonlinearity of the dynamics.
 #[derive(Debug, Clone)]
 struct Toy<const N: usize, const M: usize> {
     stages: usize,
@@ -119,7 +120,7 @@ impl<const N: usize, const M: usize> StageProblem<N, M> for Toy<N, M> {
     }
 }
 
-/// A symmetric positive definite matrix over all variables of a stage, by blocks.
+/// Symmetric positive definite matrix over all variables of a stage, by blocks.
 fn positive(rng: &mut ChaCha8Rng) -> Blocks<4, 2> {
     let root = DMatrix::from_fn(10, 10, |_, _| rng.random_range(-1.0..1.0));
     let full = &root * root.transpose() + DMatrix::identity(10, 10) * 0.1;
@@ -134,7 +135,7 @@ fn positive(rng: &mut ChaCha8Rng) -> Blocks<4, 2> {
     }
 }
 
-/// The whole system of a few stages as one dense matrix.
+/// Compares with the whole system of a few stages as one dense matrix.
 #[test]
 fn the_recursion_solves_the_dense_equations() {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
@@ -229,12 +230,12 @@ fn a_scalar_regulator_has_the_golden_gain() {
     assert_eq!(report.iterations, 1);
     let gain = 2.0 / (1.0 + 5.0_f64.sqrt());
     assert!((at.controls[0][0] + gain * 8.0).abs() < 1e-9);
-    // P = golden section: cost of the states after, the first state's own not counted
+    // P = golden section: cost of the next states, without the first state's own
     let worth = 0.5 * 64.0 * (0.5 * (1.0 + 5.0_f64.sqrt()) - 1.0);
     assert!((report.objective - worth).abs() < 1e-9, "{report:?}");
 }
 
-/// The same, its control limited to 1: full force until the unlimited law asks for less.
+/// The regulator with its control limited to 1: full force until the unlimited law requires less.
 #[test]
 fn limits_hold_and_their_multipliers_balance() {
     let mut toy = Toy::<1, 1>::new(
@@ -308,7 +309,7 @@ impl StageProblem<2, 2> for Disc {
 }
 
 #[test]
-fn a_disc_is_left_for_its_nearest_point() {
+fn a_point_in_a_disc_moves_to_its_nearest_point() {
     for gauss_newton in [true, false] {
         for start in [
             Vector::<2>::new(3.0, 1.0),
@@ -338,7 +339,7 @@ fn a_disc_is_left_for_its_nearest_point() {
             );
             assert!((at.rows[0].multiplier - 0.7).abs() < 1e-4);
             assert!(report.shortfall < 1e-5 && (report.objective - 0.49).abs() < 1e-4);
-            // once more from there: nothing to do but to lower the barrier
+            // again from there: only the barrier decreases
             let warm = Settings {
                 barrier: 1e-4,
                 ..settings
@@ -352,9 +353,9 @@ fn a_disc_is_left_for_its_nearest_point() {
     }
 }
 
-/// A row that nothing satisfies ends at the penalty, and says by how much it falls short.
+/// An unsatisfiable row ends at the penalty and reports its shortfall.
 #[test]
-fn what_cannot_be_satisfied_falls_short_by_the_least() {
+fn unsatisfiable_rows_have_the_least_shortfall() {
     let mut toy = Toy::<1, 1>::new(
         1,
         Vector::<1>::new(0.0),
@@ -372,7 +373,7 @@ fn what_cannot_be_satisfied_falls_short_by_the_least() {
 }
 
 #[test]
-fn a_bent_problem_with_rows_satisfies_its_conditions() {
+fn a_nonlinear_problem_with_rows_satisfies_its_conditions() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     for _ in 0..50 {
         let mut any = |_: usize, _: usize| rng.random_range(-0.6..0.6);
@@ -397,7 +398,7 @@ fn a_bent_problem_with_rows_satisfies_its_conditions() {
             let found = toy.values(k, at.point(k), &mut value);
             assert!(found.defect.amax() < 1e-6);
             let p = at.rows[k];
-            // complementary: what falls short pays the penalty, what does not needs no elastic
+            // complementarity: rows with a shortfall pay the penalty, others have no elastic
             assert!(p.multiplier * value[0].max(0.0) < 1e-4);
             assert!(value[0] > -1e-5 || p.multiplier > 99.9, "{value:?} {p:?}");
         }
@@ -405,7 +406,7 @@ fn a_bent_problem_with_rows_satisfies_its_conditions() {
 }
 
 #[test]
-fn what_runs_away_or_is_no_number_is_said_so() {
+fn divergence_and_nan_are_reported() {
     let mut toy = Toy::<1, 1>::new(
         3,
         Vector::<1>::new(1.0),

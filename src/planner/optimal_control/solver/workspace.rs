@@ -1,11 +1,11 @@
-//! Everything that the iteration writes, made once.
+//! Workspace of the iteration, allocated once.
 
 use super::dense::Vector;
 use super::filter::Filter;
 use super::riccati::StageFactor;
 use super::stage::{Blocks, Derivatives, StageProblem, Triple, Values};
 
-/// A trial point: primal variables and what they are worth.
+/// Trial point: primal variables and function values.
 #[derive(Debug, Clone)]
 pub(super) struct Trial<const N: usize, const M: usize> {
     pub states: Vec<Vector<N>>,
@@ -16,14 +16,14 @@ pub(super) struct Trial<const N: usize, const M: usize> {
     pub rows: Vec<f64>,
 }
 
-/// Memory for one problem's size: a solve allocates nothing else.
+/// Memory for one problem size; a solve allocates nothing else.
 #[derive(Debug, Clone)]
 pub struct Workspace<const N: usize, const M: usize> {
-    /// First row of each stage, and their number.
+    /// Index of the first row of each stage, and the number of rows.
     pub(super) offsets: Vec<usize>,
     pub(super) derivatives: Vec<Derivatives<N, M>>,
     pub(super) row_gradients: Vec<Triple<N, M>>,
-    /// Multipliers of the rows side by side, for the problem.
+    /// Contiguous multipliers of the rows, as the problem takes them.
     pub(super) row_multipliers: Vec<f64>,
     pub(super) values: Vec<Values<N>>,
     pub(super) rows: Vec<f64>,
@@ -32,17 +32,17 @@ pub struct Workspace<const N: usize, const M: usize> {
     pub(super) factors: Vec<StageFactor<N, M>>,
     pub(super) steps: Vec<Triple<N, M>>,
     pub(super) new_multipliers: Vec<Vector<N>>,
-    /// Per row: `1 / (s/z + e/y)`.
+    /// Weight of each row: `1 / (s/z + e/y)`.
     pub(super) weights: Vec<f64>,
     pub(super) row_steps: Vec<RowStep>,
-    /// What the equations and the rows are to be brought to zero from: the values, or a correction.
+    /// Residuals to be eliminated: the function values, or a correction.
     pub(super) target: Vec<Vector<N>>,
     pub(super) row_target: Vec<f64>,
     pub(super) trial: Trial<N, M>,
     pub(super) filter: Filter,
 }
 
-/// The step of one row.
+/// Step of one row.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct RowStep {
     pub slack: f64,
@@ -51,11 +51,11 @@ pub(super) struct RowStep {
     pub price: f64,
 }
 
-/// Pairs that the filter holds.
+/// Capacity of the filter.
 const FILTER_ROOM: usize = 128;
 
 impl<const N: usize, const M: usize> Workspace<N, M> {
-    /// For a problem of this size.
+    /// Workspace for the size of a problem.
     pub fn new(problem: &impl StageProblem<N, M>) -> Self {
         let n = problem.stages();
         let mut offsets = vec![0];
@@ -91,7 +91,7 @@ impl<const N: usize, const M: usize> Workspace<N, M> {
         }
     }
 
-    /// The rows of a stage.
+    /// Rows of a stage.
     pub(super) fn rows_of(&self, stage: usize) -> std::ops::Range<usize> {
         self.offsets[stage]..self.offsets[stage + 1]
     }

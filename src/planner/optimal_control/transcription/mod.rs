@@ -1,15 +1,17 @@
-//! The optimal control problem as stages: Hermite–Simpson collocation with forces constant in each interval.
+//! Transcription of the optimal control problem: Hermite–Simpson collocation with constant forces
+//! per interval.
 //!
 //! Per interval of `h` seconds, with `f` the rates of the ship,
 //!
 //! ```text
-//! x_m = (x + y) / 2 + h/8 (f(x, u) - f(y, u))                   the state at half time, on the cubic
+//! x_m = (x + y) / 2 + h/8 (f(x, u) - f(y, u))            state at half time, on the cubic
 //! y - x - h/6 (f(x, u) + 4 f(x_m, u) + f(y, u)) = 0
 //! cost = h/6 (l(x) + 4 l(x_m) + l(y)) + h u' R u,    l(x) = (x - r)' Q (x - r)
 //! ```
 //!
-//! and rows `(p - c)' Q_t^-1 (p - c) - 1 >= 0` on the position of the cubic at any fraction of the interval. The
-//! forces enter the rates linearly, so they enter no second derivative but that of `R`.
+//! Rows are `(p - c)' Q_t^-1 (p - c) - 1 >= 0` for the position on the cubic at any fraction of the
+//! interval. The rates are linear in the forces, so second derivatives with respect to them come
+//! from `R` only.
 
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Matrix6x3, Vector2};
 
@@ -22,21 +24,22 @@ use crate::frame::wrap;
 use crate::trajectory::hermite;
 use crate::vessel::{ForceVector, Manoeuvring, Scales, StateVector};
 
-/// Of the level of a set, which is 1 on its edge: rows ask for this much more. It covers the tolerance of the solver.
+/// Margin of the rows above level 1, which is a set's edge. It covers the tolerance of the solver.
 const MARGIN: f64 = 1e-4;
 
-/// Multipliers of rows below this bend nothing: second derivatives may be as inexact as the tolerance of the solver.
+/// Multipliers of rows below this contribute no second derivatives: these may be as inexact as the
+/// solver's tolerance.
 const NEGLIGIBLE: f64 = 1e-8;
 
-/// A set to keep out of at a fraction of an interval.
+/// Constraint to keep out of a set at a fraction of an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// Which set.
+    /// Index of the set.
     pub obstacle: usize,
-    /// In `(0, 1]`.
+    /// Fraction in `(0, 1]`.
     pub fraction: f64,
     keep: Keep,
-    /// Of the cubic: weights of the position before, its rate, the position after, its rate.
+    /// Hermite weights of the cubic: position and rate before, position and rate after.
     hermite: [f64; 4],
 }
 
@@ -52,14 +55,14 @@ impl Row {
     }
 }
 
-/// What the stage cost measures from over one interval.
+/// Reference of the stage cost over one interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// At its start, middle and end.
+    /// Reference at its start, middle and end.
     pub reference: [StateVector; 3],
 }
 
-/// Weights of the stage cost, diagonal.
+/// Diagonal weights of the stage cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     /// Per squared unit of [`StateVector`] and second.
@@ -68,15 +71,15 @@ pub struct Weights {
     pub force: ForceVector,
 }
 
-/// The problem in the ship's own units: variables are divided by [`Scales`].
+/// Problem in the ship's own units: variables are divided by [`Scales`].
 #[derive(Debug, Clone)]
 pub struct Transcription<'a, V> {
     vessel: &'a V,
     scales: Scales,
-    /// True where the units are those of SI.
+    /// True where the units are SI.
     plain: bool,
     gain: Matrix6x3<f64>,
-    /// Seconds.
+    /// Length of an interval, seconds.
     step: f64,
     first: StateVector,
     force_limits: ForceVector,
@@ -87,7 +90,7 @@ pub struct Transcription<'a, V> {
 }
 
 impl<'a, V: Manoeuvring> Transcription<'a, V> {
-    /// `step` in seconds; `first` is the state at the start; costs are divided by `cost_unit`.
+    /// `step` in seconds; `first` is the initial state; costs are divided by `cost_unit`.
     pub fn new(
         vessel: &'a V,
         step: f64,
@@ -113,37 +116,37 @@ impl<'a, V: Manoeuvring> Transcription<'a, V> {
         }
     }
 
-    /// The rows, per interval.
+    /// Rows of each interval.
     pub fn rows_mut(&mut self) -> &mut [Vec<Row>] {
         &mut self.rows
     }
 
-    /// The rows, per interval.
+    /// Rows of each interval.
     pub fn row_sets(&self) -> &[Vec<Row>] {
         &self.rows
     }
 
-    /// One of the solver's units of cost.
+    /// Unit of the solver's cost.
     pub fn cost_unit(&self) -> f64 {
         self.cost_unit
     }
 
-    /// In SI, from the solver's units.
+    /// State in SI from the solver's units.
     pub fn state(&self, scaled: &Matrix<6, 1>) -> StateVector {
         scaled.component_mul(&self.scales.state)
     }
 
-    /// In SI, from the solver's units.
+    /// Force in SI from the solver's units.
     pub fn force(&self, scaled: &Matrix<3, 1>) -> ForceVector {
         scaled.component_mul(&self.scales.force)
     }
 
-    /// In the solver's units.
+    /// State in the solver's units.
     pub fn scaled_state(&self, state: &StateVector) -> Matrix<6, 1> {
         state.component_div(&self.scales.state)
     }
 
-    /// In the solver's units.
+    /// Force in the solver's units.
     pub fn scaled_force(&self, force: &ForceVector) -> Matrix<3, 1> {
         force.component_div(&self.scales.force)
     }
@@ -163,7 +166,7 @@ impl<'a, V: Manoeuvring> Transcription<'a, V> {
         }
     }
 
-    /// The position of the cubic at a row's time.
+    /// Position of the cubic at a row's time.
     fn position(
         &self,
         row: &Row,
@@ -186,7 +189,7 @@ struct Middle {
     after: StateVector,
 }
 
-/// `rows' matrix rows`, for a diagonal given by its entries.
+/// Product `left' diagonal right` for a diagonal given by its entries.
 fn weighed(left: &Matrix6<f64>, diagonal: &StateVector, right: &Matrix6<f64>) -> Matrix6<f64> {
     let mut scaled = *right;
     for mut column in scaled.column_iter_mut() {
@@ -278,7 +281,7 @@ impl<V: Manoeuvring> StageProblem<6, 3> for Transcription<'_, V> {
             yy: ends + 4.0 * third * weighed(&my, &q, &my),
         };
 
-        // by the state at half time, of cost and defect
+        // derivatives of cost and defect with respect to the state at half time
         let by_middle = 4.0 * third * qm - 2.0 * third * jm.tr_mul(&l);
         let (mut wx, mut wy) = (
             -h / 6.0 * l + h / 8.0 * by_middle,
@@ -317,7 +320,7 @@ impl<V: Manoeuvring> StageProblem<6, 3> for Transcription<'_, V> {
             let (px, py) = (place(a, b, vx.into_owned()), place(c, d, vy.into_owned()));
             to.x = px.tr_mul(&slope);
             to.y = py.tr_mul(&slope);
-            // of a set far away: nothing
+            // zero for a distant set
             if z < NEGLIGIBLE {
                 continue;
             }
@@ -339,7 +342,7 @@ impl<V: Manoeuvring> StageProblem<6, 3> for Transcription<'_, V> {
 }
 
 impl<V: Manoeuvring> Transcription<'_, V> {
-    /// Derivatives by SI to those by the solver's units.
+    /// Converts derivatives with respect to SI variables to the solver's units.
     fn rescale(&self, out: &mut Derivatives<6, 3>, rows: &mut [Triple<6, 3>]) {
         let (s, f) = (&self.scales.state, &self.scales.force);
         let states = |m: &mut Matrix6<f64>, inverse: bool| {

@@ -1,4 +1,4 @@
-//! Every derivative against differences, in SI and scaled.
+//! Compares every derivative with differences, in SI and scaled.
 
 use super::super::keep_out::ellipsoid;
 use super::*;
@@ -17,7 +17,7 @@ fn stage<V: Manoeuvring>(vessel: &V, size: f64, rng: &mut ChaCha8Rng) -> (f64, S
     )
 }
 
-/// Everything that `values` gives, as one function of the 15 variables, with given multipliers.
+/// All outputs of `values` as one function of the 15 variables, with given multipliers.
 fn lagrangian<V: Manoeuvring>(
     problem: &Transcription<V>,
     w: &Triple<6, 3>,

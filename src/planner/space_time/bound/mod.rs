@@ -1,25 +1,28 @@
-//! A lower bound of the space-time error still to come: what makes the search A*.
+//! Lower bound of the remaining space-time error: the heuristic of the A* search.
 //!
 //! # Why it never exceeds the true cost to go
 //!
-//! For one straight leg `e² >= c² + kappa l²` with cross-track error `c`, lag `l = u_d (t - t_a) - x` and
-//! `kappa = q / (q + u_d²)`: the unclamped form is a minimum over more points. Every plan ends at the last
-//! waypoint, where `c = 0`, and not before `T1 = distance to it / u_max`.
+//! For one straight leg `e² >= c² + kappa l²` with cross-track error `c`, lag
+//! `l = u_d (t - t_a) - x` and `kappa = q / (q + u_d²)`: the unclamped form is a minimum over more
+//! points. Every plan ends at the last waypoint, where `c = 0`, and not before
+//! `T1 = distance to it / u_max`.
 //!
-//! * *Cross-track.* After `s` metres the heading has turned by at most `s/r`, so the way made good toward
-//!   the path is at most `P(s) = max(0, integral of cos(max(theta0 - s'/r, 0)) ds')`, theta0 the angle between
-//!   the heading and the direction straight to the path, whatever the speeds; `s <= u_max tau`, and the
-//!   largest `P` over shorter ways is 0 or `P` itself. So `c(tau) >= |c0| - P(u_max tau)` until it is zero.
-//! * *Lag.* Likewise `l(tau) >= l0 + u_d tau - P_x(u_max tau)` when late; when early `|l|` shrinks by at most
-//!   `u_max + u_d` per second. This part is integrated to `T1` only.
+//! * *Cross-track.* After `s` metres the heading has turned by at most `s/r`. So the progress
+//!   toward the path is at most `P(s) = max(0, integral of cos(max(theta0 - s'/r, 0)) ds')`,
+//!   whatever the speeds; theta0 is the angle between the heading and the perpendicular to the
+//!   path. `s <= u_max tau`, and the largest `P` over shorter lengths is 0 or `P` itself. So
+//!   `c(tau) >= |c0| - P(u_max tau)` until it is zero.
+//! * *Lag.* Likewise `l(tau) >= l0 + u_d tau - P_x(u_max tau)` when late. When early, `|l|`
+//!   decreases by at most `u_max + u_d` per second. This part is integrated to `T1` only.
 //!
-//! While own ship turns, both bounds are concave in time, so on an interval they are at least the lesser
-//! of their end values: a lower sum over [`STEPS`] intervals; afterwards they are linear and integrate in
-//! closed form. For a polyline the distance `d` to the nearest leg replaces `c`: it shrinks by at most
-//! `u_max` per second and is zero at the end, `h = d³ / (3 u_max T_d)`.
+//! While own ship turns, both bounds are concave in time. On an interval they are at least the
+//! smaller of their end values, which gives a lower sum over [`STEPS`] intervals. Afterwards they
+//! are linear and integrate in closed form. For a polyline the distance `d` to the nearest leg
+//! replaces `c`. It decreases by at most `u_max` per second and is zero at the end:
+//! `h = d³ / (3 u_max T_d)`.
 //!
-//! The obstacles give a second bound, [`ObstacleBound`]; the greater of two bounds is a bound. For nodes that would be
-//! expanded next there is a third, [`TightBound`].
+//! The obstacles give a second bound, [`ObstacleBound`]; the greater of two bounds is a bound.
+//! Nodes that would be expanded next get a third one, [`TightBound`].
 
 pub(crate) mod half_plane;
 pub(crate) mod obstacle;
@@ -31,10 +34,10 @@ use crate::planner::space_time::bound::tight::TightBound;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
-/// Intervals of the lower sum while own ship turns.
+/// Number of intervals of the lower sum while own ship turns.
 const STEPS: usize = 6;
 
-/// The bound for one problem.
+/// Lower bound for one problem.
 #[derive(Debug)]
 pub(crate) struct Heuristic<'a> {
     desired: &'a DesiredTrajectory,
@@ -44,9 +47,9 @@ pub(crate) struct Heuristic<'a> {
     max_speed: f64,
     /// Metres.
     radius: f64,
-    /// What the obstacles cost.
+    /// Lower bound that the obstacles add.
     obstacle_bound: ObstacleBound,
-    /// For one straight leg.
+    /// Tight bound, for one straight leg.
     tight_bound: Option<TightBound<'a>>,
 }
 
@@ -81,19 +84,19 @@ impl<'a> Heuristic<'a> {
         }
     }
 
-    /// Least space-time error of any way from here to the last waypoint, m².
+    /// Lower bound of the space-time error from here to the last waypoint, m².
     pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
         let obstacle_bound =
             |from: f64| self.obstacle_bound.cost_from(from) / self.desired.duration();
-        let (across, lag) = self.way_back(pose, time);
-        // bounds of separate stretches of time add up
+        let (across, lag) = self.unobstructed_bounds(pose, time);
+        // bounds over disjoint time intervals add up
         let both = across.cost + lag.cost + obstacle_bound(time + across.span.max(lag.span));
         both.max(across.cost + obstacle_bound(time + across.span))
             .max(obstacle_bound(time))
     }
 
-    /// The same, greater as a rule, for one straight leg; takes longer.
-    pub(crate) fn closer_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
+    /// Tighter lower bound for one straight leg, m²; slower than [`Self::cost_to_go`].
+    pub(crate) fn tight_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
         let Some(tight_bound) = &self.tight_bound else {
             return 0.0;
         };
@@ -101,8 +104,8 @@ impl<'a> Heuristic<'a> {
         tight_bound.cost_to_go(&self.obstacle_bound, pose, time, arrival) / self.desired.duration()
     }
 
-    /// True when no way from here clears the obstacles.
-    pub(crate) fn is_dead(&self, pose: &Pose, time: f64) -> bool {
+    /// True when no trajectory from here clears the obstacles.
+    pub(crate) fn is_dead_end(&self, pose: &Pose, time: f64) -> bool {
         let [leg] = self.desired.legs() else {
             return false;
         };
@@ -113,8 +116,8 @@ impl<'a> Heuristic<'a> {
         self.obstacle_bound.forbids(error, time)
     }
 
-    /// The bounds that see no obstacle: across the path, and along it.
-    fn way_back(&self, pose: &Pose, time: f64) -> (Stretch, Stretch) {
+    /// Bounds that ignore obstacles: cross-track and lag.
+    fn unobstructed_bounds(&self, pose: &Pose, time: f64) -> (CostInterval, CostInterval) {
         let legs = self.desired.legs();
         if let [leg] = legs {
             let offset = pose.position - leg.start;
@@ -127,13 +130,13 @@ impl<'a> Heuristic<'a> {
             let least_time = (self.desired.end() - pose.position).norm() / self.max_speed;
             let scale = 1.0 / self.desired.duration();
             let along = if lag >= 0.0 {
-                self.shrinking(lag, Vector::new(cosine, sine.abs()), leg.speed, least_time)
+                self.decreasing_bound(lag, Vector::new(cosine, sine.abs()), leg.speed, least_time)
             } else {
                 squared_ramp(-lag, -(self.max_speed + leg.speed), least_time)
             };
-            // the heading as seen from the direction straight to the path
+            // heading relative to the direction straight to the path
             let toward = Vector::new(-across.signum() * sine, cosine.abs());
-            let aside = self.shrinking(across.abs(), toward, 0.0, f64::INFINITY);
+            let aside = self.decreasing_bound(across.abs(), toward, 0.0, f64::INFINITY);
             return (aside.scaled(scale), along.scaled(kappa * scale));
         }
         let off = legs
@@ -147,17 +150,17 @@ impl<'a> Heuristic<'a> {
         let aside = squared_ramp(off, -self.max_speed, f64::INFINITY);
         (
             aside.scaled(1.0 / self.desired.duration()),
-            Stretch {
+            CostInterval {
                 cost: 0.0,
                 span: 0.0,
             },
         )
     }
 
-    /// Lower sum of the integral, up to `until`, of the squared positive part of
-    /// `start + growth tau - P(u_max tau)`, for a heading off the way that shrinks it by an angle up to pi, of which `off` has the
-    /// cosine and the sine.
-    fn shrinking(&self, start: f64, off: Vector, growth: f64, until: f64) -> Stretch {
+    /// Lower sum, up to `until`, of the integral of the squared positive part of
+    /// `start + growth tau - P(u_max tau)`. `off` is the cosine and sine of the angle, up to pi,
+    /// between the heading and the direction that reduces the error fastest.
+    fn decreasing_bound(&self, start: f64, off: Vector, growth: f64, until: f64) -> CostInterval {
         let (u, r) = (self.max_speed, self.radius);
         let angle = heading_of(off);
         let turning = (r * angle / u).min(until);
@@ -165,7 +168,7 @@ impl<'a> Heuristic<'a> {
         let mut before = start;
         let step = turning / STEPS as f64;
         if turning > 0.0 {
-            // what is left to turn, by equal steps
+            // angle left to turn, reduced by equal steps
             let mut left = off;
             let (from, back) = (left.y, direction(-u * step / r));
             for k in 1..=STEPS {
@@ -177,21 +180,21 @@ impl<'a> Heuristic<'a> {
             }
         }
         let after = squared_ramp(before, growth - u, until - turning);
-        Stretch {
+        CostInterval {
             cost: sum + after.cost,
             span: turning.max(0.0) + after.span,
         }
     }
 }
 
-/// A bound that holds for the next `span` seconds.
+/// Cost over the next `span` seconds.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stretch {
+pub(crate) struct CostInterval {
     pub cost: f64,
     span: f64,
 }
 
-impl Stretch {
+impl CostInterval {
     fn scaled(self, factor: f64) -> Self {
         Self {
             cost: self.cost * factor,
@@ -200,11 +203,11 @@ impl Stretch {
     }
 }
 
-/// Integral over `[0, duration]` of the squared positive part of `start + slope tau`, and until when that is
-/// positive; a decreasing ramp may run for ever.
-pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> Stretch {
+/// Integral over `[0, duration]` of the squared positive part of `start + slope tau`, and the time
+/// until which that is positive. A decreasing ramp may extend to infinity.
+pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> CostInterval {
     if start <= 0.0 && slope <= 0.0 || !(duration > 0.0) {
-        return Stretch {
+        return CostInterval {
             cost: 0.0,
             span: 0.0,
         };
@@ -212,14 +215,14 @@ pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> Stretch {
     if slope < 0.0 {
         let span = duration.min(-start / slope).max(0.0);
         let end = (start + slope * span).max(0.0);
-        return Stretch {
+        return CostInterval {
             cost: (start.powi(3) - end.powi(3)) / (-3.0 * slope),
             span,
         };
     }
-    // not shrinking: the start value stays a bound
+    // not decreasing: the start value remains a bound
     let span = duration.min(1e9);
-    Stretch {
+    CostInterval {
         cost: start * start * span,
         span,
     }
@@ -233,9 +236,10 @@ mod tests {
     use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
 
-    /// Random lines and arcs, then a way to the end; the bound at every joint against the cost that follows.
+    /// Random lines and arcs, then a path to the end: compares the bound at every joint with the
+    /// cost that follows.
     #[test]
-    fn the_bound_never_exceeds_the_cost_of_random_ways_to_the_end() {
+    fn the_bound_never_exceeds_the_cost_of_random_paths_to_the_end() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(31);
         let straight = [(0.0, 0.0), (1500.0, 0.0)]
             .map(|(x, y)| Vector::new(x, y))

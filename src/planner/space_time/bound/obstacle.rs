@@ -1,21 +1,24 @@
-//! A lower bound of the space-time error that the obstacles force on every plan: part of the heuristic.
+//! Lower bound of the space-time error that the obstacles force on every plan: part of the
+//! heuristic.
 //!
 //! # Why it never exceeds the true cost to go
 //!
-//! One straight leg, on schedule at `p_d(tau)`. Every plan is outside every `O_tau` until it arrives, and
-//! the outside of a convex set is the union of its faces' outer half-planes, so with the unclamped error
+//! For one straight leg the scheduled point is `p_d(tau)`. Every plan is outside every `O_tau`
+//! until it arrives. The outside of a convex set is the union of its faces' outer half-planes. So
+//! the unclamped error satisfies
 //!
-//! `e(tau) >= E(tau) = max over obstacles of min over faces of depth_n(p_d) / sqrt(n_across² + n_along² / kappa)`:
+//! `e(tau) >= E(tau) = max over O of min over faces n of depth_n(p_d) / sqrt(n_across² + n_along² / kappa)`:
 //!
-//! the depth of the point on schedule behind a face, in the metric of `e`. `e` changes by at most
-//! `rho = max over |v| <= u_max of sqrt(v_across² + kappa (u_d - v_along)²)` per second, so the envelope
-//! `max over tau' of E(tau') - rho |tau - tau'|` bounds it too, and between two instants `D` apart
-//! `e >= (E_a + E_b - rho D) / 2`. Summed over the time that remains until anybody could have arrived.
-//! A node whose own error is below the envelope cannot be part of any plan.
+//! This is the depth of the scheduled point behind a face, in the metric of `e`. `e` changes by at
+//! most `rho = max over |v| <= u_max of sqrt(v_across² + kappa (u_d - v_along)²)` per second. So
+//! the envelope `max over tau' of E(tau') - rho |tau - tau'|` bounds it too, and between two
+//! instants `D` apart `e >= (E_a + E_b - rho D) / 2`. The sum covers the time until the earliest
+//! possible arrival. A node whose own error is below the envelope cannot be part of any plan.
 //!
-//! Of an ellipsoid the faces are those of a polytope within it: who is outside the ellipsoid is outside of that. A part
-//! that is in force for a while counts at the instants of its window alone; `E` is asked at instants only, so nothing
-//! else changes. Such parts are left out of [`ObstacleBound::bodies`].
+//! An ellipsoid is replaced by a polytope within it: a point outside the ellipsoid is outside the
+//! polytope. A convex piece with a time window counts at the sampled instants of its window only.
+//! Since `E` is sampled at instants only, the proof still holds. [`ObstacleBound::obstacles`]
+//! leaves such pieces out.
 
 use crate::frame::{Vector, cross, heading_of};
 use crate::obstacle::HalfSpace;
@@ -23,50 +26,51 @@ use crate::planner::Problem;
 use crate::planner::space_time::proxy::Proxy;
 use crate::trajectory::DesiredLeg;
 
-/// Seconds between two instants.
+/// Seconds between two sampled instants.
 const STEP_S: f64 = 0.5;
 
-/// The bound by time.
+/// Lower bound as a function of time.
 #[derive(Debug, Clone)]
 pub(crate) struct ObstacleBound {
-    /// m² s, what is still to come at every multiple of [`STEP_S`]; decreasing.
+    /// Lower bound of the remaining integral at every multiple of [`STEP_S`], m² s; decreasing.
     to_come: Vec<f64>,
-    bodies: Vec<Body>,
-    /// Metres, the envelope of `E` there, and by how much it may fall from one instant to the next.
+    obstacles: Vec<EnteredObstacle>,
+    /// Envelope of `E` there, and its largest decrease per step, metres.
     least: Vec<f64>,
     fall: f64,
 }
 
 impl ObstacleBound {
-    /// No obstacles, or more than one leg: zero.
+    /// Zero bound: no obstacles, or more than one leg.
     pub(crate) fn none() -> Self {
         Self {
             to_come: Vec::new(),
-            bodies: Vec::new(),
+            obstacles: Vec::new(),
             least: Vec::new(),
             fall: 0.0,
         }
     }
 
-    /// For the obstacles that the motion on schedule enters.
+    /// Bound for the obstacles that the scheduled motion enters.
     pub(crate) fn new(problem: &Problem, proxies: &[Proxy]) -> Self {
         let [leg] = problem.desired.legs() else {
             return Self::none();
         };
         let (own, q) = (problem.own, problem.time_weight);
         let kappa = q / (q + leg.speed * leg.speed);
-        // nobody arrives before this
+        // earliest possible arrival
         let until = (problem.desired.end() - own.pose.position).norm() / own.max_speed();
         let count = (until / STEP_S).floor().max(0.0) as usize;
         let mut least = vec![0.0; count + 1];
-        let mut bodies = Vec::new();
+        let mut obstacles = Vec::new();
         for proxy in proxies {
             let faces = proxy.within.faces().iter();
             let faces: Vec<Face> = faces
-                .map(|f| Face::new(by_the_clock(f, proxy.start()), leg, kappa))
+                .map(|f| Face::new(in_scenario_time(f, proxy.start()), leg, kappa))
                 .collect();
             let mut contact = None;
-            let steps = inside(&faces).map(|time| (time / STEP_S).clamp(0.0, least.len() as f64));
+            let steps =
+                contact_interval(&faces).map(|time| (time / STEP_S).clamp(0.0, least.len() as f64));
             let (first, last) = (steps[0].floor() as usize, steps[1].ceil() as usize + 1);
             for (k, least) in least.iter_mut().enumerate().take(last).skip(first) {
                 let time = STEP_S * k as f64;
@@ -85,9 +89,9 @@ impl ObstacleBound {
                     *least = depth.max(*least);
                 }
             }
-            // the closer bound takes its faces to hold for ever
+            // the tight bound assumes that its faces exist for ever
             let contact = contact.filter(|_| proxy.window.is_none());
-            bodies.extend(contact.map(|(from, to)| Body { faces, from, to }));
+            obstacles.extend(contact.map(|(from, to)| EnteredObstacle { faces, from, to }));
         }
         let fall = rate(own.max_speed(), leg.speed, kappa) * STEP_S;
         for k in 1..least.len() {
@@ -103,13 +107,13 @@ impl ObstacleBound {
         }
         Self {
             to_come,
-            bodies,
+            obstacles,
             least,
             fall,
         }
     }
 
-    /// True when no plan can be at this error (metres) at this time and still clear the obstacles later.
+    /// True when a plan with this error (metres) at this time cannot clear the obstacles later.
     pub(crate) fn forbids(&self, error: f64, time: f64) -> bool {
         let before = (time / STEP_S).floor().max(0.0) as usize;
         match (self.least.get(before), self.least.get(before + 1)) {
@@ -118,25 +122,25 @@ impl ObstacleBound {
         }
     }
 
-    pub(crate) fn bodies(&self) -> &[Body] {
-        &self.bodies
+    pub(crate) fn obstacles(&self) -> &[EnteredObstacle] {
+        &self.obstacles
     }
 
-    /// When the point on schedule is inside an obstacle for the last time.
+    /// Last time at which the scheduled point is inside an obstacle.
     pub(crate) fn last_contact(&self) -> f64 {
-        self.bodies.iter().map(|b| b.to).fold(0.0, f64::max)
+        self.obstacles.iter().map(|b| b.to).fold(0.0, f64::max)
     }
 
-    /// Least integral of the squared error still to come at a time, m² s.
+    /// Least integral of the squared error from a time on, m² s.
     pub(crate) fn cost_from(&self, time: f64) -> f64 {
-        // the next instant: what lies before it is not counted
+        // the next instant: what precedes it is not counted
         let steps = (time / STEP_S).max(0.0);
         let before = steps as usize;
         let next = before + usize::from(steps > before as f64);
         self.to_come.get(next).copied().unwrap_or(0.0)
     }
 
-    /// The same between two times.
+    /// Least integral of the squared error between two times, m² s.
     pub(crate) fn cost_between(&self, from: f64, to: f64) -> f64 {
         let before = (to / STEP_S).max(0.0) as usize;
         let after = self.to_come.get(before).copied().unwrap_or(0.0);
@@ -144,8 +148,9 @@ impl ObstacleBound {
     }
 }
 
-/// Seconds between which the point on schedule is behind every face; the first is the greater where it never is.
-fn inside(faces: &[Face]) -> [f64; 2] {
+/// Time interval during which the scheduled point is behind every face; empty (first > second)
+/// where it never is.
+fn contact_interval(faces: &[Face]) -> [f64; 2] {
     let (mut from, mut to) = (0.0_f64, f64::INFINITY);
     for face in faces {
         let root = -face.depth / face.rate;
@@ -160,32 +165,32 @@ fn inside(faces: &[Face]) -> [f64; 2] {
     [from, to]
 }
 
-/// A face whose clock starts at a time, by the scenario's clock.
-fn by_the_clock(face: &HalfSpace, start: f64) -> HalfSpace {
+/// Face in scenario time; its own clock starts at `start`.
+fn in_scenario_time(face: &HalfSpace, start: f64) -> HalfSpace {
     HalfSpace {
         initial_support: face.initial_support - face.velocity_support * start,
         ..*face
     }
 }
 
-/// An obstacle that the point on schedule is inside for some time.
+/// Obstacle that the scheduled point is inside of for some time.
 #[derive(Debug, Clone)]
-pub(crate) struct Body {
+pub(crate) struct EnteredObstacle {
     pub faces: Vec<Face>,
     /// Seconds.
     pub from: f64,
     pub to: f64,
 }
 
-/// A face of an obstacle as seen from the point on schedule.
+/// Face of an obstacle relative to the scheduled point.
 #[derive(Debug, Clone)]
 pub(crate) struct Face {
     pub plane: HalfSpace,
-    /// Of its normal, radians.
+    /// Heading of its normal, radians.
     pub heading: f64,
     /// Its unit normal in the metric of the error, along and across the leg.
     pub metric: Vector,
-    /// Depth of the point on schedule behind it, in that metric: metres at t = 0, and m/s.
+    /// Depth of the scheduled point behind it in that metric: metres at t = 0, and m/s.
     depth: f64,
     rate: f64,
 }
@@ -210,7 +215,8 @@ impl Face {
     }
 }
 
-/// `rho`: the largest of a convex function of the velocity, so on the circle of the greatest speed.
+/// `rho`: a convex function of the velocity, so its maximum lies on the circle of the greatest
+/// speed.
 fn rate(max_speed: f64, desired: f64, kappa: f64) -> f64 {
     let square = |cosine: f64| {
         let across = max_speed * max_speed * (1.0 - cosine * cosine);

@@ -1,45 +1,47 @@
-//! The closer bound of the cost to go, for one straight leg: what the way back and the obstacles ask for,
-//! interval by interval.
+//! Tight lower bound of the cost to go for one straight leg: bounds by progress and by the
+//! obstacles, interval by interval.
 //!
 //! # Why it never exceeds the true cost to go
 //!
-//! *Ways.* In a direction at an angle `theta` to the heading own ship makes good at most 0 or `P(s)` metres in
-//! `s` seconds ([`crate::planner::space_time::bound`]): `P` is convex, and `u s - r (theta - sin theta)` once she has turned. So
-//! she is nowhere beyond a half-plane that moves away by `max(0, P)`, and the point on schedule, which moves
-//! steadily, is beyond it by a concave function of time.
+//! *Directions.* In a direction at an angle `theta` to the heading, the progress in `s` seconds is
+//! at most 0 or `P(s)` metres ([`crate::planner::space_time::bound`]). `P` is convex, and
+//! `u s - r (theta - sin theta)` after the turn. So own ship stays within a half-plane that moves
+//! away by `max(0, P)`. The scheduled point, which moves steadily, is beyond it by a concave
+//! function of time.
 //!
-//! *Between two instants* a concave function is at least the chord between its values there, and at least
-//! the lesser of them. Two half-planes at right angles, toward the path and ahead, add their squares; of
-//! those in other directions, aslant, the greatest counts.
+//! *Between two instants* a concave function is at least the chord between its end values, and at
+//! least the smaller of them. Two half-planes at right angles, toward the path and ahead, add their
+//! squares. The greatest counts of those in the other, oblique directions.
 //!
-//! *Faces.* Outside a body she is beyond one of its faces. One from whose outer side she is `need > 0` metres
-//! away, itself moving at `h_V`, she is beyond only when `max(0, P(s)) - h_V s >= need`; the left side is
-//! convex and 0 at first, so what it is below at a time after the turn it was below before. Faces that
-//! nobody can be beyond by the end of an interval are left out. The depth behind a face is linear in time and
-//! the least over some faces concave: again at least its chord.
+//! *Faces.* Outside an obstacle own ship is beyond one of its faces. Take a face that moves at
+//! `h_V` and is `need > 0` metres away. Own ship is beyond it only when
+//! `max(0, P(s)) - h_V s >= need`. The left side is convex and 0 at first. If it is below `need` at
+//! a time after the turn, it was below at all earlier times. Faces that cannot be reached by the
+//! end of an interval are left out. The depth behind a face is linear in time, and the minimum over
+//! some faces is concave: again at least its chord.
 //!
-//! *Both.* Beyond a face and within the half-planes at once, her error is at least the least vector that
-//! has the depth along the face's normal and the distance beyond along a half-plane's; it grows with
-//! both, so the lesser values of the interval bound it. Of the half-planes the greatest counts, of the faces
-//! the least, of the bodies the greatest.
+//! *Both.* Beyond a face and within the half-planes at once, the error is at least the shortest
+//! vector with the depth along the face's normal and the distance along a half-plane's. It grows
+//! with both, so the smaller values of the interval bound it. The bound takes the greatest over
+//! half-planes, the least over faces, the greatest over obstacles.
 //!
-//! After the last contact, and once she has turned, the ramps are integrated to their ends.
+//! After the last contact, and after the turn, the ramps are integrated to their ends.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::planner::space_time::bound::half_plane::{
-    HalfPlanes, LIMITS, View, WAYS, greater, lesser, squared_chord,
+    DIRECTIONS, HalfPlaneBound, OBLIQUE, SideGeometry, fast_max, fast_min, squared_chord,
 };
 use crate::planner::space_time::bound::obstacle::{Face, ObstacleBound};
 use crate::planner::space_time::bound::squared_ramp;
 use crate::trajectory::DesiredLeg;
 
-/// Seconds of an interval at least, and how many there are at most.
+/// Least length of an interval in seconds, and greatest number of intervals.
 const INTERVAL_S: f64 = 12.0;
 const MOST_INTERVALS: f64 = 24.0;
 
-/// What the bound depends on beside the node.
+/// Data of the bound that do not depend on the node.
 #[derive(Debug)]
 pub(crate) struct TightBound<'a> {
     leg: &'a DesiredLeg,
@@ -52,55 +54,55 @@ pub(crate) struct TightBound<'a> {
     speed: f64,
     /// Metres.
     radius: f64,
-    /// From starboard of the leg, and from port.
-    views: [View; 2],
+    /// Geometry seen from starboard and from port of the leg.
+    sides: [SideGeometry; 2],
 }
 
-/// How far the ways are off own ship's heading.
-struct Ways {
-    angles: [f64; WAYS],
-    cosines: [f64; WAYS],
-    sines: [f64; WAYS],
+/// Angles between the directions of progress and own ship's heading.
+struct HeadingOffsets {
+    angles: [f64; DIRECTIONS],
+    cosines: [f64; DIRECTIONS],
+    sines: [f64; DIRECTIONS],
     greatest: f64,
     radius: f64,
 }
 
-impl Ways {
-    /// `ahead` is where the heading leads.
-    fn new(heading: f64, ahead: Vector, view: &View, radius: f64) -> Self {
-        let angles = view.headings.map(|h| between(heading, h));
+impl HeadingOffsets {
+    /// `ahead` is the unit vector of `heading`.
+    fn new(heading: f64, ahead: Vector, geometry: &SideGeometry, radius: f64) -> Self {
+        let angles = geometry.headings.map(|h| between(heading, h));
         Self {
             angles,
-            cosines: view.directions.map(|d| ahead.dot(&d)),
-            sines: view.directions.map(|d| cross(ahead, d).abs()),
+            cosines: geometry.directions.map(|d| ahead.dot(&d)),
+            sines: geometry.directions.map(|d| cross(ahead, d).abs()),
             greatest: angles.into_iter().fold(0.0, f64::max),
             radius,
         }
     }
 
-    /// Metres made good at most after so many metres sailed.
-    fn made_good(&self, rollout: f64) -> [f64; WAYS] {
-        let (turned, r) = (rollout / self.radius, self.radius);
+    /// Largest progress in each direction after the given path length, metres.
+    fn made_good(&self, length: f64) -> [f64; DIRECTIONS] {
+        let (turned, r) = (length / self.radius, self.radius);
         if turned >= self.greatest {
             return std::array::from_fn(|k| {
-                greater(rollout - r * (self.angles[k] - self.sines[k]), 0.0)
+                fast_max(length - r * (self.angles[k] - self.sines[k]), 0.0)
             });
         }
         let (sin, cos) = turned.sin_cos();
         std::array::from_fn(|k| {
-            let way = if self.angles[k] > turned {
-                // the sine of what is left to turn
+            let progress = if self.angles[k] > turned {
+                // sine of the angle left to turn
                 let left = self.sines[k] * cos - self.cosines[k] * sin;
                 r * (self.sines[k] - left)
             } else {
-                rollout - r * (self.angles[k] - self.sines[k])
+                length - r * (self.angles[k] - self.sines[k])
             };
-            way.max(0.0)
+            progress.max(0.0)
         })
     }
 }
 
-/// The angle between two headings of at most half a turn, radians.
+/// Angle between two headings, at most pi, radians.
 fn between(a: f64, b: f64) -> f64 {
     let apart = (a - b).abs();
     if apart > PI { TAU - apart } else { apart }
@@ -122,12 +124,12 @@ impl<'a> TightBound<'a> {
             root,
             speed,
             radius,
-            views: [1.0, -1.0].map(|side| View::new(side, root, obstacle_bound)),
+            sides: [1.0, -1.0].map(|side| SideGeometry::new(side, root, obstacle_bound)),
         }
     }
 
-    /// Least integral of the squared error from a pose at a time to the arrival, which is at least
-    /// `arrival` seconds away; m² s.
+    /// Lower bound of the integral of the squared error from a pose and time to the arrival, m² s.
+    /// `arrival` is a lower bound of the seconds until the arrival.
     pub(crate) fn cost_to_go(
         &self,
         obstacle_bound: &ObstacleBound,
@@ -139,34 +141,37 @@ impl<'a> TightBound<'a> {
         let offset = pose.position - leg.start;
         let across = cross(leg.direction, offset);
         let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
-        // from here the point on schedule is at `(lag + u_d tau, -across)`, along and across the leg
-        let view = &self.views[usize::from(across.is_sign_positive())];
+        // relative to own ship, the scheduled point is at `(lag + u_d tau, -across)` along and
+        // across the leg
+        let geometry = &self.sides[usize::from(across.is_sign_positive())];
         let heading = wrap(pose.heading - self.course);
         let ahead = pose.ahead();
         let (along, aside) = (leg.direction.dot(&ahead), cross(leg.direction, ahead));
-        let ways = Ways::new(heading, Vector::new(along, aside), view, self.radius);
+        let offsets =
+            HeadingOffsets::new(heading, Vector::new(along, aside), geometry, self.radius);
         let slope = if lag >= 0.0 {
             leg.speed - u
         } else {
             -leg.speed - u
         };
-        // how far the point on schedule is from the path, late, and beyond the limits, at least
+        // least distance of the scheduled point from the path, behind schedule, and beyond the
+        // half-planes
         let apart = |tau: f64| {
-            let made_good = ways.made_good(u * tau);
+            let made_good = offsets.made_good(u * tau);
             let late = if lag >= 0.0 {
                 lag + leg.speed * tau - made_good[1]
             } else {
                 -lag + slope * tau
             };
             let due = Vector::new(self.root * (lag + leg.speed * tau), -across);
-            let beyond: [f64; LIMITS] = std::array::from_fn(|k| {
-                let limit = &view.limits[k];
+            let beyond: [f64; OBLIQUE] = std::array::from_fn(|k| {
+                let limit = &geometry.half_planes[k];
                 limit.metric.dot(&due) - made_good[k + 2] / limit.scale
             });
             ((across.abs() - made_good[0], late), beyond)
         };
-        let reached = self.reached(obstacle_bound, pose, ahead, time);
-        let turned = ways.angles[0].max(ways.angles[1]) * self.radius / u;
+        let reach_times = self.reach_times(obstacle_bound, pose, ahead, time);
+        let turned = offsets.angles[0].max(offsets.angles[1]) * self.radius / u;
         let until = arrival.min(turned.max(obstacle_bound.last_contact() - time));
         let interval = INTERVAL_S.max(until / MOST_INTERVALS);
         let (mut from, mut sum) = (0.0, 0.0);
@@ -176,16 +181,16 @@ impl<'a> TightBound<'a> {
             let next = apart(to);
             let mut least =
                 squared_chord(back.0, next.0.0) + kappa * squared_chord(back.1, next.0.1);
-            let mut limits = [0.0; LIMITS];
-            for (k, limit) in limits.iter_mut().enumerate() {
-                least = greater(least, squared_chord(beyond[k], next.1[k]));
-                *limit = lesser(beyond[k], next.1[k]);
+            let mut half_planes = [0.0; OBLIQUE];
+            for (k, limit) in half_planes.iter_mut().enumerate() {
+                least = fast_max(least, squared_chord(beyond[k], next.1[k]));
+                *limit = fast_min(beyond[k], next.1[k]);
             }
-            let outside = HalfPlanes {
+            let outside = HalfPlaneBound {
                 obstacle_bound,
-                view,
-                reached: &reached,
-                limits,
+                geometry,
+                reach_times: &reach_times,
+                half_planes,
             };
             least = outside.least(least, time + from, time + to);
             let envelope = obstacle_bound.cost_between(time + from, time + to);
@@ -198,8 +203,8 @@ impl<'a> TightBound<'a> {
         sum + rest.max(obstacle_bound.cost_from(time + from))
     }
 
-    /// The earliest time at which own ship can be beyond each face of each body.
-    fn reached(
+    /// Earliest time at which own ship can be beyond each face of each obstacle.
+    fn reach_times(
         &self,
         obstacle_bound: &ObstacleBound,
         pose: &Pose,
@@ -208,7 +213,7 @@ impl<'a> TightBound<'a> {
     ) -> Vec<f64> {
         let heading = wrap(pose.heading);
         obstacle_bound
-            .bodies()
+            .obstacles()
             .iter()
             .flat_map(|b| &b.faces)
             .map(|face| {
@@ -217,14 +222,14 @@ impl<'a> TightBound<'a> {
                     let sine = cross(ahead, face.plane.normal).abs();
                     (between(face.heading, heading), sine)
                 };
-                time + self.reached_after(face, need, turn)
+                time + self.reach_time(face, need, turn)
             })
             .collect()
     }
 
-    /// Seconds until own ship can be `need` metres on; `turn` is the angle to the face's normal, and its sine. Infinite
-    /// when never.
-    fn reached_after(&self, face: &Face, need: f64, turn: impl FnOnce() -> (f64, f64)) -> f64 {
+    /// Seconds until own ship can have moved `need` metres along the face's normal; infinite when
+    /// never. `turn` gives the angle to the normal and its sine.
+    fn reach_time(&self, face: &Face, need: f64, turn: impl FnOnce() -> (f64, f64)) -> f64 {
         let faster = self.speed - face.plane.velocity_support;
         if need <= 0.0 {
             return 0.0;
@@ -237,7 +242,7 @@ impl<'a> TightBound<'a> {
         if turned < self.radius * angle / self.speed {
             need / faster
         } else if face.plane.velocity_support < 0.0 {
-            // or she waits for it
+            // or it waits for the face
             turned.min(-need / face.plane.velocity_support)
         } else {
             turned
@@ -249,7 +254,7 @@ impl<'a> TightBound<'a> {
 mod tests {
     use std::time::Duration;
 
-    use crate::obstacle::Coast;
+    use crate::obstacle::LandObstacle;
     use crate::pipeline;
     use crate::planner::clock::Clock;
     use crate::planner::cost::space_time_error;
@@ -264,10 +269,10 @@ mod tests {
     use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
     use crate::target::{Motion, Representation, Target};
 
-    /// The same graph without its bound.
-    struct Blind<'a, 'b>(&'b mut Graph<'a>);
+    /// The same graph without its heuristic.
+    struct Uninformed<'a, 'b>(&'b mut Graph<'a>);
 
-    impl Space for Blind<'_, '_> {
+    impl Space for Uninformed<'_, '_> {
         type State = State;
         fn successors(&mut self, state: &State, out: &mut Vec<(State, f64)>) {
             self.0.successors(state, out);
@@ -283,9 +288,9 @@ mod tests {
         }
     }
 
-    /// On every way that Dijkstra finds, and on the plan that is refined, at every joint: the bounds against
-    /// the cost that follows. How near the closer one comes.
-    fn nearest(problem: &Problem) -> f64 {
+    /// Compares the bounds at every joint of every path that Dijkstra finds, and of the refined
+    /// plan, with the cost that follows. Returns the largest ratio of the tight bound.
+    fn tightest_ratio(problem: &Problem) -> f64 {
         let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
         let mut nominal_motion = Vec::new();
         route.follow(0.0, 0.0, &mut nominal_motion);
@@ -302,16 +307,16 @@ mod tests {
         let mut joints: Vec<(State, f64)> = Vec::new();
         let mut cheapest = None;
         for _ in 0..20 {
-            let Stop::Goal(goal) = search.next_goal(&mut Blind(&mut graph), 1500) else {
+            let Stop::Goal(goal) = search.next_goal(&mut Uninformed(&mut graph), 1500) else {
                 break;
             };
-            let way = search.way_to(goal);
-            let nodes = way.iter().map(|i| &search.nodes()[*i]);
+            let path = search.way_to(goal);
+            let nodes = path.iter().map(|i| &search.nodes()[*i]);
             let cost = search.nodes()[goal].cost;
             cheapest.get_or_insert(cost);
             joints.extend(nodes.map(|n| (n.state.clone(), cost - n.cost)));
         }
-        // with its bounds the graph has the same best plan, among several targets too
+        // with its heuristic the graph has the same best plan, also among several targets
         if let Some(cheapest) = cheapest {
             let mut search = Search::new(graph.root());
             let Stop::Goal(goal) = search.next_goal(&mut graph, 1500) else {
@@ -329,9 +334,9 @@ mod tests {
                 joints.push((state, to_go));
             }
         }
-        let mut nearest = 0.0_f64;
+        let mut tightest_ratio = 0.0_f64;
         for (state, to_go) in joints {
-            let (bound, tight_bound) = (graph.bound(&state), graph.closer_bound(&state));
+            let (bound, tight_bound) = (graph.bound(&state), graph.tight_bound(&state));
             let limit = to_go * (1.0 + 1e-9) + 1e-6;
             assert!(bound <= limit, "{bound} > {to_go} at {state:?}");
             assert!(
@@ -339,10 +344,10 @@ mod tests {
                 "closer: {tight_bound} > {to_go} at {state:?}"
             );
             if to_go > 100.0 {
-                nearest = nearest.max(tight_bound / to_go);
+                tightest_ratio = tightest_ratio.max(tight_bound / to_go);
             }
         }
-        nearest
+        tightest_ratio
     }
 
     fn ellipsoid(target: &mut Target) {
@@ -357,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn no_way_costs_less_than_its_bounds() {
+    fn no_path_costs_less_than_its_bounds() {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
             (0..12).map(move |guess| random_encounter(kind, guess, Placement::Random))
         });
@@ -373,10 +378,10 @@ mod tests {
                     .into_iter()
                     .map(|s| s.shaped)
                     .collect();
-                greatest = greatest.max(nearest(&Problem {
+                greatest = greatest.max(tightest_ratio(&Problem {
                     search: SearchKind::AStar,
                     deadline: Duration::from_secs(60),
-                    ..pipeline::problem(&scenario, &obstacles, Coast::none())
+                    ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
                 }));
             }
         }

@@ -1,37 +1,37 @@
-//! From where the end can still be reached, and at what cost: a grid over east, north and time.
+//! Cost-to-go grid over east, north and time: where the end can still be reached, and at what cost.
 //!
-//! A guide, not a proof: own ship is a point there that may turn at once, and sets are looked at in the middles of cells at
-//! instants.
+//! The grid guides a search and proves nothing. In it own ship is a point that turns instantly, and
+//! sets are sampled at cell centres and discrete instants.
 
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::planner::Problem;
 use crate::planner::space_time::proxy::Proxy;
 
-/// Cells of the grid to either axis.
+/// Cells along either axis.
 const CELLS: usize = 80;
 
-/// Cells that she makes from one instant to the next at her greatest speed.
+/// Cells that own ship travels per time step at its greatest speed.
 const REACH: i32 = 2;
 
-/// Cells of a row with those beyond the edges that she might make for, from which nothing can be reached.
+/// Cells of a padded row. Nothing can be reached from the padding beyond the edges.
 const WIDE: usize = CELLS + 2 * REACH as usize;
 
-/// The cost to go, m², from the middles of cells at evenly spaced instants.
+/// Cost to go, m², from cell centres at evenly spaced instants.
 #[derive(Debug)]
 pub(crate) struct CostToGoGrid {
     corner: Vector,
-    /// Metres.
+    /// Cell size, metres.
     pub cell: f64,
-    /// Seconds from one instant to the next.
+    /// Time step, seconds.
     pub step: f64,
     layers: usize,
     to_go: Vec<f32>,
 }
 
 impl CostToGoGrid {
-    /// Backward from the horizon over all places from which the way from the start and to the end is within it.
-    /// O(cells x instants x (moves + legs)); some ten milliseconds.
+    /// Backward recursion from the horizon over all positions that lie on some path within the
+    /// horizon. O(cells x instants x (moves + legs)); about ten milliseconds.
     pub(crate) fn of(problem: &Problem, proxies: &[Proxy]) -> Option<Self> {
         let (start, end) = (problem.own.pose.position, problem.desired.end());
         let top = problem.own.max_speed();
@@ -53,7 +53,7 @@ impl CostToGoGrid {
         };
         let ashore: Vec<bool> = (0..CELLS * CELLS)
             .map(|k| {
-                let depth = problem.coast.depth(grid.middle(k));
+                let depth = problem.land_obstacle.depth(grid.middle(k));
                 depth.is_some_and(|depth| depth > 0.0)
             })
             .collect();
@@ -106,19 +106,19 @@ impl CostToGoGrid {
         (layer * WIDE + row + edge) * WIDE + column + edge
     }
 
-    /// The least cost to go one instant later from what can be made from each cell of a row.
+    /// Least cost to go one time step later over the moves from each cell of a row.
     fn best_after(&self, layer: usize, row: usize, moves: &[isize], least: &mut [f32; CELLS]) {
         least.fill(f32::INFINITY);
         for by in moves {
             let first = self.index(layer + 1, 0, row).saturating_add_signed(*by);
             for (least, there) in least.iter_mut().zip(&self.to_go[first..first + CELLS]) {
-                // one instruction, unlike `f32::min`; a NaN leads nowhere
+                // one instruction, unlike `f32::min`; a NaN is unreachable
                 *least = if *there < *least { *there } else { *least };
             }
         }
     }
 
-    /// Marks the cells whose middles are in a set.
+    /// Marks the cells whose centres are in a set.
     fn block(&self, blocked: &mut [bool], proxy: &Proxy, time: f64) {
         if let Some(window) = &proxy.window
             && !(time >= window.start && time <= window.end)
@@ -142,7 +142,7 @@ impl CostToGoGrid {
         }
     }
 
-    /// The cost to go from about a place at about a time, m²; infinite where the end cannot be reached any more.
+    /// Cost to go from a position and time, m²; infinite where the end is out of reach.
     pub(crate) fn from(&self, place: Vector, time: f64) -> f64 {
         let at = (place - self.corner) / self.cell;
         let layer = (time / self.step).floor();

@@ -1,71 +1,74 @@
-//! Out of the sets that own ship starts in, then on to the end of the path.
+//! Escape from the sets that own ship starts in, then a motion to the end of the path.
 //!
 //! ```text
-//! turns x speeds ─► out of the sets? ─► least harm first ─► planned anew from there, else along the path
+//! turns x speeds ─► outside the sets? ─► least harm first ─► plan from there, else along the path
 //! ```
 //!
-//! A way out is one turn and a straight line at one speed. Of these the one that does the least harm is taken: [`Harm`].
-//! Where every way out of the sets meets a nominal hull, or none leads out, the sets are those of the nominal tracks.
+//! An exit is one turn and a straight line at one speed. The exit with the least [`Harm`] is taken.
+//! Where every exit meets a nominal hull, or none exists, the sets of the nominal tracks are used
+//! instead.
 
 use crate::frame::{Pose, Side};
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
-use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, Watch};
+use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
+use crate::planner::space_time::graph::departure::until;
 use crate::planner::space_time::piece::pieces as parts_of;
-use crate::planner::space_time::proxy::{Proxy, TOUCH_M, within_reach};
+use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
+use crate::planner::space_time::settings::{EVASIVE_HOLDS_S, EXIT_HOLDS_S};
 use crate::planner::{Plan, Problem};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::{Hull, OwnShip};
 
-/// Radians between two turns that are tried. They are tried coarsely first, each number of steps once: to half a circle.
+/// Radians between two candidate turns, up to a half circle. Coarse turns are tried first, each
+/// turn once.
 const TURN_RAD: f64 = std::f64::consts::PI / 36.0;
 const STEPS: [u32; 4] = [18, 9, 3, 1];
 const TURNS: u32 = 36;
 
-/// Speeds that are tried, at most: the least, the greatest and some between.
+/// Largest number of candidate speeds: the least, the greatest and some between.
 const MOST_SPEEDS: usize = 4;
 
-/// Seconds between two looks at whether own ship is out, at least, and how many there are at most.
-const LOOK_S: f64 = 1.0;
-const MOST_LOOKS: usize = 400;
+/// Least interval in seconds between two samples of the exit test, and largest number of samples.
+const SAMPLE_S: f64 = 1.0;
+const MAX_SAMPLES: usize = 400;
 
-/// Halvings of that within which the instant is found: to a microsecond.
+/// Bisection steps for the exit time: to a microsecond.
 const HALVINGS: usize = 20;
 
-/// Ways out from which plans are sought, least harm first.
-const MOST_WAYS: usize = 4;
+/// Exits from which plans are sought, least harm first.
+const MAX_EXITS: usize = 4;
 
-/// Seconds for which a way out is held before the planner takes over: at the very edge of a growing set every turn leads
-/// back into it.
-const HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
+/// Motions that are compared even after the deadline.
+const MIN_COMPARED: usize = 12;
 
-/// Seconds for which a turn is held where own ship is in no set and there is no plan.
-const DETOURS_S: [f64; 3] = [30.0, 60.0, 120.0];
-
-/// Motions that are compared even when the clock is up.
-const LEAST_COMPARED: usize = 12;
-
-/// A target on its nominal track, without spreads.
+/// Target on its nominal track, without uncertainty.
 #[derive(Debug, Clone)]
 pub(crate) struct NominalTarget {
-    /// Its hull; of a target without one, its set.
+    /// Hull of the target; for a target without one, its set.
     pub hull: Obstacle,
-    /// Its hard set.
+    /// Hard set of the target.
     pub set: Obstacle,
-    /// Own hull; of no size where the set already contains it.
+    /// Own hull; of zero size where the set already contains it.
     pub own: Hull,
 }
 
-/// A motion from own ship's start to the last waypoint before the horizon that leaves the sets that it starts in with the
-/// least harm, by one turn at one speed, and is clear of every set from then on. Where no such plan is found, one that leaves
-/// them so and then follows the path at one speed. `None` where the path, as own ship can sail it, is too long for the horizon
-/// or leads ashore. The caller finds out from when on it is clear of what. Some milliseconds, and up to twenty plans; a few
-/// motions are compared even where the time is up.
+/// Motion from own ship's start to the last waypoint within the horizon that leaves the sets it
+/// starts in.
+///
+/// The motion leaves the sets with the least harm by one turn at one speed. A plan that is clear of
+/// every set follows. Where none is found, the path follows at one speed. `None` where the sailable
+/// path is too long for the horizon or leads onto land. The caller determines from when on the
+/// motion is clear of which sets.
+///
+/// Cost: some milliseconds and up to twenty plans. A few motions are compared even after the
+/// deadline.
 pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     if crate::planner::space_time::has_arrived(problem) {
-        return crate::planner::space_time::stay(problem);
+        return crate::planner::space_time::arrived_plan(problem);
     }
     let pieces = parts_of(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
@@ -75,50 +78,50 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
     let (hulls, own): (Vec<_>, Vec<_>) = targets.iter().map(|t| (t.hull.clone(), t.own)).unzip();
     let sets: Vec<Obstacle> = targets.into_iter().map(|t| t.set).collect();
     let hulls = parts_of(&hulls, problem.horizon);
-    let watch = Watch::new(&hulls, &own);
+    let nominal_hulls = NominalHulls::new(&hulls, &own);
     let nominal = Problem {
         obstacles: &sets,
         ..problem.clone()
     };
-    let mut sought = (problem, ways_out(problem, &proxies, &watch, clock));
-    if !sought.1.first().is_some_and(|way| way.harm.is_clear()) {
+    let mut leaving = (problem, exits(problem, &proxies, &nominal_hulls, clock));
+    if !leaving.1.first().is_some_and(|exit| exit.harm.is_clear()) {
         let pieces = parts_of(&sets, problem.horizon);
-        let ways = ways_out(
+        let exits = exits(
             &nominal,
             &pieces.iter().map(Proxy::new).collect::<Vec<_>>(),
-            &watch,
+            &nominal_hulls,
             clock,
         );
-        if sought.1.is_empty() || ways.first().is_some_and(|way| way.harm.is_clear()) {
-            sought = (&nominal, ways);
+        if leaving.1.is_empty() || exits.first().is_some_and(|exit| exit.harm.is_clear()) {
+            leaving = (&nominal, exits);
         }
     }
-    let (sought, ways) = sought;
-    let mut aways = aways(&ways);
-    for away in &aways {
+    let (leaving, exits) = leaving;
+    let mut exit_motions = exit_motions(&exits);
+    for beginning in &exit_motions {
         if clock.is_up() {
             break;
         }
-        if let Some(motion) = onward(sought, away, |rest| planned(rest, clock)) {
+        if let Some(motion) = append(leaving, beginning, |rest| planned(rest, clock)) {
             return Plan::measured(problem, motion, None);
         }
     }
-    if ways.is_empty() {
-        aways.extend(detours(problem.own, problem.horizon));
+    if exits.is_empty() {
+        exit_motions.extend(evasive_turns(problem.own, problem.horizon));
     } else {
-        // where every way out is too long for the horizon
-        aways.push(Vec::new());
+        // used where every exit is too long for the horizon
+        exit_motions.push(Vec::new());
     }
-    let motion = on_to_the_end(problem, &aways, &watch, clock)?;
+    let motion = continue_to_end(problem, &exit_motions, &nominal_hulls, clock)?;
     Plan::measured(problem, motion, None)
 }
 
-/// A few beginnings, each followed by the path, or straight to its end, at one speed: the first that meets no nominal hull, or the
-/// one that is least deep in one.
-fn on_to_the_end(
+/// Continues a few initial motions along the path, or straight to its end, at one speed. Returns
+/// the first that meets no nominal hull, or else the one with the least depth in one.
+fn continue_to_end(
     problem: &Problem,
-    aways: &[Vec<Segment>],
-    watch: &Watch,
+    exit_motions: &[Vec<Segment>],
+    nominal_hulls: &NominalHulls,
     clock: Clock,
 ) -> Option<Vec<Segment>> {
     let problem = &Problem {
@@ -126,15 +129,19 @@ fn on_to_the_end(
         ..problem.clone()
     };
     let mut best: Option<(f64, Vec<Segment>)> = None;
-    let ends = aways.iter().flat_map(|away| [(away, false), (away, true)]);
-    for (compared, (away, straight)) in ends.enumerate() {
-        if clock.is_up() && compared >= LEAST_COMPARED && best.is_some() {
+    let ends = exit_motions
+        .iter()
+        .flat_map(|beginning| [(beginning, false), (beginning, true)]);
+    for (compared, (beginning, straight)) in ends.enumerate() {
+        if clock.is_up() && compared >= MIN_COMPARED && best.is_some() {
             break;
         }
-        let Some(found) = onward(problem, away, |rest| afloat(rest, straight, clock)) else {
+        let Some(found) = append(problem, beginning, |rest| {
+            path_motion(rest, straight, clock)
+        }) else {
             continue;
         };
-        let deep = watch.depth(problem.own, &found, f64::INFINITY);
+        let deep = nominal_hulls.depth(problem.own, &found, f64::INFINITY);
         if best
             .as_ref()
             .is_none_or(|(least, _)| deep < least - LEAST_STEP_M)
@@ -148,9 +155,9 @@ fn on_to_the_end(
     best.map(|(_, motion)| motion)
 }
 
-/// Along the path, or straight to its end, at one speed: that nearest to the desired one, or the greatest where the horizon asks for
-/// it. `None` where that goes ashore.
-fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
+/// Motion along the path, or straight to its end, at one speed: the speed nearest to the desired
+/// one, or the greatest where the horizon requires it. `None` where it meets land.
+fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
     let (own, desired) = (problem.own, problem.desired);
     let mean = desired.length() / desired.duration();
     let speeds = own.speeds.iter().copied().filter(|u| *u > 0.0);
@@ -171,10 +178,11 @@ fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment
         (motion.last()?.end_time() <= problem.horizon).then_some(motion)
     };
     let motion = arrives(nearest).or_else(|| arrives(own.max_speed()))?;
-    (!crate::planner::space_time::land::meets(problem.coast, &motion)).then_some(motion)
+    (!crate::planner::space_time::land::meets(problem.land_obstacle, &motion)).then_some(motion)
 }
 
-/// The motion along the path as if nobody else were there; `None` where it is not at the end before the horizon.
+/// Motion along the path that ignores other ships; `None` where it does not arrive within the
+/// horizon.
 pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
     let route = Route::new(problem, Clock::new(problem.deadline))?;
     let mut motion = Vec::new();
@@ -183,14 +191,14 @@ pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
     (arrival <= problem.horizon).then_some(motion)
 }
 
-/// A plan that holds a motion until a time, and is clear of every set from then on.
-pub fn after_holding(problem: &Problem, motion: &[Segment], until: f64) -> Option<Plan> {
+/// Plan that holds a motion until a time and is clear of every set from then on.
+pub fn after_holding(problem: &Problem, motion: &[Segment], time: f64) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
-    let motion = onward(problem, &cut(motion, until), |rest| planned(rest, clock))?;
+    let motion = append(problem, &until(motion, time), |rest| planned(rest, clock))?;
     Plan::measured(problem, motion, None)
 }
 
-/// Asks the planner for what time is left.
+/// Runs the planner in the remaining time.
 fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
     let planned = crate::planner::space_time::plan(&Problem {
         deadline: clock.left(),
@@ -200,15 +208,21 @@ fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
     Some(plan.trajectory.segments().to_vec())
 }
 
-/// A motion that is out of the sets at a time, for as long as it is held.
-struct WayOut {
+/// Motion that is outside the sets from a time on, for as long as it is held.
+struct Exit {
     motion: Vec<Segment>,
     out: f64,
     harm: Harm,
 }
 
-/// The ways out of the sets that own ship starts in, least harm first; when the clock is up, of coarse turns alone.
-fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -> Vec<WayOut> {
+/// Exits from the sets that own ship starts in, least harm first. After the deadline only coarse
+/// turns are tried.
+fn exits(
+    problem: &Problem,
+    proxies: &[Proxy],
+    nominal_hulls: &NominalHulls,
+    clock: Clock,
+) -> Vec<Exit> {
     let own = problem.own;
     let inside = |h: &&Proxy| {
         h.slack(own.pose.position, 0.0)
@@ -230,32 +244,35 @@ fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -
         let mut pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
         pairs.any(|(h, s)| h.first_contact(s).is_some())
     };
-    let mut ways = Vec::new();
+    let mut exits = Vec::new();
     for (turn, is_coarse) in turns() {
         for speed in speeds(own) {
             if clock.is_up() && !is_coarse || speed == 0.0 && turn != 0.0 {
                 continue;
             }
             let motion = turned(own, speed, turn, problem.horizon);
-            let Some(out) = out_at(&motion, problem.horizon, speed + fastest, depth) else {
+            let Some(out) = exit_time(&motion, problem.horizon, speed + fastest, depth) else {
                 continue;
             };
-            let before = cut(&motion, out);
-            // own ship may come back into one that grows: then it is not out for good
+            let before = until(&motion, out);
+            // own ship may enter a growing set again: then it has not left for good
             if meets(&others, &before)
                 || meets(&held, &after(&motion, out))
-                || before.iter().any(|s| problem.coast.meets(s, TOUCH_M))
+                || before
+                    .iter()
+                    .any(|s| problem.land_obstacle.meets(s, TOUCH_M))
             {
                 continue;
             }
-            let harm = Harm::of(own, watch, &motion, out, depth);
-            ways.push((harm, out, turn, speed));
+            let harm = Harm::of(own, nominal_hulls, &motion, out, depth);
+            exits.push((harm, out, turn, speed));
         }
     }
-    ways.sort_by(|a, b| a.0.total_cmp(&b.0));
-    ways.truncate(MOST_WAYS);
-    ways.into_iter()
-        .map(|(harm, out, turn, speed)| WayOut {
+    exits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    exits.truncate(MAX_EXITS);
+    exits
+        .into_iter()
+        .map(|(harm, out, turn, speed)| Exit {
             motion: turned(own, speed, turn, problem.horizon),
             out,
             harm,
@@ -263,7 +280,8 @@ fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -
         .collect()
 }
 
-/// Radians, to port positive, each once, and whether it is one of the coarsest; of equal ones that to starboard first.
+/// Candidate turns, radians, to port positive, each once, and whether it is one of the coarsest.
+/// Starboard comes first among equal turns.
 fn turns() -> impl Iterator<Item = (f64, bool)> {
     let levels = STEPS.iter().enumerate().flat_map(|(level, by)| {
         let is_new = move |k: &u32| {
@@ -284,7 +302,7 @@ fn turns() -> impl Iterator<Item = (f64, bool)> {
     })
 }
 
-/// Some of own ship's speeds, the least first.
+/// Candidate speeds of own ship, the least first.
 fn speeds(own: &OwnShip) -> Vec<f64> {
     let (count, most) = (own.speeds.len(), MOST_SPEEDS.min(own.speeds.len()));
     (0..most)
@@ -298,31 +316,33 @@ fn speeds(own: &OwnShip) -> Vec<f64> {
         .collect()
 }
 
-/// Beginnings of a motion: every way out held for a while; none at all where own ship is in no set.
-fn aways(ways: &[WayOut]) -> Vec<Vec<Segment>> {
-    if ways.is_empty() {
+/// Initial motions: every exit held for a while; none where own ship is in no set.
+fn exit_motions(exits: &[Exit]) -> Vec<Vec<Segment>> {
+    if exits.is_empty() {
         return vec![Vec::new()];
     }
-    let held = ways.iter().flat_map(|way| HOLDS_S.map(|hold| (way, hold)));
-    held.map(|(way, hold)| cut(&way.motion, way.out + hold))
+    let held = exits
+        .iter()
+        .flat_map(|exit| EXIT_HOLDS_S.map(|hold| (exit, hold)));
+    held.map(|(exit, hold)| until(&exit.motion, exit.out + hold))
         .collect()
 }
 
 /// Turns to either side at a low and at the greatest speed, held for a while.
-fn detours(own: &OwnShip, horizon: f64) -> Vec<Vec<Segment>> {
+fn evasive_turns(own: &OwnShip, horizon: f64) -> Vec<Vec<Segment>> {
     let low = own.speeds.iter().copied().find(|u| *u > 0.0);
-    let mut detours = Vec::new();
-    for hold in DETOURS_S {
+    let mut evasive_turns = Vec::new();
+    for hold in EVASIVE_HOLDS_S {
         for turn in [-6.0, 6.0, -12.0, 12.0, -18.0, 18.0].map(|steps| steps * TURN_RAD) {
             for speed in low.into_iter().chain([own.max_speed()]) {
-                detours.push(cut(&turned(own, speed, turn, horizon), hold));
+                evasive_turns.push(until(&turned(own, speed, turn, horizon), hold));
             }
         }
     }
-    detours
+    evasive_turns
 }
 
-/// An arc and a line until the horizon; a wait where the speed is zero.
+/// Arc and line until the horizon; a wait where the speed is zero.
 fn turned(own: &OwnShip, speed: f64, turn: f64, horizon: f64) -> Vec<Segment> {
     let line = |start, start_time: f64| Segment {
         start,
@@ -342,9 +362,9 @@ fn turned(own: &OwnShip, speed: f64, turn: f64, horizon: f64) -> Vec<Segment> {
     vec![arc, line(arc.end(), arc.end_time())]
 }
 
-/// The first instant from which a motion is clear, where own ship is `depth` metres inside, and that changes by no more than
-/// `rate` metres per second.
-fn out_at(
+/// First instant from which a motion stays clear. `depth` is own ship's depth inside, metres; it
+/// changes by at most `rate` metres per second.
+fn exit_time(
     motion: &[Segment],
     horizon: f64,
     rate: f64,
@@ -359,9 +379,9 @@ fn out_at(
     let depth = |time: f64| at(time).map_or(f64::NAN, |pose| depth(&pose, time));
     let (mut inside, mut deep) = (0.0, depth(0.0));
     let mut found = None;
-    for _ in 0..MOST_LOOKS {
-        // not out before
-        let time: f64 = inside + (deep / rate).max(LOOK_S);
+    for _ in 0..MAX_SAMPLES {
+        // not outside before
+        let time: f64 = inside + (deep / rate).max(SAMPLE_S);
         if !(time <= horizon) {
             return None;
         }
@@ -384,46 +404,40 @@ fn out_at(
     Some(high)
 }
 
-/// Until a time.
-fn cut(motion: &[Segment], until: f64) -> Vec<Segment> {
-    let rollout = motion.iter().filter(|s| s.start_time < until);
-    rollout.map(|s| s.between(s.start_time, until)).collect()
-}
-
-/// From a time on.
+/// Motion from a time on.
 fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
     let later = motion.iter().filter(|s| s.end_time() > from);
     later.map(|s| s.between(from, s.end_time())).collect()
 }
 
-/// A motion, and what follows from its end on by a clock that starts there.
-fn onward(
+/// Appends to a motion another one, whose clock starts at the first one's end.
+fn append(
     problem: &Problem,
-    away: &[Segment],
+    beginning: &[Segment],
     follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
 ) -> Option<Vec<Segment>> {
-    if crate::planner::space_time::land::meets(problem.coast, away) {
+    if crate::planner::space_time::land::meets(problem.land_obstacle, beginning) {
         return None;
     }
-    let begun = away.last().map_or(0.0, Segment::end_time);
+    let start = beginning.last().map_or(0.0, Segment::end_time);
     let own = OwnShip {
-        pose: away.last().map_or(problem.own.pose, Segment::end),
+        pose: beginning.last().map_or(problem.own.pose, Segment::end),
         ..problem.own.clone()
     };
-    let desired = problem.desired.remaining(begun);
+    let desired = problem.desired.remaining(start);
     let later: Vec<Obstacle> = (problem.obstacles.iter())
-        .map(|set| set.remainder(begun))
+        .map(|set| set.remainder(start))
         .collect();
     let rest = Problem {
         own: &own,
         desired: &desired,
         obstacles: &later,
-        horizon: problem.horizon - begun,
+        horizon: problem.horizon - start,
         ..problem.clone()
     };
-    let mut motion = away.to_vec();
+    let mut motion = beginning.to_vec();
     motion.extend(follow(&rest)?.into_iter().map(|s| Segment {
-        start_time: s.start_time + begun,
+        start_time: s.start_time + start,
         ..s
     }));
     Some(motion)
@@ -450,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn every_turn_is_tried_once_and_few_when_the_time_is_up() {
+    fn every_turn_is_tried_once_and_few_after_the_deadline() {
         let mut all: Vec<(f64, bool)> = turns().collect();
         assert_eq!(all.len(), 73);
         assert_eq!(all.iter().filter(|(_, is_coarse)| *is_coarse).count(), 5);
@@ -465,21 +479,22 @@ mod tests {
         assert_eq!(speeds(&own_ship(vec![5.0])), [5.0]);
     }
 
-    /// A day of horizon in a set that grows faster than own ship sails costs as many looks as an hour.
+    /// A horizon of a day in a set that grows faster than own ship sails costs as many samples as
+    /// an hour.
     #[test]
-    fn a_set_that_is_never_left_costs_few_looks() {
+    fn a_set_that_is_never_left_costs_few_samples() {
         let own = own_ship(vec![5.0]);
-        let (growing, looks) = (8.0, Cell::new(0));
+        let (growing, samples) = (8.0, Cell::new(0));
         let depth = |pose: &Pose, time: f64| {
-            looks.set(looks.get() + 1);
+            samples.set(samples.get() + 1);
             60.0 + growing * time - pose.position.norm()
         };
         let motion = turned(&own, 5.0, 0.0, 86_400.0);
-        assert_eq!(out_at(&motion, 86_400.0, 5.0 + growing, depth), None);
-        assert!(looks.get() < 100, "{}", looks.get());
-        // one that grows more slowly is left when its edge is reached
+        assert_eq!(exit_time(&motion, 86_400.0, 5.0 + growing, depth), None);
+        assert!(samples.get() < 100, "{}", samples.get());
+        // a set that grows more slowly is left when own ship reaches its edge
         let depth = |pose: &Pose, time: f64| 60.0 + 3.0 * time - pose.position.norm();
-        let out = out_at(&motion, 86_400.0, 8.0, depth).expect("out");
+        let out = exit_time(&motion, 86_400.0, 8.0, depth).expect("out");
         assert!((out - 30.0).abs() < 1e-3, "{out}");
     }
 }

@@ -1,4 +1,4 @@
-//! What a motion does to hulls, to choose between motions none of which is clear of every set.
+//! Harm of a motion to hulls: an order on motions none of which is clear of every set.
 
 use std::cmp::Ordering;
 
@@ -8,29 +8,31 @@ use crate::planner::space_time::proxy::Proxy;
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
 
-/// Depths are told apart to this fraction of own ship's length, and times to this fraction of themselves.
+/// Resolution of depths as a fraction of own ship's length, and of times as a fraction of
+/// themselves.
 const DEPTH_STEP: f64 = 0.05;
 const TIME_STEP: f64 = 0.1;
 
-/// Metres. Depths are told apart to no less: own ship may have no size.
+/// Least resolution of depths, metres: own ship may have zero size.
 pub(crate) const LEAST_STEP_M: f64 = 0.1;
 
-/// Looks along a way out for its depth in the sets.
-const LOOKS: u32 = 200;
+/// Samples along an exit for its depth in the sets.
+const SAMPLES: u32 = 200;
 
-/// Between two looks for hulls ships come closer by this fraction of own beam; twice as much after each [`MANY`].
-const LOOK_BEAMS: f64 = 0.25;
+/// Largest approach of two ships between two samples, as a fraction of own beam. It doubles after
+/// each [`MANY`] samples.
+const SAMPLE_BEAMS: f64 = 0.25;
 const MANY: u32 = 1000;
 
-/// The harm of a way out of sets. The less in this order: the depth in nominal hulls, the depth in the sets, the time in them, the
-/// speed, the turn.
+/// Harm of an exit from sets. Compared in this order: depth in nominal hulls, depth in the sets,
+/// time in the sets, speed, turn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Harm {
-    /// In steps: 0 where no nominal hull is met.
+    /// Depth in nominal hulls, in steps; 0 where none is met.
     hulls: f64,
-    /// In steps, beyond the depth at the start.
+    /// Depth in the sets beyond that at the start, in steps.
     sets: f64,
-    /// In steps, as a logarithm.
+    /// Logarithm of the time in the sets, in steps.
     time: f64,
     /// m/s.
     speed: f64,
@@ -39,10 +41,10 @@ pub(crate) struct Harm {
 }
 
 impl Harm {
-    /// Of a motion that is out of the sets at a time; `depth` is that in the sets, in metres.
+    /// Harm of a motion that leaves the sets at `out`; `depth` is its depth in the sets, metres.
     pub(crate) fn of(
         own: &OwnShip,
-        watch: &Watch,
+        nominal_hulls: &NominalHulls,
         motion: &[Segment],
         out: f64,
         depth: impl Fn(&Pose, f64) -> f64,
@@ -51,15 +53,15 @@ impl Harm {
         let steps = |metres: f64| (metres / step).ceil();
         let start = depth(&own.pose, 0.0);
         let mut deepest = start;
-        for look in 1..LOOKS {
-            let time = out * f64::from(look) / f64::from(LOOKS);
+        for sample in 1..SAMPLES {
+            let time = out * f64::from(sample) / f64::from(SAMPLES);
             if let Some(s) = motion.iter().find(|s| time <= s.end_time()) {
                 deepest = deepest.max(depth(&s.pose_at(time), time));
             }
         }
         let first = &motion[0];
         Self {
-            hulls: steps(watch.depth(own, motion, out)),
+            hulls: steps(nominal_hulls.depth(own, motion, out)),
             sets: ((deepest - start) / step).floor(),
             time: (out.ln() / (1.0 + TIME_STEP).ln()).floor(),
             speed: first.speed,
@@ -81,13 +83,13 @@ impl Harm {
     }
 }
 
-/// The hulls of targets on their nominal tracks.
-pub(crate) struct Watch<'a> {
+/// Hulls of the targets on their nominal tracks.
+pub(crate) struct NominalHulls<'a> {
     hulls: Vec<(Proxy<'a>, Hull)>,
 }
 
-impl<'a> Watch<'a> {
-    /// From the parts of the hulls, and own hull toward each.
+impl<'a> NominalHulls<'a> {
+    /// Builds the set from the convex pieces of the hulls, with own hull toward each.
     pub(crate) fn new(pieces: &'a [Piece], own: &[Hull]) -> Self {
         let hulls = pieces
             .iter()
@@ -97,21 +99,21 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// How deep own hull gets in one of them until a time, metres; 0 where it meets none. By looks that are as far apart as ships
-    /// can come closer.
+    /// Largest depth of own hull in one of them until a time, metres; 0 where it meets none. The
+    /// sampling interval follows from the largest closing speed.
     pub(crate) fn depth(&self, own: &OwnShip, motion: &[Segment], until: f64) -> f64 {
         let until = until.min(motion.last().map_or(0.0, Segment::end_time));
         let mut deepest: f64 = 0.0;
         for (proxy, hull) in &self.hulls {
-            let mut least = LOOK_BEAMS * own.hull.beam.max(LEAST_STEP_M);
-            let (mut time, mut at, mut looks): (f64, _, u32) = (0.0, 0, 0);
+            let mut least = SAMPLE_BEAMS * own.hull.beam.max(LEAST_STEP_M);
+            let (mut time, mut at, mut samples): (f64, _, u32) = (0.0, 0, 0);
             while let Some(segment) = motion.get(at) {
                 if segment.end_time() < time {
                     at += 1;
                     continue;
                 }
-                looks += 1;
-                if looks.is_multiple_of(MANY) {
+                samples += 1;
+                if samples.is_multiple_of(MANY) {
                     least *= 2.0;
                 }
                 let turning = segment.turn_rate.abs() * hull.half_diagonal();
@@ -121,7 +123,7 @@ impl<'a> Watch<'a> {
                     .unwrap_or(f64::INFINITY);
                 deepest = deepest.max(-apart);
                 let next = time + (apart + deepest).max(least) / closing;
-                // what follows may be faster
+                // the next segment may be faster
                 time = if next > segment.end_time() && time < segment.end_time() {
                     segment.end_time()
                 } else {

@@ -1,8 +1,8 @@
-//! Wide ways: where the graph and its refinement find none, because the way out is far from the path, fast from the beginning on,
-//! or late.
+//! Hybrid A*: finds motions far from the path that the graph and its refinement miss.
 //!
-//! Turns and lines of about the length of a grid's cell, one after another, best first by cost plus what the grid says is still to
-//! come ([`CostToGoGrid`]); from each of them also a turn and a line straight to the end. A piece is tested when it leaves the queue: most
+//! The start is left at once and fast, or late. A motion primitive is a turn and a line of about
+//! one grid cell. Primitives are expanded best first by cost plus [`CostToGoGrid`]. Each node also
+//! gets a turn and a line straight to the end. A primitive is tested when it leaves the queue; most
 //! never do.
 
 use std::cmp::Ordering;
@@ -19,57 +19,59 @@ use crate::planner::{Plan, Problem};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Radians of the turns that begin a piece.
+/// Turns of the motion primitives, radians.
 const TURNS_RAD: [f64; 7] = [0.0, 0.25, -0.25, 0.6, -0.6, 1.4, -1.4];
 
-/// Courses that are told apart in one place at one time.
+/// Courses that are distinguished at one position and time.
 const COURSES: f64 = 12.0;
 
-/// How finely is searched.
+/// Resolution of the search.
 #[derive(Debug, Clone, Copy)]
-struct Fineness {
-    /// Cells of way in a piece.
+struct Resolution {
+    /// Length of a primitive in cells.
     way: f64,
-    /// Places, courses and times that are told apart, per cell and instant.
+    /// States that are distinguished per cell and time step.
     apart: f64,
-    /// Pieces that are followed at most: the bound on time and memory.
+    /// Largest number of expanded primitives: the bound on time and memory.
     most: usize,
 }
 
 /// Coarse first, then finer.
-const FINENESSES: [Fineness; 2] = [
-    Fineness {
+const RESOLUTIONS: [Resolution; 2] = [
+    Resolution {
         way: 1.5,
         apart: 2.0,
         most: 3_000,
     },
-    Fineness {
+    Resolution {
         way: 0.75,
         apart: 3.0,
         most: 10_000,
     },
 ];
 
-/// What is still to come is multiplied by this (weighted A*): a plan a little dearer, and a fraction of the pieces.
+/// Heuristic weight (weighted A*): slightly dearer plans for a fraction of the expansions.
 const WEIGHT: f64 = 1.1;
 
-/// Metres. A centre of a turn this near to a point has no line to it.
-const NEAR_M: f64 = 1e-6;
+/// Metres. A turn whose circle passes this near to a point has no tangent to it.
+const CIRCLE_M: f64 = 1e-6;
 
-/// A turn and a line after it, or a wait.
+/// Motion primitive: a turn and a line, or a wait.
 #[derive(Debug, Clone, Copy)]
-enum Piece {
-    /// Radians to port, and metres.
-    Bent { speed: f64, turn: f64, line: f64 },
+enum Primitive {
+    /// `turn` in radians to port, `line` in metres.
+    Turn { speed: f64, turn: f64, line: f64 },
     /// Seconds.
     Wait { duration: f64 },
 }
 
-impl Piece {
-    /// From a pose at a time.
+impl Primitive {
+    /// Segments of the primitive from a pose and time.
     fn motion(self, pose: &Pose, time: f64, radius: f64) -> Vec<Segment> {
         match self {
-            Self::Bent { speed, turn, line } => bent(pose, time, speed, radius, turn, line),
+            Self::Turn { speed, turn, line } => {
+                turn_and_line(pose, time, speed, radius, turn, line)
+            }
             Self::Wait { duration } => vec![Segment {
                 start: *pose,
                 start_time: time,
@@ -81,51 +83,52 @@ impl Piece {
     }
 }
 
-/// A state that may be reached, or the end of the path, and how: the state before it and the piece from there.
+/// Search node: a state or the end of the path, its parent, and the primitive between them.
 #[derive(Debug)]
-struct Reached {
+struct SearchNode {
     pose: Pose,
     time: f64,
     cost: f64,
-    from: Option<(usize, Piece)>,
+    from: Option<(usize, Primitive)>,
     is_end: bool,
 }
 
-/// In the queue: the least first, of equals the older.
+/// Queue entry: least estimate first; among equals the older one.
 #[derive(Debug, PartialEq)]
-struct Open {
+struct QueueEntry {
     total: f64,
     index: usize,
 }
 
-impl Eq for Open {}
+impl Eq for QueueEntry {}
 
-impl PartialOrd for Open {
+impl PartialOrd for QueueEntry {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Open {
+impl Ord for QueueEntry {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_total = other.total.total_cmp(&self.total);
         by_total.then(other.index.cmp(&self.index))
     }
 }
 
-/// A plan that is clear of every set and of land, by a coarse search over place, course and time; `None` where none was found within
-/// its budget. Not refined: of use where nothing else is found. Some ten to some hundreds of milliseconds.
+/// Plan that is clear of every set and of land, by a coarse search over position, course and time.
+/// `None` where none was found within the budget. The plan is not refined: use it only where
+/// nothing else is found. Ten to several hundred milliseconds.
 pub(crate) fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
     let grid = CostToGoGrid::of(problem, &proxies)?;
-    FINENESSES.into_iter().find_map(|fineness| {
-        let mut search = Detour {
+    RESOLUTIONS.into_iter().find_map(|resolution| {
+        let mut search = HybridAStar {
             problem,
             proxies: &proxies,
             grid: &grid,
-            fineness,
+            resolution,
             reached: Vec::new(),
             open: BinaryHeap::new(),
             seen: HashSet::new(),
@@ -135,8 +138,8 @@ pub(crate) fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     })
 }
 
-/// The way to a state as a plan.
-fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
+/// Plan that leads to a node.
+fn plan_to(search: &HybridAStar, end: usize) -> Option<Plan> {
     let mut motion = Vec::new();
     let mut at = end;
     while let Some((before, _)) = search.reached[at].from {
@@ -147,27 +150,27 @@ fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
     Plan::measured(search.problem, motion, None)
 }
 
-struct Detour<'a> {
+struct HybridAStar<'a> {
     problem: &'a Problem<'a>,
     proxies: &'a [Proxy<'a>],
     grid: &'a CostToGoGrid,
-    fineness: Fineness,
-    reached: Vec<Reached>,
-    open: BinaryHeap<Open>,
+    resolution: Resolution,
+    reached: Vec<SearchNode>,
+    open: BinaryHeap<QueueEntry>,
     seen: HashSet<[i64; 4]>,
 }
 
-impl Detour<'_> {
-    /// The state at the end of the path.
+impl HybridAStar<'_> {
+    /// Index of the node at the end of the path.
     fn run(&mut self, clock: Clock) -> Option<usize> {
-        self.reach(Reached {
+        self.reach(SearchNode {
             pose: self.problem.own.pose,
             time: 0.0,
             cost: 0.0,
             from: None,
             is_end: false,
         });
-        for _ in 0..self.fineness.most {
+        for _ in 0..self.resolution.most {
             let index = loop {
                 if clock.is_up() {
                     return None;
@@ -189,57 +192,58 @@ impl Detour<'_> {
         None
     }
 
-    fn key(&self, state: &Reached) -> [i64; 4] {
+    fn key(&self, state: &SearchNode) -> [i64; 4] {
         let place = state.pose.position / self.grid.cell;
         let course = wrap(state.pose.heading) / std::f64::consts::TAU * COURSES;
         let time = state.time / self.grid.step;
-        [place.x, place.y, course, time].map(|v| (self.fineness.apart * v).round() as i64)
+        [place.x, place.y, course, time].map(|v| (self.resolution.apart * v).round() as i64)
     }
 
     fn expand(&mut self, index: usize) {
         let own = self.problem.own;
         let pose = self.reached[index].pose;
-        let way = self.fineness.way * self.grid.cell;
+        let way = self.resolution.way * self.grid.cell;
         let end = self.problem.desired.end();
         for speed in own.speeds.iter().copied() {
             if speed == 0.0 {
                 let duration = self.grid.step;
-                self.offer(index, Piece::Wait { duration }, false);
+                self.add_successor(index, Primitive::Wait { duration }, false);
                 continue;
             }
             for turn in TURNS_RAD {
                 let line = (way - turn.abs() * own.turning_radius).max(0.0);
-                self.offer(index, Piece::Bent { speed, turn, line }, false);
+                self.add_successor(index, Primitive::Turn { speed, turn, line }, false);
             }
             for side in [Side::Starboard, Side::Port] {
-                if let Some((turn, line)) = toward(&pose, own.turning_radius, side, end) {
-                    self.offer(index, Piece::Bent { speed, turn, line }, true);
+                if let Some((turn, line)) = turn_to_point(&pose, own.turning_radius, side, end) {
+                    self.add_successor(index, Primitive::Turn { speed, turn, line }, true);
                 }
             }
         }
     }
 
-    /// The piece by which a state is reached; nothing at the root.
+    /// Segments of the primitive that leads to a node; empty at the root.
     fn motion_to(&self, index: usize) -> Vec<Segment> {
         self.reached[index]
             .from
-            .map_or_else(Vec::new, |(before, piece)| {
+            .map_or_else(Vec::new, |(before, primitive)| {
                 let before = &self.reached[before];
-                piece.motion(&before.pose, before.time, self.problem.own.turning_radius)
+                primitive.motion(&before.pose, before.time, self.problem.own.turning_radius)
             })
     }
 
-    /// True where the piece that leads to a state is clear.
+    /// True where the primitive that leads to a node is clear.
     fn admits(&self, index: usize) -> bool {
         let motion = self.motion_to(index);
-        first_met(self.proxies, &motion).is_none() && !land::meets(self.problem.coast, &motion)
+        first_met(self.proxies, &motion).is_none()
+            && !land::meets(self.problem.land_obstacle, &motion)
     }
 
-    /// Takes a way on where it is in time and leads on.
-    fn offer(&mut self, from: usize, piece: Piece, is_end: bool) {
+    /// Adds a successor where it is in time and can still reach the end.
+    fn add_successor(&mut self, from: usize, primitive: Primitive, is_end: bool) {
         let problem = self.problem;
         let before = &self.reached[from];
-        let motion = piece.motion(&before.pose, before.time, problem.own.turning_radius);
+        let motion = primitive.motion(&before.pose, before.time, problem.own.turning_radius);
         let Some(last) = motion.last() else {
             return;
         };
@@ -253,22 +257,22 @@ impl Detour<'_> {
         }
         let more = |s| space_time_error(problem.desired, s, problem.time_weight);
         let cost = before.cost + motion.iter().map(more).sum::<f64>();
-        self.reach(Reached {
+        self.reach(SearchNode {
             pose,
             time,
             cost,
-            from: Some((from, piece)),
+            from: Some((from, primitive)),
             is_end,
         });
     }
 
-    fn reach(&mut self, state: Reached) {
+    fn reach(&mut self, state: SearchNode) {
         let to_go = if state.is_end {
             0.0
         } else {
             self.grid.from(state.pose.position, state.time)
         };
-        self.open.push(Open {
+        self.open.push(QueueEntry {
             total: state.cost + WEIGHT * to_go,
             index: self.reached.len(),
         });
@@ -276,8 +280,15 @@ impl Detour<'_> {
     }
 }
 
-/// An arc of so many radians to port and a line.
-fn bent(pose: &Pose, time: f64, speed: f64, radius: f64, turn: f64, line: f64) -> Vec<Segment> {
+/// Arc of `turn` radians to port and a line.
+fn turn_and_line(
+    pose: &Pose,
+    time: f64,
+    speed: f64,
+    radius: f64,
+    turn: f64,
+    line: f64,
+) -> Vec<Segment> {
     let mut motion = Vec::with_capacity(2);
     let arc = Segment {
         start: *pose,
@@ -304,18 +315,19 @@ fn bent(pose: &Pose, time: f64, speed: f64, radius: f64, turn: f64, line: f64) -
     motion
 }
 
-/// The turn to a side (radians to port) and the line after it that end at a point; `None` for one within the circle.
-fn toward(pose: &Pose, radius: f64, side: Side, point: Vector) -> Option<(f64, f64)> {
+/// Turn to a side (radians to port) and line that end at a point; `None` for a point within the
+/// circle.
+fn turn_to_point(pose: &Pose, radius: f64, side: Side, point: Vector) -> Option<(f64, f64)> {
     let sign = side.turn_sign();
     let center = pose.position + to_port(pose.ahead()) * (sign * radius);
     let away = point - center;
     let far = away.norm();
     // negated on purpose: a NaN is within
-    if !(far > radius + NEAR_M) {
+    if !(far > radius + CIRCLE_M) {
         return None;
     }
     let line = (far * far - radius * radius).sqrt();
-    // the course of the tangent: that to the point, turned by what the circle is seen under
+    // course of the tangent: the bearing of the point, turned by the angle the circle subtends
     let heading = heading_of(away) + sign * (radius / far).asin();
     let mut turn = sign * wrap(heading - pose.heading);
     if turn < -tolerance::JOINT_RAD {

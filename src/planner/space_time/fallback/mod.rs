@@ -1,5 +1,5 @@
-//! What is tried where the graph and its refinement have no plan: conflicts one after another, a
-//! coarse hybrid A*, and ways out of sets that own ship starts in.
+//! Fallbacks where the graph and its refinement have no plan: sequential conflict resolution,
+//! hybrid A*, and escape from sets that own ship starts in.
 
 pub(crate) mod cost_to_go;
 pub(crate) mod escape;

@@ -1,7 +1,8 @@
-//! Conflicts that are far apart, one after another: where no one manoeuvre is clear of them all.
+//! Sequential conflict resolution: conflicts that are far apart are resolved one after another.
 //!
-//! The graph leaves the route once and comes back once. Here its best plan for the first conflict, back on the route and
-//! blind to what comes later, is what the next conflict is met from.
+//! The graph leaves the route once and comes back once. Here the graph's best plan for the first
+//! conflict ignores later ones and ends back on the route. The next conflict is resolved from
+//! there.
 
 use crate::planner::Problem;
 use crate::planner::clock::Clock;
@@ -14,27 +15,27 @@ use crate::planner::space_time::selection::initial_guess::Conflict;
 use crate::search::{Search, Stop};
 use crate::trajectory::Segment;
 
-/// Seconds. Conflicts that begin this soon after another are dealt with together.
+/// Seconds. Conflicts that begin within this time of one another are resolved together.
 pub(crate) const TOGETHER_S: f64 = 120.0;
 
-/// Seconds before a conflict at which she may leave at the earliest.
+/// Largest lead of a departure before a conflict, seconds.
 const LEAD_S: f64 = 100.0;
 
-/// Conflicts at most.
+/// Largest number of conflicts.
 const MAX_STAGES: usize = 30;
 
-/// Expansions for one conflict.
+/// Largest number of expansions for one conflict.
 const MAX_EXPANDED: usize = 500;
 
-/// True when conflicts, in order of their beginnings, do not all begin together.
+/// True when conflicts, ordered by start, do not all begin together.
 pub(crate) fn are_several(conflicts: &[Conflict]) -> bool {
     let ends = conflicts.first().zip(conflicts.last());
     ends.is_some_and(|(first, last)| last.from > first.from + TOGETHER_S)
 }
 
-/// A motion to the last waypoint that is clear of every proxy and of land, from an nominal one that is not; `None` when a
-/// conflict finds no way around, or a later one begins no later.
-pub(crate) fn one_after_another(
+/// Motion to the last waypoint that is clear of every proxy and of land, from a nominal one that is
+/// not. `None` when a conflict has no solution, or a later one begins no later.
+pub(crate) fn resolve_sequentially(
     problem: &Problem,
     proxies: &[Proxy],
     route: &Route,
@@ -75,24 +76,24 @@ pub(crate) fn one_after_another(
     None
 }
 
-/// What of a way to the end has to be clear: until so late, and for a while from where it begins. What comes later is the next
-/// conflict's.
-pub(crate) fn soon(way: &[Segment], until: f64) -> Vec<Segment> {
-    let begun = way.first().map_or(until, |s| s.start_time);
-    let until = until.max(begun + TOGETHER_S);
-    way.iter()
+/// The part of a motion to the end that must be clear: until `until`, and for a while from its
+/// start. Later contacts belong to the next conflict.
+pub(crate) fn checked_part(path: &[Segment], until: f64) -> Vec<Segment> {
+    let start = path.first().map_or(until, |s| s.start_time);
+    let until = until.max(start + TOGETHER_S);
+    path.iter()
         .filter(|s| s.start_time < until)
         .map(|s| s.between(s.start_time, until))
         .collect()
 }
 
-/// When a motion first meets a proxy or the land.
+/// First time at which a motion meets a proxy or land.
 fn first_conflict(problem: &Problem, proxies: &[Proxy], motion: &[Segment]) -> Option<f64> {
     let met = |s: &Segment| {
         let contacts = proxies.iter().filter_map(|h| h.first_contact(s));
         contacts.min_by(f64::total_cmp)
     };
     let target = motion.iter().find_map(met);
-    let land = land::first_contact(problem.coast, motion);
+    let land = land::first_contact(problem.land_obstacle, motion);
     target.into_iter().chain(land).min_by(f64::total_cmp)
 }

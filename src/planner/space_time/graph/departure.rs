@@ -1,18 +1,19 @@
-//! Where the nominal motion is left.
+//! Departure: where a manoeuvre leaves the nominal motion.
 
 use crate::colregs::APPARENT_TIME;
 use crate::planner::Problem;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::rules::compliance::slow;
-use crate::planner::space_time::selection::initial_guess::SpeedTable;
+use crate::planner::space_time::rules::compliance::apparent_slow_speed;
+use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::trajectory::Segment;
 
-/// Seconds for which less speed is kept before a turn.
-const SLOW_SPELLS_S: [f64; 3] = [APPARENT_TIME, 2.0 * APPARENT_TIME, 4.0 * APPARENT_TIME];
+/// Seconds for which a reduced speed is held before a turn.
+const SLOW_INTERVALS_S: [f64; 3] = [APPARENT_TIME, 2.0 * APPARENT_TIME, 4.0 * APPARENT_TIME];
 
-/// The time at which a motion is to be left for a constant speed, to be at a distance along it at a time.
+/// Time at which to leave a motion for a constant speed, in order to be at a given distance along
+/// it at a given time.
 pub(crate) fn leave_for(
     nominal_motion: &[Segment],
     distance: f64,
@@ -32,7 +33,7 @@ pub(crate) fn leave_for(
     None
 }
 
-/// A motion up to a time.
+/// Motion up to a time.
 pub(crate) fn until(nominal_motion: &[Segment], time: f64) -> Vec<Segment> {
     nominal_motion
         .iter()
@@ -41,31 +42,33 @@ pub(crate) fn until(nominal_motion: &[Segment], time: f64) -> Vec<Segment> {
         .collect()
 }
 
-/// Motions along the route from which it is left, each with the least turn that complies with the rules there, radians: the one given,
-/// and the same with less speed at its end, where nobody has to see a turn then.
-pub(crate) fn ways_out(
+/// Motions along the route up to a departure, each with the least turn (radians) that complies with
+/// the rules there. These are the given motion, and variants that slow down at its end; after these
+/// no turn need be readily apparent.
+pub(crate) fn departure_motions(
     problem: &Problem,
     route: &Route,
     before: &[Segment],
 ) -> Vec<(Vec<Segment>, f64)> {
     let duty = problem.duty();
     let mut found = vec![(before.to_vec(), duty.least_turn())];
-    let speed = SpeedTable::of(problem).slow;
-    if duty.is_none() || !duty.may_slow || speed > slow(problem) {
+    let speed = ManoeuvreSpeeds::of(problem).slow;
+    if duty.is_none() || !duty.may_slow || speed > apparent_slow_speed(problem) {
         return found;
     }
     let along: f64 = before.iter().map(Segment::length).sum();
     let time = before.last().map_or(0.0, Segment::end_time);
-    for spell in SLOW_SPELLS_S {
+    for interval in SLOW_INTERVALS_S {
         let mut motion = before.to_vec();
-        route.run(along, time, speed * spell, speed, &mut motion);
+        route.run(along, time, speed * interval, speed, &mut motion);
         found.push((motion, 0.0));
     }
     found
 }
 
-/// The least turns that are readily apparent, from where a motion `before` along the route ends, each held for so many seconds: where
-/// a line that touches a vertex asks for less. None where nobody has to see them.
+/// Least readily apparent turns from the end of a motion `before` along the route, each held for
+/// `hold` seconds. They serve where the tangent to a vertex needs a smaller turn. Empty where no
+/// rule requires an apparent turn.
 pub(crate) fn apparent_turns<'a>(
     problem: &'a Problem,
     from: &State,

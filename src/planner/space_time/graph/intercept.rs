@@ -1,61 +1,61 @@
-//! Meeting a moving vertex by turning and then running straight, docs/theory.md section 10 (vi).
+//! Interception of a moving vertex by a turn and a line, docs/theory.md section 10 (vi).
 
 use std::f64::consts::TAU;
 
 use crate::frame::{Pose, Side, Vector, cross, to_port, wrap};
 use crate::obstacle::{HalfSpace, MovingVertex};
 
-/// What own ship sails: a turn and a line at one speed.
+/// Own ship's turn and line at one speed that shall meet a moving point.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Chase {
+pub(crate) struct Interceptor {
     position: Vector,
     heading: f64,
     ahead: Vector,
     centre: Vector,
     radius: f64,
-    /// Of the turn, to port positive.
+    /// Sign of the turn, to port positive.
     sigma: f64,
     time: f64,
     speed: f64,
-    /// Seconds for a radian.
-    pace: f64,
+    /// Turning radius over speed: seconds per radian.
+    seconds_per_radian: f64,
 }
 
-/// Bounds of what counts as a meeting.
+/// Limits of an interception.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
-    /// Radians of turn at most.
+    /// Largest turn, radians.
     pub turn: f64,
-    /// Seconds on the clock at most.
+    /// Latest time, seconds.
     pub time: f64,
 }
 
-/// A meeting.
+/// Interception of a moving point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Interception {
-    /// Radians turned, not negative.
+    /// Turn, radians, not negative.
     pub turn: f64,
-    /// Metres of line after the turn.
+    /// Length of the line after the turn, metres.
     pub line: f64,
-    /// Seconds on the clock.
+    /// Time, seconds.
     pub time: f64,
 }
 
-/// Metres. Own ship and the vertex are this close when they meet.
+/// Metres. Own ship and the vertex are at most this far apart when they meet.
 const MEETING_M: f64 = 1e-7;
 
-/// Radians. A turn this close to a full circle is none.
+/// Radians. A turn this close to a full circle counts as zero.
 const DEAD_AHEAD_RAD: f64 = 1e-12;
 
-/// Radians. After a step this small a turn is as good as its rounding.
+/// Radians. After a Newton step this small the turn is exact to rounding.
 const LAST_STEP_RAD: f64 = 1e-9;
 
-/// Iterations of a root; Newton on a concave piece needs about five.
+/// Largest number of iterations for a root; Newton on a concave piece needs about five.
 const MAX_ITERATIONS: usize = 60;
 
-impl Chase {
-    /// From a pose (metres, radians) at a time (seconds), at a positive speed (m/s), turning to one side
-    /// with a radius (metres).
+impl Interceptor {
+    /// From a pose (metres, radians) at a time (seconds), at a positive speed (m/s), turning to one
+    /// side with a radius (metres).
     pub(crate) fn new(pose: &Pose, time: f64, speed: f64, radius: f64, side: Side) -> Self {
         let (ahead, sigma) = (pose.ahead(), side.turn_sign());
         let centre = pose.position + to_port(ahead) * (sigma * radius);
@@ -68,15 +68,15 @@ impl Chase {
             sigma,
             time,
             speed,
-            pace: radius / speed,
+            seconds_per_radian: radius / speed,
         }
     }
 
-    /// The same chase at another speed.
+    /// Copy with another speed.
     pub(crate) fn at_speed(&self, speed: f64) -> Self {
         Self {
             speed,
-            pace: self.radius / speed,
+            seconds_per_radian: self.radius / speed,
             ..*self
         }
     }
@@ -85,34 +85,37 @@ impl Chase {
         self.speed
     }
 
-    /// Before the turn, radians in `(-pi, pi]`.
+    /// Heading before the turn, radians in `(-pi, pi]`.
     pub(crate) fn heading(&self) -> f64 {
         self.heading
     }
 
-    /// Direction after a turn of this many radians.
+    /// Direction after a turn of `turn` radians.
     pub(crate) fn after(&self, turn: f64) -> Vector {
         let (sin, cos) = turn.sin_cos();
         self.ahead * cos + to_port(self.ahead) * (self.sigma * sin)
     }
 
-    /// Where and when a turn of this many radians, which leads into a direction, ends.
+    /// Position and time at the end of a turn of `turn` radians into `direction`.
     pub(crate) fn turned(&self, direction: Vector, turn: f64) -> (Vector, f64) {
         let position = self.centre - to_port(direction) * (self.sigma * self.radius);
-        (position, self.time + self.pace * turn)
+        (position, self.time + self.seconds_per_radian * turn)
     }
 
-    /// The distance of own ship from a plane, metres, positive outside; and how much greater it is after a turn of this
-    /// many radians to port, smaller after one to starboard. `across` is the plane's normal to port of where she then heads.
+    /// Distance of own ship from a plane, metres, positive outside, and the increase of that
+    /// distance after `turn` radians to port. A turn to starboard decreases it by this much.
+    /// `across` is the component of the plane's normal to port of the heading after the turn.
     pub(crate) fn slacks(&self, plane: &HalfSpace, across: f64, turn: f64) -> [f64; 2] {
         let before = plane.normal.dot(&to_port(self.ahead));
-        let moved = self.radius * (before - across) - plane.velocity_support * self.pace * turn;
+        let moved = self.radius * (before - across)
+            - plane.velocity_support * self.seconds_per_radian * turn;
         [plane.slack(self.position, self.time), moved]
     }
 
-    /// The meeting with a moving vertex by a turn between two, where own ship's motion relative to the
-    /// vertex passes it on different sides: `moments` of the vertex about that motion, m²/s, have two signs.
-    pub(crate) fn touch(
+    /// Interception of a moving vertex by a turn between `turns`, where own ship's relative motion
+    /// passes the vertex on different sides. `moments` of the vertex about the relative velocity at
+    /// the two turns, m²/s, have opposite signs. Root finding by safeguarded Newton.
+    pub(crate) fn intercept_tangentially(
         &self,
         vertex: &MovingVertex,
         turns: [f64; 2],
@@ -146,7 +149,7 @@ impl Chase {
             let next = if within { newton } else { 0.5 * (low + high) };
             let step = (next - turn).abs();
             turn = next;
-            // each step of Newton's squares the error
+            // each Newton step squares the error
             if step <= LAST_STEP_RAD {
                 break;
             }
@@ -166,8 +169,8 @@ impl Chase {
         })
     }
 
-    /// The way to a fixed point: turn and line. `None` inside the turning circle.
-    pub(crate) fn way_to(&self, point: Vector) -> Option<(f64, f64)> {
+    /// Path to a fixed point: turn and line. `None` inside the turning circle.
+    pub(crate) fn path_to(&self, point: Vector) -> Option<(f64, f64)> {
         let (turn, line, _) = self.tangent(point)?;
         // a full circle is a rounded zero: the point is dead ahead
         Some((
@@ -180,9 +183,9 @@ impl Chase {
         ))
     }
 
-    /// Turn, line and the line's direction, without the rounding of full circles, which would hide the jump
-    /// at a wrap. One arctangent: the tangent is the line to the centre, turned by the angle whose sine is
-    /// `radius / distance`.
+    /// Turn, line and the line's direction. A full circle is not rounded to zero, which would hide
+    /// the jump at a wrap. One arctangent suffices: the tangent is the line to the centre, turned
+    /// by the angle whose sine is `radius / distance`.
     fn tangent(&self, point: Vector) -> Option<(f64, f64, Vector)> {
         let to = point - self.centre;
         let square = to.norm_squared();
@@ -197,8 +200,9 @@ impl Chase {
         Some((if turn < 0.0 { turn + TAU } else { turn }, line, course))
     }
 
-    /// The earliest meeting with `origin + velocity t` within the limits. `t` is on the clock. Between
-    /// its breakpoints `F(t) = u (t - t0) - length(t)` is concave, so each piece has at most two roots.
+    /// Earliest interception of `origin + velocity t` within the limits; `t` is absolute time.
+    /// Between its breakpoints `F(t) = u (t - t0) - length(t)` is concave, so each piece has at
+    /// most two roots.
     pub(crate) fn intercept(
         &self,
         origin: Vector,
@@ -211,20 +215,20 @@ impl Chase {
             return None;
         }
         let (ahead, centre) = (self.ahead, self.centre);
-        let mut cuts = [from, until, until, until, until];
+        let mut breakpoints = [from, until, until, until, until];
         let mut count = 1;
-        let mut cut = |t: f64| {
+        let mut add_breakpoint = |t: f64| {
             if t > from && t < until {
-                cuts[count] = t;
+                breakpoints[count] = t;
                 count += 1;
             }
         };
-        // P on the line ahead: the turn wraps between nothing and a full circle
+        // point on the line ahead: the turn wraps between zero and a full circle
         let drift = cross(ahead, velocity);
         if drift != 0.0 {
-            cut(-cross(ahead, origin - self.position) / drift);
+            add_breakpoint(-cross(ahead, origin - self.position) / drift);
         }
-        // P on the turning circle
+        // point on the turning circle
         let (a, b, c) = (
             velocity.norm_squared(),
             velocity.dot(&(origin - centre)),
@@ -233,12 +237,12 @@ impl Chase {
         let discriminant = b * b - a * c;
         if a > 0.0 && discriminant > 0.0 {
             let root = discriminant.sqrt();
-            cut((-b - root) / a);
-            cut((-b + root) / a);
+            add_breakpoint((-b - root) / a);
+            add_breakpoint((-b + root) / a);
         }
-        cuts[..count].sort_by(f64::total_cmp);
-        cuts[count] = until;
-        for pair in cuts[..=count].windows(2) {
+        breakpoints[..count].sort_by(f64::total_cmp);
+        breakpoints[count] = until;
+        for pair in breakpoints[..=count].windows(2) {
             let width = pair[1] - pair[0];
             // one-sided values at a wrap
             let inset = (1e-9 * (1.0 + pair[1].abs())).min(width / 4.0);
@@ -248,11 +252,11 @@ impl Chase {
                 .into_iter()
                 .flatten()
             {
-                let Some((turn, line)) = self.way_to(origin + velocity * root) else {
+                let Some((turn, line)) = self.path_to(origin + velocity * root) else {
                     continue;
                 };
-                let rollout = self.radius * turn + line;
-                let met = (rollout - self.speed * (root - from)).abs() <= MEETING_M;
+                let length = self.radius * turn + line;
+                let met = (length - self.speed * (root - from)).abs() <= MEETING_M;
                 if met && turn <= limits.turn {
                     return Some(Interception {
                         turn,
@@ -266,9 +270,9 @@ impl Chase {
     }
 
     /// `F` and its derivative.
-    fn gap(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
+    fn residual(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
         let (turn, line, course) = self.tangent(origin + velocity * time)?;
-        // parallel and dead ahead for ever: a full circle is a rounded zero
+        // parallel motion dead ahead: a full circle is a rounded zero
         let wraps = TAU - turn < DEAD_AHEAD_RAD
             && cross(self.ahead, velocity).abs() <= 1e-12 * velocity.norm();
         let turn = if wraps { 0.0 } else { turn };
@@ -276,26 +280,26 @@ impl Chase {
         Some((value, self.speed - course.dot(&velocity)))
     }
 
-    /// Roots of the concave `F` on one piece, at most two, earliest first.
+    /// Roots of the concave `F` on one piece: at most two, earliest first.
     fn roots(&self, origin: Vector, velocity: Vector, low: f64, high: f64) -> [Option<f64>; 2] {
-        let gap = |t: f64| self.gap(origin, velocity, t);
-        let (Some((fa, da)), Some((fb, db))) = (gap(low), gap(high)) else {
+        let residual = |t: f64| self.residual(origin, velocity, t);
+        let (Some((fa, da)), Some((fb, db))) = (residual(low), residual(high)) else {
             return [None, None];
         };
         if (fa < 0.0) != (fb < 0.0) {
-            return [self.root(gap, low, fa, high), None];
+            return [self.root(residual, low, fa, high), None];
         }
         if fa < 0.0 && da > 0.0 && db < 0.0 {
             let (mut a, mut b) = (low, high);
             for _ in 0..MAX_ITERATIONS {
                 let middle = 0.5 * (a + b);
-                let Some((f, d)) = gap(middle) else {
+                let Some((f, d)) = residual(middle) else {
                     return [None, None];
                 };
                 if f >= 0.0 {
                     return [
-                        self.root(gap, low, fa, middle),
-                        self.root(gap, middle, f, high),
+                        self.root(residual, low, fa, middle),
+                        self.root(residual, middle, f, high),
                     ];
                 }
                 if d > 0.0 {
@@ -311,20 +315,20 @@ impl Chase {
         [None, None]
     }
 
-    /// The one sign change between `a` and `b`, by safeguarded Newton.
+    /// The only sign change between `a` and `b`, by safeguarded Newton.
     fn root(
         &self,
-        gap: impl Fn(f64) -> Option<(f64, f64)>,
+        residual: impl Fn(f64) -> Option<(f64, f64)>,
         a: f64,
         fa: f64,
         b: f64,
     ) -> Option<f64> {
         let (mut low, mut high) = (a, b);
         let rising = fa < 0.0;
-        // concave: from the end where it is negative Newton runs straight to the root
+        // concave: from the negative end Newton converges monotonically
         let mut at = if rising { a } else { b };
         for _ in 0..MAX_ITERATIONS {
-            let (f, d) = gap(at)?;
+            let (f, d) = residual(at)?;
             if (f < 0.0) == rising {
                 low = at
             } else {
@@ -351,7 +355,7 @@ mod tests {
     use rand::{Rng, SeedableRng};
 
     #[test]
-    fn meetings_are_meetings_and_the_earliest_of_a_dense_scan() {
+    fn interceptions_are_the_earliest_of_a_dense_scan() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(21);
         let mut met = 0;
         for _ in 0..3000 {
@@ -362,7 +366,8 @@ mod tests {
             } else {
                 Side::Starboard
             };
-            let chase = Chase::new(&pose, rng.random_range(0.0..50.0), speed, 100.0, side);
+            let interceptor =
+                Interceptor::new(&pose, rng.random_range(0.0..50.0), speed, 100.0, side);
             let origin = Vector::new(
                 rng.random_range(-900.0..900.0),
                 rng.random_range(-900.0..900.0),
@@ -370,18 +375,23 @@ mod tests {
             let velocity = Vector::new(rng.random_range(-7.0..7.0), rng.random_range(-7.0..7.0));
             let limits = Limits {
                 turn: 2.0,
-                time: chase.time + 300.0,
+                time: interceptor.time + 300.0,
             };
-            let found = chase.intercept(origin, velocity, limits);
+            let found = interceptor.intercept(origin, velocity, limits);
             // dense scan for the first sign change with a small turn
             let n = 6000;
             let mut dense = None;
             let mut before: Option<(f64, f64)> = None;
             for i in 0..=n {
-                let t = chase.time + 300.0 * f64::from(i) / f64::from(n);
-                let now = chase.way_to(origin + velocity * t).map(|(turn, line)| {
-                    (chase.speed * (t - chase.time) - 100.0 * turn - line, turn)
-                });
+                let t = interceptor.time + 300.0 * f64::from(i) / f64::from(n);
+                let now = interceptor
+                    .path_to(origin + velocity * t)
+                    .map(|(turn, line)| {
+                        (
+                            interceptor.speed * (t - interceptor.time) - 100.0 * turn - line,
+                            turn,
+                        )
+                    });
                 if let (Some((f0, turn0)), Some((f1, turn1))) = (before, now)
                     && (f0 < 0.0) != (f1 < 0.0)
                     && turn0.max(turn1) < 1.99
@@ -394,8 +404,10 @@ mod tests {
             }
             if let Some(meeting) = found {
                 met += 1;
-                let rollout = 100.0 * meeting.turn + meeting.line;
-                assert!((rollout - chase.speed * (meeting.time - chase.time)).abs() < 1e-6);
+                let length = 100.0 * meeting.turn + meeting.line;
+                assert!(
+                    (length - interceptor.speed * (meeting.time - interceptor.time)).abs() < 1e-6
+                );
             }
             if let Some(t) = dense {
                 let first = found.expect("the scan met it").time;

@@ -1,4 +1,4 @@
-//! A node of the space-time graph, and what is read from a search over such nodes.
+//! Node of the space-time graph, and the results read from a search over such nodes.
 
 use std::cell::Cell;
 
@@ -8,23 +8,23 @@ use crate::planner::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, Nod
 use crate::search::{Fate, Search};
 use crate::trajectory::Segment;
 
-/// A node with the motion that leads to it.
+/// Node with the motion that leads to it.
 #[derive(Debug, Clone)]
 pub(crate) struct State {
     pub kind: NodeKind,
     pub pose: Pose,
     pub time: f64,
-    /// From the node before.
+    /// Motion from the parent node.
     pub motion: Vec<Segment>,
-    /// So many of its segments are sailed along the route before she leaves it.
+    /// Number of its segments that follow the route before the departure.
     pub along: usize,
-    /// How a way to the end ends; of no meaning elsewhere.
+    /// How a motion to the end ends; meaningless for other nodes.
     pub ending: Ending,
-    /// Vertices met so far.
+    /// Number of vertices met so far.
     pub chain: u8,
-    /// Holds since the last of them.
+    /// Number of holds since the last vertex.
     pub held: u8,
-    /// The obstacle that the motion meets, once that is known.
+    /// Obstacle that the motion meets, once known.
     pub met: Cell<Option<usize>>,
 }
 
@@ -44,7 +44,7 @@ impl State {
         }
     }
 
-    /// Lengthens the last line.
+    /// Extends the last line.
     fn prolong(&mut self, line: &[Segment]) {
         match self.motion.last_mut() {
             Some(last) if !last.is_arc() => {
@@ -55,37 +55,37 @@ impl State {
     }
 }
 
-/// The whole motion to a node.
+/// Motion from the root to a node.
 pub(crate) fn motion_to(search: &Search<State>, node: usize) -> impl Iterator<Item = Segment> + '_ {
-    let way = search.way_to(node).into_iter().skip(1);
-    way.flat_map(|index| search.nodes()[index].state.motion.iter().copied())
+    let path = search.way_to(node).into_iter().skip(1);
+    path.flat_map(|index| search.nodes()[index].state.motion.iter().copied())
 }
 
-/// A way to a goal for the refinement: the departure, the vertices, each with all of the line that leads
-/// to it and beyond, the end.
-pub(crate) fn way_to(search: &Search<State>, goal: usize) -> Vec<State> {
-    let mut way: Vec<State> = Vec::new();
+/// Path to a goal for the refinement: the departure, the vertices with the whole lines to and
+/// beyond them, and the end.
+pub(crate) fn path_to(search: &Search<State>, goal: usize) -> Vec<State> {
+    let mut path: Vec<State> = Vec::new();
     for index in &search.way_to(goal)[1..] {
         let mut state = search.nodes()[*index].state.clone();
         if state.kind == NodeKind::Held
-            && let Some(vertex) = way.last_mut()
+            && let Some(vertex) = path.last_mut()
         {
             vertex.prolong(&state.motion);
             continue;
         }
-        if way.is_empty() && state.kind != NodeKind::End {
+        if path.is_empty() && state.kind != NodeKind::End {
             let ahead = state.motion.split_off(state.along);
-            way.push(State {
+            path.push(State {
                 motion: std::mem::replace(&mut state.motion, ahead),
                 ..State::start(search.nodes()[0].state.pose)
             });
         }
-        way.push(state);
+        path.push(state);
     }
-    way
+    path
 }
 
-/// Everything that a search made, with what is known of each edge.
+/// Everything that a search generated, with the known test result of each edge.
 pub(crate) fn explored(search: Search<State>) -> ExploredGraph {
     let nodes = search.into_nodes();
     let costs: Vec<f64> = nodes.iter().map(|n| n.cost).collect();

@@ -1,18 +1,19 @@
-//! The way back onto a leg: turn, line, turn.
+//! Return onto a leg: turn, line, turn.
 
 use crate::frame::{Pose, Side, Vector, cross, wrap};
 
-/// Turn-and-line onto a leg's line: first turn, line, last turn, each possibly of no length.
+/// Turn, line and turn onto a leg's line; each may have zero length.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Return {
-    /// Signed metres of the first arc (to port positive), metres of line, signed metres of last arc.
+    /// Signed length of the first arc (to port positive), length of the line, signed length of the
+    /// last arc, metres.
     pub first: f64,
     pub line: f64,
     pub last: f64,
 }
 
-/// The way back onto the line through `origin` along `heading`, approached at `angle` radians:
-/// first from the side own ship is on, else across it. `None` where neither fits.
+/// Return onto the line through `origin` along `heading`, approached at `angle` radians: first from
+/// own ship's side, else across the line. `None` where neither fits.
 pub(crate) fn return_to_line(
     pose: &Pose,
     origin: Vector,

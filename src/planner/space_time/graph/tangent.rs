@@ -1,98 +1,100 @@
-//! What own ship aims at: moving vertices of a body, where her line only just touches it.
+//! Tangent edges: turns and lines that touch the moving vertices of an obstacle.
 //!
 //! Along a line at speed `u` in direction `d` the distance from a face with normal `n` grows by
-//! `u n.d - h_V(n)` m/s. The line only just touches a moving vertex when of the two faces there one is not
-//! left and the other not approached. The distance from a face is constant along two directions,
-//! `n.d = h_V(n) / u`; between those of neighbouring faces a line touches the vertex they share, if it
-//! touches. So the signs of the constant distances at the two ends tell whether one does, before any root
-//! is sought.
+//! `u n.d - h_V(n)` m/s. The line is tangent to a moving vertex when it does not recede from one of
+//! the two faces there and does not approach the other. The distance from a face is constant along
+//! two directions, `n.d = h_V(n) / u`. Between such directions of neighbouring faces a tangent line
+//! touches the shared vertex. So the signs of the constant distances at the two ends tell whether a
+//! tangent exists, before any root is sought.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::frame::{Side, Vector, direction, heading_of, to_port};
 use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
-use crate::planner::space_time::graph::intercept::{Chase, Interception, Limits};
+use crate::planner::space_time::graph::intercept::{Interception, Interceptor, Limits};
 use crate::planner::space_time::piece::Window;
 use crate::planner::space_time::proxy::Proxy;
 
 /// Metres. A distance this small has no sign.
 const NO_SIGN_M: f64 = 1e-6;
 
-/// Gaps between the two levels of a face beside one that is faster than own ship.
-const FAN: usize = 4;
+/// Number of sectors between the two tangent directions of a face next to one that moves faster
+/// than own ship.
+const SUBDIVISIONS: usize = 4;
 
-/// Radians. A turn is found to this.
+/// Accuracy of a turn, radians.
 const TURN_RAD: f64 = 1e-13;
 
-/// A moving vertex with the faces that meet there.
+/// Moving vertex with the faces that meet there.
 #[derive(Debug)]
 struct Corner {
     vertex: MovingVertex,
     faces: Vec<HalfSpace>,
-    /// False where no way leads past it.
+    /// False where no trajectory can pass it.
     open: bool,
 }
 
 impl Corner {
     /// True when a line in this direction at this speed touches the corner and stays outside.
-    fn grazed(&self, ahead: Vector, speed: f64) -> bool {
+    fn is_tangent(&self, ahead: Vector, speed: f64) -> bool {
         let rate = |f: &HalfSpace| speed * f.normal.dot(&ahead) - f.velocity_support;
         self.faces.iter().any(|f| rate(f) <= 1e-9) && self.faces.iter().any(|f| rate(f) >= -1e-9)
     }
 }
 
-/// A direction along which the distance from a face is constant, or from another plane that touches the
-/// body in one corner.
+/// Direction along which the distance from a face is constant, or from another plane that touches
+/// the obstacle in one corner.
 #[derive(Debug, Clone, Copy)]
-struct Level {
+struct TangentDirection {
     ahead: Vector,
     heading: f64,
     plane: HalfSpace,
-    /// Of the normal, to port of the direction.
+    /// Component of the plane's normal to port of the direction.
     across: f64,
 }
 
-/// Directions between two [`Level`]s, in which a corner is touched.
+/// Sector between two [`TangentDirection`]s, in which tangents touch one corner.
 #[derive(Debug, Clone, Copy)]
-struct Gap {
+struct Sector {
     corner: usize,
-    levels: [usize; 2],
-    /// m/s. The moment of the corner's position about the relative velocity is so many times the distance
-    /// from the plane of each level, along which that velocity points.
+    directions: [usize; 2],
+    /// The moment of the corner's position about the relative velocity, divided by the distance
+    /// from the plane of each direction, m/s. The relative velocity points along that plane.
     moments: [f64; 2],
 }
 
-/// What does not depend on where own ship is, for one speed.
+/// Sectors for one speed; they do not depend on own ship's position.
 #[derive(Debug)]
-struct Pace {
+struct SpeedSectors {
     speed: f64,
-    levels: Vec<Level>,
-    gaps: Vec<Gap>,
-    /// Corners of sets without an interior: their meetings are sought one by one.
-    others: Vec<usize>,
+    directions: Vec<TangentDirection>,
+    sectors: Vec<Sector>,
+    /// Corners of sets without an interior: their interceptions are computed one by one.
+    degenerate: Vec<usize>,
 }
 
-/// The corners of one body.
+/// Corners of one obstacle with their sectors for every speed.
 #[derive(Debug)]
 pub(crate) struct TangentEdges {
     obstacle: usize,
     window: Option<Window>,
     corners: Vec<Corner>,
-    speed_table: Vec<Pace>,
+    sectors_by_speed: Vec<SpeedSectors>,
 }
 
-/// A [`Level`] from where own ship is.
+/// [`TangentDirection`] relative to own ship.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bearing {
-    /// Radians to it, to port positive.
+pub(crate) struct RelativeDirection {
+    /// Turn to it, radians, to port positive.
     turn: f64,
-    /// Metres from its plane now, and how many more after a turn to it to port, fewer after one to starboard.
+    /// Distance from its plane now, metres, and the increase after a turn to it to port; a turn to
+    /// starboard decreases it.
     straight: f64,
     turned: f64,
 }
 
-/// A way to a corner.
+/// Tangent edge: turn and line to a corner.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TangentEdge {
     pub kind: NodeKind,
@@ -102,7 +104,7 @@ pub(crate) struct TangentEdge {
 }
 
 impl TangentEdges {
-    /// `body` is that of the proxy, or stands for it.
+    /// Corners of `body`, the polytope of the proxy or its substitute.
     pub(crate) fn new(
         proxy: &Proxy,
         body: &PolytopeObstacle,
@@ -111,7 +113,7 @@ impl TangentEdges {
         Self::past(proxy, body, speeds, |_| true)
     }
 
-    /// The same of those corners alone that are `open` where they are at t = 0.
+    /// Corners that are `open` at their position at t = 0.
     pub(crate) fn past(
         proxy: &Proxy,
         body: &PolytopeObstacle,
@@ -138,16 +140,18 @@ impl TangentEdges {
                 }
             })
             .collect();
-        let speed_table = speeds.map(|u| Pace::new(faces, &corners, u)).collect();
+        let sectors_by_speed = speeds
+            .map(|u| SpeedSectors::new(faces, &corners, u))
+            .collect();
         Self {
             obstacle: proxy.obstacle,
             window: proxy.window,
             corners,
-            speed_table,
+            sectors_by_speed,
         }
     }
 
-    /// When the clock of these corners starts, and how long they are in force, seconds.
+    /// Start of the clock of these corners, and how long they exist, seconds.
     pub(crate) fn window(&self) -> (f64, f64) {
         self.window
             .map_or((0.0, f64::INFINITY), |w| (w.start, w.end - w.start))
@@ -162,39 +166,43 @@ impl TangentEdges {
         }
     }
 
-    /// Every turn and line at one of the speeds that only just touches a corner. `chases` turn to the sides
-    /// of [`Side::BOTH`], at any speed.
-    pub(crate) fn touched(
+    /// Finds every turn and line at one of the speeds that is tangent to a corner. `interceptors`
+    /// turn to the sides of [`Side::BOTH`]; their speed is ignored.
+    pub(crate) fn for_each_edge(
         &self,
-        chases: &[Chase; 2],
+        interceptors: &[Interceptor; 2],
         limits: Limits,
-        bearings: &mut Vec<Bearing>,
+        relative: &mut Vec<RelativeDirection>,
         mut found: impl FnMut(TangentEdge),
     ) {
-        for pace in &self.speed_table {
-            let chases = chases.map(|c| c.at_speed(pace.speed));
-            bearings.clear();
-            bearings.extend(pace.levels.iter().map(|level| {
-                let turn = nearer(level.heading - chases[0].heading());
-                let [straight, turned] = chases[0].slacks(&level.plane, level.across, turn);
-                Bearing {
+        for speed_sectors in &self.sectors_by_speed {
+            let interceptors = interceptors.map(|c| c.at_speed(speed_sectors.speed));
+            relative.clear();
+            relative.extend(speed_sectors.directions.iter().map(|tangent_direction| {
+                let turn = wrap_difference(tangent_direction.heading - interceptors[0].heading());
+                let [straight, turned] = interceptors[0].slacks(
+                    &tangent_direction.plane,
+                    tangent_direction.across,
+                    turn,
+                );
+                RelativeDirection {
                     turn,
                     straight,
                     turned,
                 }
             }));
-            let mut offer = |corner: usize, side: Side, meeting: Interception| {
+            let mut emit = |corner: usize, side: Side, meeting: Interception| {
                 found(TangentEdge {
                     kind: self.kind(corner),
                     side,
-                    speed: pace.speed,
+                    speed: speed_sectors.speed,
                     meeting,
                 });
             };
-            for gap in &pace.gaps {
-                let ends = gap.levels.map(|l| &bearings[l]);
+            for sector in &speed_sectors.sectors {
+                let ends = sector.directions.map(|l| &relative[l]);
                 let wraps = (ends[0].turn - ends[1].turn).abs() > PI;
-                for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
+                for (side, interceptor) in Side::BOTH.into_iter().zip(&interceptors) {
                     let sign = side.turn_sign();
                     let [a, b] = ends.map(|e| sign * e.turn);
                     let [from, to] = ends.map(|e| e.straight + sign * e.turned);
@@ -202,63 +210,72 @@ impl TangentEdges {
                     let touches = touches & ((from >= -NO_SIGN_M) | (to >= -NO_SIGN_M));
                     let ahead = ((a >= -TURN_RAD) | (b >= -TURN_RAD))
                         & ((a <= limits.turn) | (b <= limits.turn));
-                    // one jump that is nearly always taken
+                    // one well-predicted branch
                     if !(wraps | (touches & ahead)) {
                         continue;
                     }
                     if wraps {
                         if a.max(b) <= limits.turn {
-                            self.seek(gap.corner, chase, limits, |m| offer(gap.corner, side, m));
+                            self.intercept_corner(sector.corner, interceptor, limits, |m| {
+                                emit(sector.corner, side, m)
+                            });
                         }
                         continue;
                     }
-                    let corner = &self.corners[gap.corner];
-                    let moments = [gap.moments[0] * from, gap.moments[1] * to];
-                    let meeting = chase.touch(&corner.vertex, [a, b], moments, limits);
+                    let corner = &self.corners[sector.corner];
+                    let moments = [sector.moments[0] * from, sector.moments[1] * to];
+                    let meeting =
+                        interceptor.intercept_tangentially(&corner.vertex, [a, b], moments, limits);
                     if let Some(meeting) = meeting
-                        && corner.grazed(chase.after(meeting.turn), pace.speed)
+                        && corner.is_tangent(interceptor.after(meeting.turn), speed_sectors.speed)
                     {
-                        offer(gap.corner, side, meeting);
+                        emit(sector.corner, side, meeting);
                     }
                 }
             }
-            for &corner in &pace.others {
-                for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
-                    self.seek(corner, chase, limits, |m| offer(corner, side, m));
+            for &corner in &speed_sectors.degenerate {
+                for (side, interceptor) in Side::BOTH.into_iter().zip(&interceptors) {
+                    self.intercept_corner(corner, interceptor, limits, |m| emit(corner, side, m));
                 }
             }
         }
     }
 
-    fn seek(&self, corner: usize, chase: &Chase, limits: Limits, offer: impl FnOnce(Interception)) {
+    fn intercept_corner(
+        &self,
+        corner: usize,
+        interceptor: &Interceptor,
+        limits: Limits,
+        emit: impl FnOnce(Interception),
+    ) {
         let c = &self.corners[corner];
-        let meeting = chase.intercept(c.vertex.origin, c.vertex.velocity, limits);
+        let meeting = interceptor.intercept(c.vertex.origin, c.vertex.velocity, limits);
         if let Some(meeting) = meeting
-            && c.grazed(chase.after(meeting.turn), chase.speed())
+            && c.is_tangent(interceptor.after(meeting.turn), interceptor.speed())
         {
-            offer(meeting);
+            emit(meeting);
         }
     }
 }
 
-impl Pace {
+impl SpeedSectors {
     fn new(faces: &[HalfSpace], corners: &[Corner], speed: f64) -> Self {
-        let mut pace = Self {
+        let mut speed_sectors = Self {
             speed,
-            levels: Vec::new(),
-            gaps: Vec::new(),
-            others: Vec::new(),
+            directions: Vec::new(),
+            sectors: Vec::new(),
+            degenerate: Vec::new(),
         };
-        // levels `k` and `k + 1` of a face that has any
+        // directions `k` and `k + 1` belong to a face that has any
         let mut first = vec![None; faces.len()];
         for (first, f) in first.iter_mut().zip(faces) {
             let cosine = f.velocity_support / speed;
             if cosine.abs() < 1.0 {
-                *first = Some(pace.levels.len());
+                *first = Some(speed_sectors.directions.len());
                 let sine = (1.0 - cosine * cosine).sqrt();
                 for sign in [1.0, -1.0] {
                     let ahead = f.normal * cosine + to_port(f.normal) * (sign * sine);
-                    pace.level(ahead, *f);
+                    speed_sectors.add_direction(ahead, *f);
                 }
             }
         }
@@ -271,25 +288,25 @@ impl Pace {
                 around.iter().all(faster)
             };
             match around[..] {
-                // always approached, or always left
+                // own ship always approaches, or always recedes
                 _ if all(1.0) || all(-1.0) => {}
                 [a, b] => match (first[a], first[b]) {
                     (Some(a), Some(b)) => {
-                        pace.gap(index, corner, [a, b]);
-                        pace.gap(index, corner, [a + 1, b + 1]);
+                        speed_sectors.add_sector(index, corner, [a, b]);
+                        speed_sectors.add_sector(index, corner, [a + 1, b + 1]);
                     }
-                    (Some(first), None) => pace.fan(index, corner, first, &faces[b]),
-                    (None, Some(first)) => pace.fan(index, corner, first, &faces[a]),
-                    (None, None) => pace.others.push(index),
+                    (Some(first), None) => speed_sectors.subdivide(index, corner, first, &faces[b]),
+                    (None, Some(first)) => speed_sectors.subdivide(index, corner, first, &faces[a]),
+                    (None, None) => speed_sectors.degenerate.push(index),
                 },
-                _ => pace.others.push(index),
+                _ => speed_sectors.degenerate.push(index),
             }
         }
-        pace
+        speed_sectors
     }
 
-    fn level(&mut self, ahead: Vector, plane: HalfSpace) {
-        self.levels.push(Level {
+    fn add_direction(&mut self, ahead: Vector, plane: HalfSpace) {
+        self.directions.push(TangentDirection {
             ahead,
             heading: heading_of(ahead),
             plane,
@@ -297,24 +314,24 @@ impl Pace {
         });
     }
 
-    fn gap(&mut self, index: usize, corner: &Corner, levels: [usize; 2]) {
-        let moments = levels.map(|l| {
-            let level = &self.levels[l];
-            let velocity = level.ahead * self.speed - corner.vertex.velocity;
-            -velocity.dot(&to_port(level.plane.normal))
+    fn add_sector(&mut self, index: usize, corner: &Corner, directions: [usize; 2]) {
+        let moments = directions.map(|l| {
+            let tangent_direction = &self.directions[l];
+            let velocity = tangent_direction.ahead * self.speed - corner.vertex.velocity;
+            -velocity.dot(&to_port(tangent_direction.plane.normal))
         });
-        self.gaps.push(Gap {
+        self.sectors.push(Sector {
             corner: index,
-            levels,
+            directions,
             moments,
         });
     }
 
-    /// Gaps from one level of a face to its other one: about its normal where the other face is always
-    /// approached, about the opposite where it is always left.
-    fn fan(&mut self, index: usize, corner: &Corner, first: usize, other: &HalfSpace) {
-        let own = self.levels[first].plane;
-        let from = heading_of(self.levels[first].ahead);
+    /// Sectors from one tangent direction of a face to the other: around its normal where own ship
+    /// always approaches the other face, around the opposite where it always recedes.
+    fn subdivide(&mut self, index: usize, corner: &Corner, first: usize, other: &HalfSpace) {
+        let own = self.directions[first].plane;
+        let from = heading_of(self.directions[first].ahead);
         let half = (own.velocity_support / self.speed).acos();
         let width = if other.velocity_support > 0.0 {
             -2.0 * half
@@ -322,8 +339,8 @@ impl Pace {
             TAU - 2.0 * half
         };
         let mut before = first;
-        for k in 1..FAN {
-            let ahead = direction(from + width * k as f64 / FAN as f64);
+        for k in 1..SUBDIVISIONS {
+            let ahead = direction(from + width * k as f64 / SUBDIVISIONS as f64);
             let across = to_port(ahead * self.speed - corner.vertex.velocity).normalize();
             let outward = across.dot(&(own.normal + other.normal)).signum();
             let normal = across * outward;
@@ -332,17 +349,18 @@ impl Pace {
                 velocity_support: normal.dot(&corner.vertex.velocity),
                 initial_support: normal.dot(&corner.vertex.origin),
             };
-            let next = self.levels.len();
-            self.level(ahead, plane);
-            self.gap(index, corner, [before, next]);
+            let next = self.directions.len();
+            self.add_direction(ahead, plane);
+            self.add_sector(index, corner, [before, next]);
             before = next;
         }
-        self.gap(index, corner, [before, first + 1]);
+        self.add_sector(index, corner, [before, first + 1]);
     }
 }
 
-/// The difference of two angles in `(-pi, pi]`, in that range too. Without a jump, unlike [`crate::frame::wrap`].
-fn nearer(apart: f64) -> f64 {
+/// Difference of two angles in `(-pi, pi]`, wrapped to the same range. Branch-free, unlike
+/// [`crate::frame::wrap`].
+fn wrap_difference(apart: f64) -> f64 {
     let over = if apart > PI { TAU } else { 0.0 };
     let under = if apart <= -PI { TAU } else { 0.0 };
     apart - over + under
@@ -356,9 +374,9 @@ mod tests {
     use crate::planner::space_time::piece::{Body, Piece};
     use rand::{Rng, SeedableRng};
 
-    /// Every corner is sought one by one; what only just touches has to be among what is found.
+    /// Compares with the interceptions of every corner one by one.
     #[test]
-    fn every_line_that_only_just_touches_is_found() {
+    fn every_tangent_line_is_found() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
         let speeds = [2.5, 5.0, 6.0];
         let (mut found, mut missed) = (0, 0);
@@ -391,13 +409,16 @@ mod tests {
                 turn: 2.0,
                 time: time + 240.0,
             };
-            let chases = Side::BOTH.map(|side| Chase::new(&pose, time, 1.0, 100.0, side));
-            let mut touched = Vec::new();
-            tangent_edges.touched(&chases, limits, &mut Vec::new(), |aim| touched.push(aim));
-            for aim in &touched {
+            let interceptors =
+                Side::BOTH.map(|side| Interceptor::new(&pose, time, 1.0, 100.0, side));
+            let mut edges = Vec::new();
+            tangent_edges.for_each_edge(&interceptors, limits, &mut Vec::new(), |edge| {
+                edges.push(edge)
+            });
+            for edge in &edges {
                 let corner = tangent_edges.corners.iter().position(|c| {
                     let (initial, velocity) = c.vertex.indices;
-                    aim.kind
+                    edge.kind
                         == NodeKind::Vertex {
                             obstacle: 0,
                             initial,
@@ -405,19 +426,20 @@ mod tests {
                         }
                 });
                 let vertex = &tangent_edges.corners[corner.expect("of this body")].vertex;
-                let chase = chases[usize::from(aim.side == Side::BOTH[1])].at_speed(aim.speed);
-                let ahead = chase.after(aim.meeting.turn);
-                let (from, _) = chase.turned(ahead, aim.meeting.turn);
-                let own = from + ahead * aim.meeting.line;
-                let other = vertex.origin + vertex.velocity * aim.meeting.time;
-                assert!((own - other).norm() < 1e-7, "{aim:?}");
+                let interceptor =
+                    interceptors[usize::from(edge.side == Side::BOTH[1])].at_speed(edge.speed);
+                let ahead = interceptor.after(edge.meeting.turn);
+                let (from, _) = interceptor.turned(ahead, edge.meeting.turn);
+                let own = from + ahead * edge.meeting.line;
+                let other = vertex.origin + vertex.velocity * edge.meeting.time;
+                assert!((own - other).norm() < 1e-7, "{edge:?}");
             }
             for k in 0..tangent_edges.corners.len() {
                 for speed in speeds {
-                    for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
-                        let chase = chase.at_speed(speed);
-                        tangent_edges.seek(k, &chase, limits, |meeting| {
-                            let same = touched.iter().any(|a| {
+                    for (side, interceptor) in Side::BOTH.into_iter().zip(&interceptors) {
+                        let interceptor = interceptor.at_speed(speed);
+                        tangent_edges.intercept_corner(k, &interceptor, limits, |meeting| {
+                            let same = edges.iter().any(|a| {
                                 a.kind == tangent_edges.kind(k)
                                     && a.side == side
                                     && a.speed == speed

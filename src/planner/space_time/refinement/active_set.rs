@@ -1,5 +1,5 @@
-//! The dual active-set method: constraints are taken in one at a time, the most violated first, and those that are pushed
-//! away leave.
+//! Dual active-set method: adds the most violated constraint first and drops active constraints
+//! whose multipliers reach zero.
 
 use crate::planner::space_time::refinement::factor::{
     LANES, Padded, Square, Triangle, add, add_scaled, dot, inverse_transposed_factor, remove,
@@ -8,20 +8,20 @@ use crate::planner::space_time::refinement::quadratic::{
     Constraint, MAX_VARIABLES, Programme, Row, Solution, Unsolved,
 };
 
-/// Steps before giving up; a programme of this size needs about as many as it has constraints.
-const MAX_STEPS: usize = 1000;
+/// Largest number of steps; a programme of this size needs about as many as it has constraints.
+const MAX_ITERATIONS: usize = 1000;
 
-/// Rate below which a multiplier does not fall.
-const FALLING: f64 = 1e-14;
+/// Rates of a multiplier below this count as zero.
+const MIN_RATE: f64 = 1e-14;
 
-/// Share of a normal, squared, that the active ones must not span: less is rounding.
-const INDEPENDENT: f64 = 1e-12;
+/// Least squared share of a normal that the active normals do not span; less is rounding.
+const MIN_INDEPENDENT: f64 = 1e-12;
 
-/// Violation, metres, at which the price of it has doubled: what keeps the Hessian definite.
+/// Violation in metres at which its price has doubled. This term keeps the Hessian definite.
 pub(crate) const SOFTENED_M: f64 = 1e3;
 
-/// Relative violation that is none.
-const SATISFIED: f64 = 1e-9;
+/// Relative violation that counts as none.
+const VIOLATION_TOLERANCE: f64 = 1e-9;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
@@ -30,7 +30,7 @@ enum Kind {
     Row(usize),
 }
 
-/// A row, with the reciprocal of what its violation is measured by.
+/// Row with the reciprocal of its scale.
 struct Scaled<const N: usize> {
     normal: Padded<N>,
     bound: f64,
@@ -43,10 +43,10 @@ impl<const N: usize> Scaled<N> {
     }
 }
 
-/// A programme in arrays just as long as it needs, for which loops are unrolled.
+/// Programme in arrays of exactly the size it needs, for which the compiler unrolls loops.
 pub(crate) struct Compact<const N: usize> {
     size: usize,
-    /// The last variable is the largest violation of a row.
+    /// True where the last variable is the largest violation of a row.
     elastic: bool,
     hessian: Square<N>,
     gradient: Padded<N>,
@@ -55,28 +55,28 @@ pub(crate) struct Compact<const N: usize> {
     rows: Vec<Scaled<N>>,
 }
 
-/// Where the dual method is: `x` is the minimum over the active constraints as equations.
+/// State of the dual method: `x` minimises the cost with the active constraints as equations.
 struct Point<const N: usize> {
     x: Padded<N>,
     j: Square<N>,
     r: Triangle<N>,
-    /// The first `count` are active, with their multipliers.
+    /// Active constraints (the first `count`) and their multipliers.
     active: [Kind; N],
     multipliers: Padded<N>,
     count: usize,
 }
 
-/// How a constraint is taken in.
-enum Entered {
+/// Result of adding a constraint.
+enum AddResult {
     Active,
-    /// It contradicts those that are active.
+    /// It contradicts the active constraints.
     Contradicts,
     /// Too many steps, or a number that is not finite.
     Stopped,
 }
 
 impl<const N: usize> Point<N> {
-    /// The minimum over nothing; `None` when the Hessian is not positive definite.
+    /// Unconstrained minimum; `None` when the Hessian is not positive definite.
     fn free(of: &Compact<N>) -> Option<Self> {
         let j = inverse_transposed_factor(&of.hessian, of.size)?;
         let mut x = [0.0; N];
@@ -101,8 +101,8 @@ impl<const N: usize> Point<N> {
         dot(&self.x, &self.x).is_finite()
     }
 
-    /// How a constraint bears on the active ones.
-    fn bearing(&self, of: &Compact<N>, constraint: Kind) -> Bearing<N> {
+    /// Direction of a constraint relative to the active ones.
+    fn direction_of(&self, of: &Compact<N>, constraint: Kind) -> ConstraintDirection<N> {
         let (n, q) = (of.size, self.count);
         let mut d = [0.0; N];
         for (d, column) in d.iter_mut().zip(&self.j).take(n) {
@@ -117,10 +117,11 @@ impl<const N: usize> Point<N> {
             add_scaled(&mut z, *d, column);
         }
         let back = self.r.solve(&d, q);
-        Bearing { d, z, back }
+        ConstraintDirection { d, z, back }
     }
 
-    /// The step along which the first multiplier, each falling at `rates`, is zero, and whose it is.
+    /// Step at which the first multiplier, each decreasing at its rate, is zero, and the index of
+    /// that multiplier.
     fn first_zero(&self, rates: &Padded<N>) -> (f64, Option<usize>) {
         let mut first = (f64::INFINITY, None);
         for (i, (multiplier, rate)) in self
@@ -130,7 +131,7 @@ impl<const N: usize> Point<N> {
             .enumerate()
             .take(self.count)
         {
-            if *rate > FALLING && *multiplier < first.0 * rate {
+            if *rate > MIN_RATE && *multiplier < first.0 * rate {
                 first = (multiplier / rate, Some(i));
             }
         }
@@ -145,29 +146,30 @@ impl<const N: usize> Point<N> {
         self.count -= 1;
     }
 
-    /// Goes to the minimum over the active constraints and this one; those it pushes away leave. `steps` counts down.
-    fn enter(&mut self, of: &Compact<N>, entering: Kind, steps: &mut usize) -> Entered {
+    /// Moves to the minimum over the active constraints and this one, and drops constraints on the
+    /// way. `steps` counts down.
+    fn add_constraint(&mut self, of: &Compact<N>, entering: Kind, steps: &mut usize) -> AddResult {
         let mut multiplier = 0.0;
         loop {
             if *steps == 0 || !self.is_finite() {
-                return Entered::Stopped;
+                return AddResult::Stopped;
             }
             *steps -= 1;
             let q = self.count;
-            let Bearing { d, z, back } = self.bearing(of, entering);
+            let ConstraintDirection { d, z, back } = self.direction_of(of, entering);
             let (dual_step, leaving) = self.first_zero(&back);
             let mut free = d;
             free[..q].fill(0.0);
             // z . normal
             let slope = dot(&free, &free);
-            let primal_step = if slope > INDEPENDENT * dot(&d, &d) {
+            let primal_step = if slope > MIN_INDEPENDENT * dot(&d, &d) {
                 -of.value(entering, &self.x) / slope
             } else {
                 f64::INFINITY
             };
             let step = dual_step.min(primal_step);
             if step.is_infinite() {
-                return Entered::Contradicts;
+                return AddResult::Contradicts;
             }
             add_scaled(&mut self.multipliers, -step, &back);
             multiplier += step;
@@ -180,7 +182,7 @@ impl<const N: usize> Point<N> {
                 self.multipliers[q] = multiplier;
                 self.active[q] = entering;
                 self.count += 1;
-                return Entered::Active;
+                return AddResult::Active;
             }
             if let Some(i) = leaving {
                 self.drop(i);
@@ -188,8 +190,8 @@ impl<const N: usize> Point<N> {
         }
     }
 
-    /// `x` and multipliers anew from the factors, without what rounding has left on the way.
-    fn settle(&mut self, of: &Compact<N>) {
+    /// Recomputes `x` and the multipliers from the factors, without accumulated rounding.
+    fn finish(&mut self, of: &Compact<N>) {
         let mut bounds = [0.0; N];
         for (bound, kind) in bounds.iter_mut().zip(self.active()) {
             *bound = match *kind {
@@ -201,9 +203,13 @@ impl<const N: usize> Point<N> {
         let along = self.r.solve_transposed(&bounds, self.count);
         let (mut x, mut sums) = ([0.0; N], [0.0; N]);
         for (k, column) in self.j.iter().enumerate().take(of.size) {
-            let pull = dot(column, &of.gradient);
-            let share = if k < self.count { along[k] } else { -pull };
-            sums[k] = along[k] + pull;
+            let gradient_form = dot(column, &of.gradient);
+            let share = if k < self.count {
+                along[k]
+            } else {
+                -gradient_form
+            };
+            sums[k] = along[k] + gradient_form;
             add_scaled(&mut x, share, column);
         }
         self.x = x;
@@ -211,16 +217,16 @@ impl<const N: usize> Point<N> {
     }
 }
 
-/// A constraint's normal as the factors see it: `J' normal`, what `x` moves by and what the multipliers fall by per unit
-/// of its own.
-struct Bearing<const N: usize> {
+/// Normal of a constraint in terms of the factors: `J' normal`, and the change of `x` and the
+/// decrease of the multipliers per unit of its own multiplier.
+struct ConstraintDirection<const N: usize> {
     d: Padded<N>,
     z: Padded<N>,
     back: Padded<N>,
 }
 
 impl<const N: usize> Compact<N> {
-    /// With a price the largest violation is a variable, the last.
+    /// With a price, the largest violation is the last variable.
     pub(crate) fn of(programme: &Programme, price: Option<f64>) -> Self {
         let n = programme.size;
         let head = |row: &Row| {
@@ -272,15 +278,15 @@ impl<const N: usize> Compact<N> {
         }
     }
 
-    /// The most violated constraint that is not active, each relative to its scale.
+    /// Most violated inactive constraint, relative to its scale.
     fn violated(&self, at: &Point<N>, boxes: &[Padded<N>; 2]) -> Option<Kind> {
-        let mut worst = (-SATISFIED, None);
-        let mut look = |kind: Kind, v: f64| {
+        let mut worst = (-VIOLATION_TOLERANCE, None);
+        let mut examine = |kind: Kind, v: f64| {
             if v < worst.0 && !at.active().contains(&kind) {
                 worst = (v, Some(kind));
             }
         };
-        // what is beyond the variables is zero and violates nothing
+        // entries beyond the variables are zero and violate nothing
         let x = &at.x;
         let lanes: [Padded<N>; 2] = [
             std::array::from_fn(|i| (x[i] - self.low[i]) * boxes[0][i]),
@@ -297,34 +303,34 @@ impl<const N: usize> Compact<N> {
         };
         let kinds: [fn(usize) -> Kind; 2] = [Kind::Low, Kind::High];
         for (lane, kind) in lanes.iter().zip(kinds) {
-            if least(lane) < -SATISFIED {
+            if least(lane) < -VIOLATION_TOLERANCE {
                 for (i, v) in lane.iter().enumerate() {
-                    look(kind(i), *v);
+                    examine(kind(i), *v);
                 }
             }
         }
         for (r, row) in self.rows.iter().enumerate() {
-            look(Kind::Row(r), row.value(x) * row.scale);
+            examine(Kind::Row(r), row.value(x) * row.scale);
         }
         worst.1
     }
 
-    /// See [`Programme::solve`].
+    /// Solves the programme, see [`Programme::solve`].
     #[inline(never)]
     pub(crate) fn solve(self) -> Result<Solution, Unsolved> {
         let Some(mut at) = Point::free(&self) else {
             return Err(Unsolved::Stopped);
         };
-        let mut steps = MAX_STEPS;
+        let mut steps = MAX_ITERATIONS;
         let boxes = [self.low, self.high].map(|bounds| bounds.map(|b| 1.0 / (1.0 + b.abs())));
         while let Some(entering) = self.violated(&at, &boxes) {
-            match at.enter(&self, entering, &mut steps) {
-                Entered::Active => {}
-                Entered::Contradicts => return Err(Unsolved::Contradiction),
-                Entered::Stopped => return Err(Unsolved::Stopped),
+            match at.add_constraint(&self, entering, &mut steps) {
+                AddResult::Active => {}
+                AddResult::Contradicts => return Err(Unsolved::Contradiction),
+                AddResult::Stopped => return Err(Unsolved::Stopped),
             }
         }
-        at.settle(&self);
+        at.finish(&self);
         if !at.is_finite() {
             return Err(Unsolved::Stopped);
         }

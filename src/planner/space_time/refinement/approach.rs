@@ -1,4 +1,4 @@
-//! Where a manoeuvre comes closest to a part of an obstacle: the local minima of the slack in time.
+//! Closest approaches of a manoeuvre to convex pieces: local minima of the slack in time.
 
 use crate::frame::{Vector, to_port, to_starboard};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle};
@@ -10,52 +10,53 @@ use crate::tolerance;
 /// Metres. Approaches closer than this become rows.
 pub(crate) const NEAR_M: f64 = 40.0;
 
-/// Metres. Where legs meet closer than this the joint is a row too: a leg that slides along a face touches it at both
-/// ends, and of two ends only one is a minimum.
+/// Metres. Joints of segments closer than this become rows too. A segment that slides along a face
+/// touches it at both ends, and only one of the two is a minimum.
 const SLIDING_M: f64 = 20.0;
 
-/// Seconds within which a joint is the minimum beside it.
+/// Seconds within which a joint coincides with the minimum beside it.
 const SAME_S: f64 = 0.2;
 
-/// Radians. Longest arc that one chord stands for when a minimum is sought, to begin with and at the end.
+/// Longest arc per chord in the search for minima, radians: at first and at the end.
 pub(crate) const COARSE_CHORD_RAD: f64 = 0.15;
 pub(crate) const FINE_CHORD_RAD: f64 = 0.05;
 
-/// Cuts of one minimum at most.
+/// Largest number of cuts for one minimum.
 const MAX_CUTS: usize = 30;
 
-/// Metres. A smooth minimum is found to this.
+/// Accuracy of a smooth minimum, metres.
 const SETTLED_M: f64 = 1e-7;
 
-/// A local minimum of the slack along a manoeuvre.
+/// Local minimum of the slack along a manoeuvre.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Approach {
-    /// Index of the leg, and where on it.
+    /// Index of the segment, and the fraction along it.
     pub leg: usize,
     pub fraction: f64,
-    /// Metres.
+    /// Slack, metres.
     pub slack: f64,
-    /// Of the slack per metre east, metre north and second of the place: of the face that attains it, or of two
-    /// mixed so that the slack's rate along the manoeuvre vanishes.
+    /// Rates of the slack per metre east, metre north and second. They belong to the face that
+    /// attains it, or to a mixture of two for which the slack's rate along the manoeuvre vanishes.
     pub rates: [f64; 3],
 }
 
-/// What the slack is taken to: for a motion along a line it is convex in time.
+/// Set to which the slack is measured. Along a line the slack is convex in time.
 trait Shape {
-    /// What attains the slack.
+    /// Face, or other element, that attains the slack.
     type Face: Copy;
 
-    /// Metres, and what attains it; `near` attains it nearby.
+    /// Slack in metres and the face that attains it; `near` is a face that attains it nearby.
     fn slack(&self, position: Vector, time: f64, near: Option<Self::Face>) -> Slack<Self::Face>;
 
-    /// Its outward normal, and how fast it moves that way, m/s.
+    /// Outward normal of a face, and its speed along the normal, m/s.
     fn plane(&self, face: Self::Face) -> (Vector, f64);
 
-    /// True when no better minimum lies between: `gap` metres below `found` is what its neighbours allow.
+    /// True when no lower minimum lies between. `gap` is how far below `found` the neighbours'
+    /// tangents meet, metres.
     fn is_settled(found: Self::Face, neighbours: [Self::Face; 2], gap: f64) -> bool;
 }
 
-/// A signed distance or a lower bound of it.
+/// Signed distance or a lower bound of it.
 #[derive(Debug, Clone, Copy)]
 struct Slack<F> {
     value: f64,
@@ -107,8 +108,9 @@ impl Shape for EllipsoidObstacle {
     }
 }
 
-/// Adds the local minima of a proxy's slack along a manoeuvre, below [`NEAR_M`], and joints below [`SLIDING_M`]; arcs
-/// are cut into chords of `chord` radians at most. `middles` are those of the legs, see [`Rollout::middles`].
+/// Adds the local minima of a proxy's slack along a manoeuvre, below [`NEAR_M`], and joints below
+/// [`SLIDING_M`]. Arcs are divided into chords of at most `chord` radians. `middles` are the
+/// midpoints of [`Rollout::middles`].
 pub(crate) fn add_approaches(
     proxy: &Proxy,
     rollout: &Rollout,
@@ -116,7 +118,7 @@ pub(crate) fn add_approaches(
     chord: f64,
     found: &mut Vec<Approach>,
 ) {
-    match proxy.round {
+    match proxy.ellipsoid {
         Some(ellipsoid) => add_of(ellipsoid, proxy, rollout, (middles, chord), found),
         None => add_of(proxy.body, proxy, rollout, (middles, chord), found),
     }
@@ -133,7 +135,7 @@ fn add_of<S: Shape>(
     let mut minima = Minima::new(shape, proxy, rollout, found);
     let mut joints: Vec<Approach> = Vec::new();
     let clock = proxy.start();
-    // where a leg begins the one before it ended
+    // a segment begins where the one before ended
     let mut near = None;
     for (leg, (l, middle)) in rollout.legs.iter().zip(middles).enumerate() {
         let segment = &l.segment;
@@ -157,7 +159,7 @@ fn add_of<S: Shape>(
                 slack: shape.slack(position, time, near),
             }
         };
-        // each sample is the one before turned about the centre of the arc
+        // each sample is the one before, rotated about the centre of the arc
         let turn = segment.turn_rate * segment.duration * (last - first) / count;
         let (sin, cos) = if segment.is_arc() {
             turn.sin_cos()
@@ -177,7 +179,7 @@ fn add_of<S: Shape>(
         let closing = (segment.speed + proxy.speed()) * segment.duration * (last - first) / count;
         let mut k = 0.0;
         loop {
-            // what is far from near is so for as long as closing takes
+            // a distant sample stays distant for the time that closing takes
             let far = ((from.slack.value - NEAR_M) / closing).floor();
             if far >= 1.0 {
                 minima.end_run();
@@ -230,7 +232,8 @@ fn add_of<S: Shape>(
     }
 }
 
-/// The start of a leg: its place on the leg is fixed, so any face that attains the slack gives its rates.
+/// Start of a segment. Its position on the segment is fixed, so any face that attains the slack
+/// gives its rates.
 fn joint<S: Shape>(shape: &S, leg: usize, at: &Sample<S::Face>) -> Approach {
     let (normal, speed) = shape.plane(at.slack.face);
     Approach {
@@ -241,7 +244,7 @@ fn joint<S: Shape>(shape: &S, leg: usize, at: &Sample<S::Face>) -> Approach {
     }
 }
 
-/// What of a leg is sailed while a part is in force, as fractions of it.
+/// Part of a segment within the time window of a convex piece, as fractions.
 #[derive(Debug, Clone, Copy)]
 struct Span {
     first: f64,
@@ -267,7 +270,8 @@ impl Span {
     }
 }
 
-/// Own ship's velocity at a minimum that is at the edge of a window: its instant is fixed, not its share of the leg.
+/// OwnTerms ship's velocity at a minimum on the edge of a time window: there the instant is fixed, not
+/// the fraction of the segment.
 fn velocity_at_edge<F>(proxy: &Proxy, rollout: &Rollout, least: &Minimum<F>) -> Option<Vector> {
     let window = proxy.window?;
     let leg = &rollout.legs[least.leg];
@@ -277,12 +281,12 @@ fn velocity_at_edge<F>(proxy: &Proxy, rollout: &Rollout, least: &Minimum<F>) -> 
         .then(|| leg.along(least.fraction).1 * leg.segment.speed)
 }
 
-/// The local minima of runs of chords, found as the chords come.
+/// Local minima of runs of chords, found while the chords are added.
 struct Minima<'a, S: Shape> {
     shape: &'a S,
     proxy: &'a Proxy<'a>,
     rollout: &'a Rollout,
-    /// The last chord of the run, and the least slack on the one before it.
+    /// Last chord of the run, and the least slack on the one before it.
     last: Option<Chord<S::Face>>,
     before: f64,
     found: &'a mut Vec<Approach>,
@@ -316,7 +320,7 @@ impl<'a, S: Shape> Minima<'a, S> {
         self.before = slack;
     }
 
-    /// What comes next does not follow on what came.
+    /// Ends a run: the next chord does not continue it.
     fn end_run(&mut self) {
         if let Some(last) = self.last.take()
             && last.least.slack < self.before
@@ -332,7 +336,8 @@ impl<'a, S: Shape> Minima<'a, S> {
             return;
         }
         let mut faces = here.faces;
-        // at a joint the two sides share the instant: its faces are one falling, one rising
+        // at a joint the two sides share the instant: one face with falling slack, one with rising
+        // slack
         if let Some(next) = next
             && next.least.slack - here.slack < 1e-9
             && !here.is_mixed()
@@ -363,7 +368,7 @@ impl<'a, S: Shape> Minima<'a, S> {
     }
 }
 
-/// An instant of a segment with its slack.
+/// Instant of a segment with its slack.
 #[derive(Debug, Clone, Copy)]
 struct Sample<F> {
     position: Vector,
@@ -372,13 +377,13 @@ struct Sample<F> {
     slack: Slack<F>,
 }
 
-/// The least slack on a chord.
+/// Least slack on a chord.
 #[derive(Debug, Clone, Copy)]
 struct Minimum<F> {
     leg: usize,
     fraction: f64,
     slack: f64,
-    /// Faces that attain it with their weights.
+    /// Faces that attain it, with their weights.
     faces: [(F, f64); 2],
 }
 
@@ -388,13 +393,13 @@ impl<F> Minimum<F> {
     }
 }
 
-/// A straight piece between two samples, with the least slack on it. Along it the slack is a convex
-/// function, of a polytope piecewise linear, so tangents of a falling and a rising face are intersected until they
-/// meet.
+/// Straight piece between two samples, with the least slack on it. Along it the slack is convex;
+/// for a polytope it is piecewise linear. Tangents of a falling and a rising face are intersected
+/// until they meet.
 #[derive(Debug, Clone, Copy)]
 struct Chord<F> {
     least: Minimum<F>,
-    /// m/s of the slack at the start and at the end.
+    /// Rates of the slack at the start and at the end, m/s.
     start_rate: f64,
     end_rate: f64,
 }

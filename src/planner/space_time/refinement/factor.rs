@@ -1,18 +1,19 @@
-//! The factors of a dual active-set method: `J = L^-T Q` and the triangle `R`.
+//! Factors of a dual active-set method: `J = L^-T Q` and the triangle `R`.
 //!
-//! `J` is held by columns: every operation on it then runs along memory. Sizes are multiples of [`LANES`], known when
-//! compiled, and what is beyond a programme's own variables is zero: no loop has a remainder.
+//! `J` is stored by columns, so every operation runs along memory. Sizes are multiples of
+//! [`LANES`], known at compile time. Entries beyond a programme's own variables are zero, so no
+//! loop has a remainder.
 
-/// Sums that do not wait for each other.
+/// Number of independent partial sums.
 pub(crate) const LANES: usize = 4;
 
-/// Numbers, one per variable and zero beyond.
+/// Vector with one entry per variable, zero beyond.
 pub(crate) type Padded<const N: usize> = [f64; N];
 
-/// So many of them.
+/// Matrix of padded vectors.
 pub(crate) type Square<const N: usize> = [[f64; N]; N];
 
-/// The scalar product.
+/// Scalar product.
 pub(crate) fn dot<const N: usize>(a: &Padded<N>, b: &Padded<N>) -> f64 {
     let mut sums = [0.0; LANES];
     for (x, y) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
@@ -30,9 +31,10 @@ pub(crate) fn add_scaled<const N: usize>(to: &mut Padded<N>, factor: f64, from: 
     }
 }
 
-/// The columns of `L^-T` for `H = L L'`, which are the rows of `L^-1`; `n` of them.
+/// Columns of `L^-T` for `H = L L'`, which are the rows of `L^-1`; `n` of them.
 ///
-/// Eliminates below each diagonal in turn, in the matrix and beside it: rows do not wait for each other.
+/// Eliminates below each diagonal in turn, in the matrix and in the inverse, so that rows are
+/// independent.
 pub(crate) fn inverse_transposed_factor<const N: usize>(
     h: &Square<N>,
     n: usize,
@@ -63,7 +65,7 @@ pub(crate) fn inverse_transposed_factor<const N: usize>(
     Some(inverse)
 }
 
-/// The triangle `R`, by columns, with the reciprocals of its diagonal.
+/// Triangle `R` by columns, with the reciprocals of its diagonal.
 #[derive(Debug, Clone)]
 pub(crate) struct Triangle<const N: usize> {
     columns: Square<N>,
@@ -78,7 +80,7 @@ impl<const N: usize> Triangle<N> {
         }
     }
 
-    /// `R^-1` times the first `q` of `d`.
+    /// Solves `R x = d` for the first `q` entries.
     pub(crate) fn solve(&self, d: &Padded<N>, q: usize) -> Padded<N> {
         let mut found = [0.0; N];
         let mut rest = *d;
@@ -89,26 +91,27 @@ impl<const N: usize> Triangle<N> {
         found
     }
 
-    /// `R^-T` times the first `q` of `b`.
+    /// Solves `R' x = b` for the first `q` entries.
     pub(crate) fn solve_transposed(&self, b: &Padded<N>, q: usize) -> Padded<N> {
         let mut found = [0.0; N];
         for i in 0..q {
-            // what is not found yet is zero
+            // entries not yet computed are zero
             found[i] = (b[i] - dot(&self.columns[i], &found)) * self.reciprocals[i];
         }
         found
     }
 }
 
-/// Appends a constraint with `d = J' normal` to `q` active ones: a reflection turns `d` from `q` on, of this length, into
-/// its first component. `z` is the sum of the columns from `q` on, each times its `d`.
+/// Adds a constraint with `d = J' normal` to `q` active ones. A reflection turns `d` from `q` on,
+/// of the given length, into its first component. `z` is the sum of the columns from `q` on, each
+/// times its entry of `d`.
 pub(crate) fn add<const N: usize>(
     (j, r): (&mut Square<N>, &mut Triangle<N>),
     (d, z, length): (&Padded<N>, &Padded<N>, f64),
     q: usize,
     n: usize,
 ) {
-    // away from cancellation
+    // avoids cancellation
     let turned = length.copysign(d[q]);
     let first = d[q] + turned;
     let scale = 1.0 / (turned * first);
@@ -124,7 +127,7 @@ pub(crate) fn add<const N: usize>(
     r.reciprocals[q] = -1.0 / turned;
 }
 
-/// Drops active constraint `i` of `q`.
+/// Removes active constraint `i` of `q`.
 pub(crate) fn remove<const N: usize>(
     (j, r): (&mut Square<N>, &mut Triangle<N>),
     i: usize,

@@ -1,24 +1,26 @@
-//! Gradient and Gauss-Newton Hessian of a manoeuvre's cost from moments of its points.
+//! Gradient and Gauss-Newton Hessian of a manoeuvre's cost, accumulated over its points.
 //!
-//! Lengthening segment variable `i` moves a later point `p` as a rigid body: `dp/dl = b + c J(p)` with the segment variable's own
-//! `b` (east, north, clock) and curvature `c`, and `J(p) = (-p.y, p.x, 0)`. A residual with rates `r` in
-//! (east, north, clock) and weight `w` adds `w (r . m_i)(r . m_j)` to the Hessian, so all that the points
-//! after a segment variable contribute is one symmetric 4 x 4 matrix, summed once from the end: no sum over the points
-//! per pair of segment variables.
+//! Lengthening segment variable `i` moves a later point `p` as a rigid body: `dp/dl = b + c J(p)`
+//! with the segment variable's own `b` (east, north, clock) and curvature `c`, and
+//! `J(p) = (-p.y, p.x, 0)`. A residual with rates `r` in (east, north, clock) and weight `w` adds
+//! `w (r . m_i)(r . m_j)` to the Hessian. So the points after a segment variable contribute one
+//! symmetric 4 x 4 matrix. It is summed once from the end; there is no sum over the points per pair
+//! of segment variables.
 
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 
-/// Columns of the upper triangle of a symmetric 3 x 3 matrix: ee, en, et, nn, nt, tt.
+/// Upper triangle of a symmetric 3 x 3 matrix: ee, en, et, nn, nt, tt.
 type Weight = [f64; 6];
 
-/// How a segment variable moves what follows it: `b` (east, north, clock) about the origin, and `c`.
+/// Twist of all that follows a segment variable: `b` (east, north, clock) about the origin, and
+/// `c`.
 pub(crate) type Twist = [f64; 4];
 
-/// The squared residuals of one point: the rates of each residual in (east, north, clock), summed.
+/// Squared residuals of one point: sums over the rates of each residual in (east, north, clock).
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Residuals {
     weight: Weight,
-    pull: [f64; 3],
+    gradient_form: [f64; 3],
 }
 
 impl Residuals {
@@ -30,7 +32,7 @@ impl Residuals {
         for (w, q) in self.weight.iter_mut().zip(squares) {
             *w += q;
         }
-        for (p, s) in self.pull.iter_mut().zip(s) {
+        for (p, s) in self.gradient_form.iter_mut().zip(s) {
             *p += s * value;
         }
     }
@@ -53,17 +55,17 @@ pub(crate) fn dot4(a: &Twist, b: &Twist) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// What the points of one segment variable, or of all segment variables after one, contribute.
+/// Contribution of the points of one segment variable, or of all segment variables after one.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Moment {
+pub(crate) struct Accumulation {
     weight: Weight,
-    /// `W J` summed, and `J W J`.
+    /// Sums of `W J` and of `J W J`.
     mixed: [f64; 3],
     square: f64,
-    pull: [f64; 4],
+    gradient_form: [f64; 4],
 }
 
-impl Moment {
+impl Accumulation {
     fn add(&mut self, other: &Self) {
         for (a, b) in self.weight.iter_mut().zip(other.weight) {
             *a += b;
@@ -72,25 +74,25 @@ impl Moment {
             *a += b;
         }
         self.square += other.square;
-        for (a, b) in self.pull.iter_mut().zip(other.pull) {
+        for (a, b) in self.gradient_form.iter_mut().zip(other.gradient_form) {
             *a += b;
         }
     }
 
-    /// The gradient with a twist that moves all these points, as a linear form of it.
-    pub(crate) fn pull(&self) -> Twist {
-        self.pull
+    /// Gradient with respect to a twist that moves all these points, as a linear form of the twist.
+    pub(crate) fn gradient_form(&self) -> Twist {
+        self.gradient_form
     }
 
-    /// The second rate with such a twist.
-    pub(crate) fn bend(&self, twist: &Twist) -> f64 {
+    /// Second derivative along such a twist.
+    pub(crate) fn curvature_along(&self, twist: &Twist) -> f64 {
         dot4(twist, &self.times(twist))
     }
 
     fn times(&self, v: &Twist) -> [f64; 4] {
         let residuals = Residuals {
             weight: self.weight,
-            pull: [0.0; 3],
+            gradient_form: [0.0; 3],
         };
         let base = [v[0], v[1], v[2]];
         let weighed = residuals.weigh(base);
@@ -103,32 +105,32 @@ impl Moment {
     }
 }
 
-/// What a segment variable's own points contribute with its own rate.
+/// Contribution of a segment variable's own points with its own rate.
 #[derive(Debug, Clone, Copy, Default)]
-struct Own {
+struct OwnTerms {
     cross: [f64; 4],
     square: f64,
-    pull: f64,
+    gradient_form: f64,
 }
 
-/// The sums of one manoeuvre.
+/// Accumulated sums of one manoeuvre.
 #[derive(Debug)]
 pub(crate) struct GaussNewton {
-    variables: Vec<Moment>,
-    own: Vec<Own>,
+    variables: Vec<Accumulation>,
+    own: Vec<OwnTerms>,
 }
 
 impl GaussNewton {
-    /// Of no points, for so many segment variables.
+    /// Empty sums for the given number of segment variables.
     pub(crate) fn new(variables: usize) -> Self {
         Self {
-            variables: vec![Moment::default(); variables],
-            own: vec![Own::default(); variables],
+            variables: vec![Accumulation::default(); variables],
+            own: vec![OwnTerms::default(); variables],
         }
     }
 
-    /// Adds a point of segment variable `index` at `place` (east, north from the origin of the twists), which moves with
-    /// its own segment variable at `own` (east, north, clock).
+    /// Adds a point of segment variable `index` at `place` (east, north from the origin of the
+    /// twists). Its own segment variable moves it at `own` (east, north, clock).
     pub(crate) fn add(
         &mut self,
         index: usize,
@@ -146,10 +148,10 @@ impl GaussNewton {
             *a += b;
         }
         moment.square += dot3(lever, mixed);
-        for (a, b) in moment.pull.iter_mut().zip(residuals.pull) {
+        for (a, b) in moment.gradient_form.iter_mut().zip(residuals.gradient_form) {
             *a += b;
         }
-        moment.pull[3] += dot3(lever, residuals.pull);
+        moment.gradient_form[3] += dot3(lever, residuals.gradient_form);
         let weighed = residuals.weigh(own);
         let mine = &mut self.own[index];
         for (a, b) in mine.cross.iter_mut().zip(weighed) {
@@ -157,10 +159,10 @@ impl GaussNewton {
         }
         mine.cross[3] += dot3(lever, weighed);
         mine.square += dot3(own, weighed);
-        mine.pull += dot3(own, residuals.pull);
+        mine.gradient_form += dot3(own, residuals.gradient_form);
     }
 
-    /// Adds a point that each of the first segment variables moves at `rates` of its own.
+    /// Adds a point that each of the first segment variables moves at its own `rates`.
     pub(crate) fn add_directly(
         rates: &[[f64; 3]],
         residuals: &Residuals,
@@ -169,7 +171,7 @@ impl GaussNewton {
     ) {
         for (k, rate) in rates.iter().enumerate() {
             let weighed = residuals.weigh(*rate);
-            gradient[k] += dot3(*rate, residuals.pull);
+            gradient[k] += dot3(*rate, residuals.gradient_form);
             for (i, other) in rates[..=k].iter().enumerate() {
                 lower[k][i] += dot3(*other, weighed);
             }
@@ -177,7 +179,7 @@ impl GaussNewton {
     }
 
     /// For every segment variable, the sum over its own points and those of all later ones.
-    pub(crate) fn sums_from_each(&self) -> Vec<Moment> {
+    pub(crate) fn sums_from_each(&self) -> Vec<Accumulation> {
         let mut sums = self.variables.clone();
         for i in (1..sums.len()).rev() {
             let later = sums[i];
@@ -186,14 +188,14 @@ impl GaussNewton {
         sums
     }
 
-    /// Adds everything to the gradient and to the lower triangle of the Hessian.
+    /// Adds all contributions to the gradient and to the lower triangle of the Hessian.
     pub(crate) fn finish(&self, twists: &[Twist], gradient: &mut Row, lower: &mut [Row]) {
-        let mut later = Moment::default();
+        let mut later = Accumulation::default();
         for (j, twist) in twists.iter().enumerate().rev() {
             let own = &self.own[j];
             let mut column = later.times(twist);
             lower[j][j] += dot4(twist, &column) + own.square;
-            gradient[j] += dot4(twist, &later.pull) + own.pull;
+            gradient[j] += dot4(twist, &later.gradient_form) + own.gradient_form;
             for (c, q) in column.iter_mut().zip(own.cross) {
                 *c += q;
             }
@@ -205,7 +207,8 @@ impl GaussNewton {
     }
 }
 
-/// A row in all segment variables as a row in the free ones; `solved` are the rates of the segment variables after the free ones.
+/// Reduces a row in all segment variables to the free ones. `solved` holds the rates of the
+/// dependent segment variables, which come last.
 pub(crate) fn reduce(row: &Row, solved: &[Row], free: usize) -> Row {
     let mut reduced = [0.0; MAX_VARIABLES];
     reduced[..free].copy_from_slice(&row[..free]);
@@ -217,7 +220,7 @@ pub(crate) fn reduce(row: &Row, solved: &[Row], free: usize) -> Row {
     reduced
 }
 
-/// A lower triangle in all segment variables as a symmetric matrix in the free ones.
+/// Reduces a lower triangle in all segment variables to a symmetric matrix in the free ones.
 pub(crate) fn reduce_matrix(mut lower: Vec<Row>, solved: &[Row], free: usize) -> Vec<Row> {
     let dependent = lower.split_off(free);
     for (d, rates) in solved.iter().enumerate() {
@@ -250,9 +253,9 @@ mod tests {
     use super::*;
     use rand::{Rng, SeedableRng};
 
-    /// The sum over points and pairs of segment variables that the moments stand for.
+    /// Compares with the explicit sum over points and pairs of segment variables.
     #[test]
-    fn moments_give_the_sum_over_all_points_and_pairs() {
+    fn accumulation_equals_the_sum_over_all_points_and_pairs() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
         let n = 9;
         let twists: Vec<Twist> = (0..n)
@@ -293,7 +296,8 @@ mod tests {
         }
     }
 
-    /// `T' H T` with the rates of the solved segment variables below the identity.
+    /// Compares with `T' H T`, where `T` is the identity above the rates of the solved segment
+    /// variables.
     #[test]
     fn a_reduced_matrix_is_the_product_with_the_rates() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(8);

@@ -1,57 +1,58 @@
-//! What a manoeuvre lacks: segment variables whose first metre would lower the cost.
+//! Segment insertion: finds new segment variables whose first metre lowers the cost.
 //!
-//! A segment variable that is put in between two others moves all that follows as a rigid body, so the rate of the cost with
-//! its length, the price of the contacts included, is one linear form of its twist, the same for every kind of segment variable
-//! at that place (column generation, with the multipliers of the last quadratic programme). Where no rate is
-//! negative, no structure with more segment variables is cheaper, to first order.
+//! A segment variable that is inserted between two others moves all that follows as a rigid body.
+//! So the rate of the cost with its length, including the price of the contacts, is one linear form
+//! of its twist. This form is common to every kind of segment variable at that position (column
+//! generation, with the multipliers of the last quadratic programme). Where no rate is negative, no
+//! structure with more segment variables is cheaper, to first order.
 
 use crate::frame::{Side, Vector};
 use crate::planner::space_time::refinement::InitialGuess;
-use crate::planner::space_time::refinement::gauss_newton::{Moment, Twist, dot4};
-use crate::planner::space_time::refinement::model::Full;
+use crate::planner::space_time::refinement::gauss_newton::{Accumulation, Twist, dot4};
+use crate::planner::space_time::refinement::model::UnreducedModel;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Programme, Row};
-use crate::planner::space_time::refinement::rollout::Owner;
+use crate::planner::space_time::refinement::rollout::SegmentOrigin;
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::selection::initial_guess::SpeedTable;
+use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 
-/// Metres. Shorter segment variables are left out before new ones are put in.
+/// Metres. Shorter segment variables are removed before the insertion.
 const EMPTY_M: f64 = 0.5;
 
-/// Radians of turn, and turning radii of line, below which a segment variable is of no use.
+/// Least useful turn in radians, and least useful line in turning radii.
 const LEAST_TURN: f64 = 0.03;
 const LEAST_LINE: f64 = 0.05;
 
-/// Metres by which one step may change a length when the contacts are priced.
+/// Largest change of a length in the step that prices the contacts, metres.
 const PRICING_RADIUS_M: f64 = 20.0;
 
-/// m²/m. What a missing metre of slack is worth at most.
-const DEAREST: f64 = 1e5;
+/// Largest multiplier of a metre of slack, m²/m.
+const MAX_MULTIPLIER: f64 = 1e5;
 
-/// Slots added at a time, the most promising.
-const MOST_ADDED: usize = 8;
+/// Largest number of insertions at a time.
+const MAX_INSERTIONS: usize = 8;
 
-/// Share of the cost that the additions have to promise.
-const WORTH_ADDING: f64 = 1e-3;
+/// Least predicted gain of the insertions, as a fraction of the cost.
+const MIN_GAIN: f64 = 1e-3;
 
-/// A segment variable that could be put in before segment variable `gap`.
+/// Segment variable to be inserted before segment variable `gap`.
 #[derive(Debug, Clone, Copy)]
-struct Addition {
+struct Insertion {
     gap: usize,
     variable: SegmentVariable,
-    /// m², to second order and alone.
+    /// Predicted gain to second order, on its own, m².
     gain: f64,
 }
 
-/// The manoeuvre with lines cut in two where they are longer than `uncut` metres, and with the segment variables that promise most,
-/// still empty. `None` when nothing is promised, or it does not fit.
+/// Divides lines longer than `uncut` metres in two and inserts the most promising segment
+/// variables, with zero length. `None` when nothing is promising, or when it does not fit.
 pub(crate) fn with_insertions(
     context: &Context,
     guess: &InitialGuess,
     uncut: f64,
 ) -> Option<InitialGuess> {
-    let base = cut(context, guess, uncut)?;
-    let found = additions(context, &base)?;
+    let base = split(context, guess, uncut)?;
+    let found = insertions(context, &base)?;
     let mut with_insertions = InitialGuess {
         structure: Structure {
             variables: Vec::with_capacity(MAX_VARIABLES),
@@ -70,7 +71,7 @@ pub(crate) fn with_insertions(
     Some(with_insertions)
 }
 
-/// The manoeuvre without turns and lines too short to be of use; `None` when it has none.
+/// Removes turns and lines too short to be useful; `None` when there are none.
 pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialGuess> {
     let radius = context.problem.own.turning_radius;
     let is_of_use = |(variable, length): &(&SegmentVariable, &f64)| match variable {
@@ -96,8 +97,9 @@ pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialG
     })
 }
 
-/// Leaves out what is empty, and cuts long lines, the solved one of a return included.
-fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
+/// Removes empty segment variables and divides long lines, including the dependent line of a
+/// return.
+fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     let mut add = |variable: SegmentVariable, length: f64| {
         let is_line = matches!(variable, SegmentVariable::Line { .. });
@@ -116,7 +118,7 @@ fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGue
     if let Ending::Return { speed, .. } = guess.structure.ending {
         let rollout = guess
             .structure
-            .sail(context.problem, context.route, &guess.lengths)?;
+            .roll_out(context.problem, context.route, &guess.lengths)?;
         if rollout.solved[0] > uncut {
             add(
                 SegmentVariable::Line { speed },
@@ -125,7 +127,7 @@ fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGue
         }
     }
     let mut lengths: Row = [0.0; MAX_VARIABLES];
-    // one addition at least has to fit beside the two solved segment variables
+    // at least one insertion must fit beside the two dependent segment variables
     if pieces.len() + 3 > MAX_VARIABLES {
         return None;
     }
@@ -141,14 +143,14 @@ fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGue
     })
 }
 
-/// The most promising additions, or `None` where all together promise next to nothing.
-fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
+/// Most promising insertions; `None` where their total predicted gain is negligible.
+fn insertions(context: &Context, base: &InitialGuess) -> Option<Vec<Insertion>> {
     let free = base.structure.free();
     let trial = context.trial(&base.structure, &base.lengths)?;
-    let full = context.full(&base.structure, trial);
+    let unreduced = context.unreduced(&base.structure, trial);
     let multipliers = multipliers(context, base)?;
-    let prices = Prices::new(context, &base.structure, &full, &multipliers);
-    let first = full.trial.rollout.runs;
+    let prices = Prices::new(context, &base.structure, &unreduced, &multipliers);
+    let first = unreduced.trial.rollout.runs;
     let mut found = Vec::new();
     let turn = first_turn(&base.structure);
     let is_seen = !context.problem.duty().is_none();
@@ -163,9 +165,9 @@ fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
             if swings_out || beside.contains(&Some(&variable)) {
                 continue;
             }
-            let gain = prices.gain(context, &full, gap, variable);
+            let gain = prices.gain(context, &unreduced, gap, variable);
             if gain > 0.0 {
-                found.push(Addition {
+                found.push(Insertion {
                     gap,
                     variable,
                     gain,
@@ -174,13 +176,13 @@ fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
         }
     }
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    found.truncate(MOST_ADDED.min(MAX_VARIABLES - 2 - free));
+    found.truncate(MAX_INSERTIONS.min(MAX_VARIABLES - 2 - free));
     let promised: f64 = found.iter().map(|a| a.gain).sum();
-    (promised > WORTH_ADDING * full.trial.cost).then_some(found)
+    (promised > MIN_GAIN * unreduced.trial.cost).then_some(found)
 }
 
-/// Where the first turn is, and to which side. Nothing turns to the other side before it: others have to see at once
-/// on which side own ship means to pass.
+/// Position and side of the first turn. No turn to the other side is inserted before it: other
+/// ships must see at once on which side own ship intends to pass.
 fn first_turn(structure: &Structure) -> Option<(usize, Side)> {
     let mut variables = structure.variables.iter().enumerate();
     variables.find_map(|(at, variable)| match variable {
@@ -191,7 +193,7 @@ fn first_turn(structure: &Structure) -> Option<(usize, Side)> {
 
 /// Every kind of segment variable after the runs.
 fn kinds(context: &Context) -> impl Iterator<Item = SegmentVariable> + use<> {
-    let speed_table = SpeedTable::of(context.problem);
+    let speed_table = ManoeuvreSpeeds::of(context.problem);
     let mut speeds = vec![speed_table.slow, speed_table.normal, speed_table.fast];
     speeds.dedup();
     speeds.into_iter().flat_map(|speed| {
@@ -200,7 +202,7 @@ fn kinds(context: &Context) -> impl Iterator<Item = SegmentVariable> + use<> {
     })
 }
 
-/// What a metre of slack is worth at each row, m²/m: the multipliers of one step.
+/// Multiplier of each row, m² per metre of slack, from one quadratic programme.
 fn multipliers(context: &Context, base: &InitialGuess) -> Option<Vec<f64>> {
     let free = base.structure.free();
     let model = context.model(&base.structure, &base.lengths)?;
@@ -211,44 +213,50 @@ fn multipliers(context: &Context, base: &InitialGuess) -> Option<Vec<f64>> {
         low: &base.lengths.map(|l| (-PRICING_RADIUS_M).max(-l)),
         high: &[PRICING_RADIUS_M; MAX_VARIABLES],
         rows: &model.rows,
-        price: Some(DEAREST),
+        price: Some(MAX_MULTIPLIER),
     };
     Some(programme.solve()?.multipliers)
 }
 
-/// What a change before each segment variable costs per metre, as a linear form of its twist about `origin`.
+/// Cost per metre of a change before each segment variable, as a linear form of its twist about
+/// `origin`.
 struct Prices {
     origin: Vector,
     forms: Vec<Twist>,
-    moments: Vec<Moment>,
+    moments: Vec<Accumulation>,
 }
 
 impl Prices {
-    fn new(context: &Context, structure: &Structure, full: &Full, multipliers: &[f64]) -> Self {
+    fn new(
+        context: &Context,
+        structure: &Structure,
+        unreduced: &UnreducedModel,
+        multipliers: &[f64],
+    ) -> Self {
         let (free, all) = (structure.free(), structure.all());
-        let rollout = &full.trial.rollout;
+        let rollout = &unreduced.trial.rollout;
         let origin = context.problem.own.pose.position;
-        let moments = full.moments.sums_from_each();
+        let moments = unreduced.moments.sums_from_each();
         let joined_by = rollout.joined_by(origin);
-        // what every later change has in common: the return segments
+        // contribution of the return segments, common to all changes
         let mut common = [0.0; 4];
         let add_tail = |form: &mut Twist, by_distance: f64, by_time: f64| {
             add(form, &joined_by, by_distance);
             add(form, &[0.0, 0.0, 1.0, 0.0], by_time);
         };
-        if let Some(return_segments) = &full.trial.return_segments {
+        if let Some(return_segments) = &unreduced.trial.return_segments {
             add_tail(
                 &mut common,
                 return_segments.by_distance,
                 return_segments.by_time,
             );
         }
-        let mut forms: Vec<Twist> = moments.iter().map(Moment::pull).collect();
+        let mut forms: Vec<Twist> = moments.iter().map(Accumulation::gradient_form).collect();
         let mut of_solved = [0.0; 2];
         for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
-            *price = full.gradient[free + k];
+            *price = unreduced.gradient[free + k];
         }
-        for (approach, multiplier) in full.trial.approaches.iter().zip(multipliers) {
+        for (approach, multiplier) in unreduced.trial.approaches.iter().zip(multipliers) {
             if *multiplier <= 0.0 {
                 continue;
             }
@@ -263,7 +271,7 @@ impl Prices {
                     }
                     place.variable
                 }
-                (None, Owner::ReturnSegments { index }) => {
+                (None, SegmentOrigin::ReturnSegments { index }) => {
                     let (by_distance, by_time) =
                         context.return_segment_rates(rollout, index, approach);
                     add_tail(
@@ -273,19 +281,19 @@ impl Prices {
                     );
                     all
                 }
-                (None, Owner::SegmentVariable { .. }) => continue,
+                (None, SegmentOrigin::SegmentVariable { .. }) => continue,
             };
             if last >= free {
-                let row = context.approach_row(&full.trial, approach);
+                let row = context.approach_row(&unreduced.trial, approach);
                 for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
                     *price -= multiplier * row[free + k];
                 }
             }
         }
-        // rows after those of the approaches keep the solved segment variables from running out
+        // rows after those of the approaches keep the dependent segment variables positive
         for (price, multiplier) in of_solved
             .iter_mut()
-            .zip(&multipliers[full.trial.approaches.len()..])
+            .zip(&multipliers[unreduced.trial.approaches.len()..])
         {
             *price -= multiplier;
         }
@@ -303,16 +311,17 @@ impl Prices {
         }
     }
 
-    /// The rate of the cost with the length of a segment variable put in before segment variable `gap`, m² per metre, and the second rate.
+    /// Rate of the cost with the length of a segment variable inserted before segment variable
+    /// `gap`, m² per metre, and the second rate.
     fn rate(
         &self,
         context: &Context,
-        full: &Full,
+        unreduced: &UnreducedModel,
         gap: usize,
         variable: SegmentVariable,
     ) -> Option<(f64, f64)> {
-        let leg = full.trial.rollout.legs.iter().find(
-            |l| matches!(l.owner, Owner::SegmentVariable { index, from, .. } if index == gap && from == 0.0),
+        let leg = unreduced.trial.rollout.legs.iter().find(
+            |l| matches!(l.owner, SegmentOrigin::SegmentVariable { index, from, .. } if index == gap && from == 0.0),
         )?;
         let at = leg.segment.start.position - self.origin;
         let slowness = 1.0 / variable.speed();
@@ -334,17 +343,23 @@ impl Prices {
         let own = slowness / desired.duration() * here.error;
         Some((
             dot4(&twist, &self.forms[gap]) + own,
-            self.moments[gap].bend(&twist),
+            self.moments[gap].curvature_along(&twist),
         ))
     }
 
-    /// What the segment variable alone would gain, m², to second order; zero when its first metre costs.
-    fn gain(&self, context: &Context, full: &Full, gap: usize, variable: SegmentVariable) -> f64 {
-        let Some((rate, bend)) = self.rate(context, full, gap, variable) else {
+    /// Predicted gain of one insertion, m², to second order; zero when its first metre costs.
+    fn gain(
+        &self,
+        context: &Context,
+        unreduced: &UnreducedModel,
+        gap: usize,
+        variable: SegmentVariable,
+    ) -> f64 {
+        let Some((rate, curvature_along)) = self.rate(context, unreduced, gap, variable) else {
             return 0.0;
         };
         if rate < 0.0 {
-            0.5 * rate * rate / bend.max(1e-9 * full.trial.cost.max(1.0))
+            0.5 * rate * rate / curvature_along.max(1e-9 * unreduced.trial.cost.max(1.0))
         } else {
             0.0
         }
@@ -362,16 +377,17 @@ mod tests {
     use super::*;
     use crate::planner::space_time::refinement::model::tests::at_manoeuvres;
 
-    /// Every price against the reduced gradient of the structure that has the segment variable, empty.
+    /// Compares every price with the reduced gradient of the structure with the inserted, empty
+    /// segment variable.
     #[test]
-    fn prices_are_the_rates_of_the_larger_template() {
+    fn prices_are_the_rates_of_the_larger_structure() {
         at_manoeuvres(|context, guess| {
             let trial = context.trial(&guess.structure, &guess.lengths);
-            let full = context.full(&guess.structure, trial.expect("fits"));
+            let unreduced = context.unreduced(&guess.structure, trial.expect("fits"));
             let multipliers = multipliers(context, guess).expect("solvable");
-            let prices = Prices::new(context, &guess.structure, &full, &multipliers);
+            let prices = Prices::new(context, &guess.structure, &unreduced, &multipliers);
             assert!(multipliers.iter().any(|m| *m > 0.0));
-            for gap in full.trial.rollout.runs..=guess.structure.free() {
+            for gap in unreduced.trial.rollout.runs..=guess.structure.free() {
                 for variable in kinds(context) {
                     let mut larger = guess.clone();
                     larger.structure.variables.insert(gap, variable);
@@ -386,25 +402,26 @@ mod tests {
                         .map(|(row, multiplier)| row.coefficients[gap] * multiplier)
                         .sum();
                     let expected = model.gradient[gap] - of_rows;
-                    let (found, bend) =
-                        prices.rate(context, &full, gap, variable).expect("a place");
+                    let (found, curvature_along) = prices
+                        .rate(context, &unreduced, gap, variable)
+                        .expect("a place");
                     assert!(
                         (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
                         "{variable:?} before {gap}: {found} {expected}"
                     );
-                    assert!(bend >= -1e-9 * (1.0 + found.abs()));
+                    assert!(curvature_along >= -1e-9 * (1.0 + found.abs()));
                 }
             }
         });
     }
 
     #[test]
-    fn a_cut_manoeuvre_is_the_same_manoeuvre() {
+    fn a_split_manoeuvre_has_the_same_rollout() {
         at_manoeuvres(|context, guess| {
             let whole = context
                 .model(&guess.structure, &guess.lengths)
                 .expect("fits");
-            let pieces = cut(context, guess, 30.0).expect("room for pieces");
+            let pieces = split(context, guess, 30.0).expect("room for pieces");
             assert!(pieces.structure.free() > 0);
             let again = context
                 .model(&pieces.structure, &pieces.lengths)

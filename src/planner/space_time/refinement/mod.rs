@@ -1,4 +1,5 @@
-//! Finds the lengths of a manoeuvre: sequential quadratic programming with an L1 merit.
+//! Refinement of a manoeuvre's lengths by sequential quadratic programming with an L1 merit
+//! function.
 
 pub(crate) mod active_set;
 pub(crate) mod approach;
@@ -24,55 +25,57 @@ use crate::planner::space_time::refinement::trial::{Context, Trial};
 use crate::planner::space_time::rules::readily_apparent::Apparent;
 use crate::trajectory::Segment;
 
-/// Metres by which one step may change a length, at first, at most, at least.
+/// Trust region of the lengths, metres: first, largest, smallest.
 const FIRST_RADIUS_M: f64 = 80.0;
 const LARGEST_RADIUS_M: f64 = 400.0;
 const SMALLEST_RADIUS_M: f64 = 0.02;
 
-/// Steps of one refinement at most.
+/// Largest number of steps of one refinement.
 pub(crate) const MAX_STEPS: usize = 40;
 
-/// Last corrections of a refinement that ends a little inside, and how far inside that may be, metres.
+/// Largest number of restoration steps for a result slightly inside a set, and the largest such
+/// depth, metres.
 const RESTORATIONS: usize = 3;
 const RESTORABLE_M: f64 = 5.0;
 
-/// Radians. Longest turn of one segment variable.
+/// Longest turn of one segment variable, radians.
 const LONGEST_ARC: f64 = 2.0;
 
-/// The merit's weight of a missing metre, m²/m: at first a multiple of the initial guess's cost, which a plan
-/// loses over some tens of metres; later at least the multipliers.
+/// Penalty of a missing metre, m²/m. It starts as a multiple of the initial guess's cost, which a
+/// plan changes over some tens of metres. Later it is at least the sum of the multipliers.
 const LEAST_PENALTY: f64 = 10.0;
 const PENALTY_PER_COST: f64 = 0.01;
 
-/// A step that does not fit or gain is shortened by this, so many times, before the programme is solved
-/// anew in a smaller box.
+/// Factor and largest number of backtracking steps for a step that does not fit or gain. Then the
+/// programme is solved again in a smaller trust region.
 const BACKTRACK: f64 = 0.4;
 const MAX_BACKTRACKS: usize = 2;
 
-/// Share of what the box allows that an unmet row asks for.
-const REACHABLE: f64 = 0.8;
+/// Fraction of the attainable change that an unsatisfiable row requires.
+const ATTAINABLE: f64 = 0.8;
 
-/// By how much a missing metre is dearer for a refinement that has come to rest inside a set, and how often.
-const DEARER: f64 = 6.0;
+/// Penalty increase for a refinement that has converged inside a set, and the largest number of
+/// increases.
+const PENALTY_FACTOR: f64 = 6.0;
 const MAX_RAISES: usize = 3;
 
-/// Share of the predicted gain that a step has to bring.
+/// Least ratio of actual to predicted gain of a step.
 const LEAST_GAIN: f64 = 0.05;
 
-/// Metres inside that are not worth a correction.
-const CLEAR_ENOUGH_M: f64 = 1e-3;
+/// Depth in metres that needs no correction.
+const CORRECTION_M: f64 = 1e-3;
 
-/// Relative decrease that is no progress.
+/// Relative decrease that counts as no progress.
 const STALLED: f64 = 1e-3;
 
-/// A manoeuvre to begin from.
+/// Initial guess of a refinement.
 #[derive(Debug, Clone)]
 pub(crate) struct InitialGuess {
     pub structure: Structure,
     pub lengths: Row,
 }
 
-/// Side of the first turn of some length.
+/// Side of the first turn of non-zero length.
 fn first_turn(guess: &InitialGuess) -> Option<Side> {
     let mut variables = guess.structure.variables.iter().zip(&guess.lengths);
     variables.find_map(|(variable, length)| match variable {
@@ -81,23 +84,23 @@ fn first_turn(guess: &InitialGuess) -> Option<Side> {
     })
 }
 
-/// A manoeuvre clear of every set, with the margin, as far as its contact rows tell.
+/// Manoeuvre that is clear of every set with the margin, as far as its contact rows show.
 #[derive(Debug, Clone, Copy)]
 struct Refined {
     cost: f64,
-    /// Of its segment variables.
+    /// Lengths of its segment variables.
     lengths: Row,
 }
 
-/// A refinement under way.
+/// Refinement in progress.
 #[derive(Debug)]
 pub(crate) struct Refinement {
     structure: Structure,
     lengths: Row,
     model: Model,
-    /// Which turn others have to see; `None` where none.
+    /// Constraint of a readily apparent alteration, where the rules require one.
     apparent: Option<Apparent>,
-    /// What its costs are multiplied by where it is ranked among others.
+    /// Factor on its costs when it is ranked among others.
     handicap: f64,
     best: Option<Refined>,
     penalty: f64,
@@ -108,12 +111,12 @@ pub(crate) struct Refinement {
     raised: usize,
     steps: usize,
     finished: bool,
-    overtaken: bool,
+    stopped: bool,
 }
 
 impl Refinement {
-    /// Begins from the initial guess, or, where its return does not fit before the end of the leg, from one with
-    /// shorter lines or that steers for the last waypoint.
+    /// Starts from the initial guess. Where its return does not fit before the end of the leg,
+    /// starts from one with shorter lines, or from one that ends at the last waypoint.
     pub(crate) fn fitting(context: &Context, guess: InitialGuess) -> Option<Self> {
         let mut shorter = guess.clone();
         for _ in 0..4 {
@@ -151,12 +154,12 @@ impl Refinement {
         None
     }
 
-    /// `None` when the initial guess's ending does not fit, or its first turn is not what the rules ask for.
+    /// `None` when the initial guess's ending does not fit, or its first turn violates the rules.
     fn new(context: &Context, mut guess: InitialGuess) -> Option<Self> {
         let apparent = if context.problem.duty().is_none() {
             None
         } else {
-            Some(Apparent::in_seed(&mut guess, context.problem)?)
+            Some(Apparent::of_guess(&mut guess, context.problem)?)
         };
         let model = context.model(&guess.structure, &guess.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
@@ -181,9 +184,9 @@ impl Refinement {
             raised: 0,
             steps: 0,
             finished: false,
-            overtaken: false,
+            stopped: false,
         };
-        refinement.keep(context);
+        refinement.keep_if_best(context);
         Some(refinement)
     }
 
@@ -191,16 +194,16 @@ impl Refinement {
         self.finished
     }
 
-    /// The motion of the cheapest clear manoeuvre so far.
+    /// Motion of the cheapest clear manoeuvre so far.
     pub(crate) fn best_motion(&self, context: &Context) -> Option<Vec<Segment>> {
         let best = self.best?;
         let rollout = self
             .structure
-            .sail(context.problem, context.route, &best.lengths)?;
+            .roll_out(context.problem, context.route, &best.lengths)?;
         Some(rollout.motion())
     }
 
-    /// The cheapest clear manoeuvre so far, as a initial guess.
+    /// Cheapest clear manoeuvre so far, as an initial guess.
     pub(crate) fn best(&self) -> Option<InitialGuess> {
         Some(InitialGuess {
             structure: self.structure.clone(),
@@ -213,43 +216,43 @@ impl Refinement {
         self.best.as_ref().map_or(f64::INFINITY, |b| b.cost)
     }
 
-    /// Cost of the manoeuvre at hand with its penalty, m².
+    /// Cost of the current manoeuvre with its penalty, m².
     pub(crate) fn merit(&self) -> f64 {
         self.model.cost + self.penalty * self.model.violation
     }
 
-    /// Sum of the multipliers of the last step: what a missing metre costs to first order, m²/m.
+    /// Sum of the multipliers of the last step: the first-order cost of a missing metre, m²/m.
     pub(crate) fn price(&self) -> f64 {
         self.price
     }
 
-    /// What the manoeuvre at hand will cost once it is clear, to first order, m²: the missing metres at the
-    /// multipliers of its last step, or at `least` where those are smaller.
+    /// Predicted cost of the current manoeuvre once it is clear, to first order, m². Missing metres
+    /// cost the multipliers of the last step, or `least` where that is more.
     pub(crate) fn expected_cost(&self, least: f64) -> f64 {
         self.handicap * (self.model.cost + self.price.max(least) * self.model.violation)
     }
 
-    /// What it is ranked by among others that are clear, m².
+    /// Cost used for ranking among clear manoeuvres, m².
     pub(crate) fn rank(&self) -> f64 {
         self.handicap * self.best_cost()
     }
 
-    /// True where next to nothing is missing, or was on the way.
+    /// True where the manoeuvre is or was nearly clear.
     pub(crate) fn is_nearly_clear(&self) -> bool {
         self.best.is_some() || self.model.violation < RESTORABLE_M
     }
 
-    /// Gives up: another one is ahead.
+    /// Stops: another refinement is ahead.
     pub(crate) fn stop(&mut self) {
-        (self.finished, self.overtaken) = (true, true);
+        (self.finished, self.stopped) = (true, true);
     }
 
-    pub(crate) fn is_overtaken(&self) -> bool {
-        self.overtaken
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped
     }
 
-    /// Only what fine chords have seen is known to be clear.
-    fn keep(&mut self, context: &Context) {
+    /// Only manoeuvres checked with fine chords count as clear.
+    fn keep_if_best(&mut self, context: &Context) {
         let clear = self.model.least_slack >= 0.0 && context.chord <= FINE_CHORD_RAD;
         let better = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
         if clear && better {
@@ -260,8 +263,8 @@ impl Refinement {
         }
     }
 
-    /// The nearest manoeuvre that is clear, from one that is nearly so: least change of lengths under the
-    /// linearised rows, a few times.
+    /// Restoration: moves a nearly clear manoeuvre to the nearest clear one by a few steps of least
+    /// change under the linearised rows.
     fn restore(&mut self, context: &Context) {
         let n = self.structure.free();
         let mut identity = [[0.0; MAX_VARIABLES]; MAX_VARIABLES];
@@ -300,58 +303,58 @@ impl Refinement {
                 return;
             }
             (self.lengths, self.model) = (trial_lengths, model);
-            self.keep(context);
+            self.keep_if_best(context);
         }
     }
 
-    /// Looks at the manoeuvre at hand anew, with other chords.
-    pub(crate) fn look_again(&mut self, context: &Context) {
+    /// Evaluates the current manoeuvre again with another chord length.
+    pub(crate) fn reevaluate(&mut self, context: &Context) {
         if let Some(model) = context.model(&self.structure, &self.lengths) {
             self.model = model;
             (self.finished, self.stalled) = (false, 0);
-            self.keep(context);
+            self.keep_if_best(context);
         }
     }
 
-    /// Ends here, clear if it is nearly so.
-    pub(crate) fn settle(&mut self, context: &Context) {
+    /// Ends the refinement; the result counts as clear if it is nearly so.
+    pub(crate) fn finish(&mut self, context: &Context) {
         self.finished = true;
         self.restore(context);
     }
 
-    /// Narrows a box of steps so that what others have to see stays so.
+    /// Narrows the bounds of a step so that a readily apparent alteration stays apparent.
     fn keep_apparent(&self, lengths: &Row, low: &mut Row, high: &mut Row) {
         if let Some(apparent) = &self.apparent {
             apparent.narrow(lengths, low, high);
         }
     }
 
-    /// One step.
+    /// Takes one SQP step.
     pub(crate) fn step(&mut self, context: &Context) {
         self.steps += 1;
         let advanced = self.advance(context);
         if !advanced && self.model.least_slack < 0.0 && self.raised < MAX_RAISES {
-            // at rest in a set: what is missing is worth more
+            // converged inside a set: raise the penalty
             self.raised += 1;
-            self.penalty *= DEARER;
+            self.penalty *= PENALTY_FACTOR;
             self.radius = FIRST_RADIUS_M;
             self.stalled = 0;
             return;
         }
         if self.steps >= MAX_STEPS || !advanced {
-            self.settle(context);
+            self.finish(context);
         }
     }
 
-    /// A second-order correction: the least change, by the Hessian, that brings a full step back outside the sets
-    /// that it curves into. Without it steps along a face are cut to nothing.
+    /// Second-order correction: the least change, in the norm of the Hessian, that moves a full
+    /// step out of the sets it curves into. Without it, steps along a face are cut to nothing.
     fn corrected(
         &self,
         context: &Context,
         trial_lengths: &Row,
         trial: &Trial,
     ) -> Option<(Row, Trial)> {
-        if trial.violation <= CLEAR_ENOUGH_M {
+        if trial.violation <= CORRECTION_M {
             return None;
         }
         let mut low = trial_lengths.map(|l| (-self.radius).max(-l));
@@ -395,11 +398,11 @@ impl Refinement {
                 reach += ends.0.max(ends.1);
                 least += ends.0.min(ends.1);
             }
-            // negated on purpose: a NaN stays. What is met all over the box needs no row
+            // negated on purpose: a NaN is retained. A row satisfied in the whole box is not needed
             if !(least >= row.bound) {
-                // a row that the box cannot meet asks for what it can
+                // a row that the box cannot satisfy requires only what is attainable
                 rows.push(Constraint {
-                    bound: row.bound.min(REACHABLE * reach),
+                    bound: row.bound.min(ATTAINABLE * reach),
                     ..*row
                 });
             }
@@ -456,10 +459,10 @@ impl Refinement {
             {
                 let model = context.completed(&self.structure, trial);
                 let settled =
-                    gained < STALLED * model.cost.max(1.0) && model.violation < CLEAR_ENOUGH_M;
+                    gained < STALLED * model.cost.max(1.0) && model.violation < CORRECTION_M;
                 self.stalled = if settled { self.stalled + 1 } else { 0 };
                 (self.lengths, self.model) = (trial_lengths, model);
-                self.keep(context);
+                self.keep_if_best(context);
                 if share < 1.0 {
                     self.radius = (2.0 * share * largest)
                         .min(self.radius)

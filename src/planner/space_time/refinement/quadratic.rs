@@ -1,59 +1,60 @@
-//! A small dense convex quadratic programme by the dual active-set method of Goldfarb & Idnani
-//! (doi:10.1007/BF02591962).
+//! Small dense convex quadratic programme, solved by the dual active-set method of Goldfarb &
+//! Idnani (doi:10.1007/BF02591962).
 
 use crate::planner::space_time::refinement::active_set::Compact;
 use crate::planner::space_time::refinement::factor::LANES;
 
-/// Most variables of a programme: fixed, so that a row is an array.
+/// Largest number of variables. It is fixed, so that a row is an array.
 pub(crate) const MAX_VARIABLES: usize = 24;
 
-/// A row of numbers, one per variable.
+/// Row of coefficients, one per variable.
 pub(crate) type Row = [f64; MAX_VARIABLES];
 
-/// `coefficients . x >= bound`.
+/// Linear constraint `coefficients . x >= bound`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Constraint {
     pub coefficients: Row,
     pub bound: f64,
 }
 
-/// `minimise x'Hx/2 + g'x` subject to box and rows.
+/// Programme: minimise `x'Hx/2 + g'x` subject to box and rows.
 #[derive(Debug)]
 pub(crate) struct Programme<'a> {
     pub size: usize,
-    /// Positive definite, a row per variable.
+    /// Positive definite Hessian, one row per variable.
     pub hessian: &'a [Row],
     pub gradient: &'a Row,
     pub low: &'a Row,
     pub high: &'a Row,
     pub rows: &'a [Constraint],
-    /// What the largest violation of a row costs per unit where not all can be met; `None` where all have to be.
+    /// Price per unit of the largest violation of a row, where not all rows can be satisfied;
+    /// `None` where all must be.
     pub price: Option<f64>,
 }
 
-/// Where the minimum is.
+/// Solution of a programme.
 #[derive(Debug, Clone)]
 pub(crate) struct Solution {
     pub x: Row,
-    /// One per row, not negative; zero where the row is slack. Their sum is the least weight of an exact penalty on the
-    /// largest violation, or the price of it.
+    /// Multipliers, one per row, not negative; zero where the row is inactive. Their sum is the
+    /// least exact penalty on the largest violation, or its price.
     pub multipliers: Vec<f64>,
-    /// By how much the rows are violated at most, zero where they can all be met.
+    /// Largest violation of the rows; zero where all can be satisfied.
     pub missing: f64,
 }
 
-/// Why a programme has no solution.
+/// Reason why a programme has no solution.
 pub(crate) enum Unsolved {
-    /// No `x` meets all rows and the box.
+    /// No `x` satisfies all rows and the box.
     Contradiction,
-    /// The Hessian is not positive definite, a number is not finite, or it takes too long.
+    /// The Hessian is not positive definite, a number is not finite, or the step limit was reached.
     Stopped,
 }
 
 impl Programme<'_> {
-    /// The minimum. Where the rows contradict one another or the box, that of the cost and the price of the largest
-    /// violation, with next to nothing of its square; without a price there is none. `None` as well when the Hessian is not
-    /// positive definite or a number is not finite.
+    /// Solves the programme. Where the rows contradict one another or the box, minimises the cost
+    /// plus the price of the largest violation and a negligible multiple of its square. `None` for
+    /// a contradiction without a price, an indefinite Hessian or a number that is not finite.
     pub(crate) fn solve(&self) -> Option<Solution> {
         match (self.answer(None), self.price) {
             (Err(Unsolved::Contradiction), Some(price)) => self.answer(Some(price)),
@@ -62,7 +63,7 @@ impl Programme<'_> {
         .ok()
     }
 
-    /// With a variable more where violations have a price.
+    /// Solves with an additional variable where violations have a price.
     fn answer(&self, price: Option<f64>) -> Result<Solution, Unsolved> {
         let size = self.size + usize::from(price.is_some());
         match size.div_ceil(LANES) {
@@ -86,11 +87,12 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use std::ops::Range;
 
-    /// The box of the random programmes.
+    /// Bounds of the random programmes' box.
     const LOW: Row = [-1.0; MAX_VARIABLES];
     const HIGH: Row = [2.0; MAX_VARIABLES];
 
-    /// A strictly convex cost in up to 13 variables, with rows at bounds from the given range.
+    /// Strictly convex cost in up to 13 variables, with rows whose bounds are drawn from a given
+    /// range.
     struct Random {
         size: usize,
         hessian: [Row; MAX_VARIABLES],
@@ -149,12 +151,12 @@ mod tests {
         }
     }
 
-    /// Projected gradient on the exact penalty is slow; the optimality conditions are the definition.
+    /// Tests the optimality conditions: projected gradient on the exact penalty would be slow.
     #[test]
     fn solutions_are_feasible_and_no_feasible_direction_descends() {
         let mut rng = ChaCha8Rng::seed_from_u64(41);
         for _ in 0..400 {
-            // the origin satisfies every row: the programme is feasible
+            // the origin satisfies every row, so the programme is feasible
             let random = Random::new(&mut rng, 0..6, -1.0..0.0);
             let Random {
                 size: n,
@@ -191,10 +193,10 @@ mod tests {
         }
     }
 
-    /// With rows that contradict one another and the box: no change within the box brings cost and price of the largest
-    /// violation lower, and without a price there is no answer.
+    /// Contradictory rows: no change within the box lowers the sum of cost and price of the largest
+    /// violation, and without a price there is no solution.
     #[test]
-    fn of_what_contradicts_the_price_is_paid_and_the_sum_is_least() {
+    fn contradictory_rows_minimise_cost_plus_price() {
         let mut rng = ChaCha8Rng::seed_from_u64(43);
         let mut missed = 0;
         for _ in 0..400 {

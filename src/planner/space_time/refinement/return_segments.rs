@@ -1,4 +1,5 @@
-//! The route followed after a manoeuvre: its cost, and its rates with the place and time of joining.
+//! Return segments: the route followed after a manoeuvre, with the rates of its cost in the joining
+//! position and time.
 
 use crate::planner::cost::space_time_error;
 use crate::planner::space_time::refinement::approach::Approach;
@@ -6,26 +7,26 @@ use crate::planner::space_time::refinement::rollout::Rollout;
 use crate::planner::space_time::refinement::trial::Context;
 use crate::trajectory::Segment;
 
-/// Cost of the route followed from a place at a time, with its rates per second and per metre, its
-/// second rate per second, and the timetable's seconds per metre there.
+/// Cost of the route from a position and time, its rates per second and per metre, its second rate
+/// per second, and the schedule's seconds per metre there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReturnSegments {
     pub cost: f64,
     pub by_time: f64,
     pub by_distance: f64,
-    pub bend: f64,
+    pub curvature_along: f64,
     pub slowness: f64,
 }
 
 impl Context<'_> {
-    /// In closed form where there is one.
+    /// Return segments, in closed form where there is one.
     pub(crate) fn return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
         self.straight_return_segments(distance, time)
-            .unwrap_or_else(|| self.bent_return_segments(distance, time))
+            .unwrap_or_else(|| self.general_return_segments(distance, time))
     }
 
-    /// Cost of following the route from a place at a time, m².
-    fn tail_cost(&self, distance: f64, time: f64) -> f64 {
+    /// Cost of following the route from a position at a time, m².
+    fn return_cost(&self, distance: f64, time: f64) -> f64 {
         let mut segments = Vec::with_capacity(4);
         self.route.follow(distance, time, &mut segments);
         segments
@@ -34,8 +35,9 @@ impl Context<'_> {
             .sum()
     }
 
-    /// On the last leg, recovering in time at the greatest or the least speed, then on schedule: the lag
-    /// shrinks at a constant rate `r`, so the cost is `kappa lag³ / (3 r T_d)`. `None` in any other case.
+    /// Closed form on the last leg: own ship recovers the lag at the greatest or least speed, then
+    /// keeps the schedule. The lag decreases at a constant rate `r`, so the cost is
+    /// `kappa lag³ / (3 r T_d)`. `None` in any other case.
     fn straight_return_segments(&self, distance: f64, time: f64) -> Option<ReturnSegments> {
         let desired = self.problem.desired;
         let last = desired.legs().len() - 1;
@@ -69,33 +71,34 @@ impl Context<'_> {
             cost: kappa * lag.abs().powi(3) / 3.0,
             by_time: by_lag * leg.speed,
             by_distance: -by_lag,
-            bend: 2.0 * kappa * lag.abs() * leg.speed * leg.speed,
+            curvature_along: 2.0 * kappa * lag.abs() * leg.speed * leg.speed,
             slowness: 1.0 / leg.speed,
         })
     }
 
-    /// Any return segments, by differences in the place and time at which it begins.
-    fn bent_return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
+    /// General return segments, by differences in the position and time of joining.
+    fn general_return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
         let (ds, dt) = (0.05, 0.01);
-        let cost = self.tail_cost(distance, time);
+        let cost = self.return_cost(distance, time);
         let (earlier, later) = (
-            self.tail_cost(distance, time - dt),
-            self.tail_cost(distance, time + dt),
+            self.return_cost(distance, time - dt),
+            self.return_cost(distance, time + dt),
         );
         let (back, on) = (
-            self.tail_cost(distance - ds, time),
-            self.tail_cost(distance + ds, time),
+            self.return_cost(distance - ds, time),
+            self.return_cost(distance + ds, time),
         );
         ReturnSegments {
             cost,
             by_time: (later - earlier) / (2.0 * dt),
             by_distance: (on - back) / (2.0 * ds),
-            bend: ((later + earlier - 2.0 * cost) / (dt * dt)).max(0.0),
+            curvature_along: ((later + earlier - 2.0 * cost) / (dt * dt)).max(0.0),
             slowness: (self.route.due_at(distance + ds) - self.route.due_at(distance)) / ds,
         }
     }
 
-    /// Rates of the slack at an approach on the return segments with the place and time of joining, by differences.
+    /// Rates of the slack at an approach on the return segments with the position and time of
+    /// joining, by differences.
     pub(crate) fn return_segment_rates(
         &self,
         rollout: &Rollout,

@@ -1,4 +1,5 @@
-//! A manoeuvre that has been sailed: its motions, whose they are, and how they move with the lengths.
+//! Rollout of a manoeuvre: its segments, their segment variables, and how they move with the
+//! lengths.
 
 use crate::frame::{Vector, cross, to_port};
 use crate::planner::Problem;
@@ -7,22 +8,22 @@ use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 use crate::planner::space_time::refinement::structure::Ending;
 use crate::trajectory::Segment;
 
-/// Which variable a motion's length belongs to.
+/// Origin of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Owner {
-    /// Part `[from, to]` of segment variable `index`.
+pub(crate) enum SegmentOrigin {
+    /// Fractions `[from, to]` of segment variable `index`.
     SegmentVariable { index: usize, from: f64, to: f64 },
     /// The route followed after the manoeuvre.
     ReturnSegments { index: usize },
 }
 
-/// A motion and whose it is.
+/// Segment with its origin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Leg {
     pub segment: Segment,
-    /// The unit vector ahead at its start.
+    /// Unit vector ahead at its start.
     pub ahead: Vector,
-    pub owner: Owner,
+    pub owner: SegmentOrigin,
 }
 
 impl Leg {
@@ -38,7 +39,7 @@ impl Leg {
     }
 }
 
-/// Position and unit vector ahead after an arc; `1 - cos` without cancellation.
+/// Position and unit vector ahead after an arc; `1 - cos` is computed without cancellation.
 pub(crate) fn turned(from: Vector, ahead: Vector, length: f64, curvature: f64) -> (Vector, Vector) {
     let (sin, cos) = (curvature * length).sin_cos();
     let versine = if cos > 0.0 {
@@ -51,55 +52,56 @@ pub(crate) fn turned(from: Vector, ahead: Vector, length: f64, curvature: f64) -
     (end, ahead * cos + port * sin)
 }
 
-/// How everything after a segment variable moves per metre of it.
+/// RigidMotion motion of everything after a segment variable, per metre of its length.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Rigid {
-    /// Where the segment variable ends, its direction there, its curvature.
+pub(crate) struct RigidMotion {
+    /// End of the segment variable, direction there, and curvature.
     pub end: Vector,
     pub ahead: Vector,
     pub curvature: f64,
     pub slowness: f64,
 }
 
-impl Rigid {
-    pub(crate) fn moves(&self, point: Vector) -> Vector {
+impl RigidMotion {
+    pub(crate) fn velocity_of(&self, point: Vector) -> Vector {
         self.ahead + to_port(point - self.end) * self.curvature
     }
 }
 
-/// A manoeuvre with its lengths.
+/// Manoeuvre with given lengths.
 #[derive(Debug, Clone)]
 pub(crate) struct Rollout {
-    /// In order of time; segment variables of no length are there too.
+    /// Segments in order of time, including those of zero length.
     pub legs: Vec<Leg>,
-    /// Index in `legs` of the first of the return segments.
+    /// Index in `legs` of the first return segment.
     pub return_segments: usize,
-    /// Distance along the route and time at which the return segments begins.
+    /// Distance along the route and time at which the return segments begin.
     pub joined: (f64, f64),
-    /// Metres left of the leg after a return.
+    /// Remaining length of the leg after a return, metres.
     pub room: Option<f64>,
-    /// Lengths of the solved segment variables.
+    /// Lengths of the dependent segment variables.
     pub solved: [f64; 2],
-    /// Rates of the solved segment variables with each free one.
+    /// Rates of the dependent segment variables with each free one.
     pub solved_rates: [Row; 2],
-    /// Slots at the beginning that run along the route.
+    /// Number of initial segment variables that follow the route.
     pub runs: usize,
-    pub rigid: Vec<Rigid>,
+    pub rigid_motions: Vec<RigidMotion>,
 }
 
-/// A point of a manoeuvre that belongs to a segment variable.
+/// Point of a manoeuvre that belongs to a segment variable.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
     pub position: Vector,
     pub ahead: Vector,
     pub time: f64,
-    /// The segment variable, and the share of it that lies before the point.
+    /// Segment variable, and the fraction of it before the point.
     pub variable: usize,
     pub share: f64,
 }
 
 impl Rollout {
-    /// Of each leg the place halfway between its ends: no place on it is farther from there than half its length.
+    /// Midpoint of each segment's ends. No point of the segment is farther from it than half the
+    /// segment's length.
     pub(crate) fn middles(&self) -> Vec<Vector> {
         let ends = self.legs.iter().skip(1).map(|l| l.segment.start.position);
         let last = self.legs.last().map(|l| l.along(1.0).0);
@@ -109,10 +111,10 @@ impl Rollout {
             .collect()
     }
 
-    /// The point at `fraction` of a leg; `None` on the return segments.
+    /// Point at `fraction` of a segment; `None` on the return segments.
     pub(crate) fn place(&self, leg: usize, fraction: f64) -> Option<Place> {
         let l = &self.legs[leg];
-        let Owner::SegmentVariable { index, from, to } = l.owner else {
+        let SegmentOrigin::SegmentVariable { index, from, to } = l.owner else {
             return None;
         };
         let (position, ahead) = l.along(fraction);
@@ -125,7 +127,7 @@ impl Rollout {
         })
     }
 
-    /// How segment variable `index` moves a point of its own: (east, north, clock) per metre.
+    /// Rates of a point with its own segment variable: (east, north, clock) per metre.
     pub(crate) fn own_rate(&self, place: &Place, index: usize) -> [f64; 3] {
         let share = if index == place.variable {
             place.share
@@ -135,30 +137,31 @@ impl Rollout {
         [
             share * place.ahead.x,
             share * place.ahead.y,
-            share * self.rigid[index].slowness,
+            share * self.rigid_motions[index].slowness,
         ]
     }
 
-    /// `of . (east, north, clock)` per metre of each segment variable up to the point's own.
+    /// Rates of `of . (east, north, clock)` per metre of each segment variable up to the point's
+    /// own.
     pub(crate) fn rates(&self, place: &Place, of: [f64; 3]) -> Row {
         let mut row = [0.0; MAX_VARIABLES];
         let on_route = place.variable < self.runs;
-        let all = row.iter_mut().zip(&self.rigid).enumerate();
-        for (i, (rate, rigid)) in all.take(place.variable + 1) {
+        let all = row.iter_mut().zip(&self.rigid_motions).enumerate();
+        for (i, (rate, rigid_motions)) in all.take(place.variable + 1) {
             *rate = if on_route || i == place.variable {
                 let own = self.own_rate(place, i);
                 of[0] * own[0] + of[1] * own[1] + of[2] * own[2]
             } else {
-                let moved = rigid.moves(place.position);
-                of[0] * moved.x + of[1] * moved.y + of[2] * rigid.slowness
+                let moved = rigid_motions.velocity_of(place.position);
+                of[0] * moved.x + of[1] * moved.y + of[2] * rigid_motions.slowness
             };
         }
         row
     }
 
-    /// How each segment variable moves what follows it, about `origin`.
+    /// Twist of each segment variable about `origin`.
     pub(crate) fn twists(&self, origin: Vector) -> Vec<Twist> {
-        let twist = |r: &Rigid| {
+        let twist = |r: &RigidMotion| {
             let end = r.end - origin;
             [
                 r.ahead.x + r.curvature * end.y,
@@ -167,17 +170,18 @@ impl Rollout {
                 r.curvature,
             ]
         };
-        self.rigid.iter().map(twist).collect()
+        self.rigid_motions.iter().map(twist).collect()
     }
 
-    /// The rates of the solved segment variables with any change given as a twist about `origin`: linear forms.
+    /// Rates of the dependent segment variables with any change given as a twist about `origin`, as
+    /// linear forms.
     pub(crate) fn solved_by(
         &self,
         ending: Ending,
         problem: &Problem,
         origin: Vector,
     ) -> [Twist; 2] {
-        let [.., line_or_arc, last] = &self.rigid[..] else {
+        let [.., line_or_arc, last] = &self.rigid_motions[..] else {
             return [[0.0; 4]; 2];
         };
         match ending {
@@ -190,7 +194,7 @@ impl Rollout {
             }
             Ending::Goal { .. } => {
                 let goal = problem.desired.end();
-                let (by_arc, by_line) = (line_or_arc.moves(goal), last.ahead);
+                let (by_arc, by_line) = (line_or_arc.velocity_of(goal), last.ahead);
                 let determinant = cross(by_arc, by_line);
                 let at = goal - origin;
                 [
@@ -201,34 +205,34 @@ impl Rollout {
         }
     }
 
-    /// The rate of the place at which the return segments begins, along the route, as a linear form of a twist about `origin`.
+    /// Rate of the joining position along the route, as a linear form of a twist about `origin`.
     pub(crate) fn joined_by(&self, origin: Vector) -> Twist {
-        self.rigid
+        self.rigid_motions
             .last()
             .map_or([0.0; 4], |last| along(last.ahead, last.end - origin))
     }
 
-    /// The rates of the place and time at which the return segments begins: metres along the route and seconds per
-    /// metre of each segment variable.
+    /// Rates of the joining position and time: metres along the route and seconds per metre of each
+    /// segment variable.
     pub(crate) fn joining_rates(&self) -> (Row, Row) {
         let mut distance = [0.0; MAX_VARIABLES];
         let mut clock = [0.0; MAX_VARIABLES];
-        let Some(last) = self.rigid.last() else {
+        let Some(last) = self.rigid_motions.last() else {
             return (distance, clock);
         };
-        let runs_only = self.runs == self.rigid.len();
-        for (i, r) in self.rigid.iter().enumerate() {
+        let runs_only = self.runs == self.rigid_motions.len();
+        for (i, r) in self.rigid_motions.iter().enumerate() {
             distance[i] = if runs_only {
                 1.0
             } else {
-                last.ahead.dot(&r.moves(last.end))
+                last.ahead.dot(&r.velocity_of(last.end))
             };
             clock[i] = r.slowness;
         }
         (distance, clock)
     }
 
-    /// Every motion of some length, in order; one where neighbours are alike.
+    /// Segments of non-zero length in order, with equal neighbours merged.
     pub(crate) fn motion(&self) -> Vec<Segment> {
         let mut motion: Vec<Segment> = Vec::with_capacity(self.legs.len());
         for segment in self.legs.iter().map(|l| l.segment) {
@@ -249,7 +253,7 @@ impl Rollout {
     }
 }
 
-/// `direction . (where a twist moves the point)`, as a linear form of the twist.
+/// `direction . (velocity of the point under a twist)`, as a linear form of the twist.
 fn along(direction: Vector, point: Vector) -> Twist {
     [direction.x, direction.y, 0.0, cross(point, direction)]
 }

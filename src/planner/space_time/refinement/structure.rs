@@ -1,29 +1,32 @@
-//! A manoeuvre as a chain of segment variables with free lengths, and how it changes with them.
+//! Manoeuvre structure: a chain of segment variables with free lengths.
 //!
-//! The segment variables' kinds, sides and speeds are fixed; their lengths in metres are the variables of the
-//! refinement. Lengthening a segment variable moves everything after it as a rigid body: along a line, or about the
-//! centre of its circle. That gives every derivative in closed form. Two last segment variables, where there are
-//! any, are not free: they are solved so that the chain ends on the desired path or at its end.
+//! Kinds, sides and speeds are fixed; the lengths in metres are the variables of the refinement.
+//! Lengthening a segment variable moves everything after it as a rigid body: along a line, or about
+//! the centre of its circle. That gives every derivative in closed form. Up to two last segment
+//! variables are dependent: they are solved so that the chain ends on the desired path or at its
+//! end.
 
 use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
 use crate::planner::Problem;
-use crate::planner::space_time::graph::intercept::Chase;
+use crate::planner::space_time::graph::intercept::Interceptor;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
-use crate::planner::space_time::refinement::rollout::{Leg, Owner, Rigid, Rollout, turned};
-use crate::planner::space_time::route::{Route, Stretch};
+use crate::planner::space_time::refinement::rollout::{
+    Leg, RigidMotion, Rollout, SegmentOrigin, turned,
+};
+use crate::planner::space_time::route::{Route, StraightStretch};
 use crate::trajectory::Segment;
 
-/// Radians. A return flatter than this is not solvable.
+/// Smallest return angle that can be solved, radians.
 pub(crate) const FLATTEST_RETURN: f64 = 0.01;
 
-/// A part of a manoeuvre.
+/// Segment variable: kind, side and speed of a part of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SegmentVariable {
-    /// Along the route.
+    /// Follows the route.
     Run { speed: f64 },
-    /// A turn with the turning radius.
+    /// Turns with the turning radius.
     Arc { side: Side, speed: f64 },
-    /// Straight ahead.
+    /// Straight line.
     Line { speed: f64 },
 }
 
@@ -35,25 +38,25 @@ impl SegmentVariable {
     }
 }
 
-/// How a manoeuvre ends.
+/// Ending of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Ending {
-    /// It never left the route, and follows it.
+    /// Follows the route, which it never left.
     Follow,
-    /// A line and an arc back onto a leg, then the route.
+    /// Line and arc back onto a leg, then the route.
     Return { leg: usize, speed: f64 },
-    /// An arc and a line to the last waypoint.
+    /// Arc and line to the last waypoint.
     Goal { side: Side, speed: f64 },
 }
 
 impl Ending {
-    /// Slots that are solved, not free.
+    /// Number of dependent segment variables.
     fn dependents(self) -> usize {
         if self == Self::Follow { 0 } else { 2 }
     }
 }
 
-/// Slots with an ending: what is fixed of a manoeuvre.
+/// Segment variables and ending: the fixed part of a manoeuvre.
 #[derive(Debug, Clone)]
 pub(crate) struct Structure {
     pub variables: Vec<SegmentVariable>,
@@ -61,18 +64,23 @@ pub(crate) struct Structure {
 }
 
 impl Structure {
-    /// Free variables.
+    /// Number of free variables.
     pub(crate) fn free(&self) -> usize {
         self.variables.len()
     }
 
-    /// All segment variables, the solved ones included.
+    /// Number of all segment variables, including the dependent ones.
     pub(crate) fn all(&self) -> usize {
         self.variables.len() + self.ending.dependents()
     }
 
-    /// Sails the manoeuvre with the given lengths; `None` when its ending does not fit.
-    pub(crate) fn sail(&self, problem: &Problem, route: &Route, lengths: &Row) -> Option<Rollout> {
+    /// Rolls the manoeuvre out with the given lengths; `None` when its ending does not fit.
+    pub(crate) fn roll_out(
+        &self,
+        problem: &Problem,
+        route: &Route,
+        lengths: &Row,
+    ) -> Option<Rollout> {
         let radius = problem.own.turning_radius;
         let mut rollout = Rollout {
             legs: Vec::with_capacity(2 * self.all() + 8),
@@ -82,7 +90,7 @@ impl Structure {
             solved: [0.0; 2],
             solved_rates: [[0.0; MAX_VARIABLES]; 2],
             runs: 0,
-            rigid: Vec::with_capacity(self.all()),
+            rigid_motions: Vec::with_capacity(self.all()),
         };
         let mut at = Cursor {
             pose: problem.own.pose,
@@ -97,14 +105,14 @@ impl Structure {
                 at.run(route, index, lengths[index], speed, &mut rollout);
                 runs = index + 1;
             } else {
-                at.sail(*variable, index, lengths[index], &mut rollout);
+                at.roll_out(*variable, index, lengths[index], &mut rollout);
             }
         }
-        // runs move what follows them along the route where the last of them ends
+        // runs move what follows along the route at the end of the last run
         rollout.runs = runs;
         if runs > 0 {
             let (pose, curvature) = route.pose_at(lengths[..runs].iter().sum());
-            for r in &mut rollout.rigid[..runs] {
+            for r in &mut rollout.rigid_motions[..runs] {
                 (r.end, r.ahead, r.curvature) = (pose.position, pose.ahead(), curvature);
             }
         }
@@ -127,7 +135,7 @@ impl Structure {
                 rollout.legs.push(Leg {
                     segment,
                     ahead,
-                    owner: Owner::ReturnSegments { index },
+                    owner: SegmentOrigin::ReturnSegments { index },
                 });
                 at.pass(&segment, ahead);
             }
@@ -143,12 +151,12 @@ impl Structure {
         Some(rollout)
     }
 
-    /// Solves line and arc back onto a leg.
+    /// Solves the line and arc back onto a leg.
     fn return_to(
         &self,
         problem: &Problem,
         leg: usize,
-        stretch: Stretch,
+        stretch: StraightStretch,
         speed: f64,
         at: &mut Cursor,
         rollout: &mut Rollout,
@@ -172,13 +180,13 @@ impl Structure {
         }
         rollout.solved = [line, radius * relative.abs()];
         let n = self.variables.len();
-        at.sail(
+        at.roll_out(
             SegmentVariable::Line { speed },
             n,
             rollout.solved[0],
             rollout,
         );
-        at.sail(
+        at.roll_out(
             SegmentVariable::Arc { side, speed },
             n + 1,
             rollout.solved[1],
@@ -192,17 +200,17 @@ impl Structure {
         rollout.room = Some(stretch.to - along);
         let normal = to_port(l.direction);
         let end = at.pose.position;
-        let across = normal.dot(&rollout.rigid[n].ahead);
-        let curvature = rollout.rigid[n + 1].curvature;
+        let across = normal.dot(&rollout.rigid_motions[n].ahead);
+        let curvature = rollout.rigid_motions[n + 1].curvature;
         for i in 0..n {
-            let r = &rollout.rigid[i];
-            rollout.solved_rates[0][i] = -normal.dot(&r.moves(end)) / across;
+            let r = &rollout.rigid_motions[i];
+            rollout.solved_rates[0][i] = -normal.dot(&r.velocity_of(end)) / across;
             rollout.solved_rates[1][i] = -r.curvature / curvature;
         }
         Some(())
     }
 
-    /// Solves arc and line to the last waypoint.
+    /// Solves the arc and line to the last waypoint.
     fn approach(
         &self,
         problem: &Problem,
@@ -213,32 +221,35 @@ impl Structure {
     ) -> Option<()> {
         let radius = at.radius;
         let goal = problem.desired.end();
-        let chase = Chase::new(&at.pose, at.time, speed, radius, side);
-        let (turn, line) = chase.way_to(goal)?;
+        let interceptor = Interceptor::new(&at.pose, at.time, speed, radius, side);
+        let (turn, line) = interceptor.path_to(goal)?;
         if !(turn < 2.5) {
             return None;
         }
         rollout.solved = [turn * radius, line];
         let n = self.variables.len();
-        at.sail(
+        at.roll_out(
             SegmentVariable::Arc { side, speed },
             n,
             rollout.solved[0],
             rollout,
         );
-        at.sail(
+        at.roll_out(
             SegmentVariable::Line { speed },
             n + 1,
             rollout.solved[1],
             rollout,
         );
-        let (by_arc, by_line) = (rollout.rigid[n].moves(goal), rollout.rigid[n + 1].ahead);
+        let (by_arc, by_line) = (
+            rollout.rigid_motions[n].velocity_of(goal),
+            rollout.rigid_motions[n + 1].ahead,
+        );
         let determinant = cross(by_arc, by_line);
         if determinant.abs() < 1e-9 {
             return None;
         }
         for i in 0..n {
-            let moved = rollout.rigid[i].moves(goal);
+            let moved = rollout.rigid_motions[i].velocity_of(goal);
             rollout.solved_rates[0][i] = -cross(moved, by_line) / determinant;
             rollout.solved_rates[1][i] = -cross(by_arc, moved) / determinant;
         }
@@ -246,7 +257,7 @@ impl Structure {
     }
 }
 
-/// Where own ship is while a structure is sailed.
+/// Position, time and distance along the route during a rollout.
 struct Cursor {
     pose: Pose,
     ahead: Vector,
@@ -256,7 +267,7 @@ struct Cursor {
 }
 
 impl Cursor {
-    /// The unit vector ahead at the start of a motion that follows.
+    /// Unit vector ahead at the start of the next segment.
     fn ahead_of(&self, next: &Segment) -> Vector {
         if next.start.heading == self.pose.heading {
             self.ahead
@@ -265,7 +276,7 @@ impl Cursor {
         }
     }
 
-    /// Goes on to the end of a motion.
+    /// Advances to the end of a segment.
     fn pass(&mut self, segment: &Segment, ahead: Vector) {
         (self.pose, self.time) = (segment.end(), segment.end_time());
         self.ahead = if segment.is_arc() {
@@ -287,7 +298,7 @@ impl Cursor {
             rollout.legs.push(Leg {
                 segment,
                 ahead,
-                owner: Owner::SegmentVariable { index, from, to },
+                owner: SegmentOrigin::SegmentVariable { index, from, to },
             });
             self.pass(&segment, ahead);
             from = to;
@@ -303,14 +314,14 @@ impl Cursor {
             rollout.legs.push(Leg {
                 segment,
                 ahead: self.ahead,
-                owner: Owner::SegmentVariable {
+                owner: SegmentOrigin::SegmentVariable {
                     index,
                     from: 0.0,
                     to: 1.0,
                 },
             });
         }
-        rollout.rigid.push(Rigid {
+        rollout.rigid_motions.push(RigidMotion {
             end: self.pose.position,
             ahead: self.ahead,
             curvature: 0.0,
@@ -318,7 +329,7 @@ impl Cursor {
         });
     }
 
-    fn sail(
+    fn roll_out(
         &mut self,
         variable: SegmentVariable,
         index: usize,
@@ -340,7 +351,7 @@ impl Cursor {
         rollout.legs.push(Leg {
             segment,
             ahead: self.ahead,
-            owner: Owner::SegmentVariable {
+            owner: SegmentOrigin::SegmentVariable {
                 index,
                 from: 0.0,
                 to: 1.0,
@@ -355,7 +366,7 @@ impl Cursor {
             self.pose = Pose::new(position, self.pose.heading + curvature * length);
             (self.ahead, self.time) = (ahead, segment.end_time());
         }
-        rollout.rigid.push(Rigid {
+        rollout.rigid_motions.push(RigidMotion {
             end: self.pose.position,
             ahead: self.ahead,
             curvature,

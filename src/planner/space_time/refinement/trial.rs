@@ -1,69 +1,62 @@
-//! One manoeuvre outlined: sailed, with its cost and where it comes near the sets. All that a step of the refinement is
-//! judged by; the rates are found for those that are taken.
+//! Trial point of the refinement: one rolled-out manoeuvre with its cost and closest approaches.
+//! This suffices to accept or reject a step; derivatives are computed for accepted ones only.
 
+use crate::numerics::{GAUSS_2, GAUSS_3, GAUSS_4};
 use crate::planner::Problem;
-use crate::planner::cost::{GAUSS_2, GAUSS_4};
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::refinement::approach::{Approach, NEAR_M, add_approaches};
-use crate::planner::space_time::refinement::model::MARGIN_M;
+use crate::planner::space_time::refinement::model::REFINEMENT_MARGIN_M;
 use crate::planner::space_time::refinement::quadratic::Row;
 use crate::planner::space_time::refinement::return_segments::ReturnSegments;
-use crate::planner::space_time::refinement::rollout::{Owner, Place, Rollout};
+use crate::planner::space_time::refinement::rollout::{Place, Rollout, SegmentOrigin};
 use crate::planner::space_time::refinement::structure::{Ending, Structure};
 use crate::planner::space_time::route::Route;
 use crate::trajectory::Nearest;
 
-/// Three Gauss-Legendre points on [0, 1], for short arcs.
-const GAUSS_3: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
-    (0.5, 0.444_444_444_444_444_4),
-    (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
-];
-
-/// What stays the same for every manoeuvre of a problem.
+/// Data that stay fixed for one problem.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context<'a> {
     pub problem: &'a Problem<'a>,
     pub route: &'a Route,
     pub proxies: &'a [Proxy<'a>],
-    /// The land, block by block.
+    /// Land blocks.
     pub blocks: &'a [Proxy<'a>],
-    /// Radians, of an approach.
+    /// Longest arc per chord in the search for approaches, radians.
     pub chord: f64,
 }
 
-/// A manoeuvre, outlined.
+/// Evaluated trial point.
 #[derive(Debug)]
 pub(crate) struct Trial {
     pub rollout: Rollout,
-    /// m².
+    /// Cost, m².
     pub cost: f64,
-    /// The largest missing slack, metres; zero when clear with the margin. Not their sum: an approach that
-    /// splits in two must not make the merit jump.
+    /// Largest missing slack, metres; zero when clear with the margin. A sum would make the merit
+    /// function jump when one approach splits in two.
     pub violation: f64,
     /// Least slack of all approaches, metres.
     pub least_slack: f64,
     pub approaches: Vec<Approach>,
-    /// Where there is one.
+    /// Return segments, if any.
     pub return_segments: Option<ReturnSegments>,
-    /// Rates of the place and time at which the return segments begins.
+    /// Rates of the joining position and time.
     pub joining: (Row, Row),
-    /// What the cost before the return segments is the sum of.
+    /// Quadrature points of the cost before the return segments.
     pub points: Vec<Point>,
 }
 
-/// A Gauss point of a segment variable's cost.
+/// Quadrature point of a segment variable's cost.
 #[derive(Debug)]
 pub(crate) struct Point {
     pub variable: usize,
-    /// m² per metre of the segment variable: what it costs to stay longer.
+    /// Cost per metre of the segment variable, m².
     pub growth: f64,
     /// `None` where the segment variable is empty.
     pub weighed: Option<WeightedPoint>,
 }
 
-/// Where a Gauss point is, the desired place nearest to it, and its weight.
+/// Position of a quadrature point, its nearest desired position, and its weight.
 #[derive(Debug)]
 pub(crate) struct WeightedPoint {
     pub place: Place,
@@ -72,9 +65,9 @@ pub(crate) struct WeightedPoint {
 }
 
 impl Context<'_> {
-    /// Sails and prices; `None` when the manoeuvre's ending does not fit.
+    /// Rolls out and computes the cost; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn trial(&self, structure: &Structure, lengths: &Row) -> Option<Trial> {
-        let rollout = structure.sail(self.problem, self.route, lengths)?;
+        let rollout = structure.roll_out(self.problem, self.route, lengths)?;
         let mut points = Vec::with_capacity(GAUSS_4.len() * rollout.return_segments);
         for leg in 0..rollout.return_segments {
             self.add_points(&rollout, leg, &mut points);
@@ -85,7 +78,7 @@ impl Context<'_> {
             .then(|| self.return_segments(rollout.joined.0, rollout.joined.1));
         cost += return_segments.as_ref().map_or(0.0, |t| t.cost);
         let sails = rollout.legs.iter().map(|l| &l.segment);
-        let land = land::near(self.problem.coast, sails, NEAR_M);
+        let land = land::near(self.problem.land_obstacle, sails, NEAR_M);
         let middles = rollout.middles();
         let mut approaches = Vec::new();
         let near_land = land.into_iter().map(|b| &self.blocks[b]);
@@ -99,7 +92,7 @@ impl Context<'_> {
         Some(Trial {
             rollout,
             cost,
-            violation: (MARGIN_M - least_slack).max(0.0),
+            violation: (REFINEMENT_MARGIN_M - least_slack).max(0.0),
             least_slack,
             approaches,
             return_segments,
@@ -108,9 +101,9 @@ impl Context<'_> {
         })
     }
 
-    /// The Gauss points of a leg.
+    /// Quadrature points of a segment.
     fn add_points(&self, rollout: &Rollout, leg: usize, points: &mut Vec<Point>) {
-        let Owner::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
+        let SegmentOrigin::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
             return;
         };
         let segment = rollout.legs[leg].segment;

@@ -1,4 +1,5 @@
-//! Whether a manoeuvre does what the rules of the road ask, toward targets on their nominal tracks.
+//! Compliance of a manoeuvre with the collision regulations, toward targets on their nominal
+//! tracks.
 
 use crate::colregs::{
     APPARENT_SPEED, APPARENT_TIME, Duty, Encountered, MOST_SMALL_TURNS, ON_COURSE, SMALL_TURN,
@@ -7,36 +8,38 @@ use crate::colregs::{
 use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::selection::initial_guess::SpeedTable;
+use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Instants of a segment at which the other ship is looked at.
+/// Samples per segment for the position relative to a target.
 const ARC_SAMPLES: u32 = 32;
 
-/// Seconds after the closest approach of the centres at which a target has passed: that of the hulls may be later.
+/// Seconds after the closest approach of the centres at which a target counts as passed: the hulls
+/// may be closest later.
 const PASSED_S: f64 = 2.0;
 
-/// m/s. Below this relative speed the distance does not change.
+/// m/s. Below this relative speed the distance counts as constant.
 const NO_RELATIVE_SPEED: f64 = 1e-9;
 
-/// m/s: at this speed or less own ship has visibly slowed down.
-pub(crate) fn slow(problem: &Problem) -> f64 {
-    APPARENT_SPEED * SpeedTable::of(problem).normal * (1.0 + 1e-9)
+/// Speed at or below which a speed reduction is readily apparent, m/s.
+pub(crate) fn apparent_slow_speed(problem: &Problem) -> f64 {
+    APPARENT_SPEED * ManoeuvreSpeeds::of(problem).normal * (1.0 + 1e-9)
 }
 
-/// Metres at the end of a motion along the route that are sailed at less speed, for the other to see.
-pub(crate) fn visibly_slow(problem: &Problem, motion: &[Segment]) -> f64 {
+/// Length of the apparent speed reduction at the end of a motion along the route, metres.
+pub(crate) fn apparent_slow_distance(problem: &Problem, motion: &[Segment]) -> f64 {
     if problem.duty().is_none() {
         return 0.0;
     }
     let last = motion.iter().rev();
-    last.take_while(|s| s.speed <= slow(problem))
+    last.take_while(|s| s.speed <= apparent_slow_speed(problem))
         .map(Segment::length)
         .sum()
 }
 
-/// True when a motion complies with own ship's duty. `nominal_motion` is the route on schedule: who need not alter does not.
+/// True when a motion complies with own ship's duty. `nominal_motion` is the route on schedule,
+/// which a ship without a duty to give way keeps.
 pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[Segment]) -> bool {
     let problem = context.problem;
     let duty = problem.duty();
@@ -46,18 +49,19 @@ pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[
     let departure = Departure::of(context, motion);
     departure.is_apparent(duty)
         && problem.encountered.iter().all(|encountered| {
-            let role = encountered.role;
+            let duties = encountered.role.duties();
             let nearest = Nearest::of(&encountered.ship, motion);
-            let passes = nearest.drifts_to_port || !role.passes_port_to_port();
-            let heads = !role.bars_port_until_passed()
+            let passes = nearest.drifts_to_port || !duties.port_to_port;
+            let heads = !duties.no_port_heading
                 || departure.keeps_off_port(problem, motion, nearest.time + PASSED_S);
             let plain =
-                !role.keeps_clear() || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
+                !duties.keeps_clear || small_turns(motion, nearest.time) <= MOST_SMALL_TURNS;
             passes && heads && plain && keeps_off_bow(encountered, motion)
         })
 }
 
-/// Turns until a time that are too small to be seen; of turns to one side, one right after another, the sum.
+/// Number of turns until a time that are too small to be apparent. Consecutive turns to one side
+/// count as one.
 fn small_turns(motion: &[Segment], until: f64) -> usize {
     let turns = |a: &Segment, b: &Segment| a.turn_rate * b.turn_rate > 0.0;
     let before: Vec<Segment> = motion
@@ -72,7 +76,8 @@ fn small_turns(motion: &[Segment], until: f64) -> usize {
         .count()
 }
 
-/// True when a motion crosses the target's course line nowhere within [`Encountered::bow_room`] ahead of her.
+/// True when a motion never crosses the target's course line within [`Encountered::bow_room`] ahead
+/// of the target.
 fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
     let room = encountered.bow_room();
     if room <= 0.0 {
@@ -96,28 +101,28 @@ fn keeps_off_bow(encountered: &Encountered, motion: &[Segment]) -> bool {
                 return true;
             }
             let ahead = from.x + (here.x - from.x) * from.y / (from.y - here.y);
-            // a NaN is on the bow
+            // a NaN counts as ahead of the bow
             ahead <= 0.0 || ahead >= room
         })
     })
 }
 
-/// How a motion leaves the route.
+/// Departure of a motion from the route.
 #[derive(Debug)]
 struct Departure {
-    /// The first of its segments that is not on the route.
+    /// First segment that is not on the route.
     index: usize,
-    /// Her course before.
+    /// Own ship's course before.
     heading: f64,
-    /// Radians of the first turn from there, to port positive.
+    /// First turn after it, radians, to port positive.
     turn: f64,
-    /// Slowed down before it, visibly.
+    /// True where an apparent speed reduction precedes it.
     slowed: bool,
 }
 
 impl Departure {
     fn of(context: &Context, motion: &[Segment]) -> Self {
-        let slow = slow(context.problem);
+        let slow = apparent_slow_speed(context.problem);
         let (mut slow_for, mut slowed) = (0.0, false);
         let mut sees = |s: &Segment| {
             // negated on purpose: a NaN is fast
@@ -172,7 +177,8 @@ impl Departure {
                 || self.turn.abs() >= duty.least_turn() - tolerance::JOINT_RAD)
     }
 
-    /// True when own ship heads nowhere to port of her course before, nor of the path's there, until a time.
+    /// True when own ship never heads to port of its course before the departure, nor of the path's
+    /// course there, until a time.
     fn keeps_off_port(&self, problem: &Problem, motion: &[Segment], until: f64) -> bool {
         let off = motion[self.index..].iter().filter(|s| s.start_time < until);
         off.map(|s| s.between(s.start_time, until)).all(|s| {
@@ -188,11 +194,11 @@ impl Departure {
     }
 }
 
-/// The closest approach of a motion to a target that holds course and speed.
+/// Closest approach of a motion to a target that holds course and speed.
 #[derive(Debug)]
 struct Nearest {
     time: f64,
-    /// Then the target goes from starboard to port, seen from own ship.
+    /// True when the target then moves from starboard to port as seen from own ship.
     drifts_to_port: bool,
 }
 
@@ -203,7 +209,7 @@ impl Nearest {
             time: 0.0,
             drifts_to_port: false,
         };
-        let mut look = |s: &Segment, time: f64| {
+        let mut examine = |s: &Segment, time: f64| {
             let target = ship.pose.position + ship.velocity() * time;
             let offset = s.pose_at(time).position - target;
             let relative = s.velocity_at(time) - ship.velocity();
@@ -217,17 +223,17 @@ impl Nearest {
             (offset, relative)
         };
         for s in motion {
-            let (offset, relative) = look(s, s.start_time);
+            let (offset, relative) = examine(s, s.start_time);
             if s.is_arc() {
                 for k in 1..ARC_SAMPLES {
                     let share = f64::from(k) / f64::from(ARC_SAMPLES);
-                    look(s, s.start_time + s.duration * share);
+                    examine(s, s.start_time + s.duration * share);
                 }
             } else if relative.norm() > NO_RELATIVE_SPEED {
                 let ahead = -offset.dot(&relative) / relative.norm_squared();
-                look(s, s.start_time + ahead.clamp(0.0, s.duration));
+                examine(s, s.start_time + ahead.clamp(0.0, s.duration));
             }
-            look(s, s.end_time());
+            examine(s, s.end_time());
         }
         nearest
     }

@@ -1,5 +1,5 @@
-//! What the collision regulations ask of a manoeuvre: the right side, an alteration that is readily
-//! apparent, and holding course and speed as the stand-on ship.
+//! Requirements of the collision regulations on a manoeuvre: the permitted side, a readily apparent
+//! alteration, and holding course and speed as the stand-on ship.
 
 pub(crate) mod compliance;
 pub(crate) mod readily_apparent;

@@ -1,5 +1,5 @@
-//! The part of a manoeuvre that others have to see, a turn or a run at less speed: its length has a least value, and nothing
-//! turns before it.
+//! Constraint of a readily apparent alteration (Rule 8): a turn or a speed reduction has a least
+//! length, and no turn precedes it.
 
 use crate::colregs::APPARENT_TIME;
 use crate::frame::Side;
@@ -7,21 +7,21 @@ use crate::planner::Problem;
 use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::quadratic::Row;
 use crate::planner::space_time::refinement::structure::SegmentVariable;
-use crate::planner::space_time::rules::compliance::slow;
+use crate::planner::space_time::rules::compliance::apparent_slow_speed;
 
-/// Share by which it is longer than the least, for what rounding takes.
+/// Relative excess of its length over the least one, to cover rounding.
 const SPARE: f64 = 1e-7;
 
-/// A segment variable that keeps a length, and the arcs before the first turn, which stay empty.
+/// Segment variable with a least length, and the arcs before the first turn, which stay empty.
 #[derive(Debug, Clone)]
 pub(crate) struct Apparent {
     variable: usize,
-    /// Metres.
+    /// Least length, metres.
     least: f64,
     empty: Vec<usize>,
 }
 
-/// The side of a segment variable that turns.
+/// Side of a segment variable that turns.
 fn side_of(variable: &SegmentVariable) -> Option<Side> {
     match variable {
         SegmentVariable::Arc { side, .. } => Some(*side),
@@ -30,10 +30,11 @@ fn side_of(variable: &SegmentVariable) -> Option<Side> {
 }
 
 impl Apparent {
-    /// The first turn of a initial guess, made as long as it has to be, unless own ship visibly slows down before it; `None` where it is to the
-    /// wrong side, or there is none. A turn is arcs to one side, one right after another at several speeds; the longest of them
-    /// is the one that keeps its length.
-    pub(crate) fn in_seed(guess: &mut InitialGuess, problem: &Problem) -> Option<Self> {
+    /// Enlarges the first turn of an initial guess to the least apparent one, unless a visible
+    /// speed reduction precedes it. `None` where the turn is to the wrong side, or there is none. A
+    /// turn consists of consecutive arcs to one side at several speeds; the longest of them keeps
+    /// its length.
+    pub(crate) fn of_guess(guess: &mut InitialGuess, problem: &Problem) -> Option<Self> {
         let duty = problem.duty();
         let variables = &guess.structure.variables;
         let turns = |i: &usize| side_of(&variables[*i]).is_some();
@@ -48,7 +49,9 @@ impl Apparent {
         let begin = (0..first).rev().take_while(same).last().unwrap_or(first);
         let empty = (0..begin).filter(turns).collect();
         let slows = |i: &usize| match variables[*i] {
-            SegmentVariable::Run { speed } if duty.may_slow && speed <= slow(problem) => {
+            SegmentVariable::Run { speed }
+                if duty.may_slow && speed <= apparent_slow_speed(problem) =>
+            {
                 guess.lengths[*i] >= speed * APPARENT_TIME * (1.0 - SPARE)
             }
             _ => false,
@@ -73,7 +76,7 @@ impl Apparent {
         })
     }
 
-    /// Narrows a box of steps from given lengths.
+    /// Narrows the bounds of a step from given lengths.
     pub(crate) fn narrow(&self, lengths: &Row, low: &mut Row, high: &mut Row) {
         low[self.variable] = low[self.variable].max((self.least - lengths[self.variable]).min(0.0));
         for &i in &self.empty {

@@ -1,4 +1,4 @@
-//! Manoeuvres from which the refinement begins: the graph's plans, and canonical ones on both sides.
+//! Initial guesses of the refinement: the graph's plans, and predefined manoeuvres on both sides.
 
 use crate::colregs::APPARENT_TIME;
 use crate::frame::{Side, to_port};
@@ -9,19 +9,20 @@ use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::rules::compliance::{slow, visibly_slow};
+use crate::planner::space_time::rules::compliance::{apparent_slow_distance, apparent_slow_speed};
+use crate::planner::space_time::settings::MANOEUVRE_RETURN_ANGLES;
 use crate::trajectory::Segment;
 
-/// Speeds of the structures: the finite set's extremes, and the desired one.
+/// Speeds of the manoeuvres: least and greatest speed, and the desired one.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SpeedTable {
+pub(crate) struct ManoeuvreSpeeds {
     pub slow: f64,
     pub normal: f64,
     pub fast: f64,
 }
 
-impl SpeedTable {
-    /// The least and the greatest moving speed, and the one nearest to the desired.
+impl ManoeuvreSpeeds {
+    /// Least and greatest moving speed, and the one nearest to the desired speed.
     pub(crate) fn of(problem: &Problem) -> Self {
         let moving: Vec<f64> = problem
             .own
@@ -44,39 +45,40 @@ impl SpeedTable {
     }
 }
 
-/// A stretch of the nominal motion inside a set, and what it takes to pass beside it.
+/// Stretch of the nominal motion inside a set, and the offsets that clear the set.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Conflict {
     /// Seconds at which the contact begins and ends.
     pub from: f64,
     pub to: f64,
-    /// Metres sailed between them.
+    /// Distance sailed inside, metres.
     pub through: f64,
-    /// Metres to starboard and to port that clear the set throughout.
+    /// Offsets to starboard and to port that clear the set throughout, metres.
     pub offsets: [f64; 2],
-    /// Metres astern that clear the set throughout, and the time at which so many are needed.
+    /// Offset astern that clears the set throughout, metres, and the time at which it is needed.
     pub astern: (f64, f64),
-    /// Metres ahead that clear the set throughout, and the time at which so many are needed.
+    /// Offset ahead that clears the set throughout, metres, and the time at which it is needed.
     pub ahead: (f64, f64),
 }
 
 impl Conflict {
-    /// Metres to a side.
+    /// Offset to a side, metres.
     pub(crate) fn offset(&self, side: Side) -> f64 {
         self.offsets[usize::from(side == Side::Port)]
     }
 
-    /// Metres sailed inside over the shortest way around.
+    /// Ratio of the distance sailed inside to the smaller offset.
     pub(crate) fn slenderness(&self) -> f64 {
         self.through / self.nearest_offset().max(1.0)
     }
 
-    /// Metres to the nearer side.
+    /// Smaller offset of the two sides, metres.
     pub(crate) fn nearest_offset(&self) -> f64 {
         self.offsets[0].min(self.offsets[1])
     }
 
-    /// The contact of one obstacle, given by its proxies, with the nominal motion, from first to last instant.
+    /// Contact of one obstacle, given by its proxies, with the nominal motion, from its first to
+    /// its last instant.
     pub(crate) fn of(proxies: &[Proxy], nominal_motion: &[Segment]) -> Option<Self> {
         let from = proxies
             .iter()
@@ -106,17 +108,17 @@ impl Conflict {
                 continue;
             };
             conflict.to = time;
-            let behind = proxy.way_out(pose.position, time, -pose.ahead());
+            let behind = proxy.exit_distance(pose.position, time, -pose.ahead());
             if behind > conflict.astern.0 {
                 conflict.astern = (behind, time);
             }
-            let before = proxy.way_out(pose.position, time, pose.ahead());
+            let before = proxy.exit_distance(pose.position, time, pose.ahead());
             if before > conflict.ahead.0 {
                 conflict.ahead = (before, time);
             }
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
-                *offset = offset.max(proxy.way_out(pose.position, time, beam));
+                *offset = offset.max(proxy.exit_distance(pose.position, time, beam));
             }
         }
         conflict.through = nominal_motion
@@ -127,55 +129,51 @@ impl Conflict {
     }
 }
 
-/// Radians at which a canonical manoeuvre returns, the flattest that fits.
-const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
-
-/// Radians.
+/// Turn of a waiting manoeuvre, radians.
 const WAITING_TURN: f64 = 0.6;
 
-/// Radians of the turns, and metres of the way out, of a manoeuvre that only slows down on the route.
+/// Turns (radians) and outbound line (metres) of a manoeuvre that only slows down on the route.
 const SLOWING_TURN: f64 = 0.2;
 const SLOWING_OUT_M: f64 = 20.0;
 
-/// Metres by which own ship goes on beyond the route behind a target that she let pass, and radians at which she
-/// comes back.
+/// Distance beyond the route behind a target that passed ahead, metres, and return angle, radians.
 const OVERSHOOT_M: f64 = 20.0;
 const OVERSHOOT_RETURN: f64 = 0.08;
 
-/// A manoeuvre that passes ahead: seconds of rushing over those there are, at most; its turn out, radians; the way back
-/// in, radians; its lines, metres.
-const MOST_RUSHING: f64 = 1.6;
+/// Manoeuvre that passes ahead: largest ratio of the fast time to the available time; outbound turn
+/// and return turn, radians; lines, metres.
+const MAX_FAST_RATIO: f64 = 1.6;
 const AHEAD_TURN: f64 = 0.5;
 const AHEAD_RETURN: f64 = 0.3;
 const AHEAD_OUT_M: f64 = 40.0;
 
-/// Instants at which a conflict's width is taken.
+/// Samples of a conflict's width.
 const CONFLICT_SAMPLES: usize = 24;
 
-/// A canonical manoeuvre: turn, a line out to the offset that clears the set, turn back, a line until
-/// the set is passed, return.
+/// Predefined evasive manoeuvre: turn, a line out to the offset that clears the set, turn back, a
+/// line until the set is passed, return.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Canonical {
-    /// Radians.
+pub(crate) struct EvasiveManoeuvre {
+    /// Turn, radians.
     pub turn: f64,
-    /// Share of the way out that is to be sailed before the contact begins.
+    /// Fraction of the outbound part that precedes the contact.
     pub lead: f64,
-    /// Share of the offset that is aimed at.
+    /// Target offset as a fraction of the conflict's offset.
     pub reach: f64,
-    /// The turn out at the least speed, not at the greatest.
+    /// True where the outbound part uses the least speed, not the greatest.
     pub slow: bool,
-    /// Share of the time before it that is sailed at the greatest speed.
-    pub rush: f64,
+    /// Fraction of the time before it that is sailed at the greatest speed.
+    pub fast_share: f64,
 }
 
-/// Slots and lengths while they are put together.
+/// Initial guess under construction.
 #[derive(Debug, Default)]
-pub(crate) struct Draft {
+pub(crate) struct InitialGuessBuilder {
     variables: Vec<SegmentVariable>,
     lengths: Vec<f64>,
 }
 
-impl Draft {
+impl InitialGuessBuilder {
     pub(crate) fn push(&mut self, variable: SegmentVariable, length: f64) {
         self.variables.push(variable);
         self.lengths.push(length);
@@ -199,28 +197,18 @@ impl Draft {
         }
     }
 
-    pub(crate) fn runs(&mut self, speed_table: &SpeedTable, normal: f64, fast: f64, slow: f64) {
+    pub(crate) fn runs(&mut self, speeds: &ManoeuvreSpeeds, normal: f64, fast: f64, slow: f64) {
         self.push(
             SegmentVariable::Run {
-                speed: speed_table.normal,
+                speed: speeds.normal,
             },
             normal,
         );
-        self.push(
-            SegmentVariable::Run {
-                speed: speed_table.fast,
-            },
-            fast,
-        );
-        self.push(
-            SegmentVariable::Run {
-                speed: speed_table.slow,
-            },
-            slow,
-        );
+        self.push(SegmentVariable::Run { speed: speeds.fast }, fast);
+        self.push(SegmentVariable::Run { speed: speeds.slow }, slow);
     }
 
-    pub(crate) fn guess(self, ending: Ending) -> Option<InitialGuess> {
+    pub(crate) fn build(self, ending: Ending) -> Option<InitialGuess> {
         if self.variables.len() + 2 > MAX_VARIABLES {
             return None;
         }
@@ -236,8 +224,8 @@ impl Draft {
     }
 }
 
-impl Canonical {
-    /// The initial guess on one side of the route.
+impl EvasiveManoeuvre {
+    /// Initial guess on one side of the route.
     pub(crate) fn guess(
         &self,
         problem: &Problem,
@@ -246,11 +234,11 @@ impl Canonical {
         conflict: &Conflict,
         leg: usize,
     ) -> Option<InitialGuess> {
-        let speed_table = SpeedTable::of(problem);
+        let speeds = ManoeuvreSpeeds::of(problem);
         let radius = problem.own.turning_radius;
-        let (slow, fast) = (speed_table.slow, speed_table.fast);
+        let (slow, fast) = (speeds.slow, speeds.fast);
         let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
-        // two arcs alone reach twice the versine
+        // two arcs alone reach an offset of twice the versine
         let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
         let turn = self
             .turn
@@ -258,56 +246,59 @@ impl Canonical {
             .max(problem.duty().least_turn());
         let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
         let arc = turn * radius;
-        let way_out = (2.0 * arc + out) / if self.slow { speed_table.normal } else { fast };
-        let departure = (conflict.from - self.lead * way_out).max(0.0);
-        let lead = (departure * speed_table.normal).min(route.length());
-        // made good along the route on the way out, and on the way back at the flattest angle that fits
+        let exit_distance = (2.0 * arc + out) / if self.slow { speeds.normal } else { fast };
+        let departure = (conflict.from - self.lead * exit_distance).max(0.0);
+        let lead = (departure * speeds.normal).min(route.length());
+        // progress along the route outbound, and on the return at the smallest angle that fits
         let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
         let room = route.length() - made_good;
         let way_back = |angle: f64| {
             let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
             2.0 * radius * angle.sin() + line / angle.tan()
         };
-        let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
-        let along = ((conflict.to - departure - way_out) * fast).max(0.0);
+        let angle = MANOEUVRE_RETURN_ANGLES
+            .into_iter()
+            .find(|a| way_back(*a) < room);
+        let along = ((conflict.to - departure - exit_distance) * fast).max(0.0);
         let along = along
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
             .max(0.0);
-        let mut draft = Draft::default();
-        draft.runs(
-            &speed_table,
-            (1.0 - self.rush) * lead,
-            self.rush * departure * fast,
+        let mut builder = InitialGuessBuilder::default();
+        builder.runs(
+            &speeds,
+            (1.0 - self.fast_share) * lead,
+            self.fast_share * departure * fast,
             0.0,
         );
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();
-        draft.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
-        draft.line(&[(slow, slow_line), (fast, fast_line)]);
-        draft.turn(back, &[(fast, arc)]);
-        draft.line(&[(fast, 0.5 * along)]);
-        draft.turn(back, &[(fast, 0.0)]);
-        draft.line(&[(fast, 0.5 * along)]);
+        builder.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
+        builder.line(&[(slow, slow_line), (fast, fast_line)]);
+        builder.turn(back, &[(fast, arc)]);
+        builder.line(&[(fast, 0.5 * along)]);
+        builder.turn(back, &[(fast, 0.0)]);
+        builder.line(&[(fast, 0.5 * along)]);
         let Some(angle) = angle else {
-            return draft.guess(Ending::Goal {
+            return builder.build(Ending::Goal {
                 side: back,
                 speed: fast,
             });
         };
-        draft.push(
+        builder.push(
             SegmentVariable::Arc {
                 side: back,
                 speed: fast,
             },
             angle.min(needed.max(0.1)) * radius,
         );
-        draft.guess(Ending::Return { leg, speed: fast })
+        builder.build(Ending::Return { leg, speed: fast })
     }
 }
 
-/// A manoeuvre that lets the target pass ahead: as late as will do, own ship slows down and loses way by a
-/// turn of [`WAITING_TURN`] to the side, twice as far back, and on to the route.
+/// Waiting manoeuvre: lets the target pass ahead. As late as possible own ship slows down and loses
+/// distance by a turn of [`WAITING_TURN`] to the side, a turn back of twice that, and a turn onto
+/// the route.
 pub(crate) fn waiting(
     problem: &Problem,
     side: Side,
@@ -315,124 +306,124 @@ pub(crate) fn waiting(
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
-    let (slow, normal, fast) = (speed_table.slow, speed_table.normal, speed_table.fast);
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
     let (lag, due) = conflict.astern;
     let needed = lag / (normal - slow * WAITING_TURN.cos());
     let begin = (due - needed).max(0.0);
     let arc = WAITING_TURN * problem.own.turning_radius;
     let lines = ((due - begin) * slow - 3.0 * arc).max(0.0);
-    // negated on purpose: a NaN is no initial guess
+    // negated on purpose: a NaN gives no initial guess
     if !(normal > slow && needed < 1.3 * due && lines.is_finite()) {
         return None;
     }
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(&speed_table, begin * normal, 0.0, 0.0);
-    draft.turn(side, &[(fast, 0.0), (slow, arc)]);
-    draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
-    draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
-    draft.line(&[(slow, 0.4 * lines)]);
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * normal, 0.0, 0.0);
+    builder.turn(side, &[(fast, 0.0), (slow, arc)]);
+    builder.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
+    builder.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
+    builder.line(&[(slow, 0.4 * lines)]);
     if across {
         let (sine, cosine) = WAITING_TURN.sin_cos();
         let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
-        draft.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
-        draft.turn(back, &[(fast, 0.0)]);
-        draft.turn(
+        builder.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
+        builder.turn(back, &[(fast, 0.0)]);
+        builder.turn(
             side,
             &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
         );
-        draft.line(&[(fast, 0.0)]);
-        return draft.guess(Ending::Return { leg, speed: fast });
+        builder.line(&[(fast, 0.0)]);
+        return builder.build(Ending::Return { leg, speed: fast });
     }
-    draft.line(&[(fast, 0.0)]);
-    draft.turn(back, &[(fast, 0.0)]);
-    draft.line(&[(fast, 0.0)]);
-    draft.turn(back, &[(fast, 0.0)]);
-    draft.guess(Ending::Return { leg, speed: fast })
+    builder.line(&[(fast, 0.0)]);
+    builder.turn(back, &[(fast, 0.0)]);
+    builder.line(&[(fast, 0.0)]);
+    builder.turn(back, &[(fast, 0.0)]);
+    builder.build(Ending::Return { leg, speed: fast })
 }
 
-/// A manoeuvre that slows down on the route until the target is past, then goes a little to the side and back, or not at all.
+/// Manoeuvre that slows down on the route until the target has passed, then moves slightly to the
+/// side and back.
 pub(crate) fn slowing(
     problem: &Problem,
     side: Side,
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
+    let speeds = ManoeuvreSpeeds::of(problem);
     let (lag, due) = conflict.astern;
-    let spell = (lag / (speed_table.normal - speed_table.slow)).max(APPARENT_TIME);
-    let begin = (due - spell).max(0.0);
-    // negated on purpose: a NaN is no initial guess
-    if !(problem.duty().may_slow && speed_table.slow <= slow(problem) && spell < 2.0 * due) {
+    let duration = (lag / (speeds.normal - speeds.slow)).max(APPARENT_TIME);
+    let begin = (due - duration).max(0.0);
+    // negated on purpose: a NaN gives no initial guess
+    if !(problem.duty().may_slow
+        && speeds.slow <= apparent_slow_speed(problem)
+        && duration < 2.0 * due)
+    {
         return None;
     }
     let radius = problem.own.turning_radius;
     let arc = SLOWING_TURN * radius;
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(
-        &speed_table,
-        begin * speed_table.normal,
-        0.0,
-        spell * speed_table.slow,
-    );
-    draft.turn(side, &[(speed_table.slow, arc), (speed_table.fast, 0.0)]);
-    draft.line(&[(speed_table.slow, 0.0), (speed_table.fast, SLOWING_OUT_M)]);
-    draft.turn(back, &[(speed_table.fast, arc)]);
-    draft.line(&[(speed_table.slow, 0.0), (speed_table.fast, 0.0)]);
-    draft.turn(back, &[(speed_table.fast, arc)]);
-    draft.guess(Ending::Return {
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * speeds.normal, 0.0, duration * speeds.slow);
+    builder.turn(side, &[(speeds.slow, arc), (speeds.fast, 0.0)]);
+    builder.line(&[(speeds.slow, 0.0), (speeds.fast, SLOWING_OUT_M)]);
+    builder.turn(back, &[(speeds.fast, arc)]);
+    builder.line(&[(speeds.slow, 0.0), (speeds.fast, 0.0)]);
+    builder.turn(back, &[(speeds.fast, arc)]);
+    builder.build(Ending::Return {
         leg,
-        speed: speed_table.fast,
+        speed: speeds.fast,
     })
 }
 
-/// A manoeuvre that passes ahead of the target: own ship rushes as early as will do, turns to the side halfway through
-/// the contact for what is missing, and loses her lead on a slow way back.
+/// Manoeuvre that passes ahead of the target. Own ship speeds up as early as needed, turns to the
+/// side halfway through the contact for the missing distance, and loses its lead on a slow return.
 pub(crate) fn ahead(
     problem: &Problem,
     side: Side,
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
-    let (slow, normal, fast) = (speed_table.slow, speed_table.normal, speed_table.fast);
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
     let (lead, due) = conflict.ahead;
     let needed = lead / (fast - normal);
     let begin = (due - needed).max(0.0);
     let turn = 0.5 * (conflict.from + due);
-    // negated on purpose: a NaN is no initial guess
-    if !(fast > normal && needed < MOST_RUSHING * due && turn > begin) {
+    // negated on purpose: a NaN gives no initial guess
+    if !(fast > normal && needed < MAX_FAST_RATIO * due && turn > begin) {
         return None;
     }
     let radius = problem.own.turning_radius;
     let arc = AHEAD_TURN * radius;
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(&speed_table, begin * normal, (turn - begin) * fast, 0.0);
-    draft.turn(side, &[(fast, arc)]);
-    draft.line(&[(fast, AHEAD_OUT_M)]);
-    draft.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
-    draft.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
-    draft.turn(side, &[(slow, 0.0), (fast, 0.0)]);
-    draft.line(&[(slow, 0.0), (fast, 0.0)]);
-    draft.guess(Ending::Return { leg, speed: normal })
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * normal, (turn - begin) * fast, 0.0);
+    builder.turn(side, &[(fast, arc)]);
+    builder.line(&[(fast, AHEAD_OUT_M)]);
+    builder.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
+    builder.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
+    builder.turn(side, &[(slow, 0.0), (fast, 0.0)]);
+    builder.line(&[(slow, 0.0), (fast, 0.0)]);
+    builder.build(Ending::Return { leg, speed: normal })
 }
 
-/// A plan of the graph as a initial guess: its arcs and lines in its own order, each with the other speeds beside
-/// it, and an empty turn back where it has one turn only. `way` are the states after the root.
-pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
-    let (last, before) = way.split_last()?;
+/// Graph plan as an initial guess. It keeps the order of arcs and lines, adds the other speeds
+/// beside each, and an empty turn back where it has only one turn. `path` holds the states after the
+/// root.
+pub(crate) fn from_graph(problem: &Problem, path: &[&State]) -> Option<InitialGuess> {
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (last, before) = path.split_last()?;
     let (departure, vertices) = before.split_first()?;
     if vertices.is_empty() {
         return None;
     }
-    let mut draft = Draft::default();
+    let mut builder = InitialGuessBuilder::default();
     let along: f64 = departure.motion.iter().map(Segment::length).sum();
-    let slow = visibly_slow(problem, &departure.motion);
-    draft.runs(&speed_table, along - slow, 0.0, slow);
+    let slow = apparent_slow_distance(problem, &departure.motion);
+    builder.runs(&speeds, along - slow, 0.0, slow);
     let mut side = None;
     let mut turns = 0;
     for vertex in vertices {
@@ -442,15 +433,15 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
         side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
         let side = side.unwrap_or(Side::Starboard);
         turns += usize::from(before != Some(side));
-        group(&mut draft, &speed_table, side, turn, line, vertices.len());
+        group(&mut builder, &speeds, side, turn, line, vertices.len());
         if vertices.len() == 1 {
-            draft.turn(side, &[(speed_table.fast, 0.0)]);
-            draft.line(&[(speed_table.fast, 0.0)]);
+            builder.turn(side, &[(speeds.fast, 0.0)]);
+            builder.line(&[(speeds.fast, 0.0)]);
         }
     }
     let back = side.unwrap_or(Side::Starboard).opposite();
     if turns < 2 && vertices.len() < 3 {
-        group(&mut draft, &speed_table, back, None, None, vertices.len());
+        group(&mut builder, &speeds, back, None, None, vertices.len());
     }
     match last.ending {
         Ending::Return { leg, .. } => {
@@ -459,47 +450,47 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
                 .and_then(|s| Side::of_turn(s.turn_rate))
                 .unwrap_or(back);
             let length = first.map_or(0.0, Segment::length);
-            draft.push(
+            builder.push(
                 SegmentVariable::Arc {
                     side,
-                    speed: speed_table.fast,
+                    speed: speeds.fast,
                 },
                 length,
             );
-            draft.guess(Ending::Return {
+            builder.build(Ending::Return {
                 leg,
-                speed: speed_table.fast,
+                speed: speeds.fast,
             })
         }
-        Ending::Goal { side, speed } => draft.guess(Ending::Goal { side, speed }),
+        Ending::Goal { side, speed } => builder.build(Ending::Goal { side, speed }),
         Ending::Follow => None,
     }
 }
 
-/// A turn and a line, with fewer speeds where there are many such groups.
+/// Turn and line, with fewer speeds where there are many such groups.
 fn group(
-    draft: &mut Draft,
-    speed_table: &SpeedTable,
+    builder: &mut InitialGuessBuilder,
+    speeds: &ManoeuvreSpeeds,
     side: Side,
     turn: Option<&Segment>,
     line: Option<&Segment>,
     groups: usize,
 ) {
-    let SpeedTable { slow, normal, fast } = *speed_table;
+    let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
     let own = turn.or(line).map_or(fast, |s| s.speed);
     let (turns, lines): (&[f64], &[f64]) = match groups {
         0..=3 => (&[slow, fast], &[slow, normal, fast]),
-        // no more variables than there may be
+        // limits the number of variables
         4 => (&[own], &[slow, normal, fast]),
         _ => (&[own], &[slow, fast]),
     };
     let turns = shared(turn, turns);
-    draft.turn(side, &turns);
+    builder.turn(side, &turns);
     let lines = shared(line, lines);
-    draft.line(&lines);
+    builder.line(&lines);
 }
 
-/// The speeds, without repetition, the nearest to the segment's own with its length.
+/// Speeds without repetition; the one nearest to the segment's speed gets its length.
 fn shared(segment: Option<&Segment>, speeds: &[f64]) -> Vec<(f64, f64)> {
     let mut lengths: Vec<(f64, f64)> = speeds.iter().map(|u| (*u, 0.0)).collect();
     lengths.dedup();

@@ -1,4 +1,5 @@
-//! Candidates: the graph's plans and what the refinement makes of them; the cheapest clear one wins.
+//! Candidate selection: refines the graph's plans and predefined manoeuvres; the cheapest clear
+//! candidate wins.
 
 pub(crate) mod budget;
 pub(crate) mod initial_guess;
@@ -18,127 +19,128 @@ use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::rules::compliance::complies;
 use crate::planner::space_time::selection::budget::SearchBudget;
 use crate::planner::space_time::selection::initial_guess::{
-    Canonical, Conflict, ahead, from_graph, slowing, waiting,
+    Conflict, EvasiveManoeuvre, ahead, from_graph, slowing, waiting,
 };
 use crate::trajectory::Segment;
 
-/// Ahead of schedule first, then around the set: of use in every conflict.
-const RUSH: Canonical = Canonical {
+/// Ahead of schedule first, then around the set: useful in every conflict.
+const FASTER_FIRST: EvasiveManoeuvre = EvasiveManoeuvre {
     turn: 0.5,
     lead: 0.3,
     reach: 0.9,
     slow: false,
-    rush: 0.5,
+    fast_share: 0.5,
 };
 
-/// Manoeuvres tried on both sides whatever the graph says: its best plan can lie in a bad basin. Chosen from
-/// 152 of all angles, leads and offsets, for 400 encounters: the set that together comes nearest to the best.
-const COMPACT: [Canonical; 4] = [
-    Canonical {
+/// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin
+/// of attraction. The best subset for 400 encounters of 152 combinations of angles, leads and
+/// offsets.
+const COMPACT: [EvasiveManoeuvre; 4] = [
+    EvasiveManoeuvre {
         turn: 1.4,
         lead: 0.6,
         reach: 0.6,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 1.0,
         lead: 1.0,
         reach: 0.9,
         slow: true,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 0.4,
         lead: 1.4,
         reach: 0.6,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    RUSH,
+    FASTER_FIRST,
 ];
 
-/// The same where the way through the set is long beside the way around it, as when overtaking.
-const SLENDER: [Canonical; 5] = [
-    Canonical {
+/// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
+const SLENDER: [EvasiveManoeuvre; 5] = [
+    EvasiveManoeuvre {
         turn: 0.2,
         lead: 0.3,
         reach: 0.6,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 0.2,
         lead: 1.0,
         reach: 0.9,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 0.7,
         lead: 0.3,
         reach: 0.6,
         slow: true,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 0.4,
         lead: 0.3,
         reach: 0.9,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    RUSH,
+    FASTER_FIRST,
 ];
 
-/// Way through over way around from which a conflict is slender.
+/// Slenderness from which a conflict uses [`SLENDER`].
 const SLENDER_FROM: f64 = 2.5;
 
-/// A side whose offset is this many times the other's gets one manoeuvre only.
-const FAR_SIDE: f64 = 1.8;
+/// Ratio of the offsets of the two sides above which the farther side gets one manoeuvre only.
+const FAR_SIDE_RATIO: f64 = 1.8;
 
-/// Way lost over way around below which waiting is tried as well.
-const WORTH_WAITING: f64 = 1.2;
+/// Ratio of the offset astern to the lateral one below which waiting is tried as well.
+const WAITING_RATIO: f64 = 1.2;
 
-/// Way won over way around below which rushing is tried as well.
-const WORTH_RUSHING: f64 = 1.2;
+/// Ratio of the offset ahead to the lateral one below which passing ahead is tried as well.
+const PASS_AHEAD_RATIO: f64 = 1.2;
 
-/// Conflicts that get manoeuvres of their own, earliest first.
+/// Largest number of conflicts with manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
-/// Of manoeuvres that are enriched: the share of the cost by which one may be behind the best, and below which two are
-/// the same.
-const BEHIND: f64 = 0.05;
-const ALIKE: f64 = 1e-3;
+/// Relative cost difference up to which a manoeuvre still gets insertions, and below which two
+/// manoeuvres count as the same.
+const LEADER_MARGIN: f64 = 0.05;
+const SAME_COST: f64 = 1e-3;
 
-/// Metres of line above which the leaders are cut for additions, and the best of them once more.
+/// Length above which lines are divided for the first and for the second insertion, metres.
 const UNCUT_M: [f64; 2] = [200.0, 80.0];
 
-/// Steps of a refinement after an enrichment, and of the last one, without scraps.
-const STEPS_ENRICHED: usize = 8;
-const STEPS_TIDY: usize = 6;
+/// Steps of a refinement after an insertion, and after the final pruning.
+const STEPS_AFTER_INSERTION: usize = 8;
+const STEPS_AFTER_PRUNING: usize = 6;
 
-/// Share of the cost that an enrichment has to gain for another to be tried.
-const WORTH_ANOTHER: f64 = 0.01;
+/// Relative gain of an insertion that justifies another.
+const MIN_INSERTION_GAIN: f64 = 0.01;
 
-/// Share of the cost that a manoeuvre without scraps of turns and lines may cost more.
-const TIDINESS: f64 = 2e-3;
+/// Relative cost that pruning may add.
+const PRUNING_COST: f64 = 2e-3;
 
-/// Rounds after which arcs are cut into fine chords.
+/// Number of rounds after which arcs are divided into fine chords.
 const FINE_FROM: usize = 6;
 
-/// A clear trajectory.
+/// Clear trajectory.
 #[derive(Debug, Clone)]
 struct Candidate {
     motion: Vec<Segment>,
     cost: f64,
 }
 
-/// What is known so far.
+/// Candidates of one problem.
 #[derive(Debug)]
 pub(crate) struct Selection<'a> {
     context: Context<'a>,
-    /// The route on schedule.
+    /// Route on schedule.
     nominal_motion: &'a [Segment],
     search_budget: &'a SearchBudget,
     signatures: Vec<Vec<bool>>,
@@ -164,19 +166,20 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// Ways around the targets seen so far.
+    /// Number of distinct passing signatures seen so far.
     pub(crate) fn signatures(&self) -> usize {
         self.signatures.len()
     }
 
-    /// Takes a manoeuvre to refine.
-    pub(crate) fn begin_from(&mut self, guess: InitialGuess) {
+    /// Adds a manoeuvre to refine.
+    pub(crate) fn add_initial_guess(&mut self, guess: InitialGuess) {
         self.guesses.push(guess);
     }
 
-    /// Takes a plan of the graph, the states after the root, already tested; false where it does not comply with the rules.
-    pub(crate) fn offer(&mut self, cost: f64, way: &[&State]) -> bool {
-        let motion: Vec<Segment> = way.iter().flat_map(|s| s.motion.iter().copied()).collect();
+    /// Adds a tested plan of the graph, given by the states after the root; false where it violates
+    /// the rules.
+    pub(crate) fn add_graph_plan(&mut self, cost: f64, path: &[&State]) -> bool {
+        let motion: Vec<Segment> = path.iter().flat_map(|s| s.motion.iter().copied()).collect();
         if !complies(&self.context, self.nominal_motion, &motion) {
             return false;
         }
@@ -186,13 +189,13 @@ impl<'a> Selection<'a> {
             return true;
         }
         self.signatures.push(signature);
-        self.guesses.extend(from_graph(self.context.problem, way));
-        self.consider(motion);
+        self.guesses.extend(from_graph(self.context.problem, path));
+        self.add_candidate(motion);
         true
     }
 
-    /// On which side each target is passed: the sign of its relative bearing rate at the least distance
-    /// of the middles.
+    /// Passing signature: the side on which each target is passed, as the sign of its relative
+    /// bearing rate at the least distance of the centres.
     fn signature(&self, motion: &[Segment]) -> Vec<bool> {
         by_obstacle(self.context.proxies)
             .map(|proxies| {
@@ -214,7 +217,7 @@ impl<'a> Selection<'a> {
             .collect()
     }
 
-    /// Refines the graph's plans and the canonical ones; true when the time ran out.
+    /// Refines the graph's plans and the predefined manoeuvres; true when the deadline was reached.
     pub(crate) fn refine(&mut self, conflicts: &[Conflict], clock: Clock) -> bool {
         let mut context = self.context;
         context.chord = COARSE_CHORD_RAD;
@@ -224,7 +227,7 @@ impl<'a> Selection<'a> {
         let duty = problem.duty();
         let sides = duty.sides();
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
-            if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
+            if conflict.astern.0 < WAITING_RATIO * conflict.nearest_offset() {
                 for across in [false, true] {
                     guesses.extend(
                         sides
@@ -237,7 +240,7 @@ impl<'a> Selection<'a> {
                 let slower = sides.iter();
                 guesses.extend(slower.filter_map(|side| slowing(problem, *side, conflict, leg)));
             }
-            if duty.is_none() && conflict.ahead.0 < WORTH_RUSHING * conflict.nearest_offset() {
+            if duty.is_none() && conflict.ahead.0 < PASS_AHEAD_RATIO * conflict.nearest_offset() {
                 let both = Side::BOTH.into_iter();
                 guesses.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
             }
@@ -245,7 +248,7 @@ impl<'a> Selection<'a> {
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
             for &side in sides {
-                let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
+                let far = conflict.offset(side) > FAR_SIDE_RATIO * conflict.offset(side.opposite());
                 let tried = if far && sides.len() > 1 {
                     &manoeuvres[..1]
                 } else {
@@ -266,16 +269,16 @@ impl<'a> Selection<'a> {
         for round in 0..self.search_budget.steps {
             let decided = round >= self.search_budget.rounds
                 && running.iter().any(|r| r.best_cost().is_finite());
-            // nothing counts as clear before fine chords have seen it
+            // only manoeuvres checked with fine chords count as clear
             if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
-            race(&mut running, round, self.search_budget.places);
+            race(&mut running, round, self.search_budget.survivors);
             if round == FINE_FROM {
                 context.chord = FINE_CHORD_RAD;
-                for refinement in running.iter_mut().filter(|r| !r.is_overtaken()) {
+                for refinement in running.iter_mut().filter(|r| !r.is_stopped()) {
                     if !clock.is_up() {
-                        refinement.look_again(&context);
+                        refinement.reevaluate(&context);
                     }
                 }
             }
@@ -289,24 +292,24 @@ impl<'a> Selection<'a> {
         }
         for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
             if !clock.is_up() {
-                refinement.settle(&context);
+                refinement.finish(&context);
             }
         }
-        let tidy = self.polish(&mut running, clock);
+        let tidy = self.insert_and_prune(&mut running, clock);
         self.collect(tidy.iter().chain(ranked(&running)));
         clock.is_up()
     }
 
-    /// Adds what the leaders lack and refines them anew, and again what the best of them lacks; in the end without scraps,
-    /// where that costs next to nothing.
-    fn polish(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
+    /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
+    /// them. In the end prunes short segments where that costs almost nothing.
+    fn insert_and_prune(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
         let leaders = leaders(running, self.search_budget.leaders);
         let mut least = leaders.first()?.1;
         let [first, then] = UNCUT_M;
         let mut best = None;
         let mut gained = 0.0;
         for (guess, rank) in leaders {
-            let again = self.richer(&guess, first, clock);
+            let again = self.with_insertions(&guess, first, clock);
             let after = again
                 .as_ref()
                 .map_or(f64::INFINITY, Refinement::rank)
@@ -318,30 +321,38 @@ impl<'a> Selection<'a> {
             }
             running.extend(again);
         }
-        if self.search_budget.twice && gained > WORTH_ANOTHER {
-            let again = best.as_ref().and_then(|s| self.richer(s, then, clock));
+        if self.search_budget.insert_twice && gained > MIN_INSERTION_GAIN {
+            let again = best
+                .as_ref()
+                .and_then(|s| self.with_insertions(s, then, clock));
             best = again.as_ref().and_then(Refinement::best).or(best);
             running.extend(again);
         }
         let least = best_of(running)?.rank();
         let guess = best.and_then(|s| pruned(&self.context, &s));
-        let tidy = guess.and_then(|s| self.refined(s, STEPS_TIDY, clock))?;
-        (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
+        let tidy = guess.and_then(|s| self.refined(s, STEPS_AFTER_PRUNING, clock))?;
+        (tidy.rank() <= (1.0 + PRUNING_COST) * least).then_some(tidy)
     }
 
-    /// With what a manoeuvre lacks, refined anew; `None` where it lacks nothing or the time is up.
-    fn richer(&self, guess: &InitialGuess, uncut: f64, clock: Clock) -> Option<Refinement> {
+    /// Manoeuvre with insertions, refined; `None` where nothing is inserted or the deadline was
+    /// reached.
+    fn with_insertions(
+        &self,
+        guess: &InitialGuess,
+        uncut: f64,
+        clock: Clock,
+    ) -> Option<Refinement> {
         if clock.is_up() {
             return None;
         }
         self.refined(
             with_insertions(&self.context, guess, uncut)?,
-            STEPS_ENRICHED,
+            STEPS_AFTER_INSERTION,
             clock,
         )
     }
 
-    /// A refinement from beginning to end, of so many steps at most, and fewer where the time is up.
+    /// Refinement with at most `most` steps, and fewer after the deadline.
     fn refined(&self, guess: InitialGuess, most: usize, clock: Clock) -> Option<Refinement> {
         let mut refinement = Refinement::fitting(&self.context, guess)?;
         for _ in 0..most {
@@ -350,29 +361,29 @@ impl<'a> Selection<'a> {
             }
             refinement.step(&self.context);
         }
-        refinement.settle(&self.context);
+        refinement.finish(&self.context);
         Some(refinement)
     }
 
-    /// Tests what the refinements found, in this order, until one passes.
+    /// Tests the refinements' results in the given order until one passes.
     fn collect<'r>(&mut self, found: impl Iterator<Item = &'r Refinement>) {
         for refinement in found {
             let Some(motion) = refinement.best_motion(&self.context) else {
                 return;
             };
-            if self.consider(motion) {
+            if self.add_candidate(motion) {
                 return;
             }
         }
     }
 
-    /// True once a motion was clear.
+    /// True once a candidate was clear.
     pub(crate) fn has_plan(&self) -> bool {
         self.best.is_some()
     }
 
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
-    pub(crate) fn consider(&mut self, motion: Vec<Segment>) -> bool {
+    pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.context.problem;
         let cost: f64 = motion
             .iter()
@@ -385,14 +396,14 @@ impl<'a> Selection<'a> {
             && cost.is_finite()
             && complies(&self.context, self.nominal_motion, &motion)
             && first_met(self.context.proxies, &motion).is_none()
-            && !land::meets(problem.coast, &motion);
+            && !land::meets(problem.land_obstacle, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }
         clear
     }
 
-    /// The cheapest clear motion.
+    /// Cheapest clear motion.
     pub(crate) fn plan(self) -> Option<Plan> {
         let best = self.best?;
         Plan::measured(self.context.problem, best.motion, self.graph_cost)
@@ -404,16 +415,16 @@ fn best_of(running: &[Refinement]) -> Option<&Refinement> {
     running.iter().min_by(costs)
 }
 
-/// The cheapest of all and the next that is another, with their ranks: what a manoeuvre lacks can be worth more than the
-/// lead of one that lacks nothing. So many at most.
+/// The cheapest manoeuvres that differ from one another, with their ranks, at most `most`.
+/// Insertions can gain more than the best manoeuvre's lead.
 fn leaders(running: &[Refinement], most: usize) -> Vec<(InitialGuess, f64)> {
     let mut found: Vec<(InitialGuess, f64)> = Vec::with_capacity(most);
     for refinement in ranked(running) {
         let rank = refinement.rank();
         let least = found.first().map_or(rank, |f| f.1);
-        let alike = found.iter().any(|f| rank <= (1.0 + ALIKE) * f.1);
-        // negated on purpose: a NaN is behind
-        if found.len() == most || !(rank <= (1.0 + BEHIND) * least) {
+        let alike = found.iter().any(|f| rank <= (1.0 + SAME_COST) * f.1);
+        // negated on purpose: a NaN is too expensive
+        if found.len() == most || !(rank <= (1.0 + LEADER_MARGIN) * least) {
             break;
         }
         if !alike {
@@ -423,20 +434,20 @@ fn leaders(running: &[Refinement], most: usize) -> Vec<(InitialGuess, f64)> {
     found
 }
 
-/// Cheapest first.
+/// Refinements by rank, cheapest first.
 fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
     let mut found: Vec<_> = running.iter().collect();
     found.sort_by(|a, b| a.rank().total_cmp(&b.rank()));
     found.into_iter()
 }
 
-/// Stops what has fallen behind after so many rounds, but never the first that is nearly clear. A missing metre costs at least the median of what it
-/// costs them: one that is stuck deep inside a set sees no price at all.
-fn race(running: &mut [Refinement], rounds: usize, places: &[(usize, usize)]) {
-    let places = places.iter().rev().find(|(from, _)| *from <= rounds);
-    let places = places.map_or(running.len(), |p| p.1);
-    let mut going: Vec<&mut Refinement> =
-        running.iter_mut().filter(|r| !r.is_overtaken()).collect();
+/// Racing: stops refinements that have fallen behind after some rounds, but never the first that is
+/// nearly clear. A missing metre costs at least the median price, because a refinement stuck deep
+/// inside a set has no price.
+fn race(running: &mut [Refinement], rounds: usize, survivors: &[(usize, usize)]) {
+    let survivors = survivors.iter().rev().find(|(from, _)| *from <= rounds);
+    let survivors = survivors.map_or(running.len(), |p| p.1);
+    let mut going: Vec<&mut Refinement> = running.iter_mut().filter(|r| !r.is_stopped()).collect();
     if going.is_empty() {
         return;
     }
@@ -445,7 +456,7 @@ fn race(running: &mut [Refinement], rounds: usize, places: &[(usize, usize)]) {
     let usual = prices[(prices.len() - 1) / 2];
     going.sort_by(|a, b| a.expected_cost(usual).total_cmp(&b.expected_cost(usual)));
     let clear = going.iter().position(|r| r.is_nearly_clear());
-    for (place, refinement) in going.into_iter().enumerate().skip(places) {
+    for (place, refinement) in going.into_iter().enumerate().skip(survivors) {
         if Some(place) != clear {
             refinement.stop();
         }

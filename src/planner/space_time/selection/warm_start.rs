@@ -1,4 +1,4 @@
-//! A plan for other sets as a beginning: its turns and lines, refined for these. No search.
+//! Warm start: refines an earlier plan against new sets without a new search.
 
 use crate::frame::{Pose, Side, wrap};
 use crate::planner::clock::Clock;
@@ -12,33 +12,39 @@ use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::selection::Selection;
 use crate::planner::space_time::selection::budget::SearchBudget;
-use crate::planner::space_time::selection::initial_guess::{Draft, SpeedTable};
+use crate::planner::space_time::selection::initial_guess::{InitialGuessBuilder, ManoeuvreSpeeds};
 use crate::planner::{NoPlan, Outcome, Planned, Problem};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
-/// Metres and radians. What is nearer to the route than this is on it.
+/// Distance (metres) and angle (radians) within which a pose is on the route.
 const ON_ROUTE_M: f64 = 1e-3;
 const ON_ROUTE_RAD: f64 = 1e-6;
 
-/// Slots beside those of turns and lines: the runs, and the two that are solved.
-const BESIDE: usize = 5;
+/// Number of segment variables besides turns and lines: the runs and the dependent ones.
+const RUNS_AND_DEPENDENTS: usize = 5;
 
-/// Plans one problem, beginning from a plan for other sets and with its turns in their order (numerical continuation).
+/// Plans one problem by a warm start from a plan for other sets, whose order of turns it keeps
+/// (numerical continuation).
 ///
-/// What [`crate::planner::space_time::plan`] says of its plans holds of this one, but that there may be none where `plan` has one, and the reverse. Some
-/// milliseconds: nothing is searched. Waits and motions of very many turns are no beginning: there is no plan then.
+/// The guarantees of [`crate::planner::space_time::plan`] hold. Either function may find a plan
+/// where the other finds none. Cost: some milliseconds, without a search. Plans with waits or with
+/// very many turns give no initial guess, and then no plan.
 pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
     let clock = Clock::new(problem.deadline);
-    crate::planner::space_time::as_usual(problem, |problem, proxies, usual| match usual {
-        Some(usual) => refined(problem, proxies, &usual.motion(from.segments()), clock),
-        None => refined(problem, proxies, from.segments(), clock),
+    crate::planner::space_time::plan_normalised(problem, |problem, proxies, similarity| {
+        match similarity {
+            Some(similarity) => {
+                refined(problem, proxies, &similarity.motion(from.segments()), clock)
+            }
+            None => refined(problem, proxies, from.segments(), clock),
+        }
     })
 }
 
 fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Clock) -> Planned {
     let found = Route::new(problem, clock).and_then(|route| {
-        let guess = seed_of(problem, &route, motion)?;
+        let guess = initial_guess_from(problem, &route, motion)?;
         let mut nominal_motion = Vec::new();
         route.follow(0.0, 0.0, &mut nominal_motion);
         let blocks = land::proxies(problem);
@@ -49,8 +55,8 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
             blocks: &blocks,
             chord: FINE_CHORD_RAD,
         };
-        let mut selection = Selection::new(context, &nominal_motion, &SearchBudget::CONTINUED);
-        selection.begin_from(guess);
+        let mut selection = Selection::new(context, &nominal_motion, &SearchBudget::WARM_START);
+        selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], clock);
         Some((selection.plan(), timed_out))
     });
@@ -62,14 +68,19 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
     Planned::of(outcome)
 }
 
-/// A motion that runs along the route, leaves it, and comes back to it or to its end, as segment variables and lengths: sailed, it is the
-/// motion again. Lines get the other speeds beside theirs, empty, while there is room. `None` of any other motion.
-fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<InitialGuess> {
+/// Initial guess from a motion that follows the route, leaves it, and returns to it or to its end.
+/// Its rollout is the motion again. Lines get the other speeds, with zero length, while there is
+/// room. `None` for any other motion.
+fn initial_guess_from(
+    problem: &Problem,
+    route: &Route,
+    motion: &[Segment],
+) -> Option<InitialGuess> {
     let motion = merged(motion);
     if motion.iter().any(|s| s.speed <= 0.0) {
         return None;
     }
-    let speed_table = SpeedTable::of(problem);
+    let speeds = ManoeuvreSpeeds::of(problem);
     let mut run = [0.0; 3];
     let (mut left_at, mut first) = (0.0, 0);
     for s in &motion {
@@ -78,10 +89,7 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Initi
         if !(is_at(route, to, s.end()) && is_at(route, halfway, s.middle())) {
             break;
         }
-        run[nearest(
-            s.speed,
-            [speed_table.normal, speed_table.fast, speed_table.slow],
-        )] += s.length();
+        run[nearest(s.speed, [speeds.normal, speeds.fast, speeds.slow])] += s.length();
         (left_at, first) = (to, first + 1);
     }
     let (mut back_at, mut join) = (route.length(), motion.len());
@@ -116,9 +124,9 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Initi
         let speed = last.speed;
         (ends.then_some(free)?, Ending::Goal { side, speed })
     };
-    let mut room = MAX_VARIABLES.checked_sub(free.len() + BESIDE)?;
-    let mut draft = Draft::default();
-    draft.runs(&speed_table, run[0], run[1], run[2]);
+    let mut room = MAX_VARIABLES.checked_sub(free.len() + RUNS_AND_DEPENDENTS)?;
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, run[0], run[1], run[2]);
     for lines in free.chunk_by(|a, b| !a.is_arc() && !b.is_arc()) {
         for s in lines {
             let speed = s.speed;
@@ -126,19 +134,19 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Initi
                 .map_or(SegmentVariable::Line { speed }, |side| {
                     SegmentVariable::Arc { side, speed }
                 });
-            draft.push(variable, s.length());
+            builder.push(variable, s.length());
         }
-        let others = [speed_table.slow, speed_table.normal, speed_table.fast].into_iter();
+        let others = [speeds.slow, speeds.normal, speeds.fast].into_iter();
         let others = others.filter(|u| lines.iter().all(|s| !s.is_arc() && s.speed != *u));
         for speed in others.take(room) {
-            draft.push(SegmentVariable::Line { speed }, 0.0);
+            builder.push(SegmentVariable::Line { speed }, 0.0);
             room -= 1;
         }
     }
-    draft.guess(ending)
+    builder.build(ending)
 }
 
-/// Without what has no length; what goes on as it did before is one segment with it.
+/// Motion without segments of zero length and with equal neighbours merged.
 fn merged(motion: &[Segment]) -> Vec<Segment> {
     let mut merged: Vec<Segment> = Vec::with_capacity(motion.len());
     let of_use = |s: &&Segment| s.speed <= 0.0 || s.length() > tolerance::LENGTH_M;
@@ -159,7 +167,7 @@ fn is_at(route: &Route, distance: f64, pose: Pose) -> bool {
         && wrap(there.heading - pose.heading).abs() < ON_ROUTE_RAD
 }
 
-/// Which of three speeds is the nearest, the first of equals.
+/// Index of the nearest of three speeds, the first of equals.
 fn nearest(speed: f64, speeds: [f64; 3]) -> usize {
     let apart = |k: &usize| (speeds[*k] - speed).abs();
     (0..3)
@@ -172,14 +180,14 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::obstacle::{Coast, Obstacle};
+    use crate::obstacle::{LandObstacle, Obstacle};
     use crate::pipeline;
     use crate::planner::SearchKind;
     use crate::planner::space_time::plan;
     use crate::planner::space_time::refinement::structure::FLATTEST_RETURN;
     use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
 
-    /// The problems of random encounters and traffic with the plans for them.
+    /// Runs a check on the problems of random encounters and traffic with their plans.
     fn at_plans(check: impl Fn(&Problem, &Trajectory, f64)) {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
             (0..6).map(move |guess| random_encounter(kind, guess, Placement::Random))
@@ -192,7 +200,7 @@ mod tests {
             let problem = Problem {
                 search: SearchKind::AStar,
                 deadline: Duration::from_secs(60),
-                ..pipeline::problem(&scenario, &obstacles, Coast::none())
+                ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
             };
             if let Some(found) = plan(&problem).outcome.plan() {
                 check(&problem, &found.trajectory, found.cost);
@@ -201,17 +209,17 @@ mod tests {
     }
 
     #[test]
-    fn the_slots_of_a_plan_sail_it_again() {
+    fn the_initial_guess_of_a_plan_rolls_out_to_it() {
         at_plans(|problem, trajectory, _| {
             let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
-            let Some(guess) = seed_of(problem, &route, trajectory.segments()) else {
-                // it only runs along the route
+            let Some(guess) = initial_guess_from(problem, &route, trajectory.segments()) else {
+                // it only follows the route
                 assert!(!trajectory.segments().iter().any(Segment::is_arc));
                 return;
             };
-            let rollout = guess.structure.sail(problem, &route, &guess.lengths);
+            let rollout = guess.structure.roll_out(problem, &route, &guess.lengths);
             let Some(rollout) = rollout else {
-                // the return is the flattest there may be, and a rounding flatter
+                // the return has the smallest angle, minus a rounding
                 let back = trajectory.segments().iter().rev().find(|s| s.is_arc());
                 let turn = back.map_or(0.0, |s| (s.turn_rate * s.duration).abs());
                 assert!((turn - FLATTEST_RETURN).abs() < 1e-9, "{turn} rad");
@@ -219,7 +227,7 @@ mod tests {
             };
             let again = Trajectory::new(rollout.motion()).expect("valid");
             assert!((again.end_time() - trajectory.end_time()).abs() < 1e-5);
-            // before that its runs along the route may be in another order
+            // before that, the runs along the route may be in another order
             let turn = trajectory.segments().iter().find(|s| s.is_arc());
             let leaves = turn.map_or(0.0, |s| s.start_time);
             for k in 0..=200 {
@@ -230,9 +238,10 @@ mod tests {
         });
     }
 
-    /// For its own sets, and for larger ones, judged by what the planner's own test has no part in.
+    /// Warm starts for the same sets and for larger ones, checked independently of the planner's
+    /// contact test.
     #[test]
-    fn what_is_drawn_out_of_a_plan_is_clear_and_for_its_own_sets_no_dearer() {
+    fn warm_starts_are_clear_and_for_the_same_sets_no_costlier() {
         let (drawn, larger) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
         at_plans(|problem, trajectory, cost| {
             if let Some(again) = warm_started(problem, trajectory).outcome.plan() {

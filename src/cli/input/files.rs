@@ -1,0 +1,181 @@
+//! The scenario files at the paths of a command, and the names of their results.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+
+use super::super::output::Output;
+
+/// A scenario file that was asked for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    /// The file.
+    pub file: PathBuf,
+    /// Name of what is written for it, without an ending: its path relative to the argument with
+    /// "/" as "__".
+    pub stem: String,
+    /// True when a folder was asked for, not this file.
+    pub in_folder: bool,
+}
+
+/// Which files of a folder are meant, by their endings.
+#[derive(Debug)]
+pub struct Kinds {
+    endings: &'static [&'static str],
+    text: &'static str,
+}
+
+/// Scenario files.
+pub const SCENARIOS: Kinds = Kinds {
+    endings: &["toml"],
+    text: ".toml",
+};
+
+/// Scenario files and files of other formats.
+pub const ANY_FORMAT: Kinds = Kinds {
+    endings: &["toml", "json", "xml"],
+    text: ".toml, .json or .xml",
+};
+
+/// Files of other formats alone.
+pub const FOREIGN: Kinds = Kinds {
+    endings: &["json", "xml"],
+    text: ".json or .xml",
+};
+
+impl Kinds {
+    fn hold(&self, file: &Path) -> bool {
+        let ending = file.extension().and_then(|ending| ending.to_str());
+        ending.is_some_and(|ending| self.endings.contains(&ending))
+    }
+}
+
+/// The scenario files at `paths`, in the order of the arguments and sorted within each folder. A
+/// folder that cannot be searched gives the reason. A repeated file is taken once, with a note.
+pub fn find(
+    paths: &[PathBuf],
+    kinds: &Kinds,
+    output: &Output,
+) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+    let mut known = BTreeSet::new();
+    let mut all = Vec::new();
+    for found in meant(paths, kinds) {
+        // what cannot be found is reported when it is read
+        let place = found.as_ref().ok().and_then(|f| f.file.canonicalize().ok());
+        let again = place.is_some_and(|place| !known.insert(place));
+        if let (Ok(found), true) = (&found, again) {
+            let file = found.file.display();
+            output.note(&format_args!("{file}: given more than once, taken once"));
+        } else {
+            all.push(found);
+        }
+    }
+    all
+}
+
+fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow::Error)>> {
+    let mut all = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            // a missing file is reported when it is read
+            all.push(Ok(Found {
+                file: path.clone(),
+                stem: stem(path.file_name().map(Path::new).unwrap_or(path)),
+                in_folder: false,
+            }));
+            continue;
+        }
+        let mut files = Vec::new();
+        match walk(path, kinds, &mut files) {
+            Ok(()) if files.is_empty() => all.push(Err((
+                path.clone(),
+                anyhow::anyhow!(
+                    "{}: a folder without scenarios ({} files)",
+                    path.display(),
+                    kinds.text
+                ),
+            ))),
+            Ok(()) => all.extend(files.into_iter().map(|file| {
+                let relative = file.strip_prefix(path).unwrap_or(&file);
+                Ok(Found {
+                    stem: stem(relative),
+                    file,
+                    in_folder: true,
+                })
+            })),
+            Err(error) => all.push(Err((path.clone(), error))),
+        }
+    }
+    all
+}
+
+/// The name of a file on a page: as it was given, but an absolute path is shortened to the part
+/// below the current folder, or to the name.
+pub fn shown(file: &Path) -> String {
+    if !file.is_absolute() {
+        return file.display().to_string();
+    }
+    let here = std::env::current_dir().ok();
+    let below = here
+        .as_deref()
+        .and_then(|here| file.strip_prefix(here).ok());
+    let name = below.or(file.file_name().map(Path::new));
+    name.unwrap_or(file).display().to_string()
+}
+
+fn stem(relative: &Path) -> String {
+    let parts: Vec<_> = relative
+        .with_extension("")
+        .components()
+        .map(|part| part.as_os_str().to_string_lossy().into_owned())
+        .collect();
+    parts.join("__")
+}
+
+/// The files of these kinds below a folder; none of one that cannot be searched.
+pub fn below(folder: &Path, kinds: &Kinds) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    match walk(folder, kinds, &mut files) {
+        Ok(()) => files,
+        Err(_) => Vec::new(),
+    }
+}
+
+/// Files of these kinds, depth first in order of names. Hidden entries are left out; links to
+/// folders are not followed, so that a loop ends.
+fn walk(folder: &Path, kinds: &Kinds, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+    let unread = || format!("{}: cannot be read", folder.display());
+    let mut entries = fs::read_dir(folder)
+        .and_then(|entries| entries.collect::<Result<Vec<_>, _>>())
+        .with_context(unread)?;
+    entries.sort_by_key(|entry| entry.file_name());
+    for entry in entries {
+        let path = entry.path();
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        if entry.file_type().with_context(unread)?.is_dir() {
+            walk(&path, kinds, files)?;
+        } else if kinds.hold(&path) && !path.is_dir() {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Fails when two scenarios would be written under one name.
+pub fn refuse_clashes(found: &[Found]) -> anyhow::Result<()> {
+    for (index, later) in found.iter().enumerate() {
+        if let Some(earlier) = found[..index].iter().find(|f| f.stem == later.stem) {
+            bail!(
+                "{} and {} would both be written as '{}'; give the folder above them, or one of them",
+                earlier.file.display(),
+                later.file.display(),
+                later.stem
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,355 @@
+//! Points and velocities from the command line and from CSV files.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+use searoom::scenario::{Fault, ScenarioError};
+
+/// Bytes of a CSV file.
+const FILE_BYTES: u64 = 16 * 1024 * 1024;
+
+/// Faults of a file that are reported; the rest is counted.
+const REPORTED: usize = 20;
+
+/// A column: its name, which carries the unit, and what it may hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Column {
+    name: &'static str,
+    low: f64,
+    high: f64,
+}
+
+impl Column {
+    const fn new(name: &'static str, low: f64, high: f64) -> Self {
+        Self { name, low, high }
+    }
+
+    fn allowed(&self) -> String {
+        format!("a number from {} to {}", self.low, self.high)
+    }
+
+    /// The number in a text, or what was found instead.
+    fn number(&self, text: &str) -> Result<f64, String> {
+        if text.is_empty() {
+            return Err("nothing".to_owned());
+        }
+        match text.parse::<f64>() {
+            Ok(number) if number >= self.low && number <= self.high => Ok(number),
+            // as short as it can be: 1e308 has 309 figures
+            Ok(number) => Err(format!("{number:?}").trim_end_matches(".0").to_owned()),
+            Err(_) => Err(format!("the text {}", quoted(text))),
+        }
+    }
+}
+
+/// Where and when.
+pub const POINT: [Column; 3] = [
+    Column::new("east_m", -1e7, 1e7),
+    Column::new("north_m", -1e7, 1e7),
+    Column::new("t_s", 0.0, 1e6),
+];
+
+/// A velocity of own ship.
+pub const VELOCITY: [Column; 2] = [
+    Column::new("east_mps", -100.0, 100.0),
+    Column::new("north_mps", -100.0, 100.0),
+];
+
+/// A time.
+pub const TIME: [Column; 1] = [Column::new("t_s", 0.0, 1e6)];
+
+fn values(count: usize) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} value{plural}")
+}
+
+/// The numbers of one option, with commas between them.
+pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64; N], String> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    if parts.len() != N {
+        let names = header(columns);
+        return Err(format!(
+            "found {}; allowed: {N}: {names}",
+            values(parts.len())
+        ));
+    }
+    let mut row = [0.0; N];
+    for ((number, column), part) in row.iter_mut().zip(columns).zip(parts) {
+        *number = column.number(part).map_err(|found| {
+            format!(
+                "{}: found {found}; allowed: {}",
+                column.name,
+                column.allowed()
+            )
+        })?;
+    }
+    Ok(row)
+}
+
+/// The rows of a CSV file with a header line, at least one; its columns may be in any order. Every
+/// fault of the file is in the error, each with its line and its field.
+pub fn read<const N: usize>(
+    file: &Path,
+    columns: &[Column; N],
+) -> Result<Vec<[f64; N]>, ScenarioError> {
+    let bytes = bytes(file)?;
+    let mut faults = Vec::new();
+    let rows = rows(&bytes, columns, &mut faults);
+    if faults.is_empty() {
+        return Ok(rows);
+    }
+    if faults.len() > REPORTED {
+        let more = faults.len() - REPORTED;
+        let allowed = "none at all";
+        faults.truncate(REPORTED);
+        faults.push(fault(None, "", format!("{more} more faults"), allowed));
+    }
+    Err(ScenarioError::Faults {
+        file: file.to_owned(),
+        faults,
+    })
+}
+
+fn bytes(file: &Path) -> Result<Vec<u8>, ScenarioError> {
+    let unread = |source| ScenarioError::Read {
+        file: file.to_owned(),
+        source,
+    };
+    let invalid = |what: &str| std::io::Error::new(std::io::ErrorKind::InvalidInput, what);
+    // a pipe would be waited for, a device read for ever
+    if !std::fs::metadata(file).map_err(unread)?.is_file() {
+        return Err(unread(invalid("not a regular file")));
+    }
+    let mut bytes = Vec::new();
+    let handle = File::open(file).map_err(unread)?;
+    handle
+        .take(FILE_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(unread)?;
+    if bytes.len() as u64 > FILE_BYTES {
+        return Err(unread(invalid("more than 16 MiB")));
+    }
+    Ok(bytes)
+}
+
+fn rows<const N: usize>(
+    bytes: &[u8],
+    columns: &[Column; N],
+    faults: &mut Vec<Fault>,
+) -> Vec<[f64; N]> {
+    let names = header(columns);
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(Trim::All)
+        .from_reader(bytes);
+    let mut order: Option<[usize; N]> = None;
+    let mut rows = Vec::new();
+    let mut record = StringRecord::new();
+    let mut lines = Lines {
+        bytes,
+        read: 0,
+        before: 0,
+    };
+    loop {
+        match reader.read_record(&mut record) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(error) => {
+                let line = error.position().map(|p| p.line() as usize);
+                faults.push(fault(
+                    line,
+                    "",
+                    "bytes that are no text".into(),
+                    "UTF-8 text",
+                ));
+                return rows;
+            }
+        }
+        let line = lines.reach(&reader);
+        if record.len() == 1 && record[0].is_empty() {
+            continue;
+        }
+        let Some(order) = order else {
+            order = columns_of(&record, columns, line, faults);
+            if order.is_none() {
+                return rows;
+            }
+            continue;
+        };
+        if record.len() > N {
+            let found = values(record.len());
+            faults.push(fault(Some(line), "", found, &format!("{N}: {names}")));
+            continue;
+        }
+        let mut row = [0.0; N];
+        for ((number, column), at) in row.iter_mut().zip(columns).zip(order) {
+            let read = match record.get(at) {
+                Some(text) => column.number(text),
+                None => Err(format!("no value: the row has {} of {N}", record.len())),
+            };
+            match read {
+                Ok(value) => *number = value,
+                Err(found) => faults.push(fault(Some(line), column.name, found, &column.allowed())),
+            }
+        }
+        rows.push(row);
+    }
+    let wanted = format!("a header line {names} and at least one row");
+    if order.is_none() {
+        faults.push(fault(Some(1), "", "an empty file".to_owned(), &wanted));
+    } else if rows.is_empty() && faults.is_empty() {
+        faults.push(fault(None, "", "no rows".to_owned(), &wanted));
+    }
+    rows
+}
+
+/// Counts lines, from 1, up to where the reader stands.
+struct Lines<'a> {
+    bytes: &'a [u8],
+    read: usize,
+    before: usize,
+}
+
+impl Lines<'_> {
+    /// The line on which the record that was read last ends.
+    fn reach(&mut self, reader: &csv::Reader<&[u8]>) -> usize {
+        let end = (reader.position().byte() as usize).min(self.bytes.len());
+        let text = self.bytes[self.read..end].trim_ascii_end();
+        let line = 1 + self.before + newlines(text);
+        self.before += newlines(&self.bytes[self.read..end]);
+        self.read = end;
+        line
+    }
+}
+
+fn newlines(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|b| **b == b'\n').count()
+}
+
+/// Where each column stands in the file.
+fn columns_of<const N: usize>(
+    found: &StringRecord,
+    columns: &[Column; N],
+    line: usize,
+    faults: &mut Vec<Fault>,
+) -> Option<[usize; N]> {
+    let names = header(columns);
+    let before = faults.len();
+    for (i, name) in found.iter().enumerate() {
+        if !columns.iter().any(|c| c.name == name) {
+            let what = format!("an unknown column {}", quoted(name));
+            faults.push(fault(Some(line), "", what, &names));
+        } else if found.iter().take(i).any(|earlier| earlier == name) {
+            faults.push(fault(Some(line), name, "the column twice".into(), "once"));
+        }
+    }
+    let mut order = [0; N];
+    for (at, column) in order.iter_mut().zip(columns) {
+        match found.iter().position(|name| name == column.name) {
+            Some(place) => *at = place,
+            None => faults.push(fault(
+                Some(line),
+                column.name,
+                "no such column".to_owned(),
+                &format!("a header line {names}"),
+            )),
+        }
+    }
+    (faults.len() == before).then_some(order)
+}
+
+fn header<const N: usize>(columns: &[Column; N]) -> String {
+    columns.map(|c| c.name).join(",")
+}
+
+/// At most 40 characters of a text, in quotes.
+fn quoted(text: &str) -> String {
+    let short: String = text.chars().take(40).collect();
+    let more = if text.chars().count() > 40 { "…" } else { "" };
+    format!("{short:?}{more}")
+}
+
+fn fault(line: Option<usize>, path: &str, found: String, allowed: &str) -> Fault {
+    Fault {
+        path: path.to_owned(),
+        found,
+        allowed: allowed.to_owned(),
+        line,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn faults(text: &[u8]) -> Vec<String> {
+        let mut faults = Vec::new();
+        rows(text, &POINT, &mut faults);
+        faults.iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn columns_may_stand_in_any_order() {
+        let mut faults = Vec::new();
+        let text = b"\xef\xbb\xbft_s, north_m ,east_m\r\n\r\n3,2,1\r\n 6 ,5,-4e0";
+        let read = rows(text, &POINT, &mut faults);
+        assert_eq!(
+            (read, faults),
+            (vec![[1.0, 2.0, 3.0], [-4.0, 5.0, 6.0]], vec![])
+        );
+    }
+
+    #[test]
+    fn every_fault_has_its_line_and_its_field() {
+        let text = b"east_m,north_m,t_s\n\n1,2,-3\n\n4,5\n,2,inf\n1,2,3,4\nx,1e8,3\n";
+        assert_eq!(
+            faults(text),
+            [
+                "line 3: t_s: found -3; allowed: a number from 0 to 1000000",
+                "line 5: t_s: found no value: the row has 2 of 3; allowed: a number from 0 to 1000000",
+                "line 6: east_m: found nothing; allowed: a number from -10000000 to 10000000",
+                "line 6: t_s: found inf; allowed: a number from 0 to 1000000",
+                "line 7: found 4 values; allowed: 3: east_m,north_m,t_s",
+                "line 8: east_m: found the text \"x\"; allowed: a number from -10000000 to 10000000",
+                "line 8: north_m: found 100000000; allowed: a number from -10000000 to 10000000",
+            ]
+        );
+        assert_eq!(faults(b"").len(), 1);
+        assert_eq!(faults(b"\n\n \n").len(), 1);
+        assert_eq!(faults(b"east_m,north_m,t_s\n").len(), 1);
+        assert_eq!(faults(b"east_m,east_m,t_s\n1,2,3").len(), 2);
+        assert_eq!(faults(b"east_m,north_m,t_s\n1,2,3\n\xff,1,2\n").len(), 1);
+    }
+
+    /// Nothing that a file can hold may panic.
+    #[test]
+    fn hostile_text_never_panics() {
+        let text = b"east_m,north_m,t_s\n\"1\",nan,-0\n\"\"\",1\r3,,\n";
+        for end in 0..text.len() {
+            faults(&text[..end]);
+            let mut other = text.to_vec();
+            other[end] = 0xff;
+            faults(&other);
+            other[end] = b'"';
+            faults(&other);
+        }
+    }
+
+    #[test]
+    fn an_option_is_one_row() {
+        assert_eq!(option("-1, 2,3e1", &POINT), Ok([-1.0, 2.0, 30.0]));
+        for (text, found) in [
+            ("1,2", "found 2 values"),
+            ("1", "found 1 value;"),
+            ("1e308,0,0", "east_m: found 1e308;"),
+            ("1,2,-1", "t_s: found -1"),
+            ("1,,1", "north_m: found nothing"),
+            ("nan,0,0", "east_m: found NaN"),
+        ] {
+            assert!(option(text, &POINT).expect_err(text).starts_with(found));
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The scenarios in files: one in a scenario file, one or many in an imported one.
+
+use std::path::{Path, PathBuf};
+
+use searoom::scenario::import::{Assumed, Contents, Declared, Format, Imported, Situation};
+use searoom::scenario::{Scenario, ScenarioError};
+
+use super::super::output::Output;
+use super::files::{self, Found};
+
+/// A scenario that is not read in full yet.
+#[derive(Debug)]
+pub struct Scene {
+    /// Its file, and the name of its results.
+    pub found: Found,
+    source: Source,
+}
+
+#[derive(Debug)]
+enum Source {
+    /// A scenario file.
+    File,
+    /// A situation of an imported file.
+    Situation(Box<Situation>),
+}
+
+/// A file, or a part of it, in which there is no scenario.
+#[derive(Debug)]
+pub struct Unread {
+    /// The file.
+    pub file: PathBuf,
+    /// Why, the file named.
+    pub error: String,
+}
+
+/// A scenario with notes.
+#[derive(Debug)]
+pub struct Made {
+    pub scenario: Scenario,
+    /// Assumptions, and parts of the file that are not used.
+    pub notes: Vec<String>,
+}
+
+impl Scene {
+    /// The scenario, with assumptions where an imported file gives no value.
+    pub fn scenario(&self, assumed: &Assumed) -> Result<Made, ScenarioError> {
+        match self.imported(assumed) {
+            Some(imported) => imported.map(|imported| Made {
+                scenario: imported.scenario,
+                notes: imported.notes,
+            }),
+            None => Scenario::read(&self.found.file).map(|scenario| Made {
+                scenario,
+                notes: Vec::new(),
+            }),
+        }
+    }
+
+    /// The scenario of an imported file, with its text; `None` for a scenario file.
+    pub fn imported(&self, assumed: &Assumed) -> Option<Result<Imported, ScenarioError>> {
+        match &self.source {
+            Source::File => None,
+            Source::Situation(situation) => {
+                let file = self.found.file.clone();
+                let imported = situation.scenario(assumed);
+                Some(imported.map_err(|faults| ScenarioError::Faults { file, faults }))
+            }
+        }
+    }
+
+    /// Further facts that an imported file declares about its situation.
+    pub fn declared(&self) -> Declared {
+        match &self.source {
+            Source::File => Declared::default(),
+            Source::Situation(situation) => situation.declared().clone(),
+        }
+    }
+
+    /// The file, and the situation where there may be several in it.
+    pub fn label(&self) -> String {
+        let file = self.found.file.display();
+        match &self.source {
+            Source::Situation(situation) if situation.id().is_some() => {
+                format!("{file}: {}", situation.name())
+            }
+            _ => file.to_string(),
+        }
+    }
+}
+
+/// Opens files: every scene in their order. Documents and maps in a folder are left out with a
+/// note.
+pub fn open(
+    found: Vec<Result<Found, (PathBuf, anyhow::Error)>>,
+    assumed: &Assumed,
+    output: &Output,
+) -> Vec<Result<Scene, Unread>> {
+    let mut scenes = Vec::new();
+    for entry in found {
+        match entry {
+            Ok(found) => of_file(&found, assumed, output, &mut scenes),
+            Err((file, error)) => scenes.push(Err(Unread {
+                file,
+                error: format!("{error:#}"),
+            })),
+        }
+    }
+    scenes
+}
+
+fn of_file(
+    found: &Found,
+    assumed: &Assumed,
+    output: &Output,
+    scenes: &mut Vec<Result<Scene, Unread>>,
+) {
+    let file = &found.file;
+    let unread = |error: String| Unread {
+        file: file.clone(),
+        error,
+    };
+    match Contents::read(file, assumed) {
+        Ok(Contents::Scenario) => scenes.push(Ok(Scene {
+            found: found.clone(),
+            source: Source::File,
+        })),
+        Ok(Contents::Situations { situations, .. }) => {
+            for situation in situations {
+                scenes.push(match situation {
+                    Ok(situation) => Ok(Scene {
+                        found: named(found, &situation),
+                        source: Source::Situation(Box::new(situation)),
+                    }),
+                    Err(faults) => {
+                        let file = file.clone();
+                        Err(unread(ScenarioError::Faults { file, faults }.to_string()))
+                    }
+                });
+            }
+        }
+        Ok(Contents::Other(what)) if found.in_folder => {
+            output.note(&format_args!("{}: {what}, left out", file.display()));
+        }
+        Ok(Contents::Other(what)) => {
+            let error = format!("{}: {what}; no scenario in it", file.display());
+            scenes.push(Err(unread(error)));
+        }
+        Err(error) => scenes.push(Err(unread(error.to_string()))),
+    }
+}
+
+/// The scenario of a command that takes scenario files alone, or why there is none, the file named.
+pub fn scenario_file(file: &Path) -> Result<Scenario, String> {
+    let read = Contents::read(file, &Assumed::default()).map_err(|error| error.to_string())?;
+    let is = match read {
+        Contents::Scenario => return Scenario::read(file).map_err(|error| error.to_string()),
+        Contents::Situations { format, .. } => {
+            let other = match format {
+                Format::Scenario => "situations",
+                Format::Dnv => "a DNV traffic situation",
+                Format::Imazu => "Imazu's cases",
+                Format::CommonOcean => "a CommonOcean scenario",
+            };
+            format!("{other}; `searoom import` makes scenario files of it")
+        }
+        Contents::Other(what) => format!("{what}; no scenario in it"),
+    };
+    Err(format!("{}: {is}", file.display()))
+}
+
+/// Notes how many files of other formats a folder holds that this command leaves out.
+pub fn note_foreign(paths: &[PathBuf], output: &Output) {
+    for folder in paths.iter().filter(|path| path.is_dir()) {
+        let is_foreign = |file: &PathBuf| {
+            let read = Contents::read(file, &Assumed::default());
+            matches!(read, Ok(Contents::Situations { .. }))
+        };
+        let all = files::below(folder, &files::FOREIGN);
+        let count = all.into_iter().filter(is_foreign).count();
+        if count > 0 {
+            let (folder, plural) = (folder.display(), if count == 1 { "" } else { "s" });
+            output.note(&format_args!(
+                "{folder}: {count} file{plural} of other formats left out; `searoom import` makes scenario files of them"
+            ));
+        }
+    }
+}
+
+/// Outputs of one of several situations are called after it, in the folder of its file.
+fn named(found: &Found, situation: &Situation) -> Found {
+    let Some(id) = situation.id() else {
+        return found.clone();
+    };
+    let safe = |c: char| {
+        if c.is_alphanumeric() || "-_.".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    };
+    let id: String = id.chars().map(safe).collect();
+    let stem = match found.stem.rsplit_once(SEPARATOR) {
+        Some((folder, _)) => format!("{folder}{SEPARATOR}{id}"),
+        None => id,
+    };
+    Found {
+        stem,
+        ..found.clone()
+    }
+}
+
+/// Replaces "/" in the names of results.
+const SEPARATOR: &str = "__";

@@ -1,0 +1,343 @@
+//! `searoom inspect`: the contents of a recording.
+
+mod difference;
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow, bail};
+use comfy_table::{ContentArrangement, Table, presets};
+use searoom::document::{PlanDocument, ScenarioComparisonDocument};
+use searoom::recording::{EntityTable, Recorded, TimelineContents};
+use searoom::report::{comparison_table, plan_document_text};
+use serde::Serialize;
+use serde_json::Value;
+
+use super::args::InspectArgs;
+use super::output::Output;
+use super::output::status::Status;
+use super::runner::guarded;
+use difference::two;
+
+/// Entities of a similar name that are offered for one that is not there.
+const OFFERED: usize = 3;
+
+/// Shows one recording, a part of it, or the differences of two.
+pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
+    let asked = || match &args.other {
+        None => one(args, output),
+        Some(other) => two(args, other, output),
+    };
+    match guarded(asked) {
+        Ok(Ok(status)) => status,
+        Ok(Err(error)) => {
+            output.error(&format_args!("{error:#}"));
+            Status::BadInput
+        }
+        Err(fault) => {
+            output.error(&fault);
+            Status::InternalFault
+        }
+    }
+}
+
+/// Reads a recording. A panic of the decoder is a fault of the file.
+pub fn read(path: &Path) -> anyhow::Result<Recorded> {
+    match guarded(|| Recorded::read(path)) {
+        // the message names its cause already
+        Ok(read) => read.map_err(|error| anyhow!("{error}")),
+        Err(fault) => bail!("{}: damaged: its decoder gave up ({fault})", path.display()),
+    }
+}
+
+/// The plan document of a recording.
+pub fn plan_document(path: &Path) -> anyhow::Result<String> {
+    document_of(&read(path)?, path)
+}
+
+fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
+    if recorded.comparison().is_some() {
+        bail!(
+            "{}: the recording of a comparison, which holds no plan document; `searoom inspect --json` prints its own",
+            path.display()
+        );
+    }
+    recorded.document().with_context(|| {
+        format!(
+            "{}: holds no plan document: it was written without one",
+            path.display()
+        )
+    })
+}
+
+fn one(args: &InspectArgs, output: &Output) -> anyhow::Result<Status> {
+    let recorded = read(&args.recording)?;
+    if args.plan {
+        let document = document_of(&recorded, &args.recording)?;
+        return Ok(output.result(document.trim_end()));
+    }
+    if let Some(entity) = &args.csv {
+        let table = table(&recorded, entity, &args.recording)?;
+        return Ok(if args.json {
+            output.document(&EntityDocument::of(entity, table))
+        } else {
+            output.result(csv(&table)?.trim_end())
+        });
+    }
+    let contents = Contents::of(&args.recording, &recorded);
+    Ok(if args.json {
+        output.document(&contents)
+    } else {
+        output.result(&contents.text())
+    })
+}
+
+fn table(recorded: &Recorded, entity: &str, file: &Path) -> anyhow::Result<EntityTable> {
+    if let Some(table) = recorded.table(entity) {
+        return Ok(table);
+    }
+    let wanted = format!("/{}", entity.trim_start_matches('/'));
+    let mut all: Vec<(f64, String)> = recorded
+        .entities()
+        .into_iter()
+        .map(|e| (strsim::jaro_winkler(&wanted, &e.path), e.path))
+        .collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let near: Vec<String> = all
+        .into_iter()
+        .take(OFFERED)
+        .map(|(_, path)| path)
+        .collect();
+    bail!(
+        "{}: no entity {wanted}; the nearest names: {}",
+        file.display(),
+        near.join(", ")
+    )
+}
+
+fn csv(table: &EntityTable) -> anyhow::Result<String> {
+    let columns = table.columns();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&columns.header)?;
+    for row in &columns.rows {
+        writer.write_record(row)?;
+    }
+    let bytes = writer.into_inner().context("the rows cannot be written")?;
+    Ok(String::from_utf8(bytes)?)
+}
+
+/// One entity, with its values as they are.
+#[derive(Debug, Serialize)]
+struct EntityDocument {
+    entity: String,
+    timelines: Vec<String>,
+    components: Vec<String>,
+    rows: Vec<RowDocument>,
+}
+
+/// Times by timeline, null where the row has none, and values by component.
+#[derive(Debug, Serialize)]
+struct RowDocument {
+    times: Vec<Option<f64>>,
+    values: Vec<Value>,
+}
+
+impl EntityDocument {
+    fn of(entity: &str, table: EntityTable) -> Self {
+        let rows = table.rows.into_iter();
+        Self {
+            entity: format!("/{}", entity.trim_start_matches('/')),
+            timelines: table.timelines,
+            components: table.components,
+            rows: rows
+                .map(|row| RowDocument {
+                    times: row.times,
+                    values: row.values,
+                })
+                .collect(),
+        }
+    }
+}
+
+/// The contents of a recording.
+#[derive(Debug, Serialize)]
+struct Contents {
+    file: String,
+    bytes: u64,
+    application: &'static str,
+    rerun_version: Option<String>,
+    /// This and the next ones are from the plan document; null without one.
+    scenario: Value,
+    planner: Value,
+    search: Value,
+    outcome: Value,
+    verified: Value,
+    safe: Value,
+    cost: Value,
+    search_stats: Value,
+    /// Where own ship stands on; else null.
+    escape: Value,
+    targets: Vec<Value>,
+    /// The entry of `compare --json`; null for a plan.
+    comparison: Value,
+    #[serde(skip)]
+    plan: Option<PlanDocument>,
+    #[serde(skip)]
+    compared: Option<ScenarioComparisonDocument>,
+    timelines: Vec<TimelineDocument>,
+    entities: Vec<ContentsDocument>,
+}
+
+/// An entity in a list.
+#[derive(Debug, Serialize)]
+struct ContentsDocument {
+    entity: String,
+    rows: usize,
+    components: Vec<String>,
+    timelines: Vec<TimelineDocument>,
+}
+
+/// A timeline and its range.
+#[derive(Debug, Serialize)]
+struct TimelineDocument {
+    name: String,
+    unit: &'static str,
+    first: f64,
+    last: f64,
+}
+
+impl TimelineDocument {
+    fn all(timelines: Vec<TimelineContents>) -> Vec<Self> {
+        timelines
+            .into_iter()
+            .map(|t| Self {
+                name: t.name,
+                unit: t.unit,
+                first: t.first,
+                last: t.last,
+            })
+            .collect()
+    }
+
+    fn text(&self) -> String {
+        let Self {
+            name,
+            unit,
+            first,
+            last,
+        } = self;
+        let [first, last] = [first, last].map(|time| (time * 1e3).round() / 1e3);
+        format!("{name} {first} to {last} {unit}")
+            .trim_end()
+            .to_owned()
+    }
+}
+
+impl Contents {
+    fn of(file: &Path, recorded: &Recorded) -> Self {
+        let document: Value = recorded
+            .document()
+            .and_then(|text| serde_json::from_str(&text).ok())
+            .unwrap_or_default();
+        let mut compared: Value = recorded
+            .comparison()
+            .and_then(|text| serde_json::from_str(&text).ok())
+            .unwrap_or_default();
+        let comparison = compared
+            .pointer_mut("/comparisons/0")
+            .map(Value::take)
+            .unwrap_or_default();
+        let scenario = [&document, &comparison]
+            .into_iter()
+            .find_map(|d| d.get("scenario"))
+            .cloned();
+        let field = |key: &str| document.get(key).cloned().unwrap_or_default();
+        let names = document["encounters"].as_array().into_iter().flatten();
+        Self {
+            file: file.display().to_string(),
+            bytes: recorded.bytes,
+            application: "searoom",
+            rerun_version: recorded.version.clone(),
+            scenario: scenario.unwrap_or_default(),
+            planner: field("planner"),
+            search: field("search"),
+            outcome: field("outcome"),
+            verified: field("verified"),
+            safe: field("safe"),
+            cost: field("cost"),
+            search_stats: field("search_stats"),
+            escape: field("escape"),
+            targets: names.cloned().collect(),
+            plan: serde_json::from_value(document).ok(),
+            compared: serde_json::from_value(comparison.clone()).ok(),
+            comparison,
+            timelines: TimelineDocument::all(recorded.timelines()),
+            entities: recorded
+                .entities()
+                .into_iter()
+                .map(|e| ContentsDocument {
+                    entity: e.path,
+                    rows: e.rows,
+                    components: e.components,
+                    timelines: TimelineDocument::all(e.timelines),
+                })
+                .collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut lines = vec![format!(
+            "{}: {:.0} kB, recorded by {} with Rerun {}",
+            self.file,
+            self.bytes as f64 / 1e3,
+            self.application,
+            self.rerun_version
+                .as_deref()
+                .unwrap_or("of an unknown version")
+        )];
+        lines.push(match (&self.plan, &self.compared) {
+            (Some(plan), _) => plan_document_text(plan),
+            (None, Some(compared)) => comparison_table(compared, false),
+            (None, None) => "no plan document in it".to_owned(),
+        });
+        lines.push(String::new());
+        let timelines: Vec<String> = self.timelines.iter().map(TimelineDocument::text).collect();
+        lines.push(format!("Timelines: {}", list(&timelines)));
+        lines.push(format!("Entities: {}", self.entities.len()));
+        let mut table = Table::new();
+        table
+            .load_style(presets::UTF8_HORIZONTAL_ONLY)
+            .set_content_arrangement(ContentArrangement::Disabled)
+            .set_header(["entity", "rows", "times", "components"])
+            .force_no_tty();
+        table.style_mut().row_separator = presets::NOTHING.row_separator;
+        for entity in &self.entities {
+            let times: Vec<String> = entity
+                .timelines
+                .iter()
+                .map(TimelineDocument::text)
+                .collect();
+            let short = |c: &String| c.rsplit(':').next().unwrap_or(c).to_owned();
+            let components: Vec<String> = entity.components.iter().map(short).collect();
+            table.add_row([
+                entity.entity.clone(),
+                entity.rows.to_string(),
+                if times.is_empty() {
+                    "always".to_owned()
+                } else {
+                    times.join(", ")
+                },
+                components.join(", "),
+            ]);
+        }
+        lines.push(table.trim_fmt());
+        lines.join("\n")
+    }
+}
+
+fn list(texts: &[String]) -> String {
+    if texts.is_empty() {
+        "none".to_owned()
+    } else {
+        texts.join(", ")
+    }
+}

@@ -1,0 +1,130 @@
+//! The only place that prints: results to standard output, everything else to standard error.
+
+pub mod products;
+pub mod status;
+
+use std::fmt::Display;
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use searoom::report::printable_lines;
+use serde::Serialize;
+
+use status::Status;
+
+/// Red, green, yellow, and the end of each, as tables have them.
+const COLOURS: [&str; 5] = [
+    "\u{1b}[38;5;9m",
+    "\u{1b}[38;5;10m",
+    "\u{1b}[38;5;11m",
+    "\u{1b}[39m",
+    "\u{1b}[0m",
+];
+
+/// Standard output and standard error.
+#[derive(Debug)]
+pub struct Output {
+    /// True when results may be coloured.
+    pub colour: bool,
+}
+
+impl Output {
+    /// Colour only on a terminal, and not when `NO_COLOR` says no.
+    pub fn new() -> Self {
+        let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        Self {
+            colour: wanted && std::io::stdout().is_terminal(),
+        }
+    }
+
+    /// Prints a result. The status is bad when it cannot be printed; a reader that went away is no
+    /// fault of ours.
+    pub fn result(&self, text: &str) -> Status {
+        let mut stdout = std::io::stdout().lock();
+        let text = self.shown(text);
+        match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+            Ok(()) => Status::Good,
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Status::Good,
+            Err(error) => {
+                self.error(&format_args!("standard output: {error}"));
+                Status::BadInput
+            }
+        }
+    }
+
+    /// Escapes control characters, except the colours of tables. Coloured tables have escaped their
+    /// texts before.
+    fn shown(&self, text: &str) -> String {
+        if !self.colour {
+            return printable_lines(text);
+        }
+        let mut out = String::with_capacity(text.len());
+        let mut rest = text;
+        while let Some(at) = rest.find('\u{1b}') {
+            out.push_str(&printable_lines(&rest[..at]));
+            let mut colours = COLOURS.into_iter();
+            let known = colours.find(|colour| rest[at..].starts_with(colour));
+            let length = known.map_or(1, str::len);
+            match known {
+                Some(colour) => out.push_str(colour),
+                None => out.push_str(&printable_lines(&rest[at..=at])),
+            }
+            rest = &rest[at + length..];
+        }
+        out + &printable_lines(rest)
+    }
+
+    /// Prints a document.
+    pub fn document(&self, document: &impl Serialize) -> Status {
+        match json(document) {
+            Ok(text) => self.result(text.trim_end()),
+            Err(error) => {
+                self.error(&format_args!("{error:#}"));
+                Status::InternalFault
+            }
+        }
+    }
+
+    /// Prints an error.
+    pub fn error(&self, error: &impl Display) {
+        // an error of standard error cannot be reported
+        let error = printable_lines(&error.to_string());
+        let _ = writeln!(std::io::stderr(), "error: {error}");
+    }
+
+    /// Prints a note.
+    pub fn note(&self, note: &impl Display) {
+        let note = printable_lines(&note.to_string());
+        let _ = writeln!(std::io::stderr(), "note: {note}");
+    }
+
+    /// A bar on standard error; hidden when that is no terminal.
+    pub fn progress(&self, steps: usize) -> ProgressBar {
+        let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());
+        match ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+}
+
+/// A document as text.
+pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
+    let mut text =
+        serde_json::to_string_pretty(document).context("a document cannot be written")?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// Prints help, the version or what is wrong with the arguments.
+pub fn usage(error: &clap::Error) -> ExitCode {
+    // an error of this stream cannot be reported
+    let _ = error.print();
+    if error.use_stderr() {
+        Status::BadInput.into()
+    } else {
+        Status::Good.into()
+    }
+}

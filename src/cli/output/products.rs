@@ -1,0 +1,263 @@
+//! The files that a command writes: recordings, figures and plan documents.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use searoom::document::{ComparisonDocument, PlanDocument};
+use searoom::pipeline::Run;
+use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
+use searoom::report::page::{Report, Subject, link_from};
+use searoom::report::write_atomically;
+use searoom::scenario::Scenario;
+use searoom::study::compare::Entry;
+
+use super::super::input::files::{Found, refuse_clashes};
+use super::super::runner::guarded;
+use super::json;
+use super::status::Status;
+
+/// Where recordings, figures and plans go.
+#[derive(Debug)]
+pub struct Products {
+    recordings: Option<Place>,
+    figures: Option<Place>,
+    plans: Option<PathBuf>,
+    report: Option<PathBuf>,
+}
+
+/// The paths asked for.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Wanted<'a> {
+    pub recordings: Option<&'a Path>,
+    pub figures: Option<&'a Path>,
+    pub plans: Option<&'a Path>,
+    pub report: Option<&'a Path>,
+}
+
+#[derive(Debug)]
+enum Place {
+    File(PathBuf),
+    Folder(PathBuf),
+}
+
+impl Products {
+    /// Makes the folders, before anything is planned. A path is a file where its name has such an
+    /// ending and no folder has it. A new folder whose name has another ending needs a slash at its
+    /// end.
+    pub fn prepare(found: &[Found], wanted: Wanted) -> anyhow::Result<Self> {
+        let Wanted {
+            recordings,
+            figures,
+            plans,
+            report,
+        } = wanted;
+        if recordings.is_some() && !cfg!(feature = "recording") {
+            bail!(
+                "--rrd: this program was built without recordings; \
+                 build it with its default features, `cargo build`"
+            );
+        }
+        if [recordings, figures, plans, report]
+            .iter()
+            .any(Option::is_some)
+        {
+            refuse_clashes(found)?;
+        }
+        let is_recording = |path: &Path| path.extension().is_some_and(|e| e == "rrd");
+        let is_figure = |path: &Path| FigureFormat::of(path).is_some();
+        if let Some(path) = recordings.filter(|path| !is_recording(path) && is_another_file(path)) {
+            let path = path.display();
+            bail!("--rrd: {path}: a recording ends in .rrd, a folder that is to be made in '/'");
+        }
+        for (option, folder) in [("--plans", plans), ("--report", report)] {
+            if let Some(path) = folder.filter(|path| is_another_file(path)) {
+                let path = path.display();
+                bail!(
+                    "{option}: {path}: a folder; one with an ending that is to be made ends in '/'"
+                );
+            }
+        }
+        let recordings = recordings
+            .map(|path| Place::prepare("--rrd", path, is_recording(path), found.len()))
+            .transpose()?;
+        if let Some(path) = figures.filter(|path| !is_figure(path) && is_another_file(path)) {
+            let file = path.to_owned();
+            bail!("--figure: {}", FigureError::Format { file });
+        }
+        let figures = figures
+            .map(|path| Place::prepare("--figure", path, is_figure(path), found.len()))
+            .transpose()?;
+        for folder in plans.into_iter().chain(report) {
+            make(folder)?;
+        }
+        Ok(Self {
+            recordings,
+            figures,
+            plans: plans.map(Path::to_owned),
+            report: report.map(Path::to_owned),
+        })
+    }
+
+    /// Writes the recording, the figure and the plan document, where asked for.
+    pub fn write(&self, stem: &str, run: &Run, plan: &PlanDocument) -> Result<(), Failure> {
+        attempt(|| {
+            if let Some(place) = &self.recordings {
+                record(run, plan, &place.file(stem, "rrd"))?;
+            }
+            if let Some(place) = &self.figures {
+                plan_figure(run).write(&place.file(stem, "svg"))?;
+            }
+            if let Some(folder) = &self.plans {
+                let file = folder.join(format!("{stem}.json"));
+                write_atomically(&file, json(plan)?.as_bytes())?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Names and links of a scenario in a report. Call it when all other results are written.
+    pub fn subject(&self, stem: &str, file: String) -> Subject {
+        let recording = self.recordings.as_ref().map(|p| p.file(stem, "rrd"));
+        let plan = self.plans.as_ref().map(|f| f.join(format!("{stem}.json")));
+        let written = [("recording", recording), ("plan document", plan)];
+        let folder = self.report.as_deref().unwrap_or(Path::new("."));
+        let links = written.into_iter().filter_map(|(name, file)| {
+            // a link to what could not be written would lead nowhere
+            let file = file.filter(|f| f.is_file())?;
+            Some((name.to_owned(), link_from(folder, &file)))
+        });
+        Subject {
+            stem: stem.to_owned(),
+            file,
+            links: links.collect(),
+        }
+    }
+
+    /// True when a report is asked for.
+    pub fn wants_report(&self) -> bool {
+        self.report.is_some()
+    }
+
+    /// Writes the report, if one was asked for.
+    pub fn write_report(&self, report: &Report, title: &str, lead: &str) -> Result<(), Failure> {
+        let Some(folder) = &self.report else {
+            return Ok(());
+        };
+        attempt(|| Ok(report.write(folder, title, lead)?))
+    }
+}
+
+/// The status and the reason of what could not be written.
+pub type Failure = (Status, String);
+
+fn attempt(work: impl FnOnce() -> anyhow::Result<()>) -> Result<(), Failure> {
+    match guarded(work) {
+        Ok(Ok(())) => Ok(()),
+        // the message of each error names its cause already
+        Ok(Err(error)) => Err((Status::BadInput, error.to_string())),
+        Err(fault) => Err((Status::InternalFault, fault)),
+    }
+}
+
+/// Refuses the name of a figure in another format, and makes its folder.
+pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
+    if FigureFormat::of(path).is_none() {
+        let file = path.to_owned();
+        bail!("--figure: {}", FigureError::Format { file });
+    }
+    if path.is_dir() {
+        bail!("--figure: {}: a folder; name a file", path.display());
+    }
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => make(folder),
+        _ => Ok(()),
+    }
+}
+
+/// A comparison of one scenario, as it is written.
+#[cfg_attr(
+    not(feature = "recording"),
+    expect(dead_code, reason = "recordings alone are written of it")
+)]
+pub struct ScenarioCompared<'a> {
+    pub scenario: &'a Scenario,
+    pub entries: &'a [Entry],
+    pub table: String,
+    pub document: ComparisonDocument,
+}
+
+impl Products {
+    /// Writes the recording of a comparison, if one was asked for.
+    pub fn write_comparison(&self, stem: &str, side: &ScenarioCompared) -> Result<(), Failure> {
+        let Some(place) = &self.recordings else {
+            return Ok(());
+        };
+        attempt(|| record_comparison(side, &place.file(stem, "rrd")))
+    }
+}
+
+impl Place {
+    /// `file` says that the path's name is one of such a file.
+    fn prepare(option: &str, path: &Path, file: bool, scenarios: usize) -> anyhow::Result<Self> {
+        if !file || path.is_dir() {
+            make(path)?;
+            return Ok(Self::Folder(path.to_owned()));
+        }
+        if scenarios > 1 {
+            bail!(
+                "{option} {}: a file, but there are {scenarios} scenarios; name a folder",
+                path.display(),
+            );
+        }
+        if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
+            make(folder)?;
+        }
+        Ok(Self::File(path.to_owned()))
+    }
+
+    fn file(&self, stem: &str, ending: &str) -> PathBuf {
+        match self {
+            Self::File(file) => file.clone(),
+            Self::Folder(folder) => folder.join(format!("{stem}.{ending}")),
+        }
+    }
+}
+
+/// A name with an ending that is no folder, nor asks for one with a slash.
+fn is_another_file(path: &Path) -> bool {
+    let asks = path.to_string_lossy().ends_with(std::path::is_separator);
+    path.extension().is_some() && !path.is_dir() && !asks
+}
+
+fn make(folder: &Path) -> anyhow::Result<()> {
+    fs::create_dir_all(folder)
+        .with_context(|| format!("{}: the folder cannot be made", folder.display()))
+}
+
+#[cfg(feature = "recording")]
+fn record(run: &Run, plan: &PlanDocument, file: &Path) -> anyhow::Result<()> {
+    Ok(searoom::recording::write(run, Some(&json(plan)?), file)?)
+}
+
+#[cfg(feature = "recording")]
+fn record_comparison(side: &ScenarioCompared, file: &Path) -> anyhow::Result<()> {
+    let document = json(&side.document)?;
+    let compared = searoom::recording::Compared {
+        scenario: side.scenario,
+        entries: side.entries,
+        table: &side.table,
+        document: &document,
+    };
+    Ok(searoom::recording::write_comparison(&compared, file)?)
+}
+
+#[cfg(not(feature = "recording"))]
+fn record_comparison(_: &ScenarioCompared, file: &Path) -> anyhow::Result<()> {
+    bail!("{}: built without recordings", file.display())
+}
+
+#[cfg(not(feature = "recording"))]
+fn record(_: &Run, _: &PlanDocument, file: &Path) -> anyhow::Result<()> {
+    bail!("{}: built without recordings", file.display())
+}

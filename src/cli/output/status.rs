@@ -1,0 +1,95 @@
+//! The exit status.
+
+use std::process::ExitCode;
+
+use searoom::pipeline::{Relaxation, Run};
+
+/// The highest of a run wins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// All planned and verified.
+    Good,
+    /// A scenario without a plan that is clear of all sets and arrives.
+    NoPlan,
+    /// Bad input or usage, or a result that cannot be written.
+    BadInput,
+    /// A fault of the program, a plan that fails its own verification included.
+    InternalFault,
+}
+
+impl Status {
+    /// The status of one run.
+    pub fn of(run: &Run) -> Self {
+        match (run.planned.outcome.plan(), &run.evaluation) {
+            (None, _) => Self::NoPlan,
+            (Some(_), Some(evaluation)) if evaluation.verified() => {
+                let no_way = |r: &Relaxation| {
+                    matches!(r, Relaxation::Risk { .. } | Relaxation::Arrival { .. })
+                };
+                if run.safe() && !run.relaxations.iter().any(no_way) {
+                    Self::Good
+                } else {
+                    Self::NoPlan
+                }
+            }
+            (Some(_), _) => Self::InternalFault,
+        }
+    }
+}
+
+impl Status {
+    /// The exit status of the process.
+    fn code(self) -> u8 {
+        match self {
+            Self::Good => 0,
+            Self::NoPlan => 1,
+            Self::BadInput => 2,
+            Self::InternalFault => 3,
+        }
+    }
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(status.code())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use searoom::evaluation::Violation;
+    use searoom::pipeline;
+    use searoom::planner::{NoPlan, Outcome};
+    use searoom::scenario::Scenario;
+
+    use super::*;
+
+    /// No planner is known to make such a plan, so a sound one is spoilt.
+    #[test]
+    fn a_plan_that_fails_its_own_verification_ends_with_status_3() {
+        let file = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/scenarios/colregs/head-on.toml"
+        );
+        let sound = pipeline::run(Scenario::read(file.as_ref()).expect("no faults"));
+        assert_eq!(Status::of(&sound).code(), 0);
+        let mut spoilt = sound.clone();
+        let violation = Violation {
+            what: "a gap".to_owned(),
+            time: 0.0,
+        };
+        let judged = spoilt.evaluation.as_mut().expect("judged");
+        judged.violations.push(violation);
+        assert_eq!(Status::of(&spoilt).code(), 3);
+        let mut unjudged = sound.clone();
+        unjudged.evaluation = None;
+        assert_eq!(Status::of(&unjudged).code(), 3);
+        let mut none = sound;
+        none.planned.outcome = Outcome::Infeasible(NoPlan::NoRoute);
+        assert_eq!(Status::of(&none).code(), 1);
+        assert_eq!(Status::BadInput.code(), 2);
+        // the highest of several runs wins
+        let all = [Status::InternalFault, Status::Good, Status::BadInput];
+        assert_eq!(all.into_iter().max(), Some(Status::InternalFault));
+    }
+}

@@ -1,0 +1,456 @@
+//! Samples of an encounter of own ship and one target: the only input of the assessment.
+
+use crate::colregs::SteadyShip;
+use crate::frame::{Vector, relative_bearing, to_port, wrap};
+use crate::target::ShipTrack;
+use crate::trajectory::Trajectory;
+use crate::vessel::Hull;
+
+/// Seconds between two samples; the joints of a trajectory are samples too.
+const STEP_S: f64 = 1.0;
+
+/// Most steps; a longer trajectory has longer steps.
+const MOST_SAMPLES: u32 = 20_000;
+
+/// m/s. Below this relative speed two ships keep their distance.
+const NO_RELATIVE_SPEED: f64 = 1e-9;
+
+/// Both ships at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EncounterSample {
+    /// Seconds.
+    pub time: f64,
+    /// Own ship.
+    pub own: SteadyShip,
+    /// The target.
+    pub target: SteadyShip,
+    /// Distance of the hulls, metres, negative in overlap.
+    pub apart: f64,
+    /// Seconds until the hulls meet if both hold course and speed; infinite if they never do.
+    pub meets_in: f64,
+}
+
+/// Closest approach of two ships that hold course and speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ahead {
+    /// Metres between the centres.
+    pub distance: f64,
+    /// Seconds from now; negative if it is past, 0 if the distance does not change.
+    pub time: f64,
+}
+
+impl EncounterSample {
+    fn offset(&self) -> Vector {
+        self.target.pose.position - self.own.pose.position
+    }
+
+    /// Metres between the centres.
+    pub fn range(&self) -> f64 {
+        self.offset().norm()
+    }
+
+    /// Rate at which the range grows, m/s; a NaN if the centres coincide.
+    pub fn opening(&self) -> f64 {
+        let relative = self.target.velocity() - self.own.velocity();
+        self.offset().dot(&relative) / self.range()
+    }
+
+    /// Bearing of the target from own ship, radians clockwise from ahead.
+    pub fn bearing(&self) -> f64 {
+        relative_bearing(&self.own.pose, self.target.pose.position)
+    }
+
+    /// Bearing of own ship from the target, radians clockwise from ahead.
+    pub fn aspect(&self) -> f64 {
+        relative_bearing(&self.target.pose, self.own.pose.position)
+    }
+
+    /// Closest approach if both hold course and speed.
+    pub fn ahead(&self) -> Ahead {
+        let relative = self.own.velocity() - self.target.velocity();
+        let square = relative.norm_squared();
+        if !(square > NO_RELATIVE_SPEED * NO_RELATIVE_SPEED) {
+            return Ahead {
+                distance: self.range(),
+                time: 0.0,
+            };
+        }
+        let time = self.offset().dot(&relative) / square;
+        Ahead {
+            distance: (self.offset() - relative * time.max(0.0)).norm(),
+            time,
+        }
+    }
+
+    /// Own ship in the frame of the target: metres ahead, and to port.
+    pub fn seen_from_target(&self) -> Vector {
+        self.target.pose.body_coordinates(self.own.pose.position)
+    }
+}
+
+/// All samples of own ship and one target, in order of time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EncounterSamples {
+    samples: Vec<EncounterSample>,
+    own: Hull,
+    target: Hull,
+}
+
+impl EncounterSamples {
+    /// Samples from the start of a trajectory to its end, the target on its nominal track. Own ship's
+    /// heading is taken for its course: drift is not seen. O(duration).
+    pub fn along(trajectory: &Trajectory, own: Hull, target: &ShipTrack) -> Self {
+        OwnSamples::along(trajectory, own).encounter(target, f64::INFINITY)
+    }
+
+    /// The samples in order of time, at least one.
+    pub(crate) fn samples(&self) -> &[EncounterSample] {
+        &self.samples
+    }
+
+    /// Length of the longer ship, metres.
+    pub fn length(&self) -> f64 {
+        self.own.length.max(self.target.length)
+    }
+
+    /// Length of the target, metres.
+    pub fn target_length(&self) -> f64 {
+        self.target.length
+    }
+}
+
+/// Samples of own ship, common to all targets.
+#[derive(Debug, Clone)]
+pub(crate) struct OwnSamples {
+    ships: Vec<(f64, SteadyShip)>,
+    hull: Hull,
+    /// m/s; infinite if unknown.
+    greatest_speed: f64,
+}
+
+impl OwnSamples {
+    pub(crate) fn along(trajectory: &Trajectory, hull: Hull) -> Self {
+        let at = |time: f64| SteadyShip {
+            pose: trajectory.pose_at(time),
+            speed: trajectory.speed_at(time),
+        };
+        let times = trajectory.sample_times(STEP_S, MOST_SAMPLES).into_iter();
+        let ships: Vec<_> = times.map(|time| (time, at(time))).collect();
+        let speeds = ships.iter().map(|(_, ship)| ship.speed);
+        // a trajectory under forces may be faster between two samples
+        let greatest_speed = match trajectory.steered() {
+            Some(_) => f64::INFINITY,
+            None => speeds.fold(0.0, f64::max),
+        };
+        Self {
+            greatest_speed,
+            ships,
+            hull,
+        }
+    }
+
+    pub(crate) fn hull(&self) -> Hull {
+        self.hull
+    }
+
+    /// Greatest closing speed of own ship and a target, m/s.
+    pub(crate) fn closing(&self, target: &ShipTrack) -> f64 {
+        self.greatest_speed + target.speed
+    }
+
+    /// All samples of a target, or the nearest sample alone if the hulls are never within `far` metres.
+    pub(crate) fn encounter(&self, target: &ShipTrack, far: f64) -> EncounterSamples {
+        let nearest = far.is_finite().then(|| self.nearest(target)).flatten();
+        let samples = match nearest {
+            Some(sample) if sample.apart > far => vec![sample],
+            _ => (0..self.ships.len())
+                .map(|index| self.sample(index, target))
+                .collect(),
+        };
+        EncounterSamples {
+            samples,
+            own: self.hull,
+            target: target.hull,
+        }
+    }
+
+    fn sample(&self, index: usize, track: &ShipTrack) -> EncounterSample {
+        let (time, own) = self.ships[index];
+        let target = SteadyShip {
+            pose: track.pose_at(time),
+            speed: track.speed,
+        };
+        let between = Between::of(&self.hull, &own, &track.hull, &target);
+        let apart = between.distance();
+        let closing = own.velocity() - target.velocity();
+        // negated on purpose: a NaN is a meeting
+        let meets_in = if !(apart > 0.0) {
+            0.0
+        } else {
+            between.seconds_to(closing)
+        };
+        EncounterSample {
+            time,
+            own,
+            target,
+            apart,
+            meets_in,
+        }
+    }
+
+    /// First sample of the least distance of the hulls, by branch and bound on the speeds of the
+    /// ships. `None` if the distance is not finite.
+    fn nearest(&self, target: &ShipTrack) -> Option<EncounterSample> {
+        // turning hulls come closer than their centres
+        let swing = self.hull.half_diagonal() + target.hull.half_diagonal();
+        let closing = self.closing(target);
+        let range = |index: usize| {
+            let (time, own) = &self.ships[index];
+            (target.pose_at(*time).position - own.pose.position).norm()
+        };
+        let mut best = self.sample(0, target);
+        let mut open = vec![(0, self.ships.len() - 1)];
+        while let Some((from, until)) = open.pop() {
+            let last = self.sample(until, target);
+            if last.apart < best.apart || last.apart == best.apart && last.time < best.time {
+                best = last;
+            }
+            let lasts = self.ships[until].0 - self.ships[from].0;
+            let least = 0.5 * (range(from) + range(until) - closing * lasts) - swing;
+            // negated on purpose: a NaN is searched
+            if until > from + 1 && !(least > best.apart) {
+                let middle = from + (until - from) / 2;
+                open.push((middle, until));
+                open.push((from, middle));
+            }
+        }
+        best.apart.is_finite().then_some(best)
+    }
+}
+
+/// Minkowski sum of two hulls about the offset of their centres: the intersection of four strips.
+struct Between {
+    offset: Vector,
+    /// Half of own length and beam and of the target's, each with its axis.
+    halves: [(Vector, f64); 4],
+}
+
+impl Between {
+    fn of(own: &Hull, a: &SteadyShip, target: &Hull, b: &SteadyShip) -> Self {
+        let axes = |hull: &Hull, ship: &SteadyShip| {
+            let ahead = ship.pose.ahead();
+            [
+                (ahead, 0.5 * hull.length),
+                (to_port(ahead), 0.5 * hull.beam),
+            ]
+        };
+        let ([a1, a2], [b1, b2]) = (axes(own, a), axes(target, b));
+        Self {
+            offset: b.pose.position - a.pose.position,
+            halves: [a1, a2, b1, b2],
+        }
+    }
+
+    /// Half-width of the sum along a normal.
+    fn half(&self, normal: &Vector) -> f64 {
+        self.halves
+            .iter()
+            .map(|(axis, half)| half * normal.dot(axis).abs())
+            .sum()
+    }
+
+    /// Metres between the hulls, negative in overlap.
+    fn distance(&self) -> f64 {
+        let beyond = self
+            .halves
+            .iter()
+            .map(|(n, _)| n.dot(&self.offset).abs() - self.half(n));
+        let most = beyond.fold(f64::NEG_INFINITY, |most, next| {
+            // negated on purpose: a NaN is taken over and stays
+            if next <= most || most.is_nan() {
+                most
+            } else {
+                next
+            }
+        });
+        if !(most > 0.0) {
+            return most;
+        }
+        // the nearest points are a corner of one hull and a point of the other
+        let [a, b] = [&self.halves[..2], &self.halves[2..]];
+        let corners = |of: &[(Vector, f64)]| {
+            let (ahead, aside) = (of[0].0 * of[0].1, of[1].0 * of[1].1);
+            [ahead + aside, ahead - aside, aside - ahead, -ahead - aside]
+        };
+        let away = |of: &[(Vector, f64)], point: Vector| {
+            let beyond = |(axis, half): &(Vector, f64)| (axis.dot(&point).abs() - half).max(0.0);
+            beyond(&of[0]).hypot(beyond(&of[1]))
+        };
+        let theirs = corners(b).map(|corner| away(a, self.offset + corner));
+        let ours = corners(a).map(|corner| away(b, corner - self.offset));
+        theirs.into_iter().chain(ours).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite if it never is.
+    fn seconds_to(&self, velocity: Vector) -> f64 {
+        let (mut from, mut until) = (0.0_f64, f64::INFINITY);
+        for (axis, _) in &self.halves {
+            for normal in [*axis, -axis] {
+                let rate = normal.dot(&velocity);
+                let room = normal.dot(&self.offset) + self.half(axis);
+                if rate > 0.0 {
+                    until = until.min(room / rate);
+                } else if rate < 0.0 {
+                    from = from.max(room / rate);
+                } else if room < 0.0 {
+                    return f64::INFINITY;
+                }
+            }
+        }
+        if from > until { f64::INFINITY } else { from }
+    }
+}
+
+/// An uninterrupted turn to one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alteration {
+    /// Seconds.
+    pub from: f64,
+    /// Seconds.
+    pub until: f64,
+    /// Radians, to port positive.
+    pub turn: f64,
+}
+
+/// Turns faster than `least_rate` (rad/s) of more than `least_turn` in total (radians), in order of
+/// time.
+pub fn alterations(
+    samples: &[EncounterSample],
+    least_rate: f64,
+    least_turn: f64,
+) -> Vec<Alteration> {
+    let mut found: Vec<Alteration> = Vec::new();
+    for pair in samples.windows(2) {
+        let (from, until) = (pair[0].time, pair[1].time);
+        let turn = wrap(pair[1].own.pose.heading - pair[0].own.pose.heading);
+        if !(turn.abs() > least_rate * (until - from)) {
+            continue;
+        }
+        match found.last_mut() {
+            Some(last) if last.until == from && last.turn * turn > 0.0 => {
+                last.until = until;
+                last.turn += turn;
+            }
+            _ => found.push(Alteration { from, until, turn }),
+        }
+    }
+    found.retain(|a| a.turn.abs() > least_turn);
+    found
+}
+
+/// Time of the first sample at which the speed differs by more than a fraction of the first speed.
+pub fn speed_changed(samples: &[EncounterSample], fraction: f64) -> Option<f64> {
+    let first = samples.first()?.own.speed;
+    let changed = |s: &&EncounterSample| (s.own.speed - first).abs() > fraction * first;
+    samples.iter().find(changed).map(|s| s.time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{LENGTH, planned, standard, steady};
+    use super::super::{ComplianceReport, EncounterSamples};
+    use super::*;
+    use crate::frame::Pose;
+    use crate::target::DomainKind;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn ship(rng: &mut ChaCha8Rng, range: f64) -> SteadyShip {
+        let mut within = |r: f64| rng.random_range(-r..r);
+        SteadyShip {
+            pose: Pose::new(Vector::new(within(range), within(range)), within(3.1)),
+            speed: 5.0 + within(4.0),
+        }
+    }
+
+    /// Against sums of polygons, overlapping, close and far.
+    #[test]
+    fn the_distance_of_two_hulls_is_that_of_their_polygons() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let (mut met, mut meeting) = (0, 0);
+        for case in 0..4000 {
+            let range = [30.0, 100.0, 1000.0][case % 3];
+            let hull = |rng: &mut ChaCha8Rng| Hull {
+                length: rng.random_range(10.0..90.0),
+                beam: rng.random_range(3.0..20.0),
+            };
+            let (own, other) = (hull(&mut rng), hull(&mut rng));
+            let (a, b) = (ship(&mut rng, range), ship(&mut rng, range));
+            let sum = (other.polygon(&b.pose)).minkowski_sum(&own.polygon(&a.pose).negated());
+            let between = Between::of(&own, &a, &other, &b);
+            let exact = sum.signed_distance(Vector::zeros());
+            assert!((between.distance() - exact).abs() < 1e-9, "{exact}");
+            met += usize::from(exact < 0.0);
+            let velocity = a.velocity() - b.velocity();
+            let after = between.seconds_to(velocity);
+            if exact > 0.0 && after.is_finite() {
+                meeting += 1;
+                assert!(sum.signed_distance(velocity * after).abs() < 1e-6);
+            } else if exact > 0.0 {
+                let nearest = (0..4000).map(|k| sum.signed_distance(velocity * f64::from(k)));
+                assert!(nearest.fold(f64::INFINITY, f64::min) > -1e-6);
+            }
+        }
+        assert!(met > 300 && meeting > 300, "{met} {meeting}");
+    }
+
+    /// A target that stays far away is assessed by its nearest sample as by all samples.
+    #[test]
+    fn a_far_target_is_judged_by_its_nearest_sight() {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let own = planned(&[(0.0, 240.0), (0.7, 120.0), (-0.9, 300.0)], 6.0);
+        let hull = Hull {
+            length: 50.0,
+            beam: 10.0,
+        };
+        let track = OwnSamples::along(&own, hull);
+        let (mut few, mut all) = (0, 0);
+        for case in 0..300 {
+            let SteadyShip { pose, speed } = ship(&mut rng, [9e3, 3e4][case % 2]);
+            let target = ShipTrack {
+                pose,
+                speed,
+                hull,
+                position_std: 0.0,
+                speed_spread: 0.0,
+                course_spread: 0.0,
+                turn_rate: 0.0,
+                domain: DomainKind::Hull,
+            };
+            let whole = EncounterSamples::along(&own, hull, &target);
+            let found = ComplianceReport::along(&track, &target, standard());
+            assert_eq!(found, ComplianceReport::judge(&whole, standard()));
+            match track.encounter(&target, 12e3).samples().len() {
+                1 => few += 1,
+                _ => all += 1,
+            }
+        }
+        assert!(few > 30 && all > 30, "{few} {all}");
+    }
+
+    #[test]
+    fn a_turn_out_and_back_are_two_alterations_with_their_angles() {
+        let own = planned(&[(0.0, 40.0), (-0.6, 30.0), (0.6, 60.0)], 6.0);
+        let meeting = steady(&own, 1440.0, 0.0, std::f64::consts::PI, 6.0);
+        let found = alterations(meeting.samples(), 0.005, 0.03);
+        let turns: Vec<f64> = found.iter().map(|a| a.turn).collect();
+        assert_eq!(turns.len(), 2, "{found:?}");
+        assert!((turns[0] + 0.6).abs() < 1e-9 && (turns[1] - 0.6).abs() < 1e-9);
+        assert!((found[0].from - 40.0).abs() < 1e-9);
+        // an arc of 2.5 lengths
+        let arc = 0.6 * 2.5 * LENGTH / 6.0;
+        assert!((found[0].until - 40.0 - arc).abs() < 1e-9);
+        assert!(alterations(meeting.samples(), 0.005, 0.7).is_empty());
+        assert_eq!(speed_changed(meeting.samples(), 0.2), None);
+    }
+}

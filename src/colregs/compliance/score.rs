@@ -1,0 +1,409 @@
+//! Scores in `[0, 1]` and rule violations, as evaluators of collision avoidance compute them
+//! (docs/colregs.md 2).
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::RuleViolation;
+use super::role_intervals::RoleInterval;
+use super::samples::{EncounterSample, EncounterSamples, alterations, speed_changed};
+use crate::colregs::{APPARENT_SPEED, Role, Thresholds};
+use crate::frame::{deg_from_radians, wrap};
+
+/// Scores of own ship toward one target; 1 is best. `None` if the rule does not apply.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Scores {
+    /// Distance and pose at the closest approach; 0 after a collision, as every other score then.
+    pub safety: f64,
+    /// Rule 8: readily apparent, no succession of small alterations, and a safe distance.
+    pub rule_8: Option<f64>,
+    /// Rule 13: overtaking.
+    pub rule_13: Option<f64>,
+    /// Rule 14: head-on.
+    pub rule_14: Option<f64>,
+    /// Rule 15: crossing, the target on own starboard side.
+    pub rule_15: Option<f64>,
+    /// Rule 16: early and substantial action to keep well clear.
+    pub rule_16: Option<f64>,
+    /// Rule 17: the stand-on and the overtaken ship.
+    pub rule_17: Option<f64>,
+}
+
+impl Scores {
+    /// The least score.
+    pub fn least(&self) -> f64 {
+        self.by_name()
+            .into_iter()
+            .map(|(_, s)| s)
+            .fold(1.0, f64::min)
+    }
+
+    /// Scores that apply, by their names in documents.
+    pub fn by_name(&self) -> Vec<(&'static str, f64)> {
+        let rules = [
+            ("safety", Some(self.safety)),
+            ("rule_8", self.rule_8),
+            ("rule_13", self.rule_13),
+            ("rule_14", self.rule_14),
+            ("rule_15", self.rule_15),
+            ("rule_16", self.rule_16),
+            ("rule_17", self.rule_17),
+        ];
+        rules
+            .into_iter()
+            .filter_map(|(n, s)| s.map(|s| (n, s)))
+            .collect()
+    }
+}
+
+fn unit(x: f64) -> f64 {
+    // negated on purpose: a NaN scores nothing
+    if !(x > 0.0) { 0.0 } else { x.min(1.0) }
+}
+
+/// Own ship from the beginning of its role to the closest approach.
+struct Act<'a> {
+    t: &'a Thresholds,
+    role: Role,
+    length: f64,
+    /// At least one.
+    samples: &'a [EncounterSample],
+    /// From the closest approach on.
+    after: &'a [EncounterSample],
+    target_length: f64,
+}
+
+impl Act<'_> {
+    fn first(&self) -> &EncounterSample {
+        &self.samples[0]
+    }
+
+    fn closest(&self) -> &EncounterSample {
+        &self.samples[self.samples.len() - 1]
+    }
+
+    /// The greatest departure from the first course, radians, to starboard and to port.
+    fn departure(&self) -> [f64; 2] {
+        let from = self.first().own.pose.heading;
+        let turned = |s: &EncounterSample| wrap(s.own.pose.heading - from);
+        let greatest = |sign: f64| {
+            self.samples
+                .iter()
+                .map(|s| sign * turned(s))
+                .fold(0.0, f64::max)
+        };
+        [greatest(-1.0), greatest(1.0)]
+    }
+
+    fn greatest_departure(&self) -> f64 {
+        let [starboard, port] = self.departure();
+        starboard.max(port)
+    }
+
+    /// The least and the greatest speed in multiples of the first.
+    fn speeds(&self) -> [f64; 2] {
+        let first = self.first().own.speed;
+        let ratios = self.samples.iter().map(|s| s.own.speed / first);
+        ratios.fold([1.0, 1.0], |[low, high], r| [r.min(low), r.max(high)])
+    }
+
+    /// Time of the first alteration of course or speed, seconds.
+    fn onset(&self) -> Option<f64> {
+        let s = &self.t.score;
+        let turned = alterations(self.samples, s.turn_rate, s.steady);
+        let slowed = speed_changed(self.samples, s.steady_speed);
+        let times = turned.first().map(|a| a.from).into_iter().chain(slowed);
+        times.min_by(f64::total_cmp)
+    }
+
+    /// Score of a distance of the hulls.
+    fn range_score(&self, apart: f64) -> f64 {
+        let s = &self.t.score;
+        let r = apart / self.length;
+        let part = |from: f64, to: f64| unit((from - r) / (from - to));
+        unit(
+            1.0 - s.weight_least * part(s.preferred_lengths, s.least_lengths)
+                - s.weight_near_miss * part(s.least_lengths, s.near_miss_lengths)
+                - s.weight_collision * part(s.near_miss_lengths, s.collision_lengths),
+        )
+    }
+
+    fn safety(&self) -> f64 {
+        let closest = self.closest();
+        // negated on purpose: a NaN is a collision
+        if !(closest.apart > self.t.score.collision_lengths * self.length) {
+            return 0.0;
+        }
+        let cut = |angle: f64| 1.0 - angle.abs().min(FRAC_PI_2).cos();
+        let pose = cut(closest.aspect()) * cut(closest.bearing());
+        0.5 * self.range_score(closest.apart) + 0.5 * pose
+    }
+
+    /// Delay of action: 0 at once, 1 never.
+    fn delay(&self) -> f64 {
+        let Some(onset) = self.onset() else {
+            let near = self.first().ahead().distance < self.t.score.least_lengths * self.length;
+            return f64::from(u8::from(near));
+        };
+        let then = self.samples.iter().find(|s| s.time >= onset);
+        let (first, last) = (self.first().range(), self.closest().range());
+        then.map_or(1.0, |s| {
+            if first > last {
+                unit((first - s.range()) / (first - last))
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// 0 for a readily apparent course change, 0.5 for none.
+    fn unapparent_turn(&self) -> f64 {
+        let fraction = self.greatest_departure() / self.t.score.apparent;
+        0.5 * (1.0 - fraction * fraction).max(0.0)
+    }
+
+    /// 0 for a readily apparent alteration of course or speed, 1 for none.
+    fn unapparent(&self) -> f64 {
+        // below this penalty, one of the two is apparent
+        const LITTLE: f64 = 0.3;
+        // product of the two penalties without action
+        const NOTHING: f64 = 0.25;
+        let turn = self.unapparent_turn();
+        let slower = 0.5 * unit((self.speeds()[0] - APPARENT_SPEED) / (1.0 - APPARENT_SPEED));
+        if turn < LITTLE || slower < LITTLE {
+            0.0
+        } else {
+            turn * slower / NOTHING
+        }
+    }
+
+    /// Time of the first of too many turns that are not readily apparent, seconds.
+    fn succession(&self) -> Option<f64> {
+        let s = &self.t.score;
+        let mut small = alterations(self.samples, s.turn_rate, s.steady);
+        small.retain(|a| a.turn.abs() < self.t.monitor.turn);
+        (small.len() > s.small_turns).then(|| small[s.small_turns].from)
+    }
+
+    fn rule_8(&self) -> f64 {
+        if self.succession().is_some() {
+            return 0.0;
+        }
+        unit(self.range_score(self.closest().apart) * (1.0 - self.unapparent()))
+    }
+
+    fn rule_16(&self) -> f64 {
+        unit(self.safety() * (1.0 - self.delay()) * (1.0 - self.unapparent()))
+    }
+
+    /// Time at which own ship crosses the target's course line too close ahead, seconds.
+    fn crosses_ahead(&self) -> Option<f64> {
+        let s = &self.t.score;
+        let all = self.samples.iter().chain(self.after.iter().skip(1));
+        let places: Vec<_> = all
+            .map(|s| (s.time, s.target.speed, s.seen_from_target()))
+            .collect();
+        places.windows(2).find_map(|w| {
+            let [(_, _, a), (time, speed, b)] = [w[0], w[1]];
+            if (a.y < 0.0) == (b.y < 0.0) {
+                return None;
+            }
+            let ahead = a.x + (b.x - a.x) * a.y / (a.y - b.y);
+            let allowed = s.room_ahead(self.target_length, speed);
+            (ahead > 0.0 && ahead < allowed).then_some(time)
+        })
+    }
+
+    fn rule_13(&self) -> f64 {
+        let ahead = f64::from(u8::from(self.closest().aspect().abs() < FRAC_PI_2 / 2.0));
+        unit(self.rule_16() - self.t.score.weight_ahead_overtaking * ahead)
+    }
+
+    fn rule_14(&self) -> f64 {
+        let s = &self.t.score;
+        let closest = self.closest();
+        let port_to_port =
+            (1.0 - closest.aspect().sin()) / 2.0 * ((1.0 - closest.bearing().sin()) / 2.0);
+        let little = 1.0 - (self.departure()[0] / s.starboard).min(1.0).powi(4);
+        let lost = s.weight_starboard * little
+            + s.weight_delay * self.delay()
+            + s.weight_side * (1.0 - port_to_port);
+        if self.safety() > 0.0 {
+            unit(1.0 - lost) * (1.0 - self.unapparent_turn())
+        } else {
+            0.0
+        }
+    }
+
+    fn rule_15(&self) -> f64 {
+        let ahead = f64::from(u8::from(self.crosses_ahead().is_some()));
+        unit(self.rule_16() - self.t.score.weight_ahead_crossing * ahead)
+    }
+
+    fn rule_17(&self) -> f64 {
+        let s = &self.t.score;
+        let turn = self.greatest_departure();
+        let course = if turn < s.steady {
+            0.0
+        } else {
+            0.5 * unit((turn - s.steady) / (s.apparent - s.steady))
+        };
+        let [low, high] = self.speeds();
+        let faster = if high - 1.0 > s.steady_speed {
+            (1.0 / high).powi(2)
+        } else {
+            1.0
+        };
+        let slower = if 1.0 - low > s.steady_speed {
+            0.5 * (1.0 - low)
+        } else {
+            0.0
+        };
+        if self.safety() > 0.0 {
+            unit((self.safety() - course) * faster - slower)
+        } else {
+            0.0
+        }
+    }
+
+    fn scores(&self) -> Scores {
+        let duties = self.role.duties();
+        let clears = |rule: u8| duties.keeps_clear && duties.rule == Some(rule);
+        Scores {
+            safety: self.safety(),
+            rule_8: duties.keeps_clear.then(|| self.rule_8()),
+            rule_13: clears(13).then(|| self.rule_13()),
+            rule_14: clears(14).then(|| self.rule_14()),
+            rule_15: clears(15).then(|| self.rule_15()),
+            rule_16: (duties.keeps_clear && !duties.port_to_port).then(|| self.rule_16()),
+            rule_17: duties.stands_on.then(|| self.rule_17()),
+        }
+    }
+
+    fn turned(&self, least: f64, port_alone: bool) -> Option<&EncounterSample> {
+        let from = self.first().own.pose.heading;
+        self.samples.iter().find(|s| {
+            let turn = wrap(s.own.pose.heading - from);
+            if port_alone {
+                turn > least
+            } else {
+                turn.abs() > least
+            }
+        })
+    }
+
+    /// Rule violations in order of time.
+    fn violations(&self) -> Vec<RuleViolation> {
+        let (s, closest) = (&self.t.score, self.closest());
+        let mut found = Vec::new();
+        let mut violation = |rule: &'static str, time: f64, what: String| {
+            found.push(RuleViolation { rule, time, what });
+        };
+        let port_turn =
+            |rule: &'static str, violation: &mut dyn FnMut(&'static str, f64, String)| {
+                if let Some(sample) = self.turned(s.steady, true) {
+                    violation(
+                        rule,
+                        sample.time,
+                        "heads to port of its first course before the other has passed".to_owned(),
+                    );
+                }
+            };
+        let passing = self.onset().is_some() || !(closest.apart > s.least_lengths * self.length);
+        match self.role {
+            Role::HeadOn | Role::PortToPort => {
+                port_turn("14(a)", &mut violation);
+                // negated on purpose: what is not known to be to port is not
+                if passing && !(closest.bearing() < 0.0 && closest.aspect() < 0.0) {
+                    let what = "does not pass on the port side of the other".to_owned();
+                    violation("14(a)", closest.time, what);
+                }
+            }
+            Role::GiveWay | Role::BothGiveWay => {
+                if let Some(time) = self.crosses_ahead() {
+                    violation("15", time, "crosses ahead of the other".to_owned());
+                    port_turn("15", &mut violation);
+                }
+            }
+            Role::Overtaking => {
+                if let Some(time) = self.crosses_ahead() {
+                    violation(
+                        "13",
+                        time,
+                        "crosses ahead of the ship it overtakes".to_owned(),
+                    );
+                }
+            }
+            Role::StandOn | Role::Overtaken => {
+                let near = s.stage_3_lengths * self.length;
+                if let Some(sample) = self.turned(s.hold, false).filter(|s| s.range() > near) {
+                    let hold = deg_from_radians(s.hold);
+                    let what = format!("does not hold its course within {hold:.0} deg");
+                    violation("17(a)(i)", sample.time, what);
+                }
+                if self.role == Role::StandOn {
+                    port_turn("17(c)", &mut violation);
+                }
+                // negated on purpose: a NaN is a collision
+                if !(closest.apart > 0.0) {
+                    let what = "holds on into a collision".to_owned();
+                    violation("17(b)", closest.time, what);
+                }
+            }
+            Role::None | Role::Static => {}
+        }
+        if !self.role.duties().stands_on {
+            if let Some(time) = self.succession() {
+                let what = "makes a succession of small alterations".to_owned();
+                violation("8(b)", time, what);
+            }
+            let least = s.least_lengths * self.length;
+            if !(closest.apart >= least) {
+                let apart = closest.apart;
+                let what = format!("passes at {apart:.0} m, less than {least:.0} m");
+                violation("8(d)", closest.time, what);
+            }
+        }
+        found.sort_by(|a, b| a.time.total_cmp(&b.time));
+        found
+    }
+}
+
+/// Scores and rule violations of own ship in a role, from its beginning to the closest approach of
+/// the hulls; crossing ahead is also judged after it. O(samples).
+pub fn scores(
+    encounter: &EncounterSamples,
+    interval: &RoleInterval,
+    t: &Thresholds,
+) -> (Scores, Vec<RuleViolation>) {
+    let all = encounter.samples();
+    let begin = all
+        .partition_point(|s| s.time < interval.from)
+        .min(all.len() - 1);
+    // negated on purpose: a NaN is the nearest
+    let nearest = (begin..all.len()).fold(begin, |best, k| {
+        if !(all[k].apart >= all[best].apart) {
+            k
+        } else {
+            best
+        }
+    });
+    let act = Act {
+        t,
+        role: interval.role,
+        length: encounter.length(),
+        samples: &all[begin..=nearest],
+        after: &all[nearest..],
+        target_length: encounter.target_length(),
+    };
+    (act.scores(), act.violations())
+}
+
+/// Scores toward a target without a role: safety alone.
+pub fn safety(encounter: &EncounterSamples, t: &Thresholds) -> Scores {
+    let interval = RoleInterval {
+        role: Role::None,
+        from: encounter.samples()[0].time,
+        until: encounter.samples()[0].time,
+    };
+    scores(encounter, &interval, t).0
+}

@@ -1,0 +1,255 @@
+//! Fixtures of docs/colregs.md 0.1 with good and bad manoeuvres.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::*;
+use crate::frame::{Pose, Vector};
+use crate::target::{DomainKind, ShipTrack};
+use crate::trajectory::{Segment, Trajectory};
+use crate::vessel::Hull;
+
+/// Metres, of both ships.
+pub const LENGTH: f64 = 50.0;
+
+/// Turns (radians, to port positive; arcs of 2.5 lengths) each followed by seconds of straight line, from the origin east.
+pub fn planned(legs: &[(f64, f64)], speed: f64) -> Trajectory {
+    let radius = 2.5 * LENGTH;
+    let mut segments: Vec<Segment> = Vec::new();
+    let mut push = |duration: f64, turn_rate: f64| {
+        let (start, start_time) = segments
+            .last()
+            .map_or((Pose::new(Vector::zeros(), 0.0), 0.0), |s: &Segment| {
+                (s.end(), s.end_time())
+            });
+        if duration > 0.0 {
+            segments.push(Segment {
+                start,
+                start_time,
+                duration,
+                speed,
+                turn_rate,
+            });
+        }
+    };
+    for (turn, straight) in legs {
+        push(turn.abs() * radius / speed, turn.signum() * speed / radius);
+        push(*straight, 0.0);
+    }
+    Trajectory::new(segments).expect("a trajectory")
+}
+
+const HULL: Hull = Hull {
+    length: LENGTH,
+    beam: 10.0,
+};
+
+pub fn standard() -> &'static Thresholds {
+    Thresholds::standard()
+}
+
+fn track(pose: Pose, speed: f64) -> ShipTrack {
+    ShipTrack {
+        pose,
+        speed,
+        hull: HULL,
+        speed_spread: 0.0,
+        course_spread: 0.0,
+        turn_rate: 0.0,
+        position_std: 0.0,
+        domain: DomainKind::Hull,
+    }
+}
+
+/// Own ship and a target that holds course and speed.
+pub fn steady(own: &Trajectory, x: f64, y: f64, heading: f64, speed: f64) -> EncounterSamples {
+    let pose = Pose::new(Vector::new(x, y), heading);
+    EncounterSamples::along(own, HULL, &track(pose, speed))
+}
+
+const OUT_AND_BACK: [(f64, f64); 4] = [(0.0, 30.0), (-0.7, 90.0), (1.1, 50.0), (-0.4, 60.0)];
+
+fn mirrored(legs: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    legs.iter().map(|(turn, t)| (-turn, *t)).collect()
+}
+
+fn conduct(legs: &[(f64, f64)], x: f64, y: f64, heading: f64, speed: f64) -> ComplianceReport {
+    let meeting = steady(&planned(legs, 6.0), x, y, heading, speed);
+    ComplianceReport::judge(&meeting, standard())
+}
+
+fn rules(c: &ComplianceReport) -> Vec<&'static str> {
+    c.violations.iter().map(|b| b.rule).collect()
+}
+
+fn violated(c: &ComplianceReport) -> Vec<&'static str> {
+    let broken = c.monitors.iter().filter(|f| f.verdict == Verdict::Violated);
+    broken.map(|f| f.monitor).collect()
+}
+
+#[test]
+fn head_on_to_starboard_is_well_done_and_to_port_is_not() {
+    let good = conduct(&OUT_AND_BACK, 1440.0, 0.0, PI, 6.0);
+    assert!(good.complies(), "{good:?}");
+    assert!(good.scores.rule_14 > Some(0.7), "{:?}", good.scores);
+    assert_eq!(good.scores.rule_15, None);
+    let bad = conduct(&mirrored(&OUT_AND_BACK), 1440.0, 0.0, PI, 6.0);
+    assert_eq!(rules(&bad), ["14(a)", "14(a)"]);
+    assert_eq!(violated(&bad), ["R4"]);
+    assert!(bad.scores.rule_14 < Some(0.1), "{:?}", bad.scores);
+    // the same distance on either side
+    assert!((bad.scores.safety - good.scores.safety).abs() < 1e-9);
+}
+
+#[test]
+fn nothing_done_is_a_collision_and_scores_nothing() {
+    for (x, y, heading, speed) in [
+        (1440.0, 0.0, PI, 6.0),
+        (720.0, -720.0, FRAC_PI_2, 6.0),
+        (432.0, 0.0, 0.0, 2.4),
+    ] {
+        let idle = conduct(&[(0.0, 240.0)], x, y, heading, speed);
+        assert_eq!(idle.scores.least(), 0.0);
+        assert!(
+            idle.scores.by_name().iter().all(|(_, s)| *s == 0.0),
+            "{idle:?}"
+        );
+        assert!(rules(&idle).contains(&"8(d)"));
+        assert_eq!(violated(&idle)[..2], ["S", "R1"]);
+    }
+}
+
+/// Reciprocal at 6 m/s each, hulls of one length: they meet when the centres are a length apart.
+#[test]
+fn how_late_she_turns_out_of_the_way_is_the_time_that_was_left() {
+    let left = |turn_at: f64| {
+        let legs = [(0.0, turn_at), (-0.9, 200.0)];
+        let found = conduct(&legs, 1440.0, 0.0, PI, 6.0).monitors[1];
+        assert_eq!((found.monitor, found.measure), ("R1", Measure::Time));
+        (found.verdict, found.robustness)
+    };
+    let meets = (1440.0 - HULL.length) / 12.0;
+    let (verdict, seconds) = left(meets - 50.0);
+    assert_eq!(verdict, Verdict::Satisfied);
+    let seconds = seconds.expect("in extremis");
+    assert!(seconds < 50.0 && seconds > 40.0, "{seconds}");
+    assert_eq!(left(20.0), (Verdict::Idle, None));
+    assert_eq!(left(meets), (Verdict::Violated, Some(0.0)));
+    // the plan ends on the way to the meeting
+    let own = planned(&[(0.0, meets - 30.0)], 6.0);
+    let meeting = EncounterSamples::along(
+        &own,
+        HULL,
+        &track(Pose::new(Vector::new(1440.0, 0.0), PI), 6.0),
+    );
+    let found = ComplianceReport::judge(&meeting, standard()).monitors[1];
+    assert_eq!(found.verdict, Verdict::Undecided);
+    assert!((found.robustness.expect("in extremis") - 30.0).abs() < 1e-6);
+}
+
+#[test]
+fn giving_way_leads_astern_of_the_other() {
+    let good = conduct(&OUT_AND_BACK, 720.0, -720.0, FRAC_PI_2, 6.0);
+    assert!(good.complies(), "{good:?}");
+    assert!(good.scores.rule_15 > Some(0.4), "{:?}", good.scores);
+    let bad = conduct(
+        &[(0.0, 20.0), (0.6, 60.0), (-0.6, 130.0)],
+        720.0,
+        -720.0,
+        FRAC_PI_2,
+        6.6,
+    );
+    assert!(rules(&bad).contains(&"15"), "{bad:?}");
+    assert_eq!(violated(&bad), ["R3"]);
+    assert!(bad.scores.rule_15 < good.scores.rule_15);
+}
+
+#[test]
+fn standing_on_is_holding_on_and_never_turning_to_port() {
+    // the other gives way: she is too slow to be met
+    let held = conduct(&[(0.0, 240.0)], 760.0, 720.0, -FRAC_PI_2, 5.0);
+    assert!(
+        held.complies() && held.scores.rule_17 > Some(0.3),
+        "{held:?}"
+    );
+    let away = [(0.0, 30.0), (-0.7, 200.0)];
+    let turned = conduct(&away, 760.0, 720.0, -FRAC_PI_2, 5.0);
+    assert_eq!(rules(&turned), ["17(a)(i)"]);
+    let into_it = conduct(&[(0.0, 240.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);
+    assert_eq!(rules(&into_it), ["17(b)"]);
+    // which ends what the monitor asks of her
+    assert_eq!(violated(&turned), Vec::<&str>::new());
+    let late = conduct(&[(0.0, 70.0), (-0.2, 100.0)], 720.0, 720.0, -FRAC_PI_2, 6.0);
+    assert!(violated(&late).contains(&"R6"), "{late:?}");
+    let to_port = conduct(&mirrored(&away), 760.0, 720.0, -FRAC_PI_2, 5.0);
+    assert_eq!(rules(&to_port), ["17(c)", "17(a)(i)"]);
+    assert!(turned.scores.rule_17 < held.scores.rule_17);
+}
+
+#[test]
+fn overtaking_is_free_in_its_side_and_not_across_the_bow() {
+    let far = [
+        (0.0, 5.0),
+        (-0.7, 25.0),
+        (0.7, 240.0),
+        (0.4, 60.0),
+        (-0.4, 90.0),
+    ];
+    for legs in [far.to_vec(), mirrored(&far)] {
+        let c = conduct(&legs, 432.0, 0.0, 0.0, 2.4);
+        assert!(c.violations.is_empty(), "{:?}", c.violations);
+        assert!(c.scores.rule_13 > Some(0.3), "{:?}", c.scores);
+    }
+    let across = [(0.0, 5.0), (-0.5, 40.0), (0.5, 45.0), (0.7, 90.0)];
+    let c = conduct(&across, 432.0, 0.0, 0.0, 2.4);
+    assert!(rules(&c).contains(&"13"), "{c:?}");
+}
+
+#[test]
+fn many_small_turns_are_a_succession() {
+    let legs: Vec<(f64, f64)> = (0..4).map(|_| (-0.15, 8.0)).chain([(0.6, 60.0)]).collect();
+    let c = conduct(&legs, 1440.0, 0.0, PI, 6.0);
+    assert!(rules(&c).contains(&"8(b)"), "{c:?}");
+    assert_eq!(c.scores.rule_8, Some(0.0));
+}
+
+/// Turned about and moved, nothing changes; mirrored, the give-way ship stands on.
+#[test]
+fn the_judges_do_not_see_where_the_scene_lies() {
+    let own = planned(&OUT_AND_BACK, 6.0);
+    let judge = |angle: f64, by: Vector| {
+        let turned = |p: &Pose| {
+            let (sin, cos) = angle.sin_cos();
+            let at = p.position;
+            let at = Vector::new(at.x * cos - at.y * sin, at.x * sin + at.y * cos) + by;
+            Pose::new(at, p.heading + angle)
+        };
+        let segments = own.segments().iter().map(|s| Segment {
+            start: turned(&s.start),
+            ..*s
+        });
+        let target = track(
+            turned(&Pose::new(Vector::new(720.0, -720.0), FRAC_PI_2)),
+            6.0,
+        );
+        let own = Trajectory::new(segments.collect()).expect("a trajectory");
+        ComplianceReport::judge(&EncounterSamples::along(&own, HULL, &target), standard())
+    };
+    let here = judge(0.0, Vector::zeros());
+    for k in 0..20 {
+        let there = judge(0.3 * f64::from(k), Vector::new(5e4, -3e4));
+        assert_eq!(here.roles.len(), there.roles.len());
+        for (a, b) in here.scores.by_name().iter().zip(there.scores.by_name()) {
+            assert!(a.0 == b.0 && (a.1 - b.1).abs() < 1e-6, "{a:?} {b:?}");
+        }
+        assert_eq!(rules(&here), rules(&there));
+        assert_eq!(violated(&here), violated(&there));
+    }
+}
+
+#[test]
+fn what_is_not_a_number_is_a_collision() {
+    let own = planned(&[(0.0, 60.0)], 6.0);
+    let c = ComplianceReport::judge(&steady(&own, f64::NAN, 0.0, PI, 6.0), standard());
+    assert_eq!(c.scores.safety, 0.0);
+    assert_eq!(c.monitors[0].verdict, Verdict::Violated);
+}

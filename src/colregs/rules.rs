@@ -1,0 +1,237 @@
+//! The collision regulations as a table: the duties of own ship in each role, and toward all targets.
+
+use super::role::{Role, SteadyShip};
+use super::thresholds::{MonitorLimits, ScoreLimits};
+use crate::frame::Side;
+
+/// Radians, 30°: a smaller alteration of course is not readily apparent, Rule 8(b) (docs/colregs.md 2.2).
+pub const APPARENT_TURN: f64 = ScoreLimits::STANDARD.apparent;
+
+/// Fraction of the speed before: a reduction to this or less is readily apparent, Rule 8(b).
+pub const APPARENT_SPEED: f64 = 0.5;
+
+/// Least seconds at reduced speed, so that it is seen. A choice of ours: at half of 5 m/s a ship makes
+/// good 75 m less in this time.
+pub const APPARENT_TIME: f64 = 30.0;
+
+/// Radians, 2°: a heading this near to a course is on it.
+pub const ON_COURSE: f64 = ScoreLimits::STANDARD.steady;
+
+/// Radians, 20°: more than [`MOST_SMALL_TURNS`] smaller turns are a succession of small alterations,
+/// Rule 8(b).
+pub const SMALL_TURN: f64 = MonitorLimits::STANDARD.turn;
+
+/// See [`SMALL_TURN`].
+pub const MOST_SMALL_TURNS: usize = ScoreLimits::STANDARD.small_turns;
+
+/// Duties of own ship toward one target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RoleDuties {
+    /// Number of the rule.
+    pub rule: Option<u8>,
+    /// Keeps clear by a readily apparent alteration: Rules 13 to 16.
+    pub keeps_clear: bool,
+    /// Keeps course and speed: Rule 17, and the overtaken ship.
+    pub stands_on: bool,
+    /// Alters course not to port: Rules 14(a), 15 and 17(c).
+    pub no_port_turn: bool,
+    /// Heads not to port of its course before the target has passed.
+    pub no_port_heading: bool,
+    /// Passes port to port.
+    pub port_to_port: bool,
+    /// Crossing ahead of the target.
+    pub crossing_ahead: CrossingAhead,
+    /// Side of the target to which its domain is swept, because own ship must not pass there.
+    pub closed_side: ClosedSide,
+}
+
+/// Whether own ship may cross the course line of a target ahead of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CrossingAhead {
+    /// At any distance.
+    Allowed,
+    /// Only at a safe distance: Krasowski and Althoff 2021, docs/colregs.md 2.3.
+    Far,
+    /// Never.
+    Forbidden,
+}
+
+/// Side of a target on which own ship must not pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClosedSide {
+    /// No side.
+    None,
+    /// Ahead.
+    Ahead,
+    /// The target's starboard side.
+    Starboard,
+    /// The side away from own ship, seen from the target's wake.
+    AcrossWake,
+}
+
+/// No duty.
+const NONE: RoleDuties = RoleDuties {
+    rule: None,
+    keeps_clear: false,
+    stands_on: false,
+    no_port_turn: false,
+    no_port_heading: false,
+    port_to_port: false,
+    crossing_ahead: CrossingAhead::Allowed,
+    closed_side: ClosedSide::None,
+};
+
+impl Role {
+    /// The duties of this role.
+    pub const fn duties(self) -> RoleDuties {
+        match self {
+            Self::HeadOn | Self::PortToPort => RoleDuties {
+                rule: Some(14),
+                keeps_clear: true,
+                no_port_turn: true,
+                no_port_heading: true,
+                port_to_port: true,
+                closed_side: ClosedSide::Starboard,
+                ..NONE
+            },
+            Self::GiveWay => RoleDuties {
+                rule: Some(15),
+                keeps_clear: true,
+                no_port_turn: true,
+                crossing_ahead: CrossingAhead::Forbidden,
+                closed_side: ClosedSide::Ahead,
+                ..NONE
+            },
+            Self::BothGiveWay => RoleDuties {
+                rule: Some(15),
+                keeps_clear: true,
+                ..NONE
+            },
+            Self::Overtaking => RoleDuties {
+                rule: Some(13),
+                keeps_clear: true,
+                crossing_ahead: CrossingAhead::Far,
+                closed_side: ClosedSide::AcrossWake,
+                ..NONE
+            },
+            Self::Overtaken => RoleDuties {
+                rule: Some(13),
+                stands_on: true,
+                ..NONE
+            },
+            Self::StandOn => RoleDuties {
+                rule: Some(17),
+                stands_on: true,
+                no_port_turn: true,
+                no_port_heading: true,
+                ..NONE
+            },
+            Self::Static | Self::None => NONE,
+        }
+    }
+
+    /// The number of the rule that tells own ship what to do; `None` without a role.
+    pub fn rule(self) -> Option<u8> {
+        self.duties().rule
+    }
+}
+
+/// A target on a straight nominal track, and own ship's role toward it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Encountered {
+    /// Own ship's role.
+    pub role: Role,
+    /// The target at t = 0.
+    pub ship: SteadyShip,
+    /// Length of the target, metres.
+    pub length: f64,
+}
+
+impl Encountered {
+    /// Metres ahead of the target within which own ship must not cross its course line.
+    pub fn bow_room(&self) -> f64 {
+        match self.role.duties().crossing_ahead {
+            CrossingAhead::Forbidden => f64::INFINITY,
+            CrossingAhead::Far => ScoreLimits::STANDARD.room_ahead(self.length, self.ship.speed),
+            CrossingAhead::Allowed => 0.0,
+        }
+    }
+}
+
+/// Duty of own ship toward all targets together: requirements on the first alteration of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Duty {
+    /// It must be readily apparent: a turn of [`APPARENT_TURN`], or [`APPARENT_SPEED`] for
+    /// [`APPARENT_TIME`].
+    pub keeps_clear: bool,
+    /// It must not be to port.
+    pub starboard_alone: bool,
+    /// Less speed may replace a turn: no target comes head-on.
+    pub may_slow: bool,
+    /// Course and speed are kept while that is safe: some target gives way, and own ship to none.
+    pub stands_on: bool,
+}
+
+impl Duty {
+    /// From own ship's roles. A ship that keeps clear of one target cannot stand on for another.
+    pub fn of(roles: impl Iterator<Item = Role> + Clone) -> Self {
+        let any = |duty: fn(RoleDuties) -> bool| roles.clone().any(|role| duty(role.duties()));
+        let keeps_clear = any(|d| d.keeps_clear);
+        Self {
+            keeps_clear,
+            starboard_alone: any(|d| d.no_port_turn),
+            may_slow: !any(|d| d.port_to_port),
+            stands_on: !keeps_clear && any(|d| d.stands_on),
+        }
+    }
+
+    /// True without any requirement.
+    pub fn is_none(self) -> bool {
+        !(self.keeps_clear || self.starboard_alone || self.stands_on)
+    }
+
+    /// Allowed sides of the first alteration.
+    pub fn sides(self) -> &'static [Side] {
+        if self.starboard_alone {
+            &[Side::Starboard]
+        } else {
+            &Side::BOTH
+        }
+    }
+
+    /// Least first alteration of course, radians.
+    pub fn least_turn(self) -> f64 {
+        if self.is_none() { 0.0 } else { APPARENT_TURN }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_strictest_role_decides() {
+        let of = |roles: &[Role]| {
+            let d = Duty::of(roles.iter().copied());
+            (d.keeps_clear, d.starboard_alone, d.stands_on)
+        };
+        assert_eq!(of(&[]), (false, false, false));
+        assert_eq!(of(&[Role::None, Role::Static]), (false, false, false));
+        assert_eq!(of(&[Role::HeadOn]), (true, true, false));
+        assert_eq!(of(&[Role::PortToPort]), (true, true, false));
+        assert_eq!(of(&[Role::GiveWay]), (true, true, false));
+        assert_eq!(of(&[Role::BothGiveWay]), (true, false, false));
+        assert_eq!(of(&[Role::Overtaking]), (true, false, false));
+        assert_eq!(of(&[Role::StandOn]), (false, true, true));
+        assert_eq!(of(&[Role::Overtaken]), (false, false, true));
+        // it keeps clear of one target, and turns to starboard because of the other
+        assert_eq!(of(&[Role::Overtaking, Role::StandOn]), (true, true, false));
+        let one = |role: Role| Duty::of(std::iter::once(role));
+        assert_eq!(one(Role::StandOn).sides(), [Side::Starboard]);
+        assert_eq!(one(Role::Overtaking).sides(), Side::BOTH);
+        assert!(one(Role::GiveWay).may_slow && !one(Role::HeadOn).may_slow);
+        assert!(one(Role::None).is_none());
+        assert_eq!(one(Role::None).least_turn(), 0.0);
+        assert_eq!(one(Role::GiveWay).least_turn(), APPARENT_TURN);
+    }
+}

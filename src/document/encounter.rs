@@ -1,0 +1,173 @@
+//! How each target is met, and how own ship complies with the rules toward it.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::plan::finite;
+use crate::colregs::Role;
+use crate::colregs::compliance::{ComplianceReport, Measure};
+use crate::frame::deg_from_radians;
+use crate::pipeline::Run;
+use crate::target::{ShipTrack, Target};
+use crate::trajectory::Trajectory;
+
+/// Seconds between the positions among which the crossing of a track is sought.
+const CROSSING_STEP: f64 = 1.0;
+const MOST_CROSSINGS: u32 = 1_000_000;
+
+/// How a target is met. Figures of the plan are null without one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EncounterDocument {
+    pub target: String,
+    pub role: String,
+    pub dcpa_m: Option<f64>,
+    pub tcpa_s: Option<f64>,
+    pub undisturbed_dcpa_m: Option<f64>,
+    pub undisturbed_tcpa_s: Option<f64>,
+    pub passing_side: Option<String>,
+    /// In a crossing, whether own ship crosses the target's track astern of it; null elsewhere.
+    #[serde(default)]
+    pub crosses_astern: Option<bool>,
+    /// The largest risk along the plan.
+    pub max_risk: Option<f64>,
+    /// When; null where the risk is 0.
+    pub max_risk_t_s: Option<f64>,
+    /// Compliance with the rules; absent without a plan and where the target is no ship.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub conduct: Option<ConductDocument>,
+}
+
+/// A role and when own ship has it along the plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RoleDocument {
+    pub role: String,
+    pub from_s: f64,
+    pub until_s: f64,
+}
+
+/// A rule violation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BreachDocument {
+    pub rule: String,
+    pub what: String,
+    pub t_s: f64,
+}
+
+/// The verdict of a compliance monitor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MonitorDocument {
+    pub monitor: String,
+    pub verdict: String,
+    pub robustness: Option<f64>,
+    pub unit: String,
+    pub t_s: Option<f64>,
+}
+
+/// Own ship's behaviour toward one target along the plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConductDocument {
+    pub roles: Vec<RoleDocument>,
+    pub scores: BTreeMap<String, f64>,
+    pub breaches: Vec<BreachDocument>,
+    pub monitors: Vec<MonitorDocument>,
+}
+
+/// Every target of a run, in the order of the scenario. O(targets × seconds of the plan).
+pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
+    let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
+    let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
+    let conduct = run.judged_conduct();
+    (run.scenario.targets.iter().zip(&run.sets).enumerate())
+        .map(|(index, (target, sets))| {
+            let passage = passages.and_then(|passages| passages.get(index));
+            let peak = run.risks.get(index);
+            let encounter = &sets.encounter;
+            let crossing = passage
+                .zip(trajectory)
+                .filter(|_| is_crossing(encounter.role));
+            EncounterDocument {
+                target: target.name.clone(),
+                role: encounter.role.name().to_owned(),
+                dcpa_m: passage.and_then(|p| finite(p.dcpa)),
+                tcpa_s: passage.and_then(|p| finite(p.tcpa)),
+                undisturbed_dcpa_m: finite(encounter.undisturbed_dcpa),
+                undisturbed_tcpa_s: finite(encounter.undisturbed_tcpa),
+                passing_side: passage.map(|p| p.passing_side.to_string()),
+                crosses_astern: crossing.and_then(|(p, t)| crosses_astern(t, target, p.tcpa)),
+                max_risk: peak.map(|peak| peak.risk),
+                max_risk_t_s: peak.filter(|peak| peak.risk > 0.0).map(|peak| peak.time),
+                conduct: (conduct.get(index))
+                    .and_then(Option::as_ref)
+                    .map(ConductDocument::of),
+            }
+        })
+        .collect()
+}
+
+fn is_crossing(role: Role) -> bool {
+    matches!(role, Role::GiveWay | Role::StandOn | Role::BothGiveWay)
+}
+
+/// True when own ship crosses the nominal target's centre line abaft its centre, false when ahead.
+/// Among several crossings the one nearest in time to `tcpa` counts.
+fn crosses_astern(trajectory: &Trajectory, target: &Target, tcpa: f64) -> Option<bool> {
+    let ship = target.ship()?;
+    let relative = |ship: &ShipTrack, time: f64| {
+        ship.pose_at(time)
+            .body_coordinates(trajectory.pose_at(time).position)
+    };
+    let times = trajectory.sample_times(CROSSING_STEP, MOST_CROSSINGS);
+    let mut nearest: Option<(f64, bool)> = None;
+    for pair in times.windows(2) {
+        let (a, b) = (relative(ship, pair[0]), relative(ship, pair[1]));
+        if (a.y > 0.0) == (b.y > 0.0) {
+            continue;
+        }
+        let fraction = a.y / (a.y - b.y);
+        let ahead = a.x + fraction * (b.x - a.x);
+        let away = (pair[0] + fraction * (pair[1] - pair[0]) - tcpa).abs();
+        if nearest.is_none_or(|(best, _)| away < best) {
+            nearest = Some((away, ahead < 0.0));
+        }
+    }
+    nearest.map(|(_, astern)| astern)
+}
+
+impl ConductDocument {
+    /// Angles in degrees.
+    fn of(conduct: &ComplianceReport) -> Self {
+        let roles = conduct.roles.iter().map(|interval| RoleDocument {
+            role: interval.role.name().to_owned(),
+            from_s: interval.from,
+            until_s: interval.until,
+        });
+        let breaches = conduct.violations.iter().map(|breach| BreachDocument {
+            rule: breach.rule.to_owned(),
+            what: breach.what.clone(),
+            t_s: breach.time,
+        });
+        let monitors = conduct.monitors.iter().map(|finding| {
+            let (unit, scale): (_, fn(f64) -> f64) = match finding.measure {
+                Measure::Distance => ("m", |metres| metres),
+                Measure::Angle => ("deg", deg_from_radians),
+                Measure::Time => ("s", |seconds| seconds),
+            };
+            MonitorDocument {
+                monitor: finding.monitor.to_owned(),
+                verdict: finding.verdict.name().to_owned(),
+                robustness: finding.robustness.map(scale).filter(|r| r.is_finite()),
+                unit: unit.to_owned(),
+                t_s: finding.time,
+            }
+        });
+        Self {
+            roles: roles.collect(),
+            scores: (conduct.scores.by_name().into_iter())
+                .map(|(name, score)| (name.to_owned(), score))
+                .collect(),
+            breaches: breaches.collect(),
+            monitors: monitors.collect(),
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! A value with its place in the file: the cursor with which files are read.
+
+use std::fmt::{self, Display};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use super::value::{Node, Value};
+use super::{Fault, Faults, Table};
+use crate::frame::{Vector, mps_from_knots};
+use crate::text::{LINE, is_line, is_unprintable, printable};
+
+/// Limits nearer to zero than this are written with a power of ten.
+const SHORT: f64 = 1e-9;
+
+/// Allowed numbers. A NaN never is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Range {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    or_zero: bool,
+    unit: &'static str,
+}
+
+impl Range {
+    pub(crate) const fn between(low: f64, high: f64) -> Self {
+        Self {
+            low,
+            high,
+            or_zero: false,
+            unit: "",
+        }
+    }
+
+    pub(crate) const fn within(limit: f64) -> Self {
+        Self::between(-limit, limit)
+    }
+
+    pub(crate) const fn or_zero(self) -> Self {
+        Self {
+            or_zero: true,
+            ..self
+        }
+    }
+
+    /// The range with its unit, for files whose keys do not name the unit.
+    pub(crate) const fn in_unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// A range of speeds in knots from one in m/s: round limits, just inside those in m/s.
+    pub(crate) fn in_knots(self) -> Self {
+        let knot = mps_from_knots(1.0);
+        Self {
+            low: (self.low / knot * 1e3).ceil() / 1e3,
+            high: (self.high / knot).floor(),
+            ..self
+        }
+    }
+
+    pub(crate) fn contains(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value) || (self.or_zero && value == 0.0)
+    }
+
+    /// The number in a text, if it is allowed.
+    pub(crate) fn parse(&self, text: &str) -> Option<f64> {
+        let number = text.parse::<f64>().ok()?;
+        // +0.0 turns a negative zero into zero
+        self.contains(number).then_some(number + 0.0)
+    }
+}
+
+impl Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let zero = if self.or_zero { "0, or " } else { "" };
+        write!(f, "{zero}a number from ")?;
+        if self.low != 0.0 && self.low.abs() < SHORT {
+            write!(f, "{:e}", self.low)?;
+        } else {
+            write!(f, "{}", self.low)?;
+        }
+        write!(f, " to {}", self.high)?;
+        if !self.unit.is_empty() {
+            write!(f, " {}", self.unit)?;
+        }
+        Ok(())
+    }
+}
+
+/// A value, its place, and the faults found so far.
+#[derive(Debug, Clone)]
+pub(crate) struct Field<'a> {
+    faults: &'a Faults,
+    path: String,
+    node: &'a Node,
+}
+
+impl<'a> Field<'a> {
+    /// The outermost value of a file.
+    pub(crate) fn root(node: &'a Node, faults: &'a Faults) -> Self {
+        Self {
+            faults,
+            path: String::new(),
+            node,
+        }
+    }
+
+    /// This value with another collection of faults.
+    pub(crate) fn noting(&self, faults: &'a Faults) -> Self {
+        Self {
+            faults,
+            ..self.clone()
+        }
+    }
+
+    /// Where the value is, as in `targets[0].speed_mps`.
+    pub(crate) fn path(&self) -> &str {
+        &self.path
+    }
+
+    fn path_of(&self, key: &str) -> String {
+        let key = printable(key);
+        if self.path.is_empty() {
+            key
+        } else {
+            format!("{}.{key}", self.path)
+        }
+    }
+
+    /// Notes a fault here.
+    pub(crate) fn fault(&self, found: impl Display, allowed: impl Display) {
+        self.faults.note(Fault {
+            line: self.node.line,
+            ..Fault::new(self.path.as_str(), found, allowed)
+        });
+    }
+
+    /// Notes a fault at a key of this table.
+    pub(crate) fn fault_at(&self, key: &str, found: impl Display, allowed: impl Display) {
+        let node = self.node.get(key).unwrap_or(self.node);
+        self.faults.note(Fault {
+            line: node.line,
+            ..Fault::new(self.path_of(key), found, allowed)
+        });
+    }
+
+    /// Notes that this value is not an allowed one.
+    pub(crate) fn refuse<T>(&self, allowed: impl Display) -> Option<T> {
+        self.fault(self.node.described(), allowed);
+        None
+    }
+
+    /// The value at a key; a fault if this is not a table.
+    pub(crate) fn get(&self, key: &str) -> Option<Self> {
+        if !self.is_table() {
+            return self.refuse("an object");
+        }
+        Some(Self {
+            faults: self.faults,
+            path: self.path_of(key),
+            node: self.node.get(key)?,
+        })
+    }
+
+    /// The value at a key that must be there.
+    pub(crate) fn require(&self, key: &str, allowed: impl Display) -> Option<Self> {
+        let found = self.get(key);
+        if found.is_none() && self.is_table() {
+            self.fault_at(key, "nothing", format_args!("{allowed}; it is required"));
+        }
+        found
+    }
+
+    /// The number at a key that must be there.
+    pub(crate) fn required_number(&self, key: &str, range: Range) -> Option<f64> {
+        self.require(key, range)?.number(range)
+    }
+
+    /// The number at a key that may be absent: the outer `None` is a faulty number.
+    pub(crate) fn optional_number(&self, key: &str, range: Range) -> Option<Option<f64>> {
+        match self.get(key) {
+            Some(field) => field.number(range).map(Some),
+            None => Some(None),
+        }
+    }
+
+    /// The keys of a table, in alphabetical order.
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        let table = match &self.node.value {
+            Value::Table(table) => Some(table),
+            _ => None,
+        };
+        table.into_iter().flatten().map(|(key, _)| key.as_str())
+    }
+
+    /// A number in a range; an integer is one too.
+    pub(crate) fn number(&self, range: Range) -> Option<f64> {
+        match self.any_number() {
+            // +0.0 turns a negative zero into zero
+            Some(value) if range.contains(value) => Some(value + 0.0),
+            _ => self.refuse(range),
+        }
+    }
+
+    /// A whole number in a range.
+    pub(crate) fn whole_number(&self, range: Range) -> Option<usize> {
+        match self.any_number() {
+            Some(value) if range.contains(value) && value.fract() == 0.0 => Some(value as usize),
+            _ => self.refuse(format_args!(
+                "a whole number from {} to {}",
+                range.low, range.high
+            )),
+        }
+    }
+
+    /// The number here, if it is one, without a fault otherwise.
+    pub(crate) fn any_number(&self) -> Option<f64> {
+        match self.node.value {
+            Value::Number(number, _) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// The text here, if it is one, without a fault otherwise.
+    pub(crate) fn any_text(&self) -> Option<&'a str> {
+        self.node.as_text()
+    }
+
+    /// Text on one line that may be a name or a title.
+    pub(crate) fn line_of_text(&self) -> Option<&'a str> {
+        match self.node.as_text() {
+            Some(text) if is_line(text) => Some(text),
+            _ => self.refuse(LINE),
+        }
+    }
+
+    /// The name of a file, relative to a folder.
+    pub(crate) fn file_in(&self, folder: &Path) -> Option<PathBuf> {
+        match self.node.as_text() {
+            Some(name) if !name.trim().is_empty() && !name.chars().any(is_unprintable) => {
+                Some(folder.join(name))
+            }
+            _ => self.refuse("the name of a file, relative to the folder of this one"),
+        }
+    }
+
+    /// The meaning of one of these words.
+    pub(crate) fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
+        let found = self.node.as_text();
+        if let Some((_, meaning)) = words.iter().find(|(word, _)| Some(*word) == found) {
+            return Some(*meaning);
+        }
+        let allowed: Vec<String> = words.iter().map(|(w, _)| format!("\"{w}\"")).collect();
+        self.refuse(allowed.join(", "))
+    }
+
+    /// The items of a list with an allowed number of them.
+    pub(crate) fn list(&self, counts: RangeInclusive<usize>, what: &str) -> Option<Vec<Self>> {
+        let (least, most) = (counts.start(), counts.end());
+        match &self.node.value {
+            Value::List(items) if counts.contains(&items.len()) => {
+                let field = |(index, node)| Self {
+                    faults: self.faults,
+                    path: format!("{}[{index}]", self.path),
+                    node,
+                };
+                Some(items.iter().enumerate().map(field).collect())
+            }
+            Value::List(items) if items.len() > *most => {
+                let found = format_args!("{} {what}", items.len());
+                self.fault(found, format_args!("at most {most}"));
+                None
+            }
+            _ => self.refuse(format_args!("a list of at least {least} {what}")),
+        }
+    }
+
+    /// A list of at least one number, each in a range.
+    pub(crate) fn numbers(&self, range: Range) -> Option<Vec<f64>> {
+        let items = self.list(1..=usize::MAX, "numbers")?;
+        let numbers: Vec<_> = items.iter().map(|item| item.number(range)).collect();
+        numbers.into_iter().collect()
+    }
+
+    /// A list of two numbers in a range: a vector.
+    pub(crate) fn pair(&self, range: Range) -> Option<Vector> {
+        match &self.node.value {
+            Value::List(items) if items.len() == 2 => {
+                let numbers = self.numbers(range)?;
+                Some(Vector::new(*numbers.first()?, *numbers.get(1)?))
+            }
+            _ => self.refuse("[east, north]"),
+        }
+    }
+
+    /// The table here, whose unknown keys are faults.
+    pub(crate) fn table(&self, shape: &str) -> Option<Table<'a>> {
+        if self.is_table() {
+            Some(Table::new(self.clone()))
+        } else {
+            self.refuse(shape)
+        }
+    }
+
+    /// True if the value has keys of its own.
+    pub(crate) fn is_table(&self) -> bool {
+        matches!(self.node.value, Value::Table(_))
+    }
+}
+
+/// A text in quotation marks, cut after 40 characters.
+pub(crate) fn abbreviated(text: &str) -> String {
+    const SHOWN: usize = 40;
+    let short: String = text.chars().take(SHOWN).collect();
+    let more = if text.chars().count() > SHOWN {
+        "…"
+    } else {
+        ""
+    };
+    format!("{short:?}{more}")
+}

@@ -1,0 +1,155 @@
+//! Reading of input files: bounded text, values with their places, and the faults found in them.
+//!
+//! A derived deserializer stops at its first error. Here reading goes on, so that one run names
+//! everything that is wrong with a file: its place, the field, what was found, what is allowed.
+
+mod field;
+mod table;
+mod value;
+
+pub(crate) use field::{Field, Range, abbreviated};
+pub(crate) use table::Table;
+pub(crate) use value::{Node, from_json, from_toml};
+
+use std::cell::RefCell;
+use std::fmt::{self, Display};
+use std::fs::File;
+use std::io::{Error, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+/// One thing wrong in a file: its place, what was found, what is allowed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// The field, as in `targets[0].speed_mps`; empty if the fault concerns the whole file.
+    pub path: String,
+    /// What the file contains there.
+    pub found: String,
+    /// What it may contain.
+    pub allowed: String,
+    /// Line in the file, from 1, where one can be named.
+    pub line: Option<usize>,
+}
+
+impl Fault {
+    /// A fault without a line.
+    pub fn new(path: impl Into<String>, found: impl Display, allowed: impl Display) -> Self {
+        Self {
+            path: path.into(),
+            found: found.to_string(),
+            allowed: allowed.to_string(),
+            line: None,
+        }
+    }
+}
+
+impl Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(line) = self.line {
+            write!(f, "line {line}: ")?;
+        }
+        if !self.path.is_empty() {
+            write!(f, "{}: ", self.path)?;
+        }
+        write!(f, "found {}; allowed: {}", self.found, self.allowed)
+    }
+}
+
+/// Why an input file could not be used.
+#[derive(Debug, thiserror::Error)]
+pub enum InputError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read: {source}", file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// The error of the operating system.
+        source: std::io::Error,
+    },
+    /// The file was read and is wrong.
+    #[error("{}: {}", file.display(), listed(faults))]
+    Faults {
+        /// The file.
+        file: PathBuf,
+        /// Everything wrong with it, in order of lines. Never empty.
+        faults: Vec<Fault>,
+    },
+}
+
+impl InputError {
+    /// Faults of a file.
+    pub(crate) fn faults(file: &Path, faults: Vec<Fault>) -> Self {
+        Self::Faults {
+            file: file.to_owned(),
+            faults,
+        }
+    }
+}
+
+/// The number of faults, then one fault on each line.
+fn listed(faults: &[Fault]) -> String {
+    let plural = if faults.len() == 1 { "" } else { "s" };
+    let lines: String = faults.iter().map(|fault| format!("\n  {fault}")).collect();
+    format!("{} fault{plural}{lines}", faults.len())
+}
+
+/// Collects faults while a file is read.
+#[derive(Debug, Default)]
+pub(crate) struct Faults(RefCell<Vec<Fault>>);
+
+impl Faults {
+    pub(crate) fn note(&self, fault: Fault) {
+        self.0.borrow_mut().push(fault);
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.borrow().is_empty()
+    }
+
+    /// Every fault noted so far, in order of lines; afterwards there is none.
+    pub(crate) fn take(&self) -> Vec<Fault> {
+        let mut faults = self.0.take();
+        faults.sort_by_key(|fault| fault.line);
+        faults
+    }
+}
+
+const MEBIBYTE: u64 = 1024 * 1024;
+
+/// Text of a regular file of at most `mebibytes`; a larger file is refused before it is read.
+pub(crate) fn read_text(file: &Path, mebibytes: u64, kind: &str) -> Result<String, InputError> {
+    let unread = |source| InputError::Read {
+        file: file.to_owned(),
+        source,
+    };
+    let whole = |found: String, allowed: String| {
+        InputError::faults(file, vec![Fault::new("", found, allowed)])
+    };
+    let too_large = || {
+        whole(
+            format!("more than {mebibytes} MiB"),
+            format!("{kind} of at most {mebibytes} MiB"),
+        )
+    };
+    let most = mebibytes * MEBIBYTE;
+    // opening a pipe would block, a device may have no end
+    let about = std::fs::metadata(file).map_err(unread)?;
+    if !about.is_file() {
+        let error = Error::new(ErrorKind::InvalidInput, "not a regular file");
+        return Err(unread(error));
+    }
+    if about.len() > most {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    // the file may have grown since
+    let mut limited = File::open(file).map_err(unread)?.take(most + 1);
+    limited.read_to_end(&mut bytes).map_err(unread)?;
+    if bytes.len() as u64 > most {
+        return Err(too_large());
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let found = format!("bytes that are not text at byte {at}");
+        whole(found, "UTF-8 text".to_owned())
+    })
+}

@@ -1,0 +1,177 @@
+//! A table whose keys are all known: unknown keys and missing ones are faults.
+
+use std::fmt::Display;
+
+use super::{Field, Range};
+use crate::frame::mps_from_knots;
+
+/// A known key this similar to an unknown one (Jaro-Winkler) was meant.
+const SIMILAR: f64 = 0.8;
+
+/// A table whose keys are taken one by one. [`Table::finish`] notes unknown and missing keys.
+#[derive(Debug)]
+pub(crate) struct Table<'a> {
+    field: Field<'a>,
+    known: Vec<String>,
+    missing: Vec<(Vec<String>, String)>,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn new(field: Field<'a>) -> Self {
+        Self {
+            field,
+            known: Vec::new(),
+            missing: Vec::new(),
+        }
+    }
+
+    /// True if the key is there. The key counts as known.
+    pub(crate) fn has(&mut self, key: &str) -> bool {
+        self.take(key).is_some()
+    }
+
+    /// The value of a key that may be absent.
+    pub(crate) fn take(&mut self, key: &str) -> Option<Field<'a>> {
+        if !self.known.iter().any(|known| known == key) {
+            self.known.push(key.to_owned());
+        }
+        self.field.get(key)
+    }
+
+    /// The value of a key that must be there.
+    pub(crate) fn require(&mut self, key: &str, allowed: impl Display) -> Option<Field<'a>> {
+        let field = self.take(key);
+        if field.is_none() {
+            self.missing
+                .push((vec![key.to_owned()], allowed.to_string()));
+        }
+        field
+    }
+
+    /// The table at a key that must be there.
+    pub(crate) fn required_table(&mut self, key: &str) -> Option<Table<'a>> {
+        self.require(key, "a table")?.table("a table")
+    }
+
+    /// A number that may be absent.
+    pub(crate) fn number(&mut self, key: &str, range: Range) -> Option<f64> {
+        self.take(key)?.number(range)
+    }
+
+    /// A number that must be there.
+    pub(crate) fn required_number(&mut self, key: &str, range: Range) -> Option<f64> {
+        self.require(key, range)?.number(range)
+    }
+
+    /// The meaning of one of these words; the key may be absent.
+    pub(crate) fn choice<T: Copy>(&mut self, key: &str, words: &[(&str, T)]) -> Option<T> {
+        self.take(key)?.choice(words)
+    }
+
+    /// The field `<stem>_mps` or `<stem>_kn` and its unit in m/s; both at once are a fault.
+    fn speed_field(&mut self, stem: &str) -> Option<(Field<'a>, f64)> {
+        let (metric, nautical) = (format!("{stem}_mps"), format!("{stem}_kn"));
+        match (self.take(&metric), self.take(&nautical)) {
+            (Some(_), Some(field)) => {
+                field.fault(
+                    format_args!("{nautical} beside {metric}"),
+                    "one of the two, not both",
+                );
+                None
+            }
+            (Some(field), None) => Some((field, 1.0)),
+            (None, Some(field)) => Some((field, mps_from_knots(1.0))),
+            (None, None) => None,
+        }
+    }
+
+    /// True if the speed is given in either unit.
+    pub(crate) fn has_speed(&mut self, stem: &str) -> bool {
+        let metric = self.has(&format!("{stem}_mps"));
+        self.has(&format!("{stem}_kn")) || metric
+    }
+
+    /// A speed in m/s from `<stem>_mps` or `<stem>_kn`; the range is in m/s.
+    pub(crate) fn speed(&mut self, stem: &str, range: Range) -> Option<f64> {
+        let (field, unit) = self.speed_field(stem)?;
+        Some(field.number(in_unit(range, unit))? * unit)
+    }
+
+    /// A speed that must be there in one of the units.
+    pub(crate) fn required_speed(&mut self, stem: &str, range: Range) -> Option<f64> {
+        self.require_speed(stem, range);
+        self.speed(stem, range)
+    }
+
+    /// Notes the speed as missing if it is given in neither unit.
+    pub(crate) fn require_speed(&mut self, stem: &str, allowed: impl Display) {
+        if !self.has_speed(stem) {
+            self.missing.push((
+                vec![format!("{stem}_mps"), format!("{stem}_kn")],
+                allowed.to_string(),
+            ));
+        }
+    }
+
+    /// Speeds in m/s from the list `<stem>_mps` or `<stem>_kn`, and the field of the list.
+    pub(crate) fn speeds(
+        &mut self,
+        stem: &str,
+        range: Range,
+    ) -> Option<(Field<'a>, Option<Vec<f64>>)> {
+        let (field, unit) = self.speed_field(stem)?;
+        let speeds = field
+            .numbers(in_unit(range, unit))
+            .map(|numbers| numbers.into_iter().map(|n| n * unit).collect());
+        Some((field, speeds))
+    }
+
+    /// Refuses a key that another one rules out.
+    pub(crate) fn forbid(&mut self, key: &str, because: &str) {
+        if let Some(field) = self.take(key) {
+            field.refuse::<()>(because);
+        }
+    }
+
+    /// Notes every unknown key and every missing one. A required key that is misspelt is one fault.
+    pub(crate) fn finish(mut self) {
+        let mut missing = std::mem::take(&mut self.missing);
+        for name in self.field.keys() {
+            if self.known.iter().any(|known| known == name) {
+                continue;
+            }
+            let meant = nearest(name, &self.known);
+            let found = match meant {
+                Some(meant) => format!("an unknown key, perhaps for '{meant}'"),
+                None => "an unknown key".to_owned(),
+            };
+            missing.retain(|(keys, _)| !keys.iter().any(|key| Some(key) == meant));
+            let allowed = format_args!("one of {}", self.known.join(", "));
+            self.field.fault_at(name, found, allowed);
+        }
+        for (keys, allowed) in missing {
+            let or = match keys.get(1) {
+                Some(other) => format!(" (or {other})"),
+                None => String::new(),
+            };
+            let allowed = format_args!("{allowed}; it is required{or}");
+            self.field.fault_at(&keys[0], "nothing", allowed);
+        }
+    }
+}
+
+fn in_unit(range: Range, unit: f64) -> Range {
+    if unit == 1.0 { range } else { range.in_knots() }
+}
+
+fn nearest<'k>(name: &str, known: &'k [String]) -> Option<&'k String> {
+    let lower = name.to_lowercase();
+    known
+        .iter()
+        .map(|key| (strsim::jaro_winkler(&lower, key), key))
+        .filter(|(similarity, _)| *similarity > SIMILAR)
+        // among equals the one that was asked for first
+        .rev()
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, key)| key)
+}

@@ -1,0 +1,220 @@
+//! TOML and JSON texts as one tree of values, each with the line where it begins.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::{Fault, Faults, abbreviated};
+
+/// Beginnings of two messages of the TOML parser: nesting too deep, and brackets not closed.
+const TOO_DEEP: &str = "max recursion depth";
+const UNCLOSED: &str = "unclosed";
+
+/// A value and the line where it begins; JSON values have no line.
+#[derive(Debug, Clone)]
+pub(crate) struct Node {
+    pub(super) value: Value,
+    pub(super) line: Option<usize>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) enum Value {
+    Null,
+    Bool(bool),
+    /// The number and its spelling in the file.
+    Number(f64, String),
+    Text(String),
+    Date(String),
+    List(Vec<Node>),
+    Table(BTreeMap<String, Node>),
+}
+
+impl Node {
+    /// The value at a key of a table, if it is there and not null.
+    pub(crate) fn get(&self, key: &str) -> Option<&Self> {
+        let Value::Table(table) = &self.value else {
+            return None;
+        };
+        table
+            .get(key)
+            .filter(|node| !matches!(node.value, Value::Null))
+    }
+
+    /// The text, if the value is one.
+    pub(crate) fn as_text(&self) -> Option<&str> {
+        match &self.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The line of the value at a path like `a.b[2]`.
+    pub(crate) fn line_at(&self, path: &str) -> Option<usize> {
+        let mut node = self;
+        for part in path.split('.') {
+            let (key, index) = match part.split_once('[') {
+                Some((key, rest)) => (key, rest.trim_end_matches(']').parse::<usize>().ok()),
+                None => (part, None),
+            };
+            node = node.get(key)?;
+            if let (Some(index), Value::List(list)) = (index, &node.value) {
+                node = list.get(index)?;
+            }
+            if !matches!(node.value, Value::Table(_)) {
+                break;
+            }
+        }
+        node.line
+    }
+
+    /// The value as a message shows it.
+    pub(super) fn described(&self) -> String {
+        match &self.value {
+            Value::Null => "null".to_owned(),
+            Value::Bool(truth) => truth.to_string(),
+            Value::Number(_, spelling) => spelling.clone(),
+            Value::Text(text) => format!("the text {}", abbreviated(text)),
+            Value::Date(date) => format!("the date {date}"),
+            Value::List(list) => format!("a list of {}", list.len()),
+            Value::Table(_) => "a table".to_owned(),
+        }
+    }
+}
+
+/// Parses TOML; every error of the grammar is noted, and then there is no value.
+pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
+    let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
+    let line = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
+    let (document, errors) = DeTable::parse_recoverable(text);
+    if errors.is_empty() {
+        let value = Value::Table(table_of(document.get_ref(), &line));
+        return Some(Node { value, line: None });
+    }
+    // recovered values may be in the wrong table: only the grammar is judged
+    let mut reported = BTreeSet::new();
+    let mut too_deep = false;
+    for error in errors {
+        let (message, offset) = (error.message(), error.span().map(|span| span.start));
+        // the rest of a value that is nested too deep is not read, so it is never closed
+        let follows = too_deep && message.starts_with(UNCLOSED);
+        // nested brackets are all unclosed at one place
+        if !follows && reported.insert((offset, message.to_owned())) {
+            faults.note(Fault {
+                line: offset.map(line),
+                ..Fault::new("", message, "TOML 1.0 without errors")
+            });
+        }
+        too_deep |= message.contains(TOO_DEEP);
+    }
+    None
+}
+
+fn table_of(table: &DeTable, line: &impl Fn(usize) -> usize) -> BTreeMap<String, Node> {
+    let entries = table.iter();
+    entries
+        .map(|(key, value)| (key.get_ref().to_string(), node_of(value, line)))
+        .collect()
+}
+
+fn node_of(value: &Spanned<DeValue>, line: &impl Fn(usize) -> usize) -> Node {
+    let number =
+        |value: Option<f64>, spelling: String| Value::Number(value.unwrap_or(f64::NAN), spelling);
+    Node {
+        value: match value.get_ref() {
+            DeValue::String(text) => Value::Text(text.to_string()),
+            DeValue::Integer(integer) => {
+                let value = i128::from_str_radix(integer.as_str(), integer.radix());
+                number(value.ok().map(|value| value as f64), integer.to_string())
+            }
+            DeValue::Float(float) => number(float.as_str().parse().ok(), float.to_string()),
+            DeValue::Boolean(truth) => Value::Bool(*truth),
+            DeValue::Datetime(date) => Value::Date(date.to_string()),
+            DeValue::Array(list) => Value::List(list.iter().map(|v| node_of(v, line)).collect()),
+            DeValue::Table(table) => Value::Table(table_of(table, line)),
+        },
+        line: Some(line(value.span().start)),
+    }
+}
+
+/// Parses JSON. A key that appears twice in an object is an error: one of the two would be lost.
+pub(crate) fn from_json(text: &str) -> Result<Node, Fault> {
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let value = JsonNode.deserialize(&mut reader);
+    value
+        .and_then(|value| reader.end().map(|()| value))
+        .map_err(|error| Fault {
+            line: (error.line() > 0).then_some(error.line()),
+            ..Fault::new("", error, "JSON without errors")
+        })
+}
+
+/// Builds a [`Node`] whose tables name every key once.
+struct JsonNode;
+
+impl<'de> DeserializeSeed<'de> for JsonNode {
+    type Value = Node;
+
+    fn deserialize<D: Deserializer<'de>>(self, reader: D) -> Result<Node, D::Error> {
+        reader.deserialize_any(self)
+    }
+}
+
+fn bare<E>(value: Value) -> Result<Node, E> {
+    Ok(Node { value, line: None })
+}
+
+impl<'de> Visitor<'de> for JsonNode {
+    type Value = Node;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_unit<E>(self) -> Result<Node, E> {
+        bare(Value::Null)
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Node, E> {
+        bare(Value::Bool(value))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Node, E> {
+        bare(Value::Number(value as f64, value.to_string()))
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Node, E> {
+        bare(Value::Number(value as f64, value.to_string()))
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Node, E> {
+        bare(Value::Number(value, format!("{value:?}")))
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Node, E> {
+        bare(Value::Text(value.to_owned()))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Node, A::Error> {
+        let mut values = Vec::new();
+        while let Some(value) = list.next_element_seed(JsonNode)? {
+            values.push(value);
+        }
+        bare(Value::List(values))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Node, A::Error> {
+        let mut table = BTreeMap::new();
+        while let Some(key) = map.next_key::<String>()? {
+            let value = map.next_value_seed(JsonNode)?;
+            if table.contains_key(&key) {
+                let twice = format!("the key {key:?} twice in one object");
+                return Err(serde::de::Error::custom(twice));
+            }
+            table.insert(key, value);
+        }
+        bare(Value::Table(table))
+    }
+}

@@ -1,0 +1,412 @@
+//! First contact of a line or an arc in time with a space-time polytope: exact, docs/theory.md
+//! section 10 (iv) and (v).
+//!
+//! Contact at depth `d` is contact with the body whose faces are moved inward by `d` metres. At
+//! depth 0 this is the closed set itself; at a positive depth touching does not count.
+
+use std::f64::consts::{PI, TAU};
+
+pub(in crate::obstacle) mod advancement;
+mod decision;
+
+pub use decision::meets;
+
+use crate::frame::{Vector, heading_of, to_port};
+use crate::obstacle::{HalfSpace, PolytopeObstacle};
+use crate::trajectory::Segment;
+
+/// A time interval, seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// First instant.
+    pub start: f64,
+    /// Last instant.
+    pub end: f64,
+}
+
+/// Longest arc per chord in the quick test, radians.
+pub(in crate::obstacle) const CHORD_RAD: f64 = 0.4;
+
+/// The first time at which the segment is at least `depth` metres inside the obstacle, or `None`.
+///
+/// A segment or depth that is not finite is in contact at once. Obstacles exist from t = 0 on. O(n
+/// + m) on a line; O((n + m)(1 + turn/pi)) root findings on an arc that comes near.
+pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64) -> Option<f64> {
+    if !(segment.is_valid() && depth.is_finite()) {
+        return Some(segment.start_time);
+    }
+    if segment.end_time() < 0.0 {
+        return None;
+    }
+    if segment.is_arc() {
+        if clear_of_chords(obstacle, segment, depth) {
+            return None;
+        }
+        arc_contacts(obstacle, segment, depth)
+            .first()
+            .map(|i| i.start)
+    } else {
+        line_contact(obstacle, segment, depth).map(|i| i.start)
+    }
+}
+
+/// The interval during which a straight segment (or a wait) is at least `depth` inside, in O(n +
+/// m).
+///
+/// Cyrus-Beck clipping by the faces, docs/theory.md section 10 (iv). The body is convex, so there
+/// is at most one interval.
+pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> Option<Interval> {
+    let velocity = line.start.ahead() * line.speed;
+    clip(
+        obstacle,
+        line.start.position,
+        velocity,
+        line.start_time,
+        line.duration,
+        depth,
+    )
+}
+
+/// [`line_contact`] for a motion from `position` at `start_time` with `velocity`; `duration` may be
+/// infinite.
+pub(in crate::obstacle) fn clip(
+    obstacle: &PolytopeObstacle,
+    position: Vector,
+    velocity: Vector,
+    start_time: f64,
+    duration: f64,
+    depth: f64,
+) -> Option<Interval> {
+    let origin = position - velocity * start_time;
+    let mut inside = Interval {
+        start: start_time.max(0.0),
+        end: start_time + duration,
+    };
+    if inside.start > inside.end {
+        return None;
+    }
+    for face in obstacle.faces() {
+        let rate = face.normal.dot(&velocity) - face.velocity_support;
+        let reach = face.initial_support - depth - face.normal.dot(&origin);
+        if rate > 0.0 {
+            inside.end = inside.end.min(reach / rate);
+        } else if rate < 0.0 {
+            inside.start = inside.start.max(reach / rate);
+        } else if reach < 0.0 {
+            return None;
+        }
+        if inside.start > inside.end {
+            return None;
+        }
+    }
+    Some(inside)
+}
+
+/// All intervals during which an arc is at least `depth` inside, in order.
+///
+/// An arc can leave and enter again. Each face gives the roots between its stationary points,
+/// docs/theory.md section 10 (v).
+pub fn arc_contacts(obstacle: &PolytopeObstacle, arc: &Segment, depth: f64) -> Vec<Interval> {
+    let start = arc.start_time.max(0.0);
+    let mut inside = vec![Interval {
+        start,
+        end: arc.end_time(),
+    }];
+    if inside[0].start > inside[0].end {
+        return Vec::new();
+    }
+    let circle = Circle::of(arc);
+    for face in obstacle.faces() {
+        let below = circle.below(face, depth, start, arc.end_time());
+        inside = intersect(&inside, &below);
+        if inside.is_empty() {
+            break;
+        }
+    }
+    inside
+}
+
+/// True when a chain of chords is clear of the obstacle grown by their sagitta, which implies that
+/// the arc is clear.
+fn clear_of_chords(obstacle: &PolytopeObstacle, arc: &Segment, depth: f64) -> bool {
+    let count = (arc.turn_rate.abs() * arc.duration / CHORD_RAD)
+        .ceil()
+        .max(1.0);
+    let duration = arc.duration / count;
+    let sagitta = arc.radius().abs() * (arc.turn_rate * duration).powi(2) / 8.0;
+    let mut from = arc.start;
+    for k in 1..=count as usize {
+        let to = arc.pose_after(duration * k as f64);
+        let step = to.position - from.position;
+        let chord = Segment {
+            start: crate::frame::Pose::new(from.position, heading_of(step)),
+            start_time: arc.start_time + duration * (k - 1) as f64,
+            duration,
+            speed: step.norm() / duration,
+            turn_rate: 0.0,
+        };
+        // at equal times the arc is within the sagitta of the chord
+        if !chord.is_valid() || line_contact(obstacle, &chord, depth - sagitta).is_some() {
+            return false;
+        }
+        from = to;
+    }
+    true
+}
+
+/// An arc as `centre + radius e(phase + rate t)`.
+struct Circle {
+    centre: Vector,
+    radius: f64,
+    phase: f64,
+    rate: f64,
+}
+
+impl Circle {
+    fn of(arc: &Segment) -> Self {
+        let radius = arc.radius();
+        let quarter = if radius > 0.0 { -PI / 2.0 } else { PI / 2.0 };
+        Self {
+            centre: arc.start.position + to_port(arc.start.ahead()) * radius,
+            radius: radius.abs(),
+            phase: arc.start.heading + quarter - arc.turn_rate * arc.start_time,
+            rate: arc.turn_rate,
+        }
+    }
+
+    /// The intervals of `[from, to]` in which the arc is at least `depth` behind the face.
+    fn below(&self, face: &HalfSpace, depth: f64, from: f64, to: f64) -> Vec<Interval> {
+        let offset = face.normal.dot(&self.centre) - face.initial_support + depth;
+        let phase = self.phase - heading_of(face.normal);
+        let value = |t: f64| {
+            offset + self.radius * (phase + self.rate * t).cos() - face.velocity_support * t
+        };
+        let mut cuts = vec![from];
+        let k = -face.velocity_support / (self.radius * self.rate);
+        if k.abs() < 1.0 {
+            let (low, high) = {
+                let (a, b) = (phase + self.rate * from, phase + self.rate * to);
+                (a.min(b), a.max(b))
+            };
+            for base in [k.asin(), PI - k.asin()] {
+                let first = ((low - base) / TAU).ceil();
+                let mut angle = base + TAU * first;
+                while angle < high {
+                    cuts.push(((angle - phase) / self.rate).clamp(from, to));
+                    angle += TAU;
+                }
+            }
+            cuts.sort_by(f64::total_cmp);
+        }
+        cuts.push(to);
+        let mut below: Vec<Interval> = Vec::new();
+        let mut keep = |start: f64, end: f64| match below.last_mut() {
+            Some(last) if last.end >= start => last.end = last.end.max(end),
+            _ => below.push(Interval { start, end }),
+        };
+        for pair in cuts.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            let (fa, fb) = (value(a), value(b));
+            match (fa <= 0.0, fb <= 0.0) {
+                (true, true) => keep(a, b),
+                // the outer end of the root's bracket: the interval errs to the long side
+                (true, false) => keep(a, bisect(value, a, b).1),
+                (false, true) => keep(bisect(value, b, a).1, b),
+                (false, false) => {}
+            }
+        }
+        below
+    }
+}
+
+/// Root of a monotone function, given a point where it is `<= 0` and one where it is positive.
+///
+/// Returns the pair (last point `<= 0`, first point `> 0`), adjacent to rounding.
+pub(in crate::obstacle) fn bisect(
+    value: impl Fn(f64) -> f64,
+    mut inside: f64,
+    mut outside: f64,
+) -> (f64, f64) {
+    let (mut fi, mut fo) = (value(inside), value(outside));
+    for step in 0..100 {
+        let width = outside - inside;
+        if width.abs() <= 1e-12 * (1.0 + inside.abs()) {
+            break;
+        }
+        // alternating secant and bisection steps: the bracket halves at least every second step
+        let chord = inside + width * (fi / (fi - fo));
+        let at = if step % 2 == 0 && chord.is_finite() {
+            let guard = 1e-3 * width;
+            let (low, high) = (inside + guard, outside - guard);
+            chord.clamp(low.min(high), low.max(high))
+        } else {
+            inside + 0.5 * width
+        };
+        let f = value(at);
+        if f <= 0.0 {
+            (inside, fi) = (at, f);
+        } else {
+            (outside, fo) = (at, f);
+        }
+    }
+    (inside, outside)
+}
+
+fn intersect(a: &[Interval], b: &[Interval]) -> Vec<Interval> {
+    let mut both = Vec::with_capacity(a.len() + b.len());
+    for x in a {
+        for y in b {
+            let part = Interval {
+                start: x.start.max(y.start),
+                end: x.end.min(y.end),
+            };
+            if part.start <= part.end {
+                both.push(part);
+            }
+        }
+    }
+    both
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Pose;
+    use crate::geometry::ConvexPolygon;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn random_set(rng: &mut ChaCha8Rng, scale: f64) -> ConvexPolygon {
+        let n = rng.random_range(1..8);
+        let points: Vec<Vector> = (0..n)
+            .map(|_| Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * scale)
+            .collect();
+        ConvexPolygon::hull(&points).expect("finite")
+    }
+
+    fn random_segment(rng: &mut ChaCha8Rng) -> Segment {
+        let position = Vector::new(
+            rng.random_range(-200.0..200.0),
+            rng.random_range(-200.0..200.0),
+        );
+        let speed = rng.random_range(0.5..8.0);
+        let radius = rng.random_range(20.0..150.0);
+        let turn_rate = match rng.random_range(0..3) {
+            0 => 0.0,
+            1 => speed / radius,
+            _ => -speed / radius,
+        };
+        Segment {
+            start: Pose::new(position, rng.random_range(-3.2..3.2)),
+            start_time: rng.random_range(0.0..60.0),
+            duration: rng.random_range(0.0..120.0),
+            speed,
+            turn_rate,
+        }
+    }
+
+    /// Reference: the slack, sampled densely.
+    fn sampled(o: &PolytopeObstacle, s: &Segment, depth: f64) -> (Option<f64>, f64) {
+        let mut least = f64::INFINITY;
+        for i in 0..=20_000 {
+            let t = s.start_time + s.duration * f64::from(i) / 20_000.0;
+            let g = o.slack(s.pose_at(t).position, t).value;
+            least = least.min(g);
+            if g <= -depth {
+                return (Some(t), least);
+            }
+        }
+        (None, least)
+    }
+
+    #[test]
+    fn first_contact_matches_dense_sampling() {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let mut hits = [0, 0];
+        for _ in 0..1500 {
+            let o =
+                PolytopeObstacle::new("x", random_set(&mut rng, 60.0), random_set(&mut rng, 3.0));
+            let segment = random_segment(&mut rng);
+            let depth = if rng.random_bool(0.5) { 0.0 } else { 1e-3 };
+            let found = first_contact(&o, &segment, depth);
+            let (dense, least) = sampled(&o, &segment, depth);
+            if (least + depth).abs() > 1e-6 + 12.0 * segment.duration / 20_000.0 {
+                assert_eq!(meets(&o, &segment, depth), found.is_some(), "{segment:?}");
+            }
+            let step = segment.duration / 20_000.0;
+            match (found, dense) {
+                (Some(a), Some(b)) => {
+                    hits[usize::from(segment.is_arc())] += 1;
+                    assert!(a <= b + 1e-9 && b - a <= 1.01 * step + 1e-9, "{a} {b}");
+                }
+                (None, None) => {}
+                // a contact shorter than a sampling step
+                (Some(a), None) => {
+                    assert!(least < -depth + 12.0 * step);
+                    let g = o.slack(segment.pose_at(a).position, a).value;
+                    assert!(g <= -depth + 1e-6, "{g}");
+                }
+                (None, Some(b)) => panic!("missed the contact at {b}: {segment:?} {o:?}"),
+            }
+        }
+        assert!(hits[0] > 100 && hits[1] > 100, "{hits:?}");
+    }
+
+    #[test]
+    fn an_arc_that_leaves_and_enters_again_has_two_contacts() {
+        let wall = ConvexPolygon::hull(&[
+            Vector::new(-300.0, -10.0),
+            Vector::new(300.0, -10.0),
+            Vector::new(300.0, 10.0),
+            Vector::new(-300.0, 10.0),
+        ])
+        .expect("finite");
+        let o = PolytopeObstacle::new("wall", wall, ConvexPolygon::point(Vector::zeros()));
+        let arc = Segment {
+            start: Pose::new(Vector::new(0.0, 0.0), 0.2),
+            start_time: 0.0,
+            duration: 130.0,
+            speed: 5.0,
+            turn_rate: 0.05,
+        };
+        assert_eq!(arc_contacts(&o, &arc, 0.0).len(), 2);
+    }
+
+    #[test]
+    fn touching_counts_only_at_depth_zero_and_nan_is_contact() {
+        let square = crate::geometry::outer_disc(10.0, 0.0);
+        let o = PolytopeObstacle::new("still", square, ConvexPolygon::point(Vector::zeros()));
+        let along = Segment {
+            start: Pose::new(Vector::new(-100.0, 10.0), 0.0),
+            start_time: 0.0,
+            duration: 40.0,
+            speed: 5.0,
+            turn_rate: 0.0,
+        };
+        assert!(first_contact(&o, &along, 0.0).is_some());
+        assert!(first_contact(&o, &along, 1e-9).is_none());
+        let lost = Segment {
+            speed: f64::NAN,
+            ..along
+        };
+        assert!(first_contact(&o, &lost, 0.0).is_some());
+        assert!(first_contact(&o, &along, f64::NAN).is_some());
+    }
+
+    #[test]
+    fn sitting_inside_is_contact_at_once() {
+        let o = PolytopeObstacle::new(
+            "still",
+            crate::geometry::outer_disc(10.0, 0.0),
+            ConvexPolygon::point(Vector::zeros()),
+        );
+        let wait = Segment {
+            start: Pose::new(Vector::new(1.0, 1.0), 0.0),
+            start_time: 3.0,
+            duration: 5.0,
+            speed: 0.0,
+            turn_rate: 0.1,
+        };
+        assert_eq!(first_contact(&o, &wait, 0.0), Some(3.0));
+    }
+}

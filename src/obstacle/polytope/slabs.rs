@@ -1,0 +1,424 @@
+//! Obstacles whose velocity set changes with time: a sequence of polytopes, docs/theory.md section
+//! 10 (ii).
+
+use std::sync::{Arc, OnceLock};
+
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::obstacle::closest_approach::{ClosestApproach, usable_horizon};
+use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
+use crate::obstacle::space_time_obstacle::largest_risk_of_parts;
+use crate::obstacle::{HalfSpace, PolytopeObstacle, SpaceTimeObstacle, Support};
+use crate::target::VelocitySpell;
+use crate::tolerance;
+use crate::trajectory::{Segment, Trajectory};
+
+/// Why velocity sets do not form a sequence.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SlabError {
+    /// No velocity set.
+    #[error("no velocity sets; at least one is needed")]
+    Empty,
+    /// An end that is not after the previous one.
+    #[error(
+        "velocity set {index} ends at {found} s; it must end after {after} s, where it starts, and only the last may have no end"
+    )]
+    NotIncreasing {
+        /// Index of the set, from 0.
+        index: usize,
+        /// Its end, seconds.
+        found: f64,
+        /// Exclusive lower bound of the end, seconds.
+        after: f64,
+    },
+}
+
+/// A time interval with one velocity set.
+#[derive(Debug, Clone)]
+pub struct Slab {
+    start: f64,
+    end: f64,
+    obstacle: PolytopeObstacle,
+    /// Computed when alpha is first asked for.
+    faces: OnceLock<Vec<SlabFace>>,
+    /// Displacement of the target with the central velocities until the slab's start, metres.
+    nominal: Vector,
+}
+
+impl Slab {
+    /// Seconds from the scenario's start.
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Seconds; infinite for the last.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// The convex body of this slab: its initial set is the section at the slab's start, its clock
+    /// starts there.
+    pub fn obstacle(&self) -> &PolytopeObstacle {
+        &self.obstacle
+    }
+}
+
+/// Dependence of one face of a slab on alpha.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct SlabFace {
+    normal: Vector,
+    /// `h_O0(n)`, metres.
+    initial_support: f64,
+    /// `sum of duration (h_V(n) - n . v)` over the previous slabs, metres.
+    spread_before: f64,
+    /// `h_V(n) - n . v` of this slab, m/s.
+    spread_rate: f64,
+}
+
+/// Every position that a target may reach whose velocity is in `V_k` from `t_k` to `t_k+1`. Exact.
+///
+/// `O_t = O_0 ⊕ sum of (t_j+1 - t_j) V_j ⊕ (t - t_k) V_k`. Sections and slabs are convex. The whole
+/// is not where the sets grow, so every query goes slab by slab. A slab has the faces of `O_0` and
+/// of all sets so far.
+///
+/// ```
+/// use searoom::frame::Vector;
+/// use searoom::geometry::ConvexPolygon;
+/// use searoom::obstacle::SlabObstacle;
+/// use searoom::target::VelocitySpell;
+///
+/// let heading_north = |spread: f64| {
+///     let corners = [(-spread, 4.0), (spread, 4.0), (0.0, 6.0)];
+///     ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))
+/// };
+/// // little uncertainty for a minute, more from then on
+/// let velocity_sets = vec![
+///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
+///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
+/// ];
+/// let start = ConvexPolygon::point(Vector::zeros());
+/// let target = SlabObstacle::new("ferry", start, velocity_sets).expect("in order");
+/// let beside = |time| target.section(time).support(Vector::new(1.0, 0.0));
+/// assert!((beside(60.0) - 6.0).abs() < 1e-6);
+/// assert!((beside(90.0) - 66.0).abs() < 1e-6);
+/// # Ok::<(), searoom::geometry::GeometryError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct SlabObstacle {
+    shared: Arc<Shared>,
+}
+
+/// Shared by all clones.
+#[derive(Debug)]
+struct Shared {
+    name: String,
+    initial: ConvexPolygon,
+    velocity_sets: Vec<VelocitySpell>,
+    slabs: Vec<Slab>,
+}
+
+impl PartialEq for SlabObstacle {
+    fn eq(&self, other: &Self) -> bool {
+        // everything else follows from these
+        let key = |o: &Self| {
+            (
+                o.name().to_owned(),
+                o.initial().clone(),
+                o.velocity_sets().to_vec(),
+            )
+        };
+        key(self) == key(other)
+    }
+}
+
+impl SlabObstacle {
+    /// From the set at t = 0, metres, and the velocity sets in order of time. The last set has no
+    /// end, whatever its `until`.
+    pub fn new(
+        name: impl Into<String>,
+        initial: ConvexPolygon,
+        velocity_sets: Vec<VelocitySpell>,
+    ) -> Result<Self, SlabError> {
+        if velocity_sets.is_empty() {
+            return Err(SlabError::Empty);
+        }
+        let mut after = 0.0;
+        for (index, set) in velocity_sets[..velocity_sets.len() - 1].iter().enumerate() {
+            let found = set.until;
+            if !(found > after && found.is_finite()) {
+                return Err(SlabError::NotIncreasing {
+                    index,
+                    found,
+                    after,
+                });
+            }
+            after = found;
+        }
+        Ok(Self::from_sequence(name.into(), initial, velocity_sets))
+    }
+
+    fn from_sequence(
+        name: String,
+        initial: ConvexPolygon,
+        velocity_sets: Vec<VelocitySpell>,
+    ) -> Self {
+        let mut slabs: Vec<Slab> = Vec::with_capacity(velocity_sets.len());
+        let (mut start, mut section, mut nominal) = (0.0, initial.clone(), Vector::zeros());
+        for (index, set) in velocity_sets.iter().enumerate() {
+            let end = if index + 1 == velocity_sets.len() {
+                f64::INFINITY
+            } else {
+                set.until
+            };
+            let obstacle = PolytopeObstacle::new(name.clone(), section, set.velocities.clone());
+            let centroid = set.velocities.centroid();
+            section = if end.is_finite() {
+                obstacle.section(end - start)
+            } else {
+                ConvexPolygon::point(Vector::zeros())
+            };
+            slabs.push(Slab {
+                start,
+                end,
+                obstacle,
+                faces: OnceLock::new(),
+                nominal,
+            });
+            if end.is_finite() {
+                nominal += centroid * (end - start);
+                start = end;
+            }
+        }
+        Self {
+            shared: Arc::new(Shared {
+                name,
+                initial,
+                velocity_sets,
+                slabs,
+            }),
+        }
+    }
+
+    /// Dependence of each face of a slab on alpha. O(faces of the slab × previous slabs).
+    fn faces_of(&self, index: usize) -> Vec<SlabFace> {
+        let past: Vec<(f64, &ConvexPolygon, Vector)> = (self.slabs()[..index].iter())
+            .map(|slab| (slab.end - slab.start, slab.obstacle.velocity()))
+            .map(|(duration, set)| (duration, set, set.centroid()))
+            .collect();
+        let obstacle = &self.slabs()[index].obstacle;
+        let centroid = obstacle.velocity().centroid();
+        let of = |face: &HalfSpace| SlabFace {
+            normal: face.normal,
+            initial_support: self.initial().support(face.normal),
+            spread_before: past
+                .iter()
+                .map(|(d, set, c)| d * (set.support(face.normal) - face.normal.dot(c)))
+                .sum(),
+            spread_rate: face.velocity_support - face.normal.dot(&centroid),
+        };
+        obstacle.faces().iter().map(of).collect()
+    }
+
+    /// A polytope as a single slab.
+    pub fn unchanging(polytope: &PolytopeObstacle) -> Self {
+        let set = VelocitySpell {
+            until: f64::INFINITY,
+            velocities: polytope.velocity().clone(),
+        };
+        let (name, initial) = (polytope.name().to_owned(), polytope.initial().clone());
+        Self::from_sequence(name, initial, vec![set])
+    }
+
+    /// These velocity sets with another set at t = 0, metres.
+    pub fn with_initial(&self, initial: ConvexPolygon) -> Self {
+        Self::from_sequence(
+            self.shared.name.clone(),
+            initial,
+            self.shared.velocity_sets.clone(),
+        )
+    }
+
+    /// `O_0`, metres.
+    pub fn initial(&self) -> &ConvexPolygon {
+        &self.shared.initial
+    }
+
+    /// The velocity sets in order of time, m/s.
+    pub fn velocity_sets(&self) -> &[VelocitySpell] {
+        &self.shared.velocity_sets
+    }
+
+    /// The slabs in order of time; the first starts at 0, the last has no end.
+    pub fn slabs(&self) -> &[Slab] {
+        &self.shared.slabs
+    }
+
+    /// The section `O_t` for `t >= 0`. O(faces).
+    pub fn section(&self, time: f64) -> ConvexPolygon {
+        let slab = self.slab_at(time);
+        slab.obstacle.section(time - slab.start)
+    }
+
+    /// Index of the slab at `time`; the first one before 0 and for a NaN.
+    fn slab_at(&self, time: f64) -> &Slab {
+        &self.slabs()[self.index_at(time)]
+    }
+
+    fn index_at(&self, time: f64) -> usize {
+        let after = self.slabs().partition_point(|s| s.end <= time);
+        after.min(self.slabs().len() - 1)
+    }
+
+    /// The slabs that a time interval meets, each with its part of the interval.
+    fn slabs_within(&self, from: f64, to: f64) -> impl Iterator<Item = (&Slab, f64, f64)> {
+        self.shared
+            .slabs
+            .iter()
+            .map(move |s| (s, s.start.max(from), s.end.min(to)))
+            .filter(|(_, start, end)| start <= end)
+    }
+}
+
+impl SpaceTimeObstacle for SlabObstacle {
+    fn name(&self) -> &str {
+        &self.shared.name
+    }
+
+    fn support(&self, normal: Vector, time: f64) -> Support {
+        let slab = self.slab_at(time);
+        slab.obstacle.support(normal, time - slab.start)
+    }
+
+    fn signed_distance(&self, position: Vector, time: f64) -> SignedDistance {
+        let slab = self.slab_at(time);
+        slab.obstacle.signed_distance(position, time - slab.start)
+    }
+
+    fn contains(&self, position: Vector, time: f64) -> bool {
+        let slab = self.slab_at(time);
+        slab.obstacle.contains(position, time - slab.start)
+    }
+
+    fn first_contact(&self, segment: &Segment, depth: f64) -> Option<f64> {
+        if !(segment.is_valid() && depth.is_finite()) {
+            return Some(segment.start_time);
+        }
+        self.slabs_within(segment.start_time, segment.end_time())
+            .find_map(|(slab, from, to)| {
+                let part = segment.between(from, to);
+                let local = Segment {
+                    start_time: part.start_time - slab.start,
+                    ..part
+                };
+                // conversion to and from the slab's own time costs a digit
+                slab.obstacle
+                    .first_contact(&local, depth)
+                    .map(|t| (t + slab.start).max(part.start_time).min(part.end_time()))
+            })
+    }
+
+    /// One alpha for all velocity sets, each about its own centroid. O(faces).
+    fn alpha(&self, position: Vector, time: f64) -> f64 {
+        if time < 0.0 {
+            return f64::INFINITY;
+        }
+        let index = self.index_at(time);
+        let slab = &self.slabs()[index];
+        let elapsed = time - slab.start;
+        let centroid = slab.obstacle.velocity().centroid();
+        let q = position - slab.nominal - centroid * elapsed;
+        let mut most = 0.0_f64;
+        for face in slab.faces.get_or_init(|| self.faces_of(index)) {
+            let beyond = face.normal.dot(&q) - face.initial_support;
+            if beyond.is_nan() {
+                return 0.0;
+            }
+            if beyond > tolerance::FACE_M {
+                let spread = face.spread_before + elapsed * face.spread_rate;
+                most = most.max(if spread > 0.0 {
+                    beyond / spread
+                } else {
+                    f64::INFINITY
+                });
+            }
+        }
+        most
+    }
+
+    /// By bisection over exact contacts, to [`tolerance::RISK`].
+    fn peak_risk(&self, segment: &Segment) -> PeakRisk {
+        peak_by_bisection(segment.start_time, |risk| {
+            self.at_risk(risk).first_contact(segment, 0.0)
+        })
+    }
+
+    /// [`Self::peak_risk`] with each level set built once for all segments.
+    fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
+        if trajectory.steered().is_some() {
+            return largest_risk_of_parts(self, trajectory);
+        }
+        peak_by_bisection(trajectory.start_time(), |risk| {
+            let level = self.at_risk(risk);
+            let segments = trajectory.segments().iter();
+            let contacts = segments.filter_map(|s| level.first_contact(s, 0.0));
+            contacts.min_by(f64::total_cmp)
+        })
+    }
+
+    fn at_risk(&self, risk: f64) -> Self {
+        let alpha = level_of(risk);
+        if alpha == 1.0 {
+            return self.clone();
+        }
+        let velocity_sets = self
+            .velocity_sets()
+            .iter()
+            .map(|set| VelocitySpell {
+                until: set.until,
+                velocities: scaled_velocities(&set.velocities, alpha),
+            })
+            .collect();
+        Self::from_sequence(
+            self.shared.name.clone(),
+            self.shared.initial.clone(),
+            velocity_sets,
+        )
+    }
+
+    /// The minimum over the slabs, each in closed form; the earliest of equal ones.
+    fn closest_approach(
+        &self,
+        position: Vector,
+        velocity: Vector,
+        horizon: f64,
+    ) -> ClosestApproach {
+        let Some(horizon) = usable_horizon(position, velocity, horizon) else {
+            return ClosestApproach::contact(0.0);
+        };
+        let mut best: Option<ClosestApproach> = None;
+        for (slab, start, end) in self.slabs_within(0.0, horizon) {
+            let at = position + velocity * slab.start;
+            let here = slab.obstacle.closest_approach(at, velocity, end - start);
+            let here = ClosestApproach {
+                time: here.time + slab.start,
+                ..here
+            };
+            if best.is_none_or(|b| here.distance < b.distance - tolerance::LENGTH_M) {
+                best = Some(here);
+            }
+        }
+        best.unwrap_or(ClosestApproach::contact(0.0))
+    }
+
+    /// True where any slab is met within the horizon. O(faces).
+    fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool {
+        let Some(horizon) = usable_horizon(position, velocity, horizon) else {
+            return true;
+        };
+        self.slabs_within(0.0, horizon).any(|(slab, start, end)| {
+            let at = position + velocity * slab.start;
+            slab.obstacle
+                .in_velocity_obstacle(at, velocity, end - start)
+        })
+    }
+}

@@ -1,0 +1,170 @@
+//! Motions that enter hard sets, and when they have left them.
+
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::planner::space_time::{self, NominalTarget};
+use crate::planner::{Outcome, Planned, PlannerKind, Problem, path_time};
+use crate::scenario::Scenario;
+use crate::target::Motion;
+use crate::tolerance::TOUCH_M;
+use crate::trajectory::{Segment, Trajectory};
+use crate::vessel::Hull;
+
+/// Shortest step in time between two samples of the depth, seconds.
+const SAMPLE_S: f64 = 1.0;
+
+/// Bisection steps within one sample step.
+const HALVINGS: usize = 30;
+
+/// Samples between two readings of the clock.
+const SAMPLES_PER_CLOCK_READING: u32 = 1000;
+
+/// The motion with the least harm, which may enter sets; along paths the one that does least harm.
+/// `None` where there is none within the horizon.
+pub(super) fn motion(scenario: &Scenario, problem: &Problem) -> Option<Planned> {
+    match scenario.planner {
+        PlannerKind::SpaceTime => {
+            let nominal = |index| nominal(scenario, problem, index);
+            let plan = space_time::escape(problem, nominal)?;
+            Some(Planned::of(Outcome::Solved(plan)))
+        }
+        PlannerKind::PathTime => path_time::least_harm(problem),
+        PlannerKind::OptimalControl => None,
+    }
+}
+
+/// A target without uncertainty: hull and set at its nominal velocity.
+fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> NominalTarget {
+    let (target, hard) = (&scenario.targets[index], &problem.obstacles[index]);
+    let Motion::Ship(ship) = &target.motion else {
+        let set = hard.at_risk(1.0);
+        let own = Hull {
+            length: 0.0,
+            beam: 0.0,
+        };
+        return NominalTarget {
+            hull: set.clone(),
+            set,
+            own,
+        };
+    };
+    let moving = |initial: ConvexPolygon| {
+        let velocity = ConvexPolygon::point(ship.velocity());
+        Obstacle::from(PolytopeObstacle::new(
+            target.name.clone(),
+            initial,
+            velocity,
+        ))
+    };
+    NominalTarget {
+        hull: moving(ship.hull.polygon(&ship.pose)),
+        set: moving(hard.outer_section(0.0)),
+        own: scenario.own_ship.hull,
+    }
+}
+
+/// Time from which a motion is clear of a set, seconds; `None` where it is always clear.
+///
+/// The motion's end where it never is clear, or where the time runs out before that is known. Errs
+/// to the late side, by some nanoseconds. Steps by the depth over the closing speed, then bisects.
+pub(super) fn left_for_good(
+    set: &Obstacle,
+    trajectory: &Trajectory,
+    is_up: impl Fn() -> bool,
+) -> Option<f64> {
+    let end = trajectory.end_time();
+    // a set without an interior must not be touched, not even crossed
+    let set = set.outer_where_flat();
+    let contact = |from: f64| {
+        let later = trajectory.segments().iter().filter(|s| s.end_time() > from);
+        let mut later = later.map(|s: &Segment| s.between(from, s.end_time()));
+        later.find_map(|s| set.first_contact(&s, TOUCH_M))
+    };
+    let depth = |time: f64| {
+        let at = trajectory.pose_at(time).position;
+        -set.signed_distance(at, time).distance
+    };
+    // negated so that a NaN is inside
+    let inside = |time: f64| !(depth(time) <= 0.0);
+    let own = trajectory.segments().iter().map(|s| s.speed);
+    let closing = own.fold(0.0, f64::max) + greatest_speed(&set);
+    let (mut from, mut samples) = (trajectory.start_time(), 0_u32);
+    // a ship that has arrived has no motion to test
+    let mut met = if end > from {
+        contact(from)?
+    } else {
+        inside(from).then_some(from)?
+    };
+    loop {
+        let mut last = met.max(from);
+        // at this depth the set is not left earlier
+        let after = |time: f64| time + (depth(time) / closing).max(SAMPLE_S);
+        let mut next = after(last);
+        while next < end && inside(next) {
+            (last, next) = (next, after(next));
+            samples += 1;
+            if samples.is_multiple_of(SAMPLES_PER_CLOCK_READING) && is_up() {
+                return Some(end);
+            }
+        }
+        if next >= end {
+            return Some(end);
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (last + next);
+            if inside(middle) {
+                last = middle;
+            } else {
+                next = middle;
+            }
+        }
+        from = next;
+        match contact(from) {
+            Some(again) => met = again,
+            None => return Some(from),
+        }
+    }
+}
+
+/// Upper bound of the speed of any point of a set, m/s; infinite where unknown.
+fn greatest_speed(set: &Obstacle) -> f64 {
+    match set {
+        Obstacle::Polytope(o) => o.velocity().reach(),
+        Obstacle::Slabs(o) => {
+            let reaches = o.velocity_sets().iter().map(|set| set.velocities.reach());
+            reaches.fold(0.0, f64::max)
+        }
+        Obstacle::Ellipsoid(_) => f64::INFINITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Pose, Vector};
+    use crate::geometry::Ellipse;
+    use crate::obstacle::EllipsoidObstacle;
+
+    /// Leaving a large set takes half an hour: found, or nothing is claimed when the time is up.
+    #[test]
+    fn out_of_time_nothing_is_claimed_of_a_set() {
+        let around = |size: f64| {
+            Ellipse::from_axes(
+                Vector::zeros(),
+                [Vector::new(size, 0.0), Vector::new(0.0, size)],
+            )
+        };
+        let set = EllipsoidObstacle::new("storm", around(9000.0), around(1e-3)).into();
+        let way = Segment {
+            start: Pose::new(Vector::zeros(), 0.0),
+            start_time: 0.0,
+            duration: 4000.0,
+            speed: 5.0,
+            turn_rate: 0.0,
+        };
+        let way = Trajectory::new(vec![way]).expect("sound");
+        let found = left_for_good(&set, &way, || false).expect("it starts inside");
+        assert!((found - 1800.0).abs() < 2.0, "{found}");
+        assert_eq!(left_for_good(&set, &way, || true), Some(4000.0));
+    }
+}

@@ -1,0 +1,153 @@
+//! How a run ended, and which requirements its plan gave up.
+
+use super::Run;
+use super::sets::TargetSets;
+use crate::colregs::Role;
+use crate::evaluation::{Safety, facts, outcome_word};
+use crate::obstacle::{PeakRisk, SpaceTimeObstacle};
+use crate::planner::Outcome;
+
+/// A requirement that a plan gave up.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Relaxation {
+    /// A ship domain was reduced toward its hard set.
+    Domain {
+        /// Name of the target.
+        target: String,
+        /// Largest reduction, metres.
+        amount: f64,
+    },
+    /// The plan enters the set of a target.
+    Risk {
+        /// Name of the target.
+        target: String,
+        /// The largest risk along the plan, eq. (25), in `(0, 1]`.
+        amount: f64,
+        /// Seconds. Nothing is claimed of this target's set before; from then on the plan is clear
+        /// of the whole set. `None` where the plan is always clear of the level set of the accepted
+        /// risk.
+        until: Option<f64>,
+    },
+    /// The plan does not arrive before the horizon.
+    Arrival {
+        /// Name of the target whose set blocks the way.
+        target: String,
+        /// Remaining distance to the end at the horizon, metres.
+        amount: f64,
+    },
+    /// The plan breaks the rules.
+    Compliance {
+        /// Name of a target toward which own ship has a duty.
+        target: String,
+        /// Own ship's role toward it.
+        role: Role,
+    },
+}
+
+/// Relaxations that concern sets, most important first: risks in decreasing order, then arrival,
+/// then domains in decreasing order of their reduction.
+pub(super) fn relaxations(
+    sets: &[TargetSets],
+    reductions: &[f64],
+    risks: &[PeakRisk],
+    released: &[Option<f64>],
+    late: Option<Relaxation>,
+) -> Vec<Relaxation> {
+    let mut risked: Vec<(&TargetSets, f64, Option<f64>)> = (sets.iter())
+        .zip(risks)
+        .zip(released)
+        .map(|((set, peak), until)| (set, peak.risk, *until))
+        .filter(|(_, risk, until)| *risk > 0.0 || until.is_some())
+        .collect();
+    risked.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut reduced: Vec<(&TargetSets, f64)> = (sets.iter().zip(reductions.iter().copied()))
+        .filter(|(_, reduction)| *reduction > 0.0)
+        .collect();
+    reduced.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let name = |set: &TargetSets| set.hard.name().to_owned();
+    let risks = risked
+        .into_iter()
+        .map(|(set, amount, until)| Relaxation::Risk {
+            target: name(set),
+            amount,
+            until,
+        });
+    let domains = reduced.into_iter().map(|(set, amount)| Relaxation::Domain {
+        target: name(set),
+        amount,
+    });
+    risks.chain(late).chain(domains).collect()
+}
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// A plan that satisfies the whole request.
+    Solved,
+    /// A plan that gives up a requirement.
+    Relaxed,
+    /// No plan.
+    Infeasible,
+    /// The time budget ran out, with a plan or without.
+    Deadline,
+}
+
+impl Verdict {
+    /// The verdict of a run.
+    pub fn of(run: &Run) -> Self {
+        match run.planned.outcome {
+            Outcome::Infeasible(_) => Self::Infeasible,
+            Outcome::Deadline(_) => Self::Deadline,
+            Outcome::Solved(_) if run.relaxations.is_empty() => Self::Solved,
+            Outcome::Solved(_) => Self::Relaxed,
+        }
+    }
+
+    /// The word in documents.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Solved => "solved",
+            Self::Relaxed => "relaxed",
+            Self::Infeasible => "infeasible",
+            Self::Deadline => "deadline",
+        }
+    }
+}
+
+impl Run {
+    /// Safety of the plan from start to arrival; `None` without a plan. An unverified plan is
+    /// unsafe.
+    pub fn safety(&self) -> Option<Safety> {
+        let evaluation = self.evaluation.as_ref()?;
+        Some(if evaluation.verified() {
+            evaluation.safety
+        } else {
+            evaluation.safety.max(Safety::Unsafe)
+        })
+    }
+
+    /// True for a plan that enters no hard set, hull or land from start to arrival.
+    pub fn safe(&self) -> bool {
+        self.safety() == Some(Safety::Safe)
+    }
+
+    /// The outcome in words, for reports.
+    pub fn word(&self) -> String {
+        let ended = Verdict::of(self).word();
+        outcome_word(ended, self.safety(), self.greatest_risk())
+    }
+
+    /// The title, the outcome, and for a plan whether it is verified and safe.
+    pub fn headline(&self) -> String {
+        let word = self.word();
+        let facts = self.evaluation.as_ref().map_or_else(String::new, |found| {
+            format!(" ({})", facts(found.verified(), self.safe()))
+        });
+        format!("{}: {word}{facts}", self.scenario.title)
+    }
+
+    /// The largest risk along the plan toward any target; 0 without one.
+    pub fn greatest_risk(&self) -> f64 {
+        let risks = self.risks.iter().map(|peak| peak.risk);
+        risks.max_by(f64::total_cmp).unwrap_or(0.0)
+    }
+}

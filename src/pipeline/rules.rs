@@ -1,0 +1,91 @@
+//! The rules in a scenario: what they ask of own ship, and how its motion complies.
+
+use super::{Relaxation, Run, TargetSets};
+use crate::colregs::compliance::{ComplianceReport, OwnSamples};
+use crate::colregs::{Duty, Encountered, Role, SteadyShip, Thresholds};
+use crate::frame::Side;
+use crate::obstacle::SpaceTimeObstacle;
+use crate::scenario::{Compliance, Scenario};
+
+/// The first turn by Rules 14 and 15: to starboard where own ship meets head-on or gives way.
+pub(super) fn first_turn(sets: &[TargetSets]) -> Option<Side> {
+    let alters = |s: &TargetSets| matches!(s.encounter.role, Role::HeadOn | Role::GiveWay);
+    sets.iter().any(alters).then_some(Side::Starboard)
+}
+
+/// Removes the domains of give-way targets where own ship stands on and gives way to none.
+///
+/// Own ship holds course and speed as long as it can keep clear of the hard sets
+/// (docs/colregs.md 3.6).
+pub(super) fn without_domains_of_give_way_targets(
+    scenario: &Scenario,
+    mut sets: Vec<TargetSets>,
+) -> Vec<TargetSets> {
+    let roles = sets.iter().map(|s| s.encounter.role);
+    if scenario.compliance == Compliance::Rules && Duty::of(roles).stands_on {
+        for set in sets
+            .iter_mut()
+            .filter(|s| s.encounter.role.duties().stands_on)
+        {
+            set.remove_domain();
+        }
+    }
+    sets
+}
+
+/// The targets toward which the rules give own ship a duty.
+pub(super) fn encountered(scenario: &Scenario, sets: &[TargetSets]) -> Vec<Encountered> {
+    asking(scenario, sets).map(|(_, e)| e).collect()
+}
+
+/// The rules that a plan breaks, per target.
+pub(super) fn rules_given_up(scenario: &Scenario, sets: &[TargetSets]) -> Vec<Relaxation> {
+    let given_up = |(target, e): (&TargetSets, Encountered)| Relaxation::Compliance {
+        target: target.hard.name().to_owned(),
+        role: e.role,
+    };
+    asking(scenario, sets).map(given_up).collect()
+}
+
+fn asking<'a>(
+    scenario: &'a Scenario,
+    sets: &'a [TargetSets],
+) -> impl Iterator<Item = (&'a TargetSets, Encountered)> {
+    let both = scenario.targets.iter().zip(sets);
+    both.filter_map(|(target, sets)| {
+        let track = target.ship()?;
+        let role = sets.encounter.role;
+        let ship = SteadyShip {
+            pose: track.pose,
+            speed: track.speed,
+        };
+        let length = track.hull.length;
+        let asks = !Duty::of(std::iter::once(role)).is_none();
+        asks.then_some((sets, Encountered { role, ship, length }))
+    })
+}
+
+impl Run {
+    /// Compliance of the plan toward each target, in the scenario's order.
+    ///
+    /// `None` without a plan, and for a target that is not a tracked ship. Uses the planned
+    /// trajectory and the nominal track alone. O(targets × seconds), less for distant targets.
+    pub fn conduct(&self, thresholds: &Thresholds) -> Vec<Option<ComplianceReport>> {
+        let plan = self.planned.outcome.plan();
+        let own = self.scenario.own_ship.hull;
+        let track = plan.map(|plan| OwnSamples::along(&plan.trajectory, own));
+        let judge = |target: &crate::target::Target| {
+            Some(ComplianceReport::along(
+                track.as_ref()?,
+                target.ship()?,
+                thresholds,
+            ))
+        };
+        self.scenario.targets.iter().map(judge).collect()
+    }
+
+    /// [`Run::conduct`] by the scenario's thresholds.
+    pub fn judged_conduct(&self) -> Vec<Option<ComplianceReport>> {
+        self.conduct(self.scenario.judged_by())
+    }
+}

@@ -1,0 +1,36 @@
+//! Addresses of files on a page.
+
+use std::path::Path;
+
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+
+/// Characters that are not escaped in an address.
+const PLAIN: AsciiSet = NON_ALPHANUMERIC
+    .remove(b'-')
+    .remove(b'_')
+    .remove(b'.')
+    .remove(b'~')
+    .remove(b'/');
+
+/// The address of a file beside the page.
+pub(super) fn address(name: &str) -> String {
+    // a name that begins like a scheme is none behind "./"
+    format!("./{}", utf8_percent_encode(name, &PLAIN))
+}
+
+/// The relative address of `file` for a page in `folder`. Both have to exist; otherwise, or where
+/// there is no relative path, it is the file's own path.
+pub fn link_from(folder: &Path, file: &Path) -> String {
+    let both = folder
+        .canonicalize()
+        .and_then(|a| Ok((a, file.canonicalize()?)));
+    let way = both.ok().and_then(|(a, b)| pathdiff::diff_paths(b, a));
+    let way = way.unwrap_or_else(|| file.to_owned());
+    let way = way
+        .to_string_lossy()
+        .replace(std::path::MAIN_SEPARATOR, "/");
+    if way.starts_with('/') {
+        return utf8_percent_encode(&way, &PLAIN).to_string();
+    }
+    address(&way)
+}

@@ -1,0 +1,162 @@
+//! Requirements of each planner on a scenario, beyond those of the single fields.
+
+use super::{Compliance, Land, Scenario};
+use crate::frame::{Vector, heading_of, wrap};
+use crate::input::Fault;
+use crate::planner::{Objective, PlannerKind};
+use crate::tolerance;
+use crate::trajectory::{NetworkError, PathNetwork};
+
+/// Every field that the scenario's planner cannot honour; faults without lines.
+pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
+    let planner = scenario.planner;
+    let name = planner.word();
+    let mut faults = match planner {
+        PlannerKind::PathTime => for_path_time(scenario),
+        PlannerKind::SpaceTime | PlannerKind::OptimalControl => Vec::new(),
+    };
+    let follows_paths = planner == PlannerKind::PathTime;
+    if !follows_paths && scenario.objective != Objective::SpaceTimeError {
+        let found = format!("\"{}\" for the {name} planner", scenario.objective.word());
+        let allowed = match planner {
+            PlannerKind::OptimalControl => "nothing: it minimises its own stage cost",
+            _ => "\"space-time-error\", or the path-time planner",
+        };
+        faults.push(Fault::new("planner.objective", found, allowed));
+    }
+    if !follows_paths && !scenario.alternatives.is_empty() {
+        faults.push(Fault::new(
+            "mission.alternatives",
+            format_args!("other paths for the {name} planner"),
+            "nothing: it chooses its way; or the path-time planner",
+        ));
+    }
+    if planner == PlannerKind::OptimalControl && scenario.land.is_some() {
+        faults.push(Fault::new(
+            "map",
+            "land for the optimal-control planner",
+            "nothing: it keeps off no land, this is not built yet",
+        ));
+    }
+    if planner != PlannerKind::SpaceTime && scenario.compliance == Compliance::Rules {
+        faults.push(Fault::new(
+            "planner.compliance",
+            format_args!("\"rules\" for the {name} planner"),
+            "\"shape\" or \"none\", or the space-time planner: it alone keeps to the rules",
+        ));
+    }
+    faults
+}
+
+/// A length rounded to the micrometre.
+fn micrometres(length: f64) -> f64 {
+    (length * 1e6).round() / 1e6
+}
+
+fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let first = scenario.desired.legs()[0].start;
+    let away = (scenario.own_ship.pose.position - first).norm();
+    // negated on purpose: a NaN is away
+    if !(away <= tolerance::JOINT_M) {
+        faults.push(Fault::new(
+            "own_ship.position",
+            format_args!("a start {} m from the first waypoint", micrometres(away)),
+            "the first waypoint: the path-time planner keeps to the path",
+        ));
+    }
+    let alternative = |index: usize| format!("mission.alternatives[{index}]");
+    match PathNetwork::new(&scenario.desired.waypoints(), &scenario.alternatives) {
+        Ok(network) => {
+            if let Some(land) = &scenario.land {
+                faults.extend(turns_aground(scenario, land, &network));
+            }
+        }
+        Err(NetworkError::NoSharedPoint { alternative: index }) => faults.push(Fault::new(
+            alternative(index),
+            "a path that shares no point with another one",
+            "a path that leaves the mission's path, or another alternative, and comes back",
+        )),
+        Err(NetworkError::NoWayThrough { alternative: index }) => faults.push(Fault::new(
+            alternative(index),
+            "a path on no way from the first waypoint to the last",
+            "a path that is met first where it can be reached, and later where another path goes on",
+        )),
+        Err(NetworkError::EmptyLeg { path, leg }) => faults.push(Fault::new(
+            match path.checked_sub(1) {
+                Some(index) => alternative(index),
+                None => "mission.waypoints".to_owned(),
+            },
+            format_args!("no length of leg {leg}"),
+            "legs of some length",
+        )),
+    }
+    faults
+}
+
+/// Places where own hull, turning on the spot from one leg to the next, would be too near to land.
+fn turns_aground(scenario: &Scenario, land: &Land, network: &PathNetwork) -> Vec<Fault> {
+    let own = &scenario.own_ship;
+    let legs = network.legs();
+    let mut faults = Vec::new();
+    for point in 0..network.points() {
+        let same = network.same_place(point);
+        if same.iter().any(|p| *p < point) {
+            continue;
+        }
+        let place = network.place(point);
+        let arriving = legs.iter().filter(|leg| same.contains(&leg.ends[1]));
+        let mut before: Vec<f64> = arriving.map(|leg| heading_of(leg.direction)).collect();
+        if same.contains(&network.start()) {
+            before.push(own.pose.heading);
+        }
+        let mut least = f64::INFINITY;
+        for from in before {
+            for leg in network.onward(point) {
+                let turn = wrap(heading_of(legs[*leg].direction) - from);
+                if turn.abs() > tolerance::JOINT_RAD {
+                    least = least.min(land.room_to_turn(&own.hull, place, from, turn));
+                }
+            }
+        }
+        // negated on purpose: a NaN is aground
+        if !(least >= land.margin - tolerance::DEPTH_M) {
+            let field = field_at(scenario, place);
+            let found = if least < 0.0 {
+                format!(
+                    "a turn on the spot that takes own hull {:.1} m onto land",
+                    -least
+                )
+            } else {
+                format!("a turn on the spot that takes own hull to {least:.1} m from land")
+            };
+            let allowed = format!(
+                "at least {} m of water around own hull on every heading between the legs that meet \
+                 here, or the space-time planner",
+                land.margin
+            );
+            faults.push(Fault::new(field, found, allowed));
+        }
+    }
+    faults
+}
+
+/// Path of the waypoint at a place, or of the alternatives if they only cross there.
+fn field_at(scenario: &Scenario, place: Vector) -> String {
+    let at = |points: &[Vector]| {
+        let near = |p: &Vector| (p - place).norm() <= tolerance::JOINT_M;
+        points.iter().position(near)
+    };
+    if let Some(index) = at(&scenario.desired.waypoints()) {
+        return format!("mission.waypoints[{index}]");
+    }
+    let others = scenario.alternatives.iter().enumerate();
+    let mut found = others.filter_map(|(path, points)| Some((path, at(points)?)));
+    match found.next() {
+        Some((path, index)) => format!("mission.alternatives[{path}][{index}]"),
+        None => format!(
+            "mission.alternatives (crossing at east {:.1} m, north {:.1} m)",
+            place.x, place.y
+        ),
+    }
+}

@@ -1,0 +1,146 @@
+//! Assumptions for values that imported files do not have.
+
+use crate::frame::radians_from_deg;
+use crate::input::Range;
+use crate::scenario::limits;
+use crate::vessel::Hull;
+
+/// Default half-width of a target's speed, m/s.
+const SPEED_SPREAD: f64 = 0.5;
+
+/// Default half-width of a target's course, degrees.
+const COURSE_SPREAD_DEG: f64 = 5.0;
+
+/// Hull of a ship whose format has no size: 100 × 20 m, as published runs of Imazu's cases assume.
+pub(super) const USUAL_HULL: Hull = Hull {
+    length: 100.0,
+    beam: 20.0,
+};
+
+/// Own ship's turning radius in own lengths: a tactical diameter of five lengths, the largest that
+/// IMO resolution MSC.137(76) allows.
+pub(super) const TURNING_LENGTHS: f64 = 2.5;
+
+/// Horizon in durations of own ship's route: time to stay behind a slower ship all the way.
+pub(super) const HORIZON_ROUTES: f64 = 2.0;
+
+/// Values that a scenario needs and imported files do not have. Defaults as in `docs/formats.md`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assumed {
+    speed_spread: f64,
+    course_spread: f64,
+    safety_margin: Option<f64>,
+    length: Option<f64>,
+    beam: Option<f64>,
+    variants: bool,
+}
+
+impl Default for Assumed {
+    fn default() -> Self {
+        Self {
+            speed_spread: SPEED_SPREAD,
+            course_spread: radians_from_deg(COURSE_SPREAD_DEG),
+            safety_margin: None,
+            length: None,
+            beam: None,
+            variants: false,
+        }
+    }
+}
+
+/// One of the numbers of [`Assumed`], as a user gives it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Assumption {
+    /// Half-width of every target's speed, m/s.
+    SpeedSpread,
+    /// Half-width of every target's course, degrees.
+    CourseSpread,
+    /// Kept between the hulls, metres.
+    SafetyMargin,
+    /// Length of ships without one, metres.
+    Length,
+    /// Beam of ships without one, metres.
+    Beam,
+}
+
+impl Assumption {
+    fn range(self) -> Range {
+        match self {
+            Self::SpeedSpread => limits::SPEED,
+            Self::CourseSpread => limits::COURSE_SPREAD,
+            Self::SafetyMargin => limits::DISTANCE,
+            Self::Length | Self::Beam => limits::SHIP_LENGTH,
+        }
+    }
+
+    /// The allowed values in words.
+    pub fn allowed(self) -> String {
+        self.range().to_string()
+    }
+
+    /// True for an allowed value. A NaN never is.
+    pub fn allows(self, value: f64) -> bool {
+        self.range().contains(value)
+    }
+}
+
+impl Assumed {
+    /// These assumptions with another value; unchanged if [`Assumption::allows`] refuses it.
+    #[must_use]
+    pub fn with(mut self, what: Assumption, value: f64) -> Self {
+        if !what.allows(value) {
+            return self;
+        }
+        match what {
+            Assumption::SpeedSpread => self.speed_spread = value,
+            Assumption::CourseSpread => self.course_spread = radians_from_deg(value),
+            Assumption::SafetyMargin => self.safety_margin = Some(value),
+            Assumption::Length => self.length = Some(value),
+            Assumption::Beam => self.beam = Some(value),
+        }
+        self
+    }
+
+    /// These assumptions with or without the variants of cases that are coded in several ways.
+    #[must_use]
+    pub fn with_variants(mut self, variants: bool) -> Self {
+        self.variants = variants;
+        self
+    }
+
+    /// True if variants are read too.
+    pub fn variants(&self) -> bool {
+        self.variants
+    }
+
+    /// m/s.
+    pub(super) fn speed_spread(&self) -> f64 {
+        self.speed_spread
+    }
+
+    /// Radians.
+    pub(super) fn course_spread(&self) -> f64 {
+        self.course_spread
+    }
+
+    /// Metres, for an own ship of this length.
+    pub(super) fn safety_margin(&self, own_length: f64) -> f64 {
+        self.safety_margin.unwrap_or(own_length)
+    }
+
+    /// Hull of a ship whose format has no size.
+    pub(super) fn usual_hull(&self) -> Hull {
+        Hull {
+            length: self.length.unwrap_or(USUAL_HULL.length),
+            beam: self.beam.unwrap_or(USUAL_HULL.beam),
+        }
+    }
+
+    /// Hull of a ship whose file lacks its size: only if the user gave one.
+    pub(super) fn asked_hull(&self) -> Option<Hull> {
+        Some(Hull {
+            length: self.length?,
+            beam: self.beam?,
+        })
+    }
+}

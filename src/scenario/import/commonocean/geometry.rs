@@ -1,0 +1,132 @@
+//! Shapes (rectangles, circles, polygons) in convex parts, and states of ships at a step.
+
+use std::f64::consts::TAU;
+
+use super::super::xml::Xml;
+use crate::frame::{Pose, Vector};
+use crate::geometry::{ConvexPolygon, outer_disc};
+use crate::input::Range;
+use crate::scenario::limits;
+use crate::vessel::Hull;
+
+/// Metres: sizes of things and regions.
+const SIZE: Range = Range::between(1e-3, 1e6);
+/// Radians.
+const ANGLE: Range = Range::within(4.0 * std::f64::consts::PI);
+
+/// A convex shape about the place of its owner.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Shape {
+    /// Metres.
+    pub(super) outline: ConvexPolygon,
+    /// Along and across, about the place: of a hull that holds it.
+    pub(super) length: f64,
+    pub(super) width: f64,
+}
+
+/// A point in metres.
+pub(super) fn point(entry: &Xml) -> Option<Vector> {
+    let x = entry.required_number("x", limits::COORDINATE.in_unit("m"));
+    let y = entry.required_number("y", limits::COORDINATE.in_unit("m"));
+    Some(Vector::new(x?, y?))
+}
+
+/// The shapes in an element, at least one.
+pub(super) fn shapes(entry: &Xml) -> Option<Vec<Shape>> {
+    let parts: Vec<Option<Shape>> = entry.elements().map(|shape| one(&shape)).collect();
+    if parts.is_empty() {
+        entry.fault("no shape", "a rectangle, a circle or a polygon");
+        return None;
+    }
+    parts.into_iter().collect()
+}
+
+fn one(entry: &Xml) -> Option<Shape> {
+    let center = match entry.take("center") {
+        Some(center) => point(&center)?,
+        None => Vector::zeros(),
+    };
+    let outline = match entry.name() {
+        "rectangle" => {
+            let length = entry.required_number("length", SIZE.in_unit("m"));
+            let width = entry.required_number("width", SIZE.in_unit("m"));
+            let angle = match entry.take("orientation") {
+                Some(angle) => angle.number(ANGLE.in_unit("rad"))?,
+                None => 0.0,
+            };
+            let hull = Hull {
+                length: length?,
+                beam: width?,
+            };
+            hull.polygon(&Pose::new(center, angle))
+        }
+        "circle" => {
+            let radius = entry.required_number("radius", SIZE.in_unit("m"))?;
+            outer_disc(radius, 0.0).translated(center)
+        }
+        "polygon" => {
+            let points: Vec<Option<Vector>> = entry.all("point").map(|p| point(&p)).collect();
+            let count = points.len();
+            let points: Vec<Vector> = points.into_iter().collect::<Option<_>>()?;
+            if !(3..=limits::TRACK_POINTS).contains(&count) {
+                entry.fault(format_args!("{count} points"), "at least 3");
+                return None;
+            }
+            // from outside: a bay of a coast is taken as land
+            ConvexPolygon::hull(&points).ok()?
+        }
+        other => {
+            entry.fault(other, "a rectangle, a circle or a polygon");
+            return None;
+        }
+    };
+    let reach = |axis: Vector| 2.0 * outline.support(axis).max(outline.support(-axis));
+    Some(Shape {
+        length: reach(Vector::x()),
+        width: reach(Vector::y()),
+        outline,
+    })
+}
+
+/// Radians: twice the circle to either side.
+const HEADING: Range = Range::within(2.0 * TAU);
+/// Steps.
+const STEPS: Range = Range::between(0.0, 1e9);
+/// m/s; astern is negative.
+const VELOCITY: Range = Range::within(50.0);
+
+/// A state whose values are exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct State {
+    /// Metres.
+    pub(super) position: Vector,
+    /// Radians, counter-clockwise from east.
+    pub(super) orientation: f64,
+    /// Steps.
+    pub(super) time: f64,
+    /// m/s along the orientation, where it is said.
+    pub(super) velocity: Option<f64>,
+}
+
+/// Reads a state; intervals and regions are refused.
+pub(super) fn state(entry: &Xml) -> Option<State> {
+    let position = entry
+        .require("position", "a point")
+        .and_then(|place| place.require("point", "x, y in metres"))
+        .and_then(|place| point(&place));
+    let orientation = match entry.take("orientation") {
+        Some(angle) => angle.exact(HEADING.in_unit("rad")),
+        None => Some(0.0),
+    };
+    let time = entry.required_exact("time", STEPS.in_unit("steps"));
+    let velocity = match entry.take("velocity") {
+        Some(velocity) => velocity.exact(VELOCITY.in_unit("m/s")).map(Some),
+        None => Some(None),
+    };
+    Some(State {
+        position: position?,
+        orientation: orientation?,
+        time: time?,
+        velocity: velocity?,
+    })
+}

@@ -1,0 +1,371 @@
+//! CommonOcean scenarios (XML 2022a; 2020a, which names some elements otherwise): metres, m/s, seconds; angles
+//! counter-clockwise from east, radians; times in steps.
+
+mod geometry;
+mod problem;
+
+use roxmltree::Document;
+
+use super::situation::{Declared, GivenHull, Other, Own, Situation};
+use super::track::{RouteLeg, RoutePoint, Track};
+use super::xml::Xml;
+use crate::frame::{Vector, wrap};
+use crate::input::{Fault, Faults, Range, abbreviated};
+use crate::scenario::limits;
+use crate::text::is_line;
+use crate::vessel::Hull;
+use geometry::{Shape, State, shapes, state};
+
+/// Seconds of a step.
+const STEP: Range = Range::between(1e-3, 3600.0);
+
+/// Types of obstacles, static or not.
+const TYPES: [&str; 14] = [
+    "unknown",
+    "buoy",
+    "land",
+    "motorvessel",
+    "sailingvessel",
+    "fishingvessel",
+    "militaryvessel",
+    "cargoship",
+    "vesselNotUnderCommand",
+    "restrictedManeuverabilityVessel",
+    "anchoredvessel",
+    "windfarm",
+    "oilrig",
+    "watersboundary",
+];
+
+/// What is looked at, and what says nothing of where ships may be.
+const KNOWN: [&str; 12] = [
+    "location",
+    "scenarioTags",
+    "navigationableArea",
+    "waterway",
+    "waters",
+    "shallow",
+    "draft",
+    "trafficSign",
+    "staticObstacle",
+    "dynamicObstacle",
+    "planningProblem",
+    "additionalInformation",
+];
+
+/// Versions: two of one grammar but for some names.
+const VERSIONS: [&str; 2] = ["2022a", "2020a"];
+
+/// The situations of a file, one per planning problem.
+pub(super) fn situations(
+    document: &Document,
+) -> Result<Vec<Result<Situation, Vec<Fault>>>, Vec<Fault>> {
+    let faults = Faults::default();
+    let root = Xml::root(document, &faults);
+    let version = root.attribute("commonOceanVersion").unwrap_or_default();
+    if !VERSIONS.contains(&version) {
+        root.fault(
+            format_args!("commonOceanVersion {}", abbreviated(version)),
+            format_args!("one of {}", VERSIONS.join(", ")),
+        );
+        return Err(faults.take());
+    }
+    let step = root.attribute_number("timeStepSize", STEP.in_unit("s"));
+    let name = match root.attribute("benchmarkID") {
+        Some(id) if is_line(id) => Some(id.trim()),
+        Some(id) => {
+            root.fault(
+                format_args!("benchmarkID {}", abbreviated(id)),
+                "a name on one line",
+            );
+            None
+        }
+        None => Some("CommonOcean scenario"),
+    };
+    let mut notes = Vec::new();
+    unused(&root, &mut notes);
+    let problems: Vec<Xml> = root.all("planningProblem").collect();
+    if problems.is_empty() {
+        root.fault("no planningProblem", "at least one");
+    }
+    let others = step.and_then(|step| others(&root, step, &mut notes));
+    let owns: Vec<Option<Own>> = problems
+        .iter()
+        .map(|entry| step.and_then(|step| problem::own(entry, step, &mut notes)))
+        .collect();
+    let noted = faults.take();
+    let (Some(others), Some(name), true) = (others, name, noted.is_empty()) else {
+        return Err(noted);
+    };
+    let several = owns.len() > 1;
+    let situation = |(entry, own): (&Xml, Option<Own>)| {
+        let id = several.then(|| format!("{name}-{}", entry.attribute("id").unwrap_or_default()));
+        let own = own.ok_or_else(Vec::new)?;
+        Ok(about(
+            own,
+            &others,
+            id.clone().unwrap_or_else(|| name.to_owned()),
+            id,
+            &notes,
+        ))
+    };
+    Ok(problems.iter().zip(owns).map(situation).collect())
+}
+
+/// The situation of one own ship, in the plane about her start: coordinates may be those of a grid as wide as the world.
+fn about(
+    own: Own,
+    others: &[Other],
+    name: String,
+    id: Option<String>,
+    notes: &[String],
+) -> Situation {
+    let origin = own.pose.position;
+    let own = Own {
+        pose: crate::frame::Pose::new(Vector::zeros(), own.pose.heading),
+        route: own.route.iter().map(|p| p - origin).collect(),
+        ..own
+    };
+    Situation {
+        name,
+        id,
+        own,
+        others: others
+            .iter()
+            .map(|other| other.translated(-origin))
+            .collect(),
+        earth: None,
+        declared: Declared::default(),
+        notes: notes.to_vec(),
+    }
+}
+
+/// What is not used, in notes.
+fn unused(root: &Xml, notes: &mut Vec<String>) {
+    let count = |name: &str| root.all(name).count();
+    let ways = count("waterway") + count("waters");
+    if ways > 0 {
+        notes.push(format!(
+            "{ways} waterways: not used, own ship may leave them"
+        ));
+    }
+    for (name, said) in [
+        ("navigationableArea", "not used, own ship may leave it"),
+        ("trafficSign", "not used"),
+    ] {
+        if count(name) > 0 {
+            notes.push(format!("{} {name}: {said}", count(name)));
+        }
+    }
+    for element in root.elements().filter(|e| !KNOWN.contains(&e.name())) {
+        notes.push(format!("{}: not used", element.path()));
+    }
+}
+
+/// Every obstacle and every shallow. `None` where one is faulty.
+fn others(root: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Vec<Other>> {
+    let mut others = Vec::new();
+    let mut sound = true;
+    for element in root.elements() {
+        let found = match element.name() {
+            "staticObstacle" => fixed(&element),
+            "shallow" | "draft" => shallow(&element),
+            "dynamicObstacle" => moving(&element, step, notes).map(|other| vec![other]),
+            _ => continue,
+        };
+        match found {
+            Some(found) => others.extend(found),
+            None => sound = false,
+        }
+    }
+    let shallows = root.all("shallow").count() + root.all("draft").count();
+    if shallows > 0 {
+        notes.push(format!(
+            "{shallows} shallows: own draught is not in the file, so all are kept out of, whatever their depth"
+        ));
+    }
+    if others.len() > limits::SHIPS {
+        root.fault(
+            format_args!("{} obstacles and shallows", others.len()),
+            format_args!("at most {}", limits::SHIPS),
+        );
+        return None;
+    }
+    sound.then_some(others)
+}
+
+fn kind<'a>(element: &Xml<'a>) -> Option<&'a str> {
+    let entry = element.require("type", "the type of the obstacle")?;
+    let kind = entry.text();
+    if TYPES.contains(&kind) {
+        return Some(kind);
+    }
+    entry.fault(
+        abbreviated(kind),
+        format_args!("one of {}", TYPES.join(", ")),
+    );
+    None
+}
+
+fn named(element: &Xml, kind: &str, part: Option<usize>) -> String {
+    let id = element.attribute("id").unwrap_or("without id");
+    match part {
+        Some(part) => format!("{kind} {id} ({})", part + 1),
+        None => format!("{kind} {id}"),
+    }
+}
+
+/// A thing that stands still: a convex part of it each.
+fn fixed(element: &Xml) -> Option<Vec<Other>> {
+    let kind = kind(element);
+    let parts = element
+        .require("shape", "a rectangle, circle or polygon")
+        .and_then(|entry| shapes(&entry));
+    let initial = element
+        .require("initialState", "position, orientation, time")
+        .and_then(|entry| state(&entry));
+    let (kind, parts, initial) = (kind?, parts?, initial?);
+    let ground = ["land", "watersboundary"].contains(&kind);
+    let several = parts.len() > 1;
+    let placed = parts.iter().enumerate().map(|(index, part)| Other::Fixed {
+        name: named(element, kind, several.then_some(index)),
+        shape: part
+            .outline
+            .rotated(initial.orientation)
+            .translated(initial.position),
+        ground,
+    });
+    Some(placed.collect())
+}
+
+fn shallow(element: &Xml) -> Option<Vec<Other>> {
+    let parts = shapes(&element.require("shape", "a rectangle, circle or polygon")?)?;
+    let several = parts.len() > 1;
+    let part = |(index, part): (usize, Shape)| Other::Fixed {
+        name: named(element, "shallow", several.then_some(index)),
+        shape: part.outline,
+        ground: true,
+    };
+    Some(parts.into_iter().enumerate().map(part).collect())
+}
+
+/// A ship along her recorded states.
+fn moving(element: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Other> {
+    let kind = kind(element);
+    let hull = match element.take("shape") {
+        Some(entry) => shapes(&entry).and_then(|parts| hull(&entry, &parts)),
+        None => Some(GivenHull::Missing(format!("{}/shape", element.path()))),
+    };
+    let initial = element
+        .require("initialState", "position, orientation, time, velocity")
+        .and_then(|entry| state(&entry));
+    if let Some(sets) = element.take("occupancySet") {
+        sets.fault("occupancies", "a trajectory of states");
+        return None;
+    }
+    let states: Option<Vec<State>> = element
+        .take("trajectory")
+        .map_or(Some(Vec::new()), |entry| {
+            entry.all("state").map(|entry| state(&entry)).collect()
+        });
+    let (kind, hull, initial, states) = (kind?, hull?, initial?, states?);
+    let name = named(element, kind, None);
+    let track = track(element, &initial, &states, step, &name, notes)?;
+    Some(Other::Ship { name, hull, track })
+}
+
+fn hull(entry: &Xml, parts: &[Shape]) -> Option<GivenHull> {
+    let [only] = parts else {
+        entry.fault(
+            format_args!("{} shapes", parts.len()),
+            "one shape, the hull of the ship",
+        );
+        return None;
+    };
+    Some(GivenHull::Known(Hull {
+        length: only.length,
+        beam: only.width,
+    }))
+}
+
+/// Along the recorded places: a leg from each to the next, at the speed that it takes.
+fn track(
+    element: &Xml,
+    initial: &State,
+    states: &[State],
+    step: f64,
+    name: &str,
+    notes: &mut Vec<String>,
+) -> Option<Track> {
+    if states.len() > limits::TRACK_POINTS {
+        element.fault(
+            format_args!("{} states", states.len()),
+            format_args!("at most {}", limits::TRACK_POINTS),
+        );
+        return None;
+    }
+    let appears = initial.time * step;
+    let mut points = vec![RoutePoint {
+        position: initial.position,
+        turn_radius: Some(0.0),
+    }];
+    let mut legs: Vec<RouteLeg> = Vec::new();
+    let (mut last, mut rests) = (*initial, 0);
+    for state in states {
+        let took = (state.time - last.time) * step;
+        let way = (state.position - last.position).norm();
+        if !(took > 0.0) {
+            element.fault(
+                format_args!(
+                    "a state of step {} after one of step {}",
+                    state.time, last.time
+                ),
+                "states whose times increase",
+            );
+            return None;
+        }
+        let speed = way / took;
+        if !limits::SHIP_SPEED.contains(speed) {
+            element.fault(
+                format_args!("{way:.1} m from step {} to step {}", last.time, state.time),
+                format_args!("at most {} m/s between two states", limits::SHIP_SPEED.high),
+            );
+            return None;
+        }
+        if way >= limits::LENGTH.low {
+            points.push(RoutePoint {
+                position: state.position,
+                turn_radius: Some(0.0),
+            });
+            legs.push(RouteLeg {
+                slow: if rests > 0 { 0.0 } else { speed },
+                fast: speed,
+            });
+            rests = 0;
+        } else {
+            rests += 1;
+        }
+        last = *state;
+    }
+    // what she does after a rest at the end is not known: she may stay
+    if rests > 0
+        && let Some(leg) = legs.last_mut()
+    {
+        leg.slow = 0.0;
+    }
+    let track = match legs.last() {
+        None if states.is_empty() => Track::straight(
+            initial.position,
+            wrap(initial.orientation),
+            initial.velocity?,
+        ),
+        None => Track::straight(initial.position, wrap(initial.orientation), 0.0),
+        Some(_) => Track::along(&points, &legs, 0.0, None).ok()?,
+    };
+    if appears > 0.0 {
+        notes.push(format!(
+            "{name}: appears after {appears} s; taken to stand there until then"
+        ));
+    }
+    Some(track.appearing(appears.max(0.0)))
+}

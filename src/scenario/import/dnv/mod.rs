@@ -1,0 +1,404 @@
+//! DNV traffic situations (maritime-schema 0.1 and 0.2, JSON): degrees of WGS84, knots, degrees clockwise from true north,
+//! metres; turn radii in nautical miles; the leg that ends at a waypoint is described there.
+
+mod ship;
+
+use std::collections::BTreeSet;
+
+use super::assumed::{TURNING_LENGTHS, USUAL_HULL};
+use super::situation::{Declared, GivenHull, Other, Own, Situation};
+use super::track::{RouteLeg, RoutePoint, Track, TrackError};
+use crate::frame::{
+    Geographic, Georeference, NAUTICAL_MILE_M, Pose, Side, Vector, heading_of, mps_from_knots,
+    radians_from_deg, wrap,
+};
+use crate::input::{Fault, Faults, Field, Range};
+use crate::scenario::{limits, plane};
+use ship::{Initial, fixed, initial};
+
+/// Degrees. A heading nearer to the first leg's course than this is that course, rounded.
+const ROUNDED_DEG: f64 = 1.0;
+
+/// Keys that are read, and keys that mean nothing to a planner.
+const ROOT_KEYS: [&str; 8] = [
+    "version",
+    "schemaVersion",
+    "trafficgenVersion",
+    "title",
+    "description",
+    "startTime",
+    "ownShip",
+    "targetShips",
+];
+const SHIP_KEYS: [&str; 3] = ["waypoints", "static", "initial"];
+
+/// The situation of a file; an error with every fault.
+pub(super) fn situation(root: &Field, faults: &Faults) -> Result<Situation, Vec<Fault>> {
+    let mut notes = Vec::new();
+    unused(root, &ROOT_KEYS, &mut notes);
+    let name = match root.get("title") {
+        Some(title) => title.line_of_text().map(str::trim),
+        None => Some("Traffic situation"),
+    };
+    let field = root.require("ownShip", "an object: own ship");
+    let earth = field.as_ref().and_then(origin);
+    let own = field
+        .zip(earth)
+        .and_then(|(field, earth)| own(&field, &earth, &mut notes));
+    let ships = match (root.get("targetShips"), earth) {
+        (Some(list), Some(earth)) => list
+            .list(0..=limits::SHIPS, "ships")
+            .and_then(|list| others(&list, &earth, &mut notes)),
+        (Some(_), None) => None,
+        (None, _) => {
+            notes.push("targetShips: none in the file".to_owned());
+            Some(Vec::new())
+        }
+    };
+    // own ship's first place is looked at twice
+    let mut noted: Vec<Fault> = Vec::new();
+    for fault in faults.take() {
+        if !noted.contains(&fault) {
+            noted.push(fault);
+        }
+    }
+    let (Some(own), Some(others), Some(name), true) = (own, ships, name, noted.is_empty()) else {
+        return Err(noted);
+    };
+    Ok(Situation {
+        name: name.to_owned(),
+        id: None,
+        own,
+        others,
+        earth,
+        declared: declared(name),
+        notes,
+    })
+}
+
+/// What a title like "HO, CR-GW" says: a kind of encounter per target, in their order.
+fn declared(title: &str) -> Declared {
+    let sides: Option<Vec<Option<Side>>> = title
+        .split(',')
+        .map(|kind| match kind.trim() {
+            "HO" | "OT-GW" | "OT-SO" => Some(None),
+            "CR-GW" => Some(Some(Side::Starboard)),
+            "CR-SO" => Some(Some(Side::Port)),
+            _ => None,
+        })
+        .collect();
+    match sides {
+        Some(sides) => Declared {
+            ships: Some(sides.len()),
+            sides,
+        },
+        None => Declared::default(),
+    }
+}
+
+/// Notes every key that is not read and may mean something.
+fn unused(field: &Field, known: &[&str], notes: &mut Vec<String>) {
+    for key in field.keys().filter(|key| !known.contains(key)) {
+        let dot = if field.path().is_empty() { "" } else { "." };
+        notes.push(format!("{}{dot}{key}: not used", field.path()));
+    }
+}
+
+fn place(field: &Field) -> Option<Geographic> {
+    let lat_deg = field.required_number("lat", limits::LATITUDE.in_unit("degrees north"));
+    let lon_deg = field.required_number("lon", limits::LONGITUDE.in_unit("degrees east"));
+    Some(Geographic {
+        lat_deg: lat_deg?,
+        lon_deg: lon_deg?,
+    })
+}
+
+fn waypoints<'a>(ship: &Field<'a>, least: usize) -> Option<Vec<Field<'a>>> {
+    ship.require("waypoints", "a list of waypoints")?
+        .list(least..=limits::ROUTE_POINTS, "waypoints")
+}
+
+/// The plane about own ship's first place.
+fn origin(own: &Field) -> Option<Georeference> {
+    let start = own
+        .get("initial")
+        .and_then(|initial| initial.get("position"));
+    let field = match start {
+        Some(start) => start,
+        None => waypoints(own, 1)?
+            .first()?
+            .require("position", "an object { lat, lon }")?,
+    };
+    let place = place(&field)?;
+    let earth = Georeference::new(place);
+    if earth.is_none() {
+        field.fault(
+            place,
+            format_args!("a latitude of {} degrees", limits::ORIGIN_LATITUDE),
+        );
+    }
+    earth
+}
+
+fn near(field: &Field, earth: &Georeference) -> Option<Vector> {
+    plane::near(field, place(field)?, earth)
+}
+
+/// A speed in m/s from one in knots.
+fn knots(field: &Field, range: Range) -> Option<f64> {
+    field
+        .number(range.in_knots().in_unit("knots"))
+        .map(mps_from_knots)
+}
+
+fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<Own> {
+    unused(field, &SHIP_KEYS, notes);
+    let initial = initial(field, earth, notes);
+    let fixed = fixed(field, notes);
+    let fields = waypoints(field, 2);
+    let known = initial.unwrap_or_default();
+    let route = fields.and_then(|fields| route(&fields, &known, earth, notes));
+    let (initial, fixed, route) = (initial?, fixed?, route?);
+    if fixed.delay > 0.0 {
+        field.fault(
+            format_args!("own ship {} s late (static.initDelay)", fixed.delay),
+            "own ship from the start",
+        );
+        return None;
+    }
+    if route.points.iter().any(|p| p.turn_radius.is_some()) {
+        notes.push(format!(
+            "{}: turn radii of own ship's waypoints not used; hers is {TURNING_LENGTHS} lengths",
+            field.path()
+        ));
+    }
+    let points: Vec<Vector> = route.points.iter().map(|p| p.position).collect();
+    let first = heading_of(points[1] - points[0]);
+    Some(Own {
+        pose: Pose::new(points[0], initial.heading.unwrap_or(first)),
+        speed: initial.speed.unwrap_or(route.speeds[0]),
+        hull: fixed.hull,
+        route: points,
+        leg_speeds: route.speeds,
+        horizon: None,
+    })
+}
+
+fn others(list: &[Field], earth: &Georeference, notes: &mut Vec<String>) -> Option<Vec<Other>> {
+    let mut names = BTreeSet::new();
+    let mut others = Vec::with_capacity(list.len());
+    for (index, field) in list.iter().enumerate() {
+        let ship = other(field, earth, notes);
+        others.push(ship.map(|(name, hull, track)| {
+            let wanted = name.unwrap_or_else(|| format!("target {}", index + 1));
+            let mut name = wanted.clone();
+            let mut count = 2;
+            while !names.insert(name.clone()) {
+                name = format!("{wanted} ({count})");
+                count += 1;
+            }
+            Other::Ship { name, hull, track }
+        }));
+    }
+    others.into_iter().collect()
+}
+
+fn other(
+    field: &Field,
+    earth: &Georeference,
+    notes: &mut Vec<String>,
+) -> Option<(Option<String>, GivenHull, Track)> {
+    unused(field, &SHIP_KEYS, notes);
+    let initial = initial(field, earth, notes);
+    let fixed = fixed(field, notes);
+    let fields = waypoints(field, 1);
+    let known = initial.unwrap_or_default();
+    let route = fields
+        .as_ref()
+        .and_then(|fields| route(fields, &known, earth, notes));
+    let (initial, fixed, fields, route) = (initial?, fixed?, fields?, route?);
+    let track = match route.points.as_slice() {
+        [only] => steady(field, only.position, &initial)?,
+        _ => along(field, &fields, &route, &initial, &fixed.hull)?,
+    };
+    let track = if fixed.delay > 0.0 {
+        notes.push(format!(
+            "{}: appears after {} s; taken to stand at her start until then",
+            field.path(),
+            fixed.delay
+        ));
+        track.appearing(fixed.delay)
+    } else {
+        track
+    };
+    Some((fixed.name, fixed.hull, track))
+}
+
+/// One place, and on from there.
+fn steady(field: &Field, start: Vector, initial: &Initial) -> Option<Track> {
+    match (initial.speed, initial.course) {
+        (Some(speed), course) if speed == 0.0 => {
+            Some(Track::straight(start, course.unwrap_or(0.0), speed))
+        }
+        (Some(speed), Some(course)) => Some(Track::straight(start, course, speed)),
+        _ => {
+            field.fault(
+                "one waypoint, and no speed and course at the start",
+                "two waypoints, or initial.sog and initial.cog",
+            );
+            None
+        }
+    }
+}
+
+fn along(
+    field: &Field,
+    fields: &[Field],
+    route: &Route,
+    initial: &Initial,
+    hull: &GivenHull,
+) -> Option<Track> {
+    let first = heading_of(route.points[1].position - route.points[0].position);
+    let turned = |heading: &f64| wrap(first - heading).abs() > radians_from_deg(ROUNDED_DEG);
+    let mut legs: Vec<RouteLeg> = route
+        .speeds
+        .iter()
+        .map(|v| RouteLeg { slow: *v, fast: *v })
+        .collect();
+    let mut reach = |leg: usize, speed: f64| {
+        legs[leg].slow = legs[leg].slow.min(speed);
+        legs[leg].fast = legs[leg].fast.max(speed);
+    };
+    if let Some(speed) = initial.speed {
+        reach(0, speed);
+    }
+    for (leg, blend) in route.blends.iter().enumerate().take(route.speeds.len() - 1) {
+        let sides = [(leg, route.speeds[leg + 1]), (leg + 1, route.speeds[leg])];
+        for ((side, speed), metres) in sides.into_iter().zip(blend) {
+            let length = (route.points[side + 1].position - route.points[side].position).norm();
+            if !(*metres <= length) {
+                fields[leg + 1].fault(
+                    format_args!("a change of speed over {metres:.0} m of a leg of {length:.0} m"),
+                    "changes within the legs beside the waypoint",
+                );
+                return None;
+            }
+            if *metres > 0.0 {
+                reach(side, speed);
+            }
+        }
+    }
+    let length = match hull {
+        GivenHull::Known(hull) => hull.length,
+        GivenHull::NotInFormat | GivenHull::Missing(_) => USUAL_HULL.length,
+    };
+    let start = initial.heading.filter(turned);
+    match Track::along(&route.points, &legs, TURNING_LENGTHS * length, start) {
+        Ok(track) => Some(track),
+        Err(TrackError::Turn { point, begins }) => {
+            let place = fields.get(point).unwrap_or(field);
+            place.fault(
+                format_args!("a turnRadius whose turn begins {begins:.0} m before the waypoint"),
+                "a turn that fits into the legs beside it",
+            );
+            None
+        }
+    }
+}
+
+/// Nautical miles: radii of turns, stretches of changing speed.
+const MILES: Range = Range::between(0.0, 100.0);
+
+/// Points of a route and the speeds between them.
+#[derive(Debug, Default)]
+struct Route {
+    points: Vec<RoutePoint>,
+    /// m/s, one per leg.
+    speeds: Vec<f64>,
+    /// Metres before and after the waypoint at the end of each leg over which the speed changes.
+    blends: Vec<[f64; 2]>,
+}
+
+fn route(
+    fields: &[Field],
+    start: &Initial,
+    earth: &Georeference,
+    notes: &mut Vec<String>,
+) -> Option<Route> {
+    let mut route = Route::default();
+    let mut sound = true;
+    for (index, field) in fields.iter().enumerate() {
+        unused(field, &["position", "turnRadius", "leg"], notes);
+        let position = field
+            .require("position", "an object { lat, lon }")
+            .and_then(|place| near(&place, earth));
+        let position = if index == 0 {
+            start.position.or(position)
+        } else {
+            position
+        };
+        let radius = field.optional_number("turnRadius", MILES.in_unit("nautical miles"));
+        let leg = if index == 0 {
+            None
+        } else {
+            Some(leg(field, start.speed, notes))
+        };
+        let (Some(position), Some(radius)) = (position, radius) else {
+            sound = false;
+            continue;
+        };
+        let before = route.points.last().map(|p: &RoutePoint| p.position);
+        if before.is_some_and(|before| !((position - before).norm() >= limits::LENGTH.low)) {
+            field.fault("the waypoint before it again", "a place of its own");
+            sound = false;
+        }
+        match leg {
+            None => {}
+            Some(None) => sound = false,
+            Some(Some((speed, blend))) => {
+                route.speeds.push(speed);
+                route.blends.push(blend);
+            }
+        }
+        route.points.push(RoutePoint {
+            position,
+            turn_radius: radius.map(|miles| miles * NAUTICAL_MILE_M),
+        });
+    }
+    sound.then_some(route)
+}
+
+/// Speed of the leg that ends at a waypoint, m/s, and the metres before and after the waypoint over which it changes.
+fn leg(
+    waypoint: &Field,
+    initial_speed: Option<f64>,
+    notes: &mut Vec<String>,
+) -> Option<(f64, [f64; 2])> {
+    let leg = waypoint.get("leg");
+    if let Some(leg) = &leg {
+        unused(leg, &["sog", "data"], notes);
+    }
+    let data = leg.as_ref().and_then(|leg| leg.get("data"));
+    if let Some(data) = &data {
+        unused(data, &["sog"], notes);
+    }
+    if let Some(point) = data.and_then(|data| data.get("sog")) {
+        let speed = point
+            .require("value", "a speed in knots")
+            .and_then(|value| knots(&value, limits::SHIP_WAY));
+        let blend = ["interpStart", "interpEnd"].map(|key| {
+            let miles = point.optional_number(key, MILES.in_unit("nautical miles"))?;
+            Some(miles.unwrap_or(0.0) * NAUTICAL_MILE_M)
+        });
+        return Some((speed?, [blend[0]?, blend[1]?]));
+    }
+    let speed = match (leg.as_ref().and_then(|leg| leg.get("sog")), initial_speed) {
+        (Some(speed), _) => knots(&speed, limits::SHIP_WAY)?,
+        (None, Some(speed)) if limits::SHIP_WAY.contains(speed) => speed,
+        (None, _) => {
+            waypoint.fault("no speed of the leg that ends here", "leg.sog in knots");
+            return None;
+        }
+    };
+    Some((speed, [0.0; 2]))
+}

@@ -1,0 +1,128 @@
+//! Import of files of other programs. The contents of a file tell its format, not its name. Each
+//! format is read into a [`Situation`], and every situation becomes a scenario in one way.
+//!
+//! A new format needs a file here that makes a [`Situation`], and its case in [`Contents::parse`].
+
+mod assumed;
+mod commonocean;
+mod dnv;
+mod imazu;
+mod scenario_text;
+mod situation;
+mod track;
+mod xml;
+
+pub use assumed::{Assumed, Assumption};
+pub use scenario_text::Imported;
+pub use situation::{Declared, Situation};
+
+use std::path::Path;
+
+use super::limits;
+use crate::input::{Fault, Faults, Field, InputError, from_json, read_text};
+
+/// Format of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// A scenario file.
+    Scenario,
+    /// A DNV traffic situation.
+    Dnv,
+    /// Imazu's cases.
+    Imazu,
+    /// A CommonOcean scenario.
+    CommonOcean,
+}
+
+/// Contents of a file.
+///
+/// ```
+/// use searoom::scenario::import::{Assumed, Contents, Format};
+///
+/// let file = "scenarios/dnv/traffic_situation_01.json".as_ref();
+/// let Contents::Situations { format, situations } = Contents::read(file, &Assumed::default())? else {
+///     panic!("situations");
+/// };
+/// assert_eq!((format, situations.len()), (Format::Dnv, 1));
+/// # Ok::<(), searoom::scenario::ScenarioError>(())
+/// ```
+#[derive(Debug)]
+pub enum Contents {
+    /// A scenario file, or a text that can only be meant as one; to be read by
+    /// [`Scenario::read`](super::Scenario::read).
+    Scenario,
+    /// Situations of another program, in order, each good or with its own faults.
+    Situations {
+        /// The format.
+        format: Format,
+        /// At least one.
+        situations: Vec<Result<Situation, Vec<Fault>>>,
+    },
+    /// A result document or a map, which is not a scenario: its kind.
+    Other(&'static str),
+}
+
+impl Contents {
+    /// Reads a file of at most 16 MiB; more is refused before it is read.
+    pub fn read(file: &Path, assumed: &Assumed) -> Result<Self, InputError> {
+        let text = read_text(file, limits::FILE_MEBIBYTES, "a scenario file")?;
+        Self::parse(&text, assumed).map_err(|faults| InputError::faults(file, faults))
+    }
+
+    /// [`Contents::read`] of a text.
+    pub fn parse(text: &str, assumed: &Assumed) -> Result<Self, Vec<Fault>> {
+        // a byte order mark is not part of the text
+        let text = text.trim_start_matches('\u{feff}').trim_start();
+        match text.chars().next() {
+            Some('{') => in_json(text, assumed),
+            Some('<') => in_xml(text),
+            _ => Ok(Self::Scenario),
+        }
+    }
+}
+
+fn in_xml(text: &str) -> Result<Contents, Vec<Fault>> {
+    let document = xml::parse(text).map_err(|fault| vec![fault])?;
+    let root = document.root_element().tag_name().name();
+    if root != "commonOcean" {
+        let found = format_args!("XML that begins with {root}");
+        let allowed = "a CommonOcean scenario (commonOcean)";
+        return Err(vec![Fault::new(root, found, allowed)]);
+    }
+    Ok(Contents::Situations {
+        format: Format::CommonOcean,
+        situations: commonocean::situations(&document)?,
+    })
+}
+
+fn in_json(text: &str, assumed: &Assumed) -> Result<Contents, Vec<Fault>> {
+    let value = from_json(text).map_err(|fault| vec![fault])?;
+    let faults = Faults::default();
+    let root = Field::root(&value, &faults);
+    let has = |key: &str| value.get(key).is_some();
+    let text_at = |key: &str| value.get(key).and_then(|v| v.as_text()).unwrap_or_default();
+    if has("ownShip") || has("targetShips") {
+        return Ok(Contents::Situations {
+            format: Format::Dnv,
+            situations: vec![dnv::situation(&root, &faults)],
+        });
+    }
+    if has("cases") || has("own_ship") {
+        let situations = imazu::situations(&root, &faults, assumed.variants())?;
+        return Ok(Contents::Situations {
+            format: Format::Imazu,
+            situations,
+        });
+    }
+    if text_at("format").starts_with("searoom-") || (has("runs") && has("summary")) {
+        return Ok(Contents::Other("a result document"));
+    }
+    if ["FeatureCollection", "Feature"].contains(&text_at("type")) {
+        return Ok(Contents::Other("a GeoJSON map"));
+    }
+    let keys: Vec<&str> = root.keys().take(5).collect();
+    let found = format_args!("JSON with the keys {}", keys.join(", "));
+    let allowed =
+        "a DNV traffic situation (ownShip, targetShips) or Imazu's cases (own_ship, cases)";
+    Err(vec![Fault::new("", found, allowed)])
+}

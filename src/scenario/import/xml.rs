@@ -1,0 +1,222 @@
+//! An XML element with its place: the cursor with which XML is read.
+
+use std::fmt::Display;
+
+use roxmltree::{Document, Node, ParsingOptions};
+
+use crate::input::{Fault, Faults, Range, abbreviated};
+
+/// Most nodes of a file, text and white space included: 16 MiB of a recorded scenario, 200 MB of
+/// memory.
+const NODES: u32 = 2_000_000;
+
+/// Most attributes of one element: the parser compares each with all others.
+const ATTRIBUTES: usize = 1_000;
+
+/// The line of the first element with too many attributes, found before parsing.
+fn crowded(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    // the offset behind `end`, searched from `from`
+    let after =
+        |from: usize, end: &str| text.get(from..)?.find(end).map(|at| from + at + end.len());
+    let mut at = 0;
+    while let Some(open) = text.get(at..).and_then(|rest| rest.find('<')) {
+        at += open;
+        let rest = &text[at..];
+        let skipped = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+        if let Some((_, end)) = skipped
+            .into_iter()
+            .find(|(begin, _)| rest.starts_with(begin))
+        {
+            at = after(at, end)?;
+            continue;
+        }
+        let (begun, mut count) = (at, 0);
+        while *bytes.get(at)? != b'>' {
+            if let quote @ (b'"' | b'\'') = bytes[at] {
+                at = after(at + 1, if quote == b'"' { "\"" } else { "'" })?;
+                count += 1;
+                if count > ATTRIBUTES {
+                    return Some(1 + text[..begun].matches('\n').count());
+                }
+            } else {
+                at += 1;
+            }
+        }
+    }
+    None
+}
+
+/// Parses a text. A document type, which could declare entities, is refused: nothing expands.
+pub(super) fn parse(text: &str) -> Result<Document<'_>, Fault> {
+    if let Some(line) = crowded(text) {
+        let found = format_args!("an element of more than {ATTRIBUTES} attributes");
+        return Err(Fault {
+            line: Some(line),
+            ..Fault::new("", found, format_args!("at most {ATTRIBUTES}"))
+        });
+    }
+    let options = ParsingOptions {
+        allow_dtd: false,
+        nodes_limit: NODES,
+        ..ParsingOptions::default()
+    };
+    let allowed =
+        format_args!("XML without errors, without a document type, of at most {NODES} nodes");
+    Document::parse_with_options(text, options).map_err(|error| Fault {
+        line: Some(error.pos().row as usize),
+        ..Fault::new("", &error, allowed)
+    })
+}
+
+/// An element, its place, and the faults found so far.
+#[derive(Debug, Clone)]
+pub(super) struct Xml<'a> {
+    node: Node<'a, 'a>,
+    path: String,
+    faults: &'a Faults,
+}
+
+impl<'a> Xml<'a> {
+    /// The outermost element of a file.
+    pub(super) fn root(document: &'a Document<'a>, faults: &'a Faults) -> Self {
+        let node = document.root_element();
+        Self {
+            path: node.tag_name().name().to_owned(),
+            node,
+            faults,
+        }
+    }
+
+    /// The name of the element.
+    pub(super) fn name(&self) -> &'a str {
+        self.node.tag_name().name()
+    }
+
+    /// Where it is, as in `commonOcean/dynamicObstacle[11]/type`.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// Notes a fault at this place.
+    pub(super) fn fault(&self, found: impl Display, allowed: impl Display) {
+        let at = self.node.document().text_pos_at(self.node.range().start);
+        self.faults.note(Fault {
+            line: Some(at.row as usize),
+            ..Fault::new(self.path.as_str(), found, allowed)
+        });
+    }
+
+    /// The elements in it, in the order of the file.
+    pub(super) fn elements(&self) -> impl Iterator<Item = Xml<'a>> + use<'a> {
+        let (path, faults) = (self.path.clone(), self.faults);
+        self.node
+            .children()
+            .filter(Node::is_element)
+            .map(move |node| {
+                let name = node.tag_name().name();
+                let path = match node.attribute("id") {
+                    Some(id) => format!("{path}/{name}[{id}]"),
+                    None => format!("{path}/{name}"),
+                };
+                Xml { node, path, faults }
+            })
+    }
+
+    /// Those of one name.
+    pub(super) fn all(&self, name: &str) -> impl Iterator<Item = Xml<'a>> {
+        self.elements()
+            .filter(move |element| element.name() == name)
+    }
+
+    /// The first of one name.
+    pub(super) fn take(&self, name: &str) -> Option<Xml<'a>> {
+        self.all(name).next()
+    }
+
+    /// The first of one name, which must be there.
+    pub(super) fn require(&self, name: &str, allowed: impl Display) -> Option<Xml<'a>> {
+        let found = self.take(name);
+        if found.is_none() {
+            self.fault(
+                format_args!("no {name}"),
+                format_args!("{name}: {allowed}; it is required"),
+            );
+        }
+        found
+    }
+
+    /// An attribute.
+    pub(super) fn attribute(&self, name: &str) -> Option<&'a str> {
+        self.node.attribute(name)
+    }
+
+    /// The text in it, without the white space around.
+    pub(super) fn text(&self) -> &'a str {
+        self.node.text().unwrap_or_default().trim()
+    }
+
+    /// The number in it.
+    pub(super) fn number(&self, range: Range) -> Option<f64> {
+        self.parsed(self.text(), range)
+    }
+
+    /// The number of an attribute that must be there.
+    pub(super) fn attribute_number(&self, name: &str, range: Range) -> Option<f64> {
+        match self.attribute(name) {
+            Some(text) => self.parsed(text, range),
+            None => {
+                self.fault(
+                    format_args!("no attribute {name}"),
+                    format_args!("{name}: {range}"),
+                );
+                None
+            }
+        }
+    }
+
+    fn parsed(&self, text: &str, range: Range) -> Option<f64> {
+        let number = range.parse(text);
+        if number.is_none() {
+            self.fault(abbreviated(text), range);
+        }
+        number
+    }
+
+    /// The number of an element that must be there.
+    pub(super) fn required_number(&self, name: &str, range: Range) -> Option<f64> {
+        self.require(name, range)?.number(range)
+    }
+
+    /// The number in `exact` of an element that must be there.
+    pub(super) fn required_exact(&self, name: &str, range: Range) -> Option<f64> {
+        self.require(name, range)?.exact(range)
+    }
+
+    /// The number in the element `exact`; an interval is not a number.
+    pub(super) fn exact(&self, range: Range) -> Option<f64> {
+        self.require("exact", range)?.number(range)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_element_of_very_many_attributes_is_refused_before_it_is_parsed() {
+        let element = |count: usize| {
+            let attributes: String = (0..count).map(|k| format!(" a{k}='>\"'")).collect();
+            format!("<?xml version='1.0'?>\n<!-- it's -->\n<x{attributes}><y b=\"'\"/>é</x>")
+        };
+        assert!(parse(&element(ATTRIBUTES)).is_ok());
+        let fault = parse(&element(ATTRIBUTES + 1)).expect_err("too many");
+        assert_eq!(fault.line, Some(3));
+        assert!(fault.found.contains("attributes"), "{}", fault.found);
+        let many = element(100_000);
+        assert!(crowded(&many).is_some());
+        for cut in (0..400).filter_map(|n| many.get(..n)) {
+            assert_eq!(crowded(cut), None);
+        }
+    }
+}

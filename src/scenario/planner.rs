@@ -1,0 +1,150 @@
+//! The tables `[planner]` and `[planner.optimal_control]`.
+
+use super::{Compliance, limits};
+use crate::input::{Field, Range, Table};
+use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use crate::vessel::{ForceVector, StateVector, VesselKind};
+
+/// The fields of the table `[planner]` that a file has.
+#[derive(Debug, Default)]
+pub(super) struct PlannerSettings {
+    pub(super) kind: Option<PlannerKind>,
+    pub(super) objective: Option<Objective>,
+    pub(super) control: Option<ControlSettings>,
+    pub(super) search: Option<SearchKind>,
+    pub(super) compliance: Option<Compliance>,
+    pub(super) time_weight: Option<f64>,
+    pub(super) max_risk: Option<f64>,
+    pub(super) deadline: Option<f64>,
+}
+
+/// Reads the table `[planner]` for an own ship of `length` metres.
+pub(super) fn planner(mut table: Table, length: f64) -> PlannerSettings {
+    let fields = PlannerSettings {
+        control: control_settings(&mut table, length),
+        kind: table.choice(
+            "kind",
+            &[
+                ("space-time", PlannerKind::SpaceTime),
+                ("path-time", PlannerKind::PathTime),
+                ("optimal-control", PlannerKind::OptimalControl),
+            ],
+        ),
+        objective: objective(&mut table),
+        search: table.choice(
+            "search",
+            &[
+                ("a-star", SearchKind::AStar),
+                ("dijkstra", SearchKind::Dijkstra),
+            ],
+        ),
+        compliance: table.choice("compliance", &Compliance::WORDS),
+        time_weight: table.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
+        max_risk: table.number("max_risk", limits::RISK),
+        deadline: table.number("deadline_s", limits::DURATION),
+    };
+    table.finish();
+    fields
+}
+
+/// The objective; only the one that weighs risk has a weight, and needs it.
+fn objective(table: &mut Table) -> Option<Objective> {
+    let weighed = Objective::LengthRisk { weight: 0.0 };
+    let objective = table.choice(
+        "objective",
+        &[
+            ("space-time-error", Objective::SpaceTimeError),
+            ("time", Objective::Time),
+            ("length", Objective::Length),
+            ("length-risk", weighed),
+        ],
+    );
+    if objective == Some(weighed) {
+        let weight = table.required_number("risk_weight_m", limits::DISTANCE)?;
+        return Some(Objective::LengthRisk { weight });
+    }
+    table.forbid(
+        "risk_weight_m",
+        "nothing: only the objective \"length-risk\" weighs risk",
+    );
+    objective
+}
+
+/// Settings for a ship of `length` metres; what the table does not set is the default.
+fn control_settings(planner: &mut Table, length: f64) -> Option<ControlSettings> {
+    let Some(field) = planner.take("optimal_control") else {
+        return Some(ControlSettings::at_length(VesselKind::CyberShip2, length));
+    };
+    let mut table = field.table("a table")?;
+    // the outer `None` is a fault, the inner one an absent key
+    let vessel = optional(&mut table, "vessel", |field| {
+        field.choice(&VesselKind::WORDS)
+    });
+    let force_limits = optional(&mut table, "force_limits", force_limits);
+    let intervals = optional(&mut table, "intervals", |field| {
+        field.whole_number(limits::INTERVALS)
+    });
+    let state = optional(&mut table, "state_weights", |field| {
+        let weights = weights::<6>(field, limits::STATE_WEIGHT)?;
+        some_weight(field, weights)
+    });
+    let force = optional(&mut table, "control_weights", |field| {
+        weights::<3>(field, limits::FORCE_WEIGHT)
+    });
+    table.finish();
+    let default = ControlSettings::at_length(vessel?.unwrap_or(VesselKind::CyberShip2), length);
+    Some(ControlSettings {
+        force_limits: force_limits?.unwrap_or(default.force_limits),
+        intervals: intervals?.unwrap_or(default.intervals),
+        state_weights: state?.map_or(default.state_weights, StateVector::from),
+        // sway and yaw are positive to starboard in files, which a square does not see
+        force_weights: force?.map_or(default.force_weights, ForceVector::from),
+        ..default
+    })
+}
+
+fn optional<'a, T>(
+    table: &mut Table<'a>,
+    key: &str,
+    read: impl Fn(&Field<'a>) -> Option<T>,
+) -> Option<Option<T>> {
+    match table.take(key) {
+        Some(field) => read(&field).map(Some),
+        None => Some(None),
+    }
+}
+
+fn force_limits(field: &Field) -> Option<ForceVector> {
+    let mut table = field.table("a table { surge_n, sway_n, yaw_nm }")?;
+    let [surge, sway, yaw] =
+        ["surge_n", "sway_n", "yaw_nm"].map(|key| table.required_number(key, limits::FORCE));
+    table.finish();
+    Some(ForceVector::new(surge?, sway?, yaw?))
+}
+
+/// A list of exactly `N` weights.
+fn weights<const N: usize>(field: &Field, range: Range) -> Option<[f64; N]> {
+    let numbers = field.numbers(range)?;
+    let count = numbers.len();
+    let weights = <[f64; N]>::try_from(numbers).ok();
+    if weights.is_none() {
+        let plural = if count == 1 { "" } else { "s" };
+        field.fault(
+            format_args!("{count} number{plural}"),
+            format_args!("{N} numbers"),
+        );
+    }
+    weights
+}
+
+/// State weights of which at least one is positive: without any, the mission has no effect.
+fn some_weight(field: &Field, weights: [f64; 6]) -> Option<[f64; 6]> {
+    if weights.iter().any(|weight| *weight > 0.0) {
+        return Some(weights);
+    }
+    field.fault(
+        "only zeros, with which the mission counts for nothing",
+        "at least one number above 0",
+    );
+    None
+}

@@ -1,0 +1,485 @@
+//! Scenario files: defaults, every fault with its place, hostile texts.
+
+use nalgebra::Matrix2;
+
+use super::*;
+use crate::frame::mps_from_knots;
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::target::{DomainKind, Motion, Representation};
+use crate::vessel::{ForceVector, StateVector, VesselKind};
+
+const SCENARIO: &str = r#"
+title = "least"
+horizon_s = 400
+[own_ship]
+position = { east_m = 0, north_m = 0 }
+course_deg = 90
+speed_mps = 5
+length_m = 30
+beam_m = 8
+turning_radius_m = 100
+[mission]
+waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1500, north_m = 0 }, { east_m = 1500, north_m = 400 }]
+"#;
+
+const SHIP: &str = r#"
+[[targets]]
+name = "ship"
+position = { east_m = 1500, north_m = 0 }
+course_deg = -90
+speed_kn = 10
+length_m = 60
+beam_m = 12
+"#;
+
+fn paths(text: &str) -> Vec<String> {
+    let faults = Scenario::parse(text).expect_err("faulty");
+    faults.into_iter().map(|fault| fault.path).collect()
+}
+
+#[test]
+fn what_is_left_out_takes_the_defaults_of_the_contract() {
+    let scenario = Scenario::parse(&format!("{SCENARIO}{SHIP}")).expect("valid");
+    let own = &scenario.own_ship;
+    assert_eq!(own.speeds, [2.5, 5.0, 6.0]);
+    assert_eq!(own.safety_margin, 30.0);
+    assert!(own.pose.heading.abs() < 1e-15);
+    assert!(scenario.desired.legs().iter().all(|leg| leg.speed == 5.0));
+    assert!((scenario.time_weight - 25.0).abs() < 1e-12);
+    assert_eq!(scenario.deadline, 5.0);
+    assert_eq!(scenario.search, SearchKind::AStar);
+    assert_eq!(scenario.compliance, Compliance::Shape);
+    let ship = scenario.targets[0].ship().expect("a ship");
+    assert_eq!(ship.speed, mps_from_knots(10.0));
+    assert!((ship.velocity() - Vector::new(-ship.speed, 0.0)).norm() < 1e-12);
+    assert_eq!(
+        (ship.position_std, ship.speed_spread, ship.course_spread),
+        (0.0, 0.0, 0.0)
+    );
+    assert_eq!(ship.domain, DomainKind::Colregs);
+}
+
+#[test]
+fn knots_replace_lists_too() {
+    let text = SCENARIO.replace("turning", "speeds_kn = [12, 0, 6, 6]\nturning")
+        + "leg_speeds_kn = [10, 5]";
+    let scenario = Scenario::parse(&text).expect("valid");
+    assert_eq!(
+        scenario.own_ship.speeds,
+        [0.0, mps_from_knots(6.0), mps_from_knots(12.0)]
+    );
+    assert_eq!(scenario.desired.legs()[1].speed, mps_from_knots(5.0));
+    let mean = scenario.desired.length() / scenario.desired.duration();
+    assert_eq!(scenario.time_weight, mean * mean);
+}
+
+#[test]
+fn explicit_sets_are_taken_as_they_are() {
+    let text = format!(
+        "{SCENARIO}[[targets]]\nname = \"figure 1\"\n\
+         initial_set = {{ vertices_m = [[-10, -5], [10, 5], [-10, 5], [10, -5], [10, 0]] }}\n\
+         velocity_set = {{ vertices_mps = [[1, 0]] }}"
+    );
+    let scenario = Scenario::parse(&text).expect("valid");
+    let Motion::Sets { initial, velocity } = &scenario.targets[0].motion else {
+        panic!("sets");
+    };
+    assert_eq!(initial.vertices().len(), 4);
+    assert_eq!(velocity.vertices(), [Vector::new(1.0, 0.0)]);
+    let dent = text.replace("[10, 0]", "[9, 0]");
+    assert_eq!(paths(&dent), ["targets[0].initial_set.vertices_m[4]"]);
+    let hull = text.replace("velocity_set", "length_m = 3\nvelocity_set");
+    assert_eq!(paths(&hull), ["targets[0].length_m"]);
+}
+
+#[test]
+fn one_mistake_is_one_fault() {
+    for (from, to, path) in [
+        ("title = \"least\"", "", "title"),
+        ("title =", "tilte =", "tilte"),
+        ("horizon_s = 400", "horizon_s = -inf", "horizon_s"),
+        ("horizon_s = 400", "horizon_s = 1e999", "horizon_s"),
+        ("course_deg = 90", "course_deg = 361", "own_ship.course_deg"),
+        ("course_deg = 90", "course = 90", "own_ship.course"),
+        (
+            "speed_mps = 5",
+            "speed_kn = 5\nspeed_mps = 5",
+            "own_ship.speed_kn",
+        ),
+        ("speed_mps = 5", "speed_mps = 1_000", "own_ship.speed_mps"),
+        ("speed_mps = 5", "speed_mps = \"5\"", "own_ship.speed_mps"),
+        ("speed_mps = 5", "", "own_ship.speed_mps"),
+        (
+            "beam_m = 8",
+            "beam_m = 8\nspeeds_mps = []",
+            "own_ship.speeds_mps",
+        ),
+        (
+            "beam_m = 8",
+            "beam_m = 8\nspeeds_mps = [0, 0]",
+            "own_ship.speeds_mps",
+        ),
+        (
+            "beam_m = 8",
+            "beam_m = 8\nspeeds_mps = [-1, 2]",
+            "own_ship.speeds_mps[0]",
+        ),
+        (
+            "_radius_m = 100",
+            "_radius_m = 0",
+            "own_ship.turning_radius_m",
+        ),
+        (
+            "east_m = 1500, north_m = 0 }",
+            "east_m = 0, north_m = 0 }",
+            "mission.waypoints[1]",
+        ),
+        (
+            "[mission]",
+            "[mission]\nleg_speeds_mps = [1]",
+            "mission.leg_speeds_mps",
+        ),
+        (
+            "[mission]",
+            "[mission]\nleg_speeds_mps = [1, 2]\nspeed_kn = 1",
+            "mission.leg_speeds_mps",
+        ),
+        ("[mission]", "[mission]\nspeed_mps = 0", "mission.speed_mps"),
+    ] {
+        assert!(SCENARIO.contains(from), "{from}");
+        assert_eq!(paths(&SCENARIO.replacen(from, to, 1)), [path], "{to}");
+    }
+    for (from, to, path) in [
+        ("\"ship\"", "\" \"", "targets[0].name"),
+        (
+            "beam_m",
+            "speed_spread_mps = -0.1\nbeam_m",
+            "targets[0].speed_spread_mps",
+        ),
+        (
+            "beam_m",
+            "course_spread_deg = 181\nbeam_m",
+            "targets[0].course_spread_deg",
+        ),
+        (
+            "beam_m",
+            "position_std_m = nan\nbeam_m",
+            "targets[0].position_std_m",
+        ),
+        ("beam_m", "domain = \"round\"\nbeam_m", "targets[0].domain"),
+        (
+            "beam_m",
+            "velocity_set = { vertices_mps = [[0, 0]] }\nbeam_m",
+            "targets[0].initial_set",
+        ),
+    ] {
+        let text = format!("{SCENARIO}{}", SHIP.replacen(from, to, 1));
+        assert_eq!(paths(&text)[0], path, "{to}");
+    }
+    assert_eq!(
+        paths(&format!("{SCENARIO}{SHIP}{SHIP}")),
+        ["targets[1].name"]
+    );
+}
+
+#[test]
+fn grammar_comes_first_and_names_its_line() {
+    let faults = Scenario::parse("title = \nhorizon_s = 1").expect_err("no TOML");
+    assert_eq!(faults[0].line, Some(1));
+    assert!(Scenario::parse("a = 1\na = 2").is_err());
+    assert!(Scenario::parse(&"[".repeat(100_000)).is_err());
+}
+
+/// Nothing a file can say may panic: every prefix, and every number replaced by a hostile one.
+#[test]
+fn hostile_text_is_refused_and_never_panics() {
+    let text = format!("{SCENARIO}{SHIP}");
+    for end in 0..text.len() {
+        let _ = Scenario::parse(&text[..end]);
+    }
+    for hostile in [
+        "nan", "-inf", "1e308", "-1e308", "5e-324", "-0.0", "[]", "{}", "\"\"", "true",
+    ] {
+        for (at, _) in text.match_indices(char::is_numeric) {
+            let _ = Scenario::parse(&format!("{}{hostile}{}", &text[..at], &text[at + 1..]));
+        }
+    }
+}
+
+const WITH_SETS: &str = r#"
+title = "least"
+horizon_s = 400
+own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }
+mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1500, north_m = 0 }] }
+[[targets]]
+name = "sets"
+"#;
+const POLYGON: &str = "initial_set = { vertices_m = [[700, 0], [710, 0], [700, 10]] }\n";
+const ELLIPSE: &str = "initial_set = { center_m = [700, 0], shape_m2 = [[9, 1], [1, 4]] }\n";
+const VELOCITIES: &str = "velocity_set = { vertices_mps = [[1, 0], [0, 1]] }\n";
+const ROUND: &str =
+    "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = [[0.1, 0], [0, 0]] }\n";
+
+fn with_sets(sets: &[&str]) -> Result<Scenario, Vec<String>> {
+    Scenario::parse(&format!("{WITH_SETS}{}", sets.concat())).map_err(|faults| {
+        let short = |path: &str| path.replace("targets[0].", "");
+        faults.iter().map(|f| short(&f.path)).collect()
+    })
+}
+
+#[test]
+fn every_kind_is_read() {
+    let ellipses = with_sets(&[ELLIPSE, ROUND]).expect("valid");
+    let Motion::Ellipses { initial, velocity } = &ellipses.targets[0].motion else {
+        panic!("ellipses");
+    };
+    assert!((initial.shape()[(0, 1)] - 1.0).abs() < 1e-12 && velocity.center().y == 1.0);
+    assert!(with_sets(&[ELLIPSE, ROUND, "representation = \"ellipsoid\""]).is_ok());
+    let around = with_sets(&[POLYGON, VELOCITIES, "representation = \"ellipsoid\""]);
+    assert_eq!(
+        around.expect("valid").targets[0].representation,
+        Representation::Ellipsoid
+    );
+    let several =
+        "velocity_sets = [{ until_s = 60, vertices_mps = [[1, 0]] }, { vertices_mps = [[0, 0]] }]";
+    let several = with_sets(&[POLYGON, several]).expect("valid");
+    let Motion::Spells { spells, .. } = &several.targets[0].motion else {
+        panic!("spells");
+    };
+    assert_eq!(spells[0].until, 60.0);
+    assert_eq!(several.targets[0].changes()[0], 60.0);
+    let at = several.targets[0].position_at(100.0);
+    assert!((at.x - (700.0 + 10.0 / 3.0 + 60.0)).abs() < 1e-9);
+}
+
+#[test]
+fn every_mistake_is_one_fault_with_its_place() {
+    for (sets, paths) in [
+        (vec![ELLIPSE, VELOCITIES], vec!["velocity_set"]),
+        (vec![POLYGON, ROUND], vec!["velocity_set"]),
+        (vec![POLYGON], vec!["velocity_set"]),
+        (vec![VELOCITIES], vec!["initial_set"]),
+        (
+            vec![
+                "initial_set = { center_m = [1, 2], shape_m2 = [[9, 1], [2, 4]] }\n",
+                "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = [[1, 2], [2, 1]] }",
+            ],
+            vec!["initial_set.shape_m2", "velocity_set.shape_m2_per_s2"],
+        ),
+        (
+            vec![
+                "initial_set = { center_m = [1, inf], shape_m2 = [[9, 1], [2]] }\n",
+                "velocity_set = { center_mps = [0, 1], shape_m2_per_s2 = 4 }",
+            ],
+            vec![
+                "initial_set.center_m[1]",
+                "initial_set.shape_m2[1]",
+                "velocity_set.shape_m2_per_s2",
+            ],
+        ),
+        (
+            vec![
+                "initial_set = { center_m = [1, 2], shape_m2 = [[9]], vertices_m = [[1, 2]] }\n",
+                ROUND,
+            ],
+            vec!["initial_set.vertices_m", "initial_set.shape_m2"],
+        ),
+        (
+            vec![
+                POLYGON,
+                "velocity_sets = [{ until_s = 60, vertices_mps = [[1, 0]] }, { until_s = 60, vertices_mps = [] }, { until_s = 70, vertices_mps = [[0, 0]] }]",
+            ],
+            vec![
+                "velocity_sets[1].until_s",
+                "velocity_sets[1].vertices_mps",
+                "velocity_sets[2].until_s",
+            ],
+        ),
+        (
+            vec![POLYGON, "velocity_sets = [{ vertices_mps = [[1, 0]] }, {}]"],
+            vec!["velocity_sets[0].until_s", "velocity_sets[1].vertices_mps"],
+        ),
+        (vec![POLYGON, "velocity_sets = []"], vec!["velocity_sets"]),
+        (
+            vec![ELLIPSE, "velocity_sets = [{ vertices_mps = [[1, 0]] }]"],
+            vec!["velocity_sets"],
+        ),
+        (
+            vec![
+                POLYGON,
+                VELOCITIES,
+                "velocity_sets = [{ vertices_mps = [[1, 0]] }]",
+            ],
+            vec!["velocity_set"],
+        ),
+        (
+            vec![ELLIPSE, ROUND, "representation = \"polytope\""],
+            vec!["representation"],
+        ),
+        (
+            vec![
+                POLYGON,
+                "velocity_sets = [{ vertices_mps = [[1, 0]] }]\n",
+                "representation = \"ellipsoid\"",
+            ],
+            vec!["representation"],
+        ),
+        (
+            vec![POLYGON, VELOCITIES, "turn_rate_deg_per_s = 0"],
+            vec!["turn_rate_deg_per_s"],
+        ),
+    ] {
+        let mut found = with_sets(&sets).expect_err("faulty");
+        found.sort();
+        let mut paths = paths.clone();
+        paths.sort();
+        assert_eq!(found, paths, "{sets:?}");
+    }
+}
+
+#[test]
+fn a_ship_that_may_turn_is_no_ellipsoid() {
+    let ship = "position = { east_m = 900, north_m = 0 }\ncourse_deg = 0\nspeed_mps = 4\nlength_m = 50\nbeam_m = 10\n";
+    assert!(with_sets(&[ship, "turn_rate_deg_per_s = 0.1"]).is_ok());
+    let both = [
+        ship,
+        "turn_rate_deg_per_s = 0.1\nrepresentation = \"ellipsoid\"",
+    ];
+    assert_eq!(with_sets(&both).expect_err("faulty"), ["representation"]);
+    assert_eq!(
+        with_sets(&[ship, "turn_rate_deg_per_s = -0.1"]).expect_err("faulty"),
+        ["turn_rate_deg_per_s"]
+    );
+}
+
+/// Eqs. (10), (11), (20) and (21) are in the files of the paper's figures as they are printed; figure 6 has three greatest speeds,
+/// figure 8 the paper's shape.
+#[test]
+fn the_scenes_of_the_paper_have_its_numbers() {
+    let read = |name: &str| {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let file = folder.join(format!("scenarios/paper/{name}.toml"));
+        Scenario::read(&file).expect(name)
+    };
+    let polygon = |points: &[(f64, f64)]| {
+        let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+        ConvexPolygon::from_vertices(&points).expect("convex")
+    };
+    let polytope = Motion::Sets {
+        initial: polygon(&[(-10.0, -5.0), (-10.0, 5.0), (10.0, 5.0), (10.0, -5.0)]),
+        velocity: polygon(&[(0.8, 0.0), (1.0, -0.25), (1.2, 0.0), (1.0, 0.25)]),
+    };
+    let ellipse = |x: f64, [a, b]: [f64; 2]| {
+        let shape = Matrix2::new(a * a, 0.0, 0.0, b * b);
+        Ellipse::new(Vector::new(x, 0.0), shape).expect("positive definite")
+    };
+    let same = |a: &Ellipse, b: &Ellipse| {
+        (a.center() - b.center()).norm() < 1e-12 && (a.shape() - b.shape()).amax() < 1e-12
+    };
+    let is_ellipsoid = |motion: &Motion| match motion {
+        Motion::Ellipses { initial, velocity } => {
+            same(initial, &ellipse(0.0, [10.0, 5.0])) && same(velocity, &ellipse(1.0, [0.2, 0.25]))
+        }
+        _ => false,
+    };
+    for name in ["figure_1", "figure_4", "figure_5"] {
+        assert_eq!(read(name).targets[0].motion, polytope, "{name}");
+    }
+    assert!(is_ellipsoid(&read("figure_2").targets[0].motion));
+    let both = read("figure_4");
+    assert!(is_ellipsoid(&both.targets[1].motion));
+    assert_eq!(both.own_ship.pose.position, Vector::new(50.0, 50.0));
+    for (name, speed) in [
+        ("figure_6", 5.0),
+        ("figure_6_slower", 4.0),
+        ("figure_6_slowest", 3.0),
+    ] {
+        let scene = read(name);
+        assert_eq!(
+            (scene.planner, scene.own_ship.max_speed()),
+            (PlannerKind::PathTime, speed)
+        );
+        assert_eq!(scene.targets.len(), 3);
+    }
+    for name in ["7", "8_overtaking", "8_head_on", "8_stand_on", "8_give_way"] {
+        let scene = read(&format!("figure_{name}"));
+        let ship = scene.targets[0].ship().expect("a ship");
+        assert_eq!(ship.domain, DomainKind::Paper, "{name}");
+    }
+}
+
+const OPTIMAL_CONTROL: &str = r#"
+title = "least"
+horizon_s = 100
+own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 0.2, length_m = 1.255, beam_m = 0.29, turning_radius_m = 2 }
+mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 20, north_m = 0 }] }
+[planner]
+kind = "optimal-control"
+"#;
+
+fn settings(table: &str) -> Result<ControlSettings, Vec<String>> {
+    let text = format!("{OPTIMAL_CONTROL}[planner.optimal_control]\n{table}");
+    let faults = |faults: Vec<Fault>| faults.into_iter().map(|f| f.path).collect();
+    Scenario::parse(&text).map(|s| s.control).map_err(faults)
+}
+
+#[test]
+fn the_vessel_is_as_long_as_own_ship() {
+    for length in [0.5, 1.255, 30.0, 300.0] {
+        let text = OPTIMAL_CONTROL.replace("1.255", &length.to_string());
+        let found = Scenario::parse(&text).expect("valid").control;
+        let vessel = VesselKind::CyberShip2;
+        assert_eq!(found, ControlSettings::at_length(vessel, length));
+    }
+}
+
+#[test]
+fn what_is_left_out_is_that_of_the_ship() {
+    let default = ControlSettings::of(VesselKind::CyberShip2);
+    assert_eq!(settings(""), Ok(default));
+    assert_eq!(default.force_limits, ForceVector::new(2.0, 1.5, 1.5));
+    // the same by another word
+    let full = "vessel = \"cybership2-full\"";
+    assert_eq!(settings(full), Ok(default));
+    let given = "intervals = 80\nforce_limits = { surge_n = 1, sway_n = 0.5, yaw_nm = 0.25 }\n\
+                 state_weights = [1, 2, 3, 4, 5, 6]\ncontrol_weights = [7, 8, 9]";
+    let given = settings(given).expect("valid");
+    assert_eq!(given.intervals, 80);
+    assert_eq!(given.force_limits, ForceVector::new(1.0, 0.5, 0.25));
+    assert_eq!(
+        given.state_weights,
+        StateVector::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    );
+    assert_eq!(given.force_weights, ForceVector::new(7.0, 8.0, 9.0));
+}
+
+#[test]
+fn one_mistake_in_the_control_table_is_one_fault() {
+    for (table, path) in [
+        ("vessel = \"tanker\"", "vessel"),
+        ("intervals = 0", "intervals"),
+        ("intervals = 12.5", "intervals"),
+        ("intervals = 2001", "intervals"),
+        (
+            "force_limits = { surge_n = 0, sway_n = 1, yaw_nm = 1 }",
+            "force_limits.surge_n",
+        ),
+        (
+            "force_limits = { surge_n = 1, sway_n = -1, yaw_nm = 1 }",
+            "force_limits.sway_n",
+        ),
+        (
+            "force_limits = { surge_n = 1, sway_n = 1 }",
+            "force_limits.yaw_nm",
+        ),
+        ("state_weights = [1, 1, 1, 1, 1]", "state_weights"),
+        ("state_weights = [1, 1, -1, 1, 1, 1]", "state_weights[2]"),
+        ("state_weights = [0, 0, 0, 0, 0, 0]", "state_weights"),
+        ("control_weights = [1, 0, 1]", "control_weights[1]"),
+        ("control_weights = [1, nan, 1]", "control_weights[1]"),
+        ("weights = [1]", "weights"),
+    ] {
+        let path = format!("planner.optimal_control.{path}");
+        assert_eq!(settings(table), Err(vec![path]), "{table}");
+    }
+}
