@@ -1,4 +1,4 @@
-//! Files that are whole or not there.
+//! Atomic writing of files.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,9 +8,9 @@ use std::sync::Mutex;
 
 use tempfile::NamedTempFile;
 
-/// Writes `contents` under a temporary name beside `file` and renames it, so that a crash leaves the old file or the new one, never
-/// half of it. The folder must exist. A link stays one, and what it leads to is replaced; what is no regular file, a device
-/// or a pipe, is written to and never replaced.
+/// Writes `contents` to a temporary file beside `file` and renames it, so that a crash leaves the
+/// old or the new file, never half of it. The folder must exist. The target of a link is replaced,
+/// not the link; devices and pipes are written to and never replaced.
 pub(crate) fn write_whole(file: &Path, contents: &[u8]) -> io::Result<()> {
     let file = match fs::metadata(file) {
         Ok(there) if there.is_dir() => file.to_owned(),
@@ -37,23 +37,23 @@ pub(crate) fn write_whole(file: &Path, contents: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Begins the names of temporary files.
+/// Prefix of temporary files.
 const PREFIX: &str = ".searoom-";
 
-/// A temporary file with a lock that tells others that it is being written. One of them may have taken it for left over before it
-/// was locked, then it is gone.
+/// A locked temporary file: the lock tells other processes that it is in use. One of them may
+/// remove it as left over before it is locked; then another is made.
 fn locked(make: impl Fn() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
     loop {
         let temporary = make()?;
-        // where nothing can be locked nothing is removed
+        // on a system without locks nothing is removed
         if temporary.as_file().lock().is_err() || temporary.path().exists() {
             return Ok(temporary);
         }
     }
 }
 
-/// Removes the temporary files of a folder that runs have left that were killed: nobody holds their lock. Each folder is
-/// looked through once; what cannot be removed stays.
+/// Removes temporary files that killed processes left in a folder: nobody holds their lock. Each
+/// folder is searched once.
 fn remove_left_over(folder: &Path) {
     static LOOKED_THROUGH: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let known = LOOKED_THROUGH
@@ -69,14 +69,14 @@ fn remove_left_over(folder: &Path) {
             if let Ok(left) = left
                 && left.try_lock().is_ok()
             {
-                // when it cannot be removed it stays
+                // a file that cannot be removed stays
                 let _ = fs::remove_file(entry.path());
             }
         }
     }
 }
 
-/// The folder that a file is in.
+/// The folder of a file.
 pub(crate) fn folder_of(file: &Path) -> PathBuf {
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
@@ -84,7 +84,7 @@ pub(crate) fn folder_of(file: &Path) -> PathBuf {
     }
 }
 
-/// Standard output by name, which may lead to a regular file that others are writing to.
+/// Device files; `/dev/stdout` may lead to a regular file that others write to.
 fn is_of_the_system(file: &Path) -> bool {
     file.starts_with("/dev") || file.starts_with("/proc")
 }
@@ -107,8 +107,8 @@ mod tests {
         assert!(write_whole(&folder.path().join("no/such"), b"").is_err());
     }
 
-    /// A run that is killed while it writes leaves its temporary file; the next one that writes there removes it, but not that of a
-    /// run that still writes.
+    /// The next run removes the temporary file of a killed run, but not that of a run that still
+    /// writes.
     #[test]
     fn what_killed_runs_have_left_is_removed_and_what_is_written_is_not() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,25 +1,23 @@
-//! What a name or a title may be, and how a text of somebody else is shown.
+//! Allowed names and titles, and safe display of untrusted texts.
 
-/// In words: what [`is_line`] takes.
+/// Texts that [`is_line`] accepts, in words.
 pub(crate) const LINE: &str = "a text of 1 to 200 characters on one line";
 
-/// Characters of a line.
+/// Most characters of a line.
 const CHARS: usize = 200;
 
-/// True for a text that is not blank, without control characters, not longer than a line.
+/// True for a text of allowed length that is not blank and has no control characters.
 pub(crate) fn is_line(text: &str) -> bool {
     !text.trim().is_empty() && !text.chars().any(is_unprintable) && text.chars().count() <= CHARS
 }
 
-/// Control characters, and those that break a line or turn its direction.
+/// True for control characters and for those that break a line or change its direction.
 pub(crate) fn is_unprintable(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{061c}' | '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// A text of somebody else on one line: what a terminal would act on is shown as its code, `\u001b`, as JSON has it.
-///
-/// # Examples
+/// An untrusted text on one line: control characters appear as their codes, `\u001b` as in JSON.
 ///
 /// ```
 /// use searoom::report::printable;
@@ -31,7 +29,7 @@ pub fn printable(text: &str) -> String {
     shown(text, |_| false)
 }
 
-/// [`printable`] of a text of several lines, and columns.
+/// [`printable`] for a text with several lines and tabs.
 pub fn printable_lines(text: &str) -> String {
     shown(text, |c| matches!(c, '\n' | '\t'))
 }

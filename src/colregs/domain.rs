@@ -1,5 +1,5 @@
-//! Shapes of the initial set: where a target's ship may be, with what own ship is to keep of her
-//! folded in, and what the rules of the road add to it (docs/colregs.md 3.2-3.3).
+//! Ship domains: the initial set of a target for own ship's centre, enlarged so that the cheapest
+//! plan follows the collision regulations (docs/colregs.md 3.2-3.3).
 
 use super::encounter::{Risk, offset_from_wake, risk_distance};
 use super::rules::ClosedSide;
@@ -9,41 +9,41 @@ use crate::target::{DomainKind, ShipTrack};
 use crate::tolerance;
 use crate::vessel::OwnShip;
 
-/// The two initial sets of one target, for own ship's centre, metres.
+/// Initial sets of one target for own ship's centre, metres: hard set and ship domain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shapes {
-    /// Hull and own ship, each on any heading it may have, safety margin, position uncertainty: safety is claimed on this.
+    /// Hulls on every possible heading, safety margin and position uncertainty: the claim of
+    /// safety.
     pub hard: ConvexPolygon,
-    /// `hard` and the domain around it; contains `hard`.
+    /// The ship domain; contains `hard`.
     pub shaped: ConvexPolygon,
-    /// The same before it was drawn back to let own ship start outside.
+    /// The ship domain before it was reduced to let own ship start outside.
     pub full: ConvexPolygon,
-    /// Metres by which the shape was drawn back to let own ship start outside: the largest distance
-    /// of a point of the full shape from the one used. 0 when it was not.
+    /// Largest distance of a point of `full` from `shaped`, metres; 0 if it was not reduced.
     pub reduced: f64,
-    /// Metres from the hard set to the farthest point of the full shape: what giving it up altogether
-    /// would draw back.
+    /// Largest distance of a point of `full` from `hard`, metres.
     pub reach: f64,
 }
 
 /// The initial sets of a tracked ship, docs/colregs.md 3.3:
 ///
-/// - hull = [`ShipTrack::outer_hull`], on every heading that she may have until `horizon` seconds;
+/// - hull = [`ShipTrack::outer_hull`], on every possible heading until `horizon` seconds;
 /// - hard = hull ⊕ disc(own half-diagonal + safety margin + three standard deviations);
 /// - shaped = (conv(base ∪ hull) ⊕ `[0, e]`) ⊕ the same disc.
 ///
-/// The disc is an outer 16-gon aligned with the target. The base holds the hull before it is swept, so
-/// that the shape contains the hard set by construction and, the base being symmetric, its asymmetry
-/// is exactly `e . n_bad`, hull or not. The base is sized by the target's length alone; margin and own
-/// size enter once, with the disc. `risk` is the first instant of risk, for the "colregs" domain only:
-/// its `e` is [`sweep`]. A target without risk, at rest, or to be stood on for, keeps the bare base.
+/// The disc is an outer 16-gon aligned with the target. The base contains the hull before it is
+/// swept, so the domain contains the hard set by construction. The base is symmetric, so the
+/// asymmetry of the domain is exactly `e . n_bad`. The base is sized by the target's length alone;
+/// margin and own size enter once, with the disc. `risk` is the first instant of risk, for the
+/// "colregs" domain only: its `e` is [`sweep`]. A target without risk, at rest, or to stand on for,
+/// has the bare base.
 ///
-/// Where the shape, but not the hard set, contains own ship's start, it is drawn back just enough to
-/// leave her [`tolerance::START_M`] outside: first `e` shrinks, then the base toward the hull. A
-/// start inside the hard set changes nothing: there is no plan to be had. A value that is not finite makes
-/// the set the origin; checked input has none.
+/// If the domain, but not the hard set, contains own ship's start, it is reduced until own ship is
+/// [`tolerance::START_M`] outside: first `e` shrinks, then the base toward the hull. A start inside
+/// the hard set changes nothing: there is no plan. A value that is not finite makes the set the
+/// origin; checked input has none.
 pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
-    // about the target: far from the origin digits of every edge would be lost
+    // relative to the target: far from the origin every edge would lose digits
     let place = target.pose.position;
     let about = |pose: Pose| Pose::new(pose.position - place, pose.heading);
     let own = &OwnShip {
@@ -63,7 +63,7 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f
     }
 }
 
-/// The same of a target at the origin.
+/// [`shapes`] for a target at the origin.
 fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
     let around = outer_disc(
         own.hull.half_diagonal()
@@ -123,8 +123,8 @@ fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon:
     }
 }
 
-/// docs/colregs.md 3.2: passing on the side that the rules forbid asks for at least two risk distances more than on the other, where
-/// the margin is kept. True of a shape that is not swept, and of one that has no size in numbers.
+/// docs/colregs.md 3.2: passing on the forbidden side takes at least two risk distances more than
+/// on the other, where the margin is kept. True for a domain that is not swept or not finite.
 fn keeps_the_design_inequality(
     own: &OwnShip,
     target: &ShipTrack,
@@ -142,14 +142,14 @@ fn keeps_the_design_inequality(
 }
 
 impl Shapes {
-    /// What is left of the shape when it is drawn back toward the hard set, all around at once: `kept` of 1 is
-    /// `shaped`, 0 is `hard`. Convex, nested and between the two. O(n + m).
-    pub fn drawn_back(&self, kept: f64) -> ConvexPolygon {
-        let (hard, shaped) = (self.hard.scaled(1.0 - kept), self.shaped.scaled(kept));
+    /// The ship domain reduced toward the hard set: `scale` 1 gives `shaped`, 0 gives `hard`.
+    /// Convex and nested. O(n + m).
+    pub fn scaled(&self, scale: f64) -> ConvexPolygon {
+        let (hard, shaped) = (self.hard.scaled(1.0 - scale), self.shaped.scaled(scale));
         hard.minkowski_sum(&shaped)
     }
 
-    /// Metres by which a set is short of the full shape: the largest distance of a point of that from it.
+    /// Largest distance of a point of the full domain from a set, metres.
     pub fn cut(&self, used: &ConvexPolygon) -> f64 {
         beyond(&self.full, used)
     }
@@ -163,7 +163,7 @@ fn beyond(set: &ConvexPolygon, other: &ConvexPolygon) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// What a shape is made of, in the plane.
+/// Parts of a ship domain.
 struct Shape {
     base: ConvexPolygon,
     hull: ConvexPolygon,
@@ -172,8 +172,8 @@ struct Shape {
 }
 
 impl Shape {
-    /// The shape with the base grown from the hull (0) to its full size (1), and the given fraction of
-    /// the sweep. Nested: more of either contains less of it.
+    /// The domain with its base between the hull (0) and the full size (1), and a fraction of the
+    /// sweep. Increasing in both.
     fn at(&self, grown: f64, swept: f64) -> ConvexPolygon {
         let body = if grown < 1.0 {
             let (base, hull) = (self.base.scaled(grown), self.hull.scaled(1.0 - grown));
@@ -228,8 +228,7 @@ fn hull_or_origin(points: &[Vector]) -> ConvexPolygon {
     ConvexPolygon::hull(points).unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()))
 }
 
-/// The largest fraction in `[0, 1]` that satisfies a condition which, once lost, stays lost; by
-/// bisection to rounding. 0 when none does.
+/// Largest fraction in `[0, 1]` that satisfies a monotonic condition, by bisection; 0 if none does.
 fn largest(holds: impl Fn(f64) -> bool) -> f64 {
     const STEPS: usize = 40;
     let (mut low, mut high) = (0.0, 1.0);
@@ -244,25 +243,24 @@ fn largest(holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// How much the sweep exceeds what the design inequality needs: covers a planner that does not find
-/// the exact optimum.
+/// Relative excess of the sweep over the design inequality, for a planner that does not find the
+/// exact optimum.
 const SWEEP_EXCESS: f64 = 0.1;
 
-/// Radians. Own ship this far off the wake of the ship that she overtakes passes on that side (5°).
+/// Radians, 5°: own ship this far off the wake of the ship that it overtakes passes on that side.
 const OFF_THE_WAKE: f64 = std::f64::consts::PI / 36.0;
 
-/// `e` of docs/colregs.md 3.3, metres: which way, and how far, the base is swept. Passing on the side that
-/// the rules forbid then costs `|e| = 2 (1 + 0.1)` risk distances more of displacement than on the other,
-/// so that the cheaper side is the compliant one for every miss distance that is a risk (3.2).
+/// Vector `e` of docs/colregs.md 3.3 by which the base is swept, metres. Passing on the forbidden
+/// side then takes `|e| = 2 (1 + 0.1)` risk distances more than on the other, so that the compliant
+/// side is cheaper for every miss distance that is a risk (3.2).
 ///
-/// The direction is the normal of the relative velocity at the first instant of risk on the bad side:
-/// the target's starboard side in a head-on or port-to-port meeting; ahead of her when giving way; when
-/// overtaking her starboard side, unless own ship is more than 5° to starboard of her wake, then her
-/// port side. Zero for every other role.
+/// The direction is the normal of the relative velocity at the first instant of risk on the closed
+/// side ([`RoleDuties::closed_side`](super::RoleDuties)). When overtaking, that is the target's
+/// starboard side, or its port side if own ship is more than 5° to starboard of its wake.
 pub fn sweep(own: &OwnShip, target: &ShipTrack, risk: &Risk) -> Vector {
     let ahead = direction(target.pose.heading);
     let port = to_port(ahead);
-    // the bad side, and what decides when the normal has no part in it
+    // the closed side, and the direction that decides if the normal is perpendicular to it
     let (bad, otherwise) = match risk.role.duties().closed_side {
         ClosedSide::Starboard => (-port, ahead),
         ClosedSide::Ahead => (ahead, -port),
@@ -282,8 +280,8 @@ pub fn sweep(own: &OwnShip, target: &ShipTrack, risk: &Risk) -> Vector {
     normal * toward.signum() * (2.0 * (1.0 + SWEEP_EXCESS) * risk_distance(own, target))
 }
 
-/// A bevelled box about a ship, in her lengths: how far it reaches, and the fraction of the side reach
-/// to which it is bevelled at the bow and at the stern.
+/// A bevelled box about a ship, in ship lengths: its reach to each side, and the fraction of the
+/// side reach that is left at bow and stern.
 struct BevelledBox {
     fore: f64,
     aft: f64,
@@ -295,8 +293,8 @@ struct BevelledBox {
 
 impl BevelledBox {
     /// The symmetric base of the "colregs" domain: two lengths ahead and astern, one and a half
-    /// abeam. The bevel leans by a multiple of 22.5°, like the sides of the disc that is added: the
-    /// sum has 16 edges instead of 20. The safety margin is not in here, it is in that disc.
+    /// abeam. The bevel leans by a multiple of 22.5°, like the sides of the disc that is added, so
+    /// the sum has 16 edges instead of 20. The disc contains the safety margin.
     fn symmetric() -> Self {
         let (along, abeam) = (2.0, 1.5);
         let bevel = 1.0 - (std::f64::consts::PI / 8.0).tan() * (along / 2.0) / abeam;

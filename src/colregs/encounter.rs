@@ -1,79 +1,53 @@
-//! Encounters, judged once along the undisturbed desired trajectory: docs/colregs.md 1.3, "when planning once".
+//! Encounters along the desired trajectory, for planning once (docs/colregs.md 1.3).
 
 use super::role::{Role, SteadyShip, raw_role};
+use super::thresholds::RiskLimits;
 use crate::frame::{Pose, Vector, cross, heading_of, relative_bearing, wrap};
 use crate::target::{Motion, ShipTrack, Target};
 use crate::trajectory::{DesiredLeg, DesiredTrajectory};
 use crate::vessel::OwnShip;
 
-/// m/s. Below this relative speed two ships keep their distance.
+/// m/s: below this relative speed the distance of two ships does not change.
 const NO_RELATIVE_SPEED: f64 = 1e-9;
 
-/// A target as own ship meets it, judged from two motions.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::colregs::{Encounter, Role, encounter};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let met: Encounter = encounter(&scenario.own_ship, &scenario.desired, &scenario.targets[0], scenario.horizon);
-/// assert_eq!(met.role, Role::GiveWay);
-/// assert!((met.undisturbed_tcpa - 150.0).abs() < 1e-3 && met.undisturbed_dcpa < 0.0, "the hulls would meet");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Own ship's role toward a target, and their closest approach on the desired trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Encounter {
     /// Own ship's role.
     pub role: Role,
-    /// Least distance of the hulls along the undisturbed desired trajectory, metres; negative in overlap.
+    /// Least distance of the hulls along the desired trajectory, metres; negative in overlap.
     pub undisturbed_dcpa: f64,
-    /// And when, seconds.
+    /// Time of the least distance, seconds.
     pub undisturbed_tcpa: f64,
 }
 
-/// The first instant at which Rule 7 sees risk.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::colregs::{Risk, Role, first_risk, risk_distance};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let ferry = scenario.targets[0].ship().expect("a ship");
-/// let risk: Risk = first_risk(&scenario.own_ship, &scenario.desired, ferry, scenario.horizon).expect("a collision");
-/// assert_eq!((risk.role, risk.time), (Role::GiveWay, 0.0));
-/// assert!(risk_distance(&scenario.own_ship, ferry) >= 2.0 * 60.0);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// First instant of risk of collision by Rule 7.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Risk {
-    /// Own ship's role then; never [`Role::None`] unless she is at rest.
+    /// Own ship's role then; [`Role::None`] only at rest.
     pub role: Role,
     /// Seconds.
     pub time: f64,
-    /// Own ship on the desired trajectory then.
+    /// Own ship then, on the desired trajectory.
     pub own: SteadyShip,
-    /// The target on its nominal track then.
+    /// The target then, on its nominal track.
     pub target: SteadyShip,
 }
 
-/// Metres. Two centres that will pass nearer than this are at risk: twice the longer ship, or half of
-/// own safety margin where that is more (docs/colregs.md 1.3).
+/// Metres: two centres that will pass nearer than this are at risk. Twice the longer ship, or half
+/// of own safety margin if that is more (docs/colregs.md 1.3).
 pub fn risk_distance(own: &OwnShip, target: &ShipTrack) -> f64 {
-    (2.0 * own.hull.length.max(target.hull.length)).max(0.5 * own.safety_margin)
+    (RiskLimits::STANDARD.lengths * own.hull.length.max(target.hull.length))
+        .max(0.5 * own.safety_margin)
 }
 
-/// The first instant of risk along the undisturbed desired trajectory against the nominal track, for
-/// planning once (docs/colregs.md 1.3): the distance shrinks, and two ships that held course and speed
-/// from that instant would pass within [`risk_distance`] and `horizon` seconds. Looked for from 0 to
-/// the horizon or the desired arrival, whichever is first. Own ship is where the desired trajectory
-/// has her, wherever she starts.
+/// First instant of risk along the desired trajectory against the nominal track (docs/colregs.md
+/// 1.3): the distance shrinks, and two ships that hold course and speed will pass within
+/// [`risk_distance`] and `horizon` seconds. Searched from 0 to the horizon or the desired arrival,
+/// whichever is first. Own ship is on the desired trajectory, wherever it starts.
 ///
-/// Closed form: on a leg the relative velocity is constant, hence also the distance at CPA. O(legs).
-/// A leg with a value that is not finite has no risk: the sets, not the role, carry safety.
+/// Closed form: on a leg the relative velocity is constant, and so is the distance at the closest
+/// approach. O(legs). A leg that is not finite has no risk: safety rests on the sets, not the role.
 pub fn first_risk(
     own: &OwnShip,
     desired: &DesiredTrajectory,
@@ -110,8 +84,8 @@ pub fn first_risk(
     })
 }
 
-/// The encounter of own ship on the undisturbed desired trajectory with one target. Explicit sets
-/// have no ship in them and so no role; the distance is then from own position to the set.
+/// Encounter of own ship on the desired trajectory with one target. Explicit sets have no role; the
+/// distance is then from own position to the set.
 pub fn encounter(
     own: &OwnShip,
     desired: &DesiredTrajectory,
@@ -134,7 +108,7 @@ pub fn encounter(
         let position = |time: f64| leg.start + leg.direction * (leg.speed * (time - from));
         let closest = match &target.motion {
             Motion::Ship(ship) => {
-                // the hulls keep their headings: their difference only translates
+                // the headings are constant: the Minkowski difference of the hulls only translates
                 let heading = Pose::new(Vector::zeros(), heading_of(leg.direction));
                 let other = Pose::new(Vector::zeros(), ship.pose.heading);
                 let both = ship
@@ -175,8 +149,7 @@ pub fn encounter(
     found
 }
 
-/// The angle in `[-pi, pi]` by which own ship lies off the target's wake, positive to the target's
-/// starboard side.
+/// Angle in `[-pi, pi]` of own ship off the target's wake, positive to the target's starboard side.
 pub(super) fn offset_from_wake(risk: &Risk) -> f64 {
     let aspect = relative_bearing(&risk.target.pose, risk.own.pose.position);
     -wrap(aspect - std::f64::consts::PI)
@@ -197,9 +170,9 @@ struct Closest {
     time: f64,
 }
 
-/// The least value of a convex function on an interval by golden section, to about 1e-9 of it; of
-/// equal values the first that was seen. The distance of two convex sets that move steadily is convex
-/// in time, overlap included.
+/// Least value of a convex function on an interval by golden section, to about 1e-9 of the
+/// interval; among equal values the first one. The distance of two convex sets in steady motion is
+/// convex in time, overlap included.
 fn least(from: f64, until: f64, distance: impl Fn(f64) -> f64) -> Closest {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     const STEPS: usize = 48;
@@ -394,7 +367,8 @@ mod tests {
         let desired = line(&[(0.0, 0.0), (600.0, 0.0)], 6.0);
         let found = encounter(&own_ship(), &desired, &target, 400.0);
         assert_eq!(found.role, Role::None);
-        // past its growing corner, which comes nearer still: own way relative to the corner is a line
+        // past its growing corner, which comes nearer still: own way relative to the corner is a
+        // line
         let (way, corner) = (Vector::new(5.5, 0.5), Vector::new(310.0, 90.0));
         let exact = cross(way, corner) / way.norm();
         assert!((found.undisturbed_dcpa - exact).abs() < 1e-6, "{found:?}");

@@ -1,5 +1,5 @@
-//! The collision regulations: encounters and roles, the duties of each role, ship domains that answer
-//! them, and the assessment of own ship's compliance.
+//! The collision regulations: encounters and roles, the duties of each role, ship domains that
+//! answer them, and the assessment of own ship's compliance.
 //!
 //! A new role needs its case in [`Role`] and in the conditions of [`role_within`], and its row in
 //! [`Role::duties`], which planner, ship domain and scores read.

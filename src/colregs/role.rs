@@ -91,10 +91,11 @@ impl SteadyShip {
     }
 }
 
-/// Role of `own` toward `target` by geometry alone, whether or not there is risk: `raw(own, obs)` of
-/// docs/colregs.md 1.3. It is an ordered list, so that every state has one role and the two ships
-/// agree: head-on/head-on, give-way/stand-on, overtaking/overtaken, both-give-way twice, port-to-port
-/// twice, and none twice in line without closing. A mirrored state has the mirrored role.
+/// Role of `own` toward `target` by geometry alone, whether or not there is risk: `raw(own, obs)`
+/// of docs/colregs.md 1.3. It is an ordered list, so that every state has one role and the two
+/// ships agree: head-on/head-on, give-way/stand-on, overtaking/overtaken, both-give-way twice,
+/// port-to-port twice, and none twice in line without closing. A mirrored state has the mirrored
+/// role.
 ///
 /// `None` if a number is not finite or the centres coincide: the caller must claim nothing. An own
 /// ship at rest has no duty of Rules 13 to 17: [`Role::None`].
@@ -120,7 +121,8 @@ pub fn role_within(own: &SteadyShip, target: &SteadyShip, sectors: &Sectors) -> 
     let closing = offset.dot(&(own.velocity() - target.velocity())) / range > sectors.closing;
     let overtaking = closing && aspect.abs() > sectors.abaft_the_beam;
     let overtaken = closing && bearing.abs() > sectors.abaft_the_beam;
-    // two ships astern of each other open; the tie is decided all the same, so that the list is total
+    // two ships astern of each other open; the tie is decided all the same, so that the list is
+    // total
     let lead = own
         .speed
         .total_cmp(&target.speed)
@@ -252,8 +254,8 @@ pub(super) mod tests {
         ]
     }
 
-    /// Each role by its own condition, in no order: a second reading of docs/colregs.md 1.3 from angles
-    /// that are found another way.
+    /// Each role by its own condition, in no order: a second reading of docs/colregs.md 1.3 from
+    /// angles that are found another way.
     fn is(role: Role, own: &SteadyShip, other: &SteadyShip) -> bool {
         let seen = |from: &SteadyShip, of: &SteadyShip| {
             let p = of.pose.position - from.pose.position;

@@ -1,24 +1,26 @@
-//! The collision regulations as a table: the duties of own ship in each role, and toward all targets.
+//! The collision regulations as a table: the duties of own ship in each role, and toward all
+//! targets.
 
 use super::role::{Role, SteadyShip};
 use super::thresholds::{MonitorLimits, ScoreLimits};
 use crate::frame::Side;
 
-/// Radians, 30°: a smaller alteration of course is not readily apparent, Rule 8(b) (docs/colregs.md 2.2).
+/// Radians, 30°: a smaller alteration of course is not readily apparent, Rule 8(b) (docs/colregs.md
+/// 2.2).
 pub const APPARENT_TURN: f64 = ScoreLimits::STANDARD.apparent;
 
 /// Fraction of the speed before: a reduction to this or less is readily apparent, Rule 8(b).
 pub const APPARENT_SPEED: f64 = 0.5;
 
-/// Least seconds at reduced speed, so that it is seen. A choice of ours: at half of 5 m/s a ship makes
-/// good 75 m less in this time.
+/// Least seconds at reduced speed, so that it is seen. A choice of ours: at half of 5 m/s a ship
+/// makes good 75 m less in this time.
 pub const APPARENT_TIME: f64 = 30.0;
 
 /// Radians, 2°: a heading this near to a course is on it.
 pub const ON_COURSE: f64 = ScoreLimits::STANDARD.steady;
 
-/// Radians, 20°: more than [`MOST_SMALL_TURNS`] smaller turns are a succession of small alterations,
-/// Rule 8(b).
+/// Radians, 20°: more than [`MOST_SMALL_TURNS`] smaller turns are a succession of small
+/// alterations, Rule 8(b).
 pub const SMALL_TURN: f64 = MonitorLimits::STANDARD.turn;
 
 /// See [`SMALL_TURN`].

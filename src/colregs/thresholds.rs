@@ -304,8 +304,8 @@ impl Thresholds {
         Self::all().iter().find(|t| t.name == name)
     }
 
-    /// Reads a TOML file of thresholds (docs/rules.md). With `like = "NAME"` absent keys are those of
-    /// a published set. The error holds every fault of the file.
+    /// Reads a TOML file of thresholds (docs/rules.md). With `like = "NAME"` absent keys are those
+    /// of a published set. The error holds every fault of the file.
     pub fn read(file: &Path) -> Result<Self, InputError> {
         let text = read_text(file, FILE_MEBIBYTES, "a file of thresholds")?;
         Self::parse(&text).map_err(|faults| InputError::faults(file, faults))

@@ -215,7 +215,7 @@ impl<'a> Field<'a> {
     /// The number here, if it is one, without a fault otherwise.
     pub(crate) fn any_number(&self) -> Option<f64> {
         match self.node.value {
-            Value::Number(number, _) => Some(number),
+            Value::Number(number) => Some(number),
             _ => None,
         }
     }

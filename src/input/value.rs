@@ -24,8 +24,7 @@ pub(crate) struct Node {
 pub(super) enum Value {
     Null,
     Bool(bool),
-    /// The number and its spelling in the file.
-    Number(f64, String),
+    Number(f64),
     Text(String),
     Date(String),
     List(Vec<Node>),
@@ -75,12 +74,25 @@ impl Node {
         match &self.value {
             Value::Null => "null".to_owned(),
             Value::Bool(truth) => truth.to_string(),
-            Value::Number(_, spelling) => spelling.clone(),
+            Value::Number(number) => shown(*number),
             Value::Text(text) => format!("the text {}", abbreviated(text)),
             Value::Date(date) => format!("the date {date}"),
             Value::List(list) => format!("a list of {}", list.len()),
             Value::Table(_) => "a table".to_owned(),
         }
+    }
+}
+
+/// A number as a message shows it: `3`, `2.5`, `1e308`, `nan`.
+fn shown(number: f64) -> String {
+    /// Beyond, a whole number has more digits than are exact.
+    const EXACT: f64 = 1e15;
+    if number.is_nan() {
+        "nan".to_owned()
+    } else if number.fract() == 0.0 && number.abs() < EXACT {
+        format!("{number:.0}")
+    } else {
+        format!("{number:?}")
     }
 }
 
@@ -120,16 +132,16 @@ fn table_of(table: &DeTable, line: &impl Fn(usize) -> usize) -> BTreeMap<String,
 }
 
 fn node_of(value: &Spanned<DeValue>, line: &impl Fn(usize) -> usize) -> Node {
-    let number =
-        |value: Option<f64>, spelling: String| Value::Number(value.unwrap_or(f64::NAN), spelling);
     Node {
         value: match value.get_ref() {
             DeValue::String(text) => Value::Text(text.to_string()),
             DeValue::Integer(integer) => {
-                let value = i128::from_str_radix(integer.as_str(), integer.radix());
-                number(value.ok().map(|value| value as f64), integer.to_string())
+                let number = i128::from_str_radix(integer.as_str(), integer.radix());
+                // an integer that is too large is out of every range
+                Value::Number(number.map_or(f64::INFINITY, |number| number as f64))
             }
-            DeValue::Float(float) => number(float.as_str().parse().ok(), float.to_string()),
+            // a float of TOML is one of Rust
+            DeValue::Float(float) => Value::Number(float.as_str().parse().unwrap_or(f64::NAN)),
             DeValue::Boolean(truth) => Value::Bool(*truth),
             DeValue::Datetime(date) => Value::Date(date.to_string()),
             DeValue::Array(list) => Value::List(list.iter().map(|v| node_of(v, line)).collect()),
@@ -182,15 +194,15 @@ impl<'de> Visitor<'de> for JsonNode {
     }
 
     fn visit_i64<E>(self, value: i64) -> Result<Node, E> {
-        bare(Value::Number(value as f64, value.to_string()))
+        bare(Value::Number(value as f64))
     }
 
     fn visit_u64<E>(self, value: u64) -> Result<Node, E> {
-        bare(Value::Number(value as f64, value.to_string()))
+        bare(Value::Number(value as f64))
     }
 
     fn visit_f64<E>(self, value: f64) -> Result<Node, E> {
-        bare(Value::Number(value, format!("{value:?}")))
+        bare(Value::Number(value))
     }
 
     fn visit_str<E>(self, value: &str) -> Result<Node, E> {

@@ -15,20 +15,6 @@ use crate::geometry::{
 };
 
 /// The land of a scenario. Two maps are equal when their polygons are.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::frame::{Geographic, Georeference, Vector};
-/// use searoom::map::Map;
-///
-/// let earth = Georeference::new(Geographic { lat_deg: 63.0, lon_deg: 10.0 }).expect("an origin");
-/// let island = r#"{ "type": "Polygon", "coordinates":
-///     [[[10.00, 63.00], [10.01, 63.00], [10.01, 63.01], [10.00, 63.01], [10.00, 63.00]]] }"#;
-/// let map = Map::parse(island, &earth).expect("no faults");
-/// assert!(map.contains(Vector::new(100.0, 100.0)));
-/// assert!((map.signed_distance(Vector::new(-50.0, 500.0)) - 50.0).abs() < 1.0);
-/// ```
 #[derive(Clone)]
 pub struct Map {
     polygons: Vec<Polygon>,
@@ -99,8 +85,8 @@ impl Map {
     }
 
     /// Metres from the nearest edge of the land: positive on water, negative on land, infinite
-    /// without land. If polygons overlap, an edge inside another polygon counts too, so the result may
-    /// be less than the depth. NaN gives NaN. O(log n).
+    /// without land. If polygons overlap, an edge inside another polygon counts too, so the result
+    /// may be less than the depth. NaN gives NaN. O(log n).
     pub fn signed_distance(&self, p: Vector) -> f64 {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return f64::NAN;

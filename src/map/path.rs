@@ -24,9 +24,9 @@ pub struct LandCrossing {
 }
 
 impl Map {
-    /// Stretches of a polyline that are nearer to land than `clearance >= 0` metres, in order of legs
-    /// and places. Touching is allowed, to [`tolerance::DEPTH_M`]. The ends are exact, the missing
-    /// distance is exact to 2 cm. O(log n) and the pieces near the path.
+    /// Stretches of a polyline that are nearer to land than `clearance >= 0` metres, in order of
+    /// legs and places. Touching is allowed, to [`tolerance::DEPTH_M`]. The ends are exact, the
+    /// missing distance is exact to 2 cm. O(log n) and the pieces near the path.
     pub fn crossings(&self, path: &[Vector], clearance: f64) -> Vec<LandCrossing> {
         let mut found = Vec::new();
         for (leg, pair) in path.windows(2).enumerate() {
@@ -71,8 +71,9 @@ impl Map {
         found
     }
 
-    /// Metres between a convex set and the land, negative in overlap: then minus the shortest way out of the
-    /// piece that it is deepest in. Only land within `reach` metres is looked at; infinite without any.
+    /// Metres between a convex set and the land, negative in overlap: then minus the shortest way
+    /// out of the piece that it is deepest in. Only land within `reach` metres is looked at;
+    /// infinite without any.
     pub fn separation(&self, set: &ConvexPolygon, reach: f64) -> f64 {
         Window::around(set.vertices()).map_or(f64::INFINITY, |window| {
             self.pieces_within(&window.grown(reach))
@@ -82,8 +83,8 @@ impl Map {
         })
     }
 
-    /// The place on the line from `a` to `b` with the least signed distance from land, to [`SETTLED_M`]: by
-    /// halving, as the distance changes by at most a metre per metre.
+    /// The place on the line from `a` to `b` with the least signed distance from land, to
+    /// [`SETTLED_M`]: by halving, as the distance changes by at most a metre per metre.
     fn nearest_to_land(&self, a: Vector, b: Vector) -> (Vector, f64) {
         let mut best = (a, self.signed_distance(a));
         let mut see = |p: Vector| {

@@ -57,7 +57,7 @@ impl TargetSets {
     pub(super) fn scaled(&self, scenario: &Scenario, target: &Target, scale: f64) -> ScaledDomain {
         match (&self.shapes, &target.motion) {
             (Some(shapes), Motion::Ship(ship)) if scale > 0.0 && scale < 1.0 => {
-                let initial = shapes.drawn_back(scale);
+                let initial = shapes.scaled(scale);
                 ScaledDomain {
                     reduction: shapes.cut(&initial),
                     obstacle: with_initial(target, ship, &self.hard, initial, scenario.horizon),

@@ -87,14 +87,14 @@ pub(super) fn motion(table: &mut Table) -> Option<Motion> {
                 "one of the two, not both",
             );
         }
-        let spells = spells(&several);
+        let velocities = timed_velocity_sets(&several);
         if let Some(Given::Ellipse(_)) = initial {
             several.fault(
                 "several velocity sets for an initial set that is an ellipse",
                 "one velocity_set { center_mps, shape_m2_per_s2 }, or an initial set of vertices",
             );
         }
-        return match (initial?, spells?) {
+        return match (initial?, velocities?) {
             (Given::Polygon(initial), spells) => Some(Motion::Spells {
                 initial: initial?,
                 spells,
@@ -131,13 +131,13 @@ pub(super) fn motion(table: &mut Table) -> Option<Motion> {
 }
 
 /// Timed velocity sets: all but the last one end, each after the one before.
-fn spells(list: &Field) -> Option<Vec<VelocitySpell>> {
+fn timed_velocity_sets(list: &Field) -> Option<Vec<VelocitySpell>> {
     let fields = list.list(1..=limits::VELOCITY_SETS, "velocity sets")?;
-    let mut spells = Vec::with_capacity(fields.len());
+    let mut sets = Vec::with_capacity(fields.len());
     let mut after = 0.0;
     for (index, field) in fields.iter().enumerate() {
         let last = index + 1 == fields.len();
-        let spell = field
+        let set = field
             .table("a table { until_s, vertices_mps }")
             .map(|mut table| {
                 let until = if last {
@@ -160,16 +160,16 @@ fn spells(list: &Field) -> Option<Vec<VelocitySpell>> {
                 table.finish();
                 (until, list.and_then(|list| polygon(&list, VELOCITY.range)))
             });
-        let spell = spell.and_then(|(until, velocities)| {
+        let set = set.and_then(|(until, velocities)| {
             after = until.unwrap_or(after);
             Some(VelocitySpell {
                 until: until?,
                 velocities: velocities?,
             })
         });
-        spells.push(spell);
+        sets.push(set);
     }
-    spells.into_iter().collect()
+    sets.into_iter().collect()
 }
 
 /// A convex set from its vertices, or an ellipse from its centre and shape matrix.

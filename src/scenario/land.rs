@@ -39,8 +39,8 @@ impl Land {
 
     /// Least distance in metres between own hull and land while it turns on the spot by `turn`
     /// radians, at most a millimetre too small. Branch and bound on the heading: in a turn no point
-    /// of the hull moves farther than the angle times the half-diagonal. Infinite if land is farther
-    /// than the margin on every heading.
+    /// of the hull moves farther than the angle times the half-diagonal. Infinite if land is
+    /// farther than the margin on every heading.
     pub fn room_to_turn(&self, hull: &Hull, place: Vector, from: f64, turn: f64) -> f64 {
         let reach = hull.half_diagonal();
         if self.map.signed_distance(place) > reach + self.margin {

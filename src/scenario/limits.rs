@@ -1,6 +1,5 @@
-//! The numbers a scenario file may hold. The outer limits are far beyond any voyage and far inside
-//! what squares, products with the horizon and quotients of them can represent; lower limits above
-//! zero keep quotients finite.
+//! Limits of the numbers in a scenario file. They are far beyond any voyage, and squares, quotients
+//! and products with the horizon are still finite; lower limits above zero keep quotients finite.
 
 use crate::frame::LARGEST_ORIGIN_LAT_DEG;
 use crate::input::Range;
@@ -8,12 +7,12 @@ use crate::input::Range;
 /// Mebibytes of a scenario file.
 pub(super) const FILE_MEBIBYTES: u64 = 16;
 
-/// Waypoints of a ship of a foreign file at most: of each leg of a target one more velocity set follows.
+/// Waypoints of a ship of an imported file: each leg of a target adds a velocity set.
 pub(super) const ROUTE_POINTS: usize = 200;
 
-/// Points of one foreign route or recorded track.
+/// Points of one recorded track.
 pub(super) const TRACK_POINTS: usize = 20_000;
-/// Ships of one foreign situation.
+/// Ships of one imported situation.
 pub(super) const SHIPS: usize = 1000;
 
 /// Waypoints of a mission: the cost of a plan grows with their square.
@@ -27,7 +26,7 @@ pub(super) const SPEEDS: usize = 20;
 pub(super) const COORDINATE: Range = Range::within(1e7);
 /// Degrees north of the equator.
 pub(super) const LATITUDE: Range = Range::within(90.0);
-/// The same of the origin: at a pole no direction is north.
+/// Degrees north of the origin: at a pole no direction is north.
 pub(super) const ORIGIN_LATITUDE: Range = Range::within(LARGEST_ORIGIN_LAT_DEG);
 /// Degrees east of Greenwich.
 pub(super) const LONGITUDE: Range = Range::within(180.0);
@@ -35,17 +34,17 @@ pub(super) const LONGITUDE: Range = Range::within(180.0);
 pub(super) const LENGTH: Range = Range::between(1e-3, 1e6);
 /// Metres: margins, domains, standard deviations.
 pub(super) const DISTANCE: Range = Range::between(0.0, 1e6);
-/// Metres, of a ship in a foreign file: no ship is longer than half a kilometre, no tow than two.
+/// Size of a ship in an imported file: no ship is longer than half a kilometre, no tow than two.
 pub(super) const SHIP_LENGTH: Range = Range::between(0.1, 2000.0).in_unit("m");
-/// m/s of a ship in a foreign file: nearly 100 knots, beyond every ship.
+/// Speed of a ship in an imported file: nearly 100 knots, beyond every ship.
 pub(super) const SHIP_SPEED: Range = Range::between(0.0, 50.0).in_unit("m/s");
-/// The same where she has to make way.
+/// [`SHIP_SPEED`] of a ship that makes way.
 pub(super) const SHIP_WAY: Range = Range::between(1e-3, 50.0).in_unit("m/s");
 /// Seconds: horizon, deadline.
 pub(super) const DURATION: Range = Range::between(1e-3, 1e6);
-/// Seconds that are looked at after arrival.
+/// Seconds after arrival.
 pub(super) const HOLD: Range = Range::between(0.0, 1e6);
-/// m/s at which a leg is run.
+/// m/s on a leg.
 pub(super) const WAY: Range = Range::between(1e-3, 100.0);
 /// m/s, or standing still.
 pub(super) const SPEED: Range = Range::between(0.0, 100.0);
@@ -59,7 +58,7 @@ pub(super) const COURSE: Range = Range::within(360.0);
 pub(super) const COURSE_SPREAD: Range = Range::between(0.0, 180.0);
 /// Degrees per second.
 pub(super) const TURN_RATE: Range = Range::between(0.0, 90.0);
-/// Of 1: a plan that accepts certainty would keep clear of nothing but the expected target.
+/// Accepted risk: with 1 a plan would keep clear of nothing but the nominal target.
 pub(super) const RISK: Range = Range::between(0.0, 0.999_999);
 /// m² and m²/s², the entries of a shape matrix.
 pub(super) const AREA: Range = Range::within(1e14);
@@ -70,11 +69,11 @@ pub(super) const VELOCITY_SETS: usize = 50;
 /// m²/s², the weight of time.
 pub(super) const TIME_WEIGHT: Range = Range::between(0.0, 1e6);
 
-/// Newtons, newton metres: the least is far below what moves a model, the greatest far above what moves a ship.
+/// Newtons, newton metres: far below the forces of a model, far above those of a ship.
 pub(super) const FORCE: Range = Range::between(1e-6, 1e12);
-/// Of a state in the stage cost; 0 leaves it free.
+/// Weight of a state in the stage cost; 0 leaves the state free.
 pub(super) const STATE_WEIGHT: Range = Range::between(0.0, 1e9);
-/// Of a force in the stage cost: with 0 the force would not be determined.
+/// Weight of a force in the stage cost: with 0 the force would not be determined.
 pub(super) const FORCE_WEIGHT: Range = Range::between(1e-24, 1e9);
 /// Intervals of an optimal control problem.
 pub(super) const INTERVALS: Range = Range::between(1.0, 2000.0);

@@ -92,7 +92,8 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads and checks a scenario file (docs/scenario.md). The error holds every fault of the file.
+    /// Reads and checks a scenario file (docs/scenario.md). The error holds every fault of the
+    /// file.
     pub fn read(file: &Path) -> Result<Self, ScenarioError> {
         let text = read_text(file, limits::FILE_MEBIBYTES, "a scenario file")?;
         let folder = file.parent().unwrap_or(Path::new(""));

@@ -79,7 +79,8 @@ fn known(table: &mut Table, plane: &Plane) -> Option<Known> {
             "\"polytope\": velocity sets one after another have no ellipsoid"
         }
         (Motion::Ship(ship), Representation::Ellipsoid) if ship.turn_rate > 0.0 => {
-            "\"polytope\": a ship that may turn has velocity sets one after another, which have no ellipsoid"
+            "\"polytope\": a ship that may turn has velocity sets one after another, \
+             which have no ellipsoid"
         }
         _ => "",
     };

@@ -352,8 +352,8 @@ fn a_ship_that_may_turn_is_no_ellipsoid() {
     );
 }
 
-/// Eqs. (10), (11), (20) and (21) are in the files of the paper's figures as they are printed; figure 6 has three greatest speeds,
-/// figure 8 the paper's shape.
+/// Eqs. (10), (11), (20) and (21) are in the files of the paper's figures as they are printed;
+/// figure 6 has three greatest speeds, figure 8 the paper's shape.
 #[test]
 fn the_scenes_of_the_paper_have_its_numbers() {
     let read = |name: &str| {

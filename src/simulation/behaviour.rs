@@ -1,33 +1,24 @@
-//! What a target really does: one point of its initial set, one velocity signal inside its velocity set.
+//! Random motion of a target: a point of its initial set and a velocity signal in its velocity set.
 
 use rand::Rng;
 
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 
-/// Seconds. A signal holds each velocity for a random time between these.
+/// Seconds: range of the random time for which a signal holds a velocity.
 const HOLD: std::ops::Range<f64> = 5.0..60.0;
 
-/// Fraction of the way to a fresh velocity that a random walk goes in one step.
+/// Fraction of the way to a new velocity in one step of a random walk.
 const WALK_STEP: f64 = 0.3;
 
-/// How a velocity varies in time.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::Signal;
-///
-/// assert_eq!(Signal::ALL.len(), 3);
-/// assert!(Signal::ALL.contains(&Signal::BangBang));
-/// ```
+/// Variation of a velocity in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Signal {
     /// One velocity for ever.
     Constant,
     /// Jumps from vertex to vertex of the velocity set.
     BangBang,
-    /// Wanders through the velocity set.
+    /// Random walk through the velocity set.
     RandomWalk,
 }
 
@@ -45,24 +36,6 @@ struct Stretch {
 }
 
 /// A motion of piecewise constant velocity from t = 0: exact at every instant.
-///
-/// # Examples
-///
-/// ```
-/// use rand::SeedableRng;
-/// use rand_chacha::ChaCha8Rng;
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::simulation::{Behaviour, Signal};
-///
-/// let start = ConvexPolygon::point(Vector::zeros());
-/// let velocities = ConvexPolygon::hull(&[Vector::new(4.0, 0.0), Vector::new(6.0, 0.0)]).expect("a segment");
-/// let mut rng = ChaCha8Rng::seed_from_u64(1);
-/// let ferry = Behaviour::random(Signal::RandomWalk, &start, &velocities, 60.0, &mut rng);
-/// // whatever she does, her mean velocity is in the set
-/// let east = ferry.position_at(60.0).x;
-/// assert!((240.0..=360.0).contains(&east));
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Behaviour {
     stretches: Vec<Stretch>,
@@ -70,9 +43,9 @@ pub struct Behaviour {
 
 impl Behaviour {
     /// Draws a first position in `initial` (metres) and a velocity signal in `velocity` (m/s) that
-    /// varies until `until` seconds and holds its last value after. Both sets are convex, so a convex
-    /// combination of vertices is inside; half of the positions and of the constant velocities are
-    /// vertices, where a reachable set is touched first. O(vertices · until).
+    /// varies until `until` seconds and then holds its last value. Convex combinations of vertices
+    /// are inside the sets; half of the positions and of the constant velocities are vertices,
+    /// where a reachable set is touched first. O(vertices · until).
     pub fn random(
         signal: Signal,
         initial: &ConvexPolygon,
@@ -108,13 +81,13 @@ impl Behaviour {
         }
     }
 
-    /// Position at `time` seconds, metres; before 0 the first motion run backwards.
+    /// Position at `time` seconds, metres; before 0 the first motion is extrapolated.
     pub fn position_at(&self, time: f64) -> Vector {
         let stretch = self.stretch_at(time);
         stretch.start + stretch.velocity * (time - stretch.start_time)
     }
 
-    /// Velocity at `time` seconds, m/s; at a jump the later one.
+    /// Velocity at `time` seconds, m/s; at a jump the later velocity.
     pub fn velocity_at(&self, time: f64) -> Vector {
         self.stretch_at(time).velocity
     }

@@ -1,4 +1,4 @@
-//! Random encounters of a chosen kind: who meets whom, from where, and what is not known of them.
+//! Random encounters of a chosen kind, with uncertain targets.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -17,9 +17,9 @@ use crate::vessel::{Hull, OwnShip, VesselKind};
 
 /// m/s, own ship's desired speed.
 const OWN_SPEED: f64 = 5.0;
-/// m/s, the speeds she may choose.
+/// m/s, own ship's finite set of speeds.
 const OWN_SPEEDS: [f64; 3] = [2.5, 5.0, 6.0];
-/// Metres, the desired path, straight: long enough for the slowest overtaking to end before it does.
+/// Metres: length of the straight desired path, on which the slowest overtaking ends.
 const PATH_LENGTH: f64 = 2500.0;
 /// Metres, smallest turning radius.
 const TURNING_RADIUS: f64 = 100.0;
@@ -34,16 +34,16 @@ const SAFETY_MARGIN: f64 = 20.0;
 const HORIZON: f64 = 1000.0;
 /// m²/s².
 const TIME_WEIGHT: f64 = 25.0;
-/// Seconds of computing that one plan may take. Far beyond need: outcomes must not depend on it.
+/// Wall-clock seconds of one plan, far more than needed: outcomes must not depend on it.
 const DEADLINE: f64 = 60.0;
 
-/// Seconds from the start until the undisturbed ships are closest.
+/// Seconds from the start to the closest approach on nominal tracks.
 const MEETING_TIME: RangeInclusive<f64> = 100.0..=220.0;
 /// Metres.
 const TARGET_LENGTH: RangeInclusive<f64> = 30.0..=100.0;
 /// Length over beam.
 const SLENDERNESS: RangeInclusive<f64> = 4.0..=7.0;
-/// Fraction of the target's length by which the undisturbed centres miss each other, either way.
+/// Miss distance of the centres on nominal tracks, as a fraction of the target's length.
 const MISS: RangeInclusive<f64> = -0.5..=0.5;
 /// m/s.
 const SPEED_SPREAD: RangeInclusive<f64> = 0.1..=0.6;
@@ -55,26 +55,17 @@ const POSITION_STD: RangeInclusive<f64> = 0.0..=5.0;
 /// Radians: bearings within which two ships meet head-on, and beyond which one overtakes.
 const HEAD_ON: f64 = Sectors::STANDARD.head_on;
 const ABAFT: f64 = Sectors::STANDARD.abaft_the_beam;
-/// Radians, 20° and 15°: bearing and course within which a ship ahead is drawn as overtaken.
+/// Radians, 20° and 15°: bearing and course of a ship ahead that is overtaken.
 const OVERTAKEN_BEARING: f64 = PI / 9.0;
 const OVERTAKEN_COURSE: f64 = PI / 12.0;
 
-/// Seconds before the start at which the encounter is already of its kind.
+/// Seconds before the start at which the encounter already is of its kind.
 const EARLIER: f64 = 30.0;
 
 /// Draws of one target before the generator gives up on its kind.
 const MAX_DRAWS: usize = 10_000;
 
-/// What own ship is to the target that is drawn.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::EncounterKind;
-///
-/// let names = EncounterKind::ALL.map(EncounterKind::name);
-/// assert_eq!(names, ["head-on", "give-way", "stand-on", "overtaking"]);
-/// ```
+/// Kind of encounter: own ship's role toward the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum EncounterKind {
     /// Nearly reciprocal courses.
@@ -124,7 +115,7 @@ impl EncounterKind {
         }
     }
 
-    /// The sectors of docs/colregs.md section 1.3, first the one of Rule 13: whoever is abaft overtakes.
+    /// True for an encounter of this kind by the sectors of docs/colregs.md 1.3, Rule 13 first.
     fn describes(self, own: &Pose, target: &Pose) -> bool {
         let bearing = relative_bearing(own, target.position);
         let aspect = relative_bearing(target, own.position);
@@ -145,19 +136,7 @@ impl EncounterKind {
     }
 }
 
-/// Where the scene lies in the plane.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::{EncounterKind, Placement, random_encounter};
-///
-/// // the same encounter, at the origin and somewhere else on another course
-/// let [here, there] = [Placement::Origin, Placement::Random].map(|p| random_encounter(EncounterKind::HeadOn, 7, p));
-/// let start = |drawn: searoom::simulation::Drawn| drawn.scenario.own_ship.pose.position.norm();
-/// assert!(start(here?) < 1e-9 && start(there?) > 1.0);
-/// # Ok::<(), searoom::simulation::GeneratorError>(())
-/// ```
+/// Place of the scene in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Placement {
     /// Own ship starts at the origin and steers east.
@@ -166,39 +145,18 @@ pub enum Placement {
     Random,
 }
 
-/// A drawn scenario and what the drawing took.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::{Drawn, EncounterKind, Placement, random_encounter};
-///
-/// let Drawn { scenario, kinds, .. } = random_encounter(EncounterKind::GiveWay, 42, Placement::Origin)?;
-/// assert_eq!((scenario.targets.len(), kinds), (1, vec![EncounterKind::GiveWay]));
-/// // the same seed, the same scene
-/// assert_eq!(random_encounter(EncounterKind::GiveWay, 42, Placement::Origin)?.scenario, scenario);
-/// # Ok::<(), searoom::simulation::GeneratorError>(())
-/// ```
+/// A random scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// Ready to be planned.
     pub scenario: Scenario,
-    /// What own ship is to each target, in the scenario's order.
+    /// Kind of encounter with each target, in the scenario's order.
     pub kinds: Vec<EncounterKind>,
     /// Draws that were not of the intended kind or began inside a hard set, and were replaced.
     pub rejected: usize,
 }
 
-/// Why no scene could be drawn.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::simulation::{EncounterKind, GeneratorError};
-///
-/// let error = GeneratorError::Exhausted { kind: EncounterKind::HeadOn, draws: 1000 };
-/// assert_eq!(error.to_string(), "no head-on encounter in 1000 draws");
-/// ```
+/// Reason why no scene could be drawn.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeneratorError {
     /// Every draw was of another kind or began inside a hard set.
@@ -214,9 +172,9 @@ pub enum GeneratorError {
     Trajectory(#[from] TrajectoryError),
 }
 
-/// One own ship, one target. The target's bearing is uniform in the kind's sector, its speed in the
-/// kind's range; it starts where it would reach own ship's track at the meeting time and is then
-/// moved sideways by the miss distance (colregs.md section 4.3). Equal arguments give equal scenes.
+/// Own ship and one target. Its bearing is uniform in the kind's sector, its speed in the kind's
+/// range. It starts where it would reach own ship's track at the meeting time, moved sideways by
+/// the miss distance (docs/colregs.md 4.3). Equal arguments give equal scenes.
 pub fn random_encounter(
     kind: EncounterKind,
     seed: u64,
@@ -228,8 +186,8 @@ pub fn random_encounter(
     scene(title, vec![kind], placement, &mut rng)
 }
 
-/// One own ship and `count` targets of kinds drawn at random, each on its own collision course with
-/// the undisturbed own ship. Equal arguments give equal scenes.
+/// Own ship and `count` targets of random kinds, each on a collision course with own ship on its
+/// desired trajectory. Equal arguments give equal scenes.
 pub fn random_traffic(
     count: usize,
     seed: u64,
@@ -320,8 +278,8 @@ fn scene(
     })
 }
 
-/// One target in the frame of own ship's start, or `None` when the draw is not of the kind, now and
-/// while the ships were still apart, or begins inside the hard set.
+/// One target in the frame of own ship's start. `None` if the draw is not of the kind, now and
+/// [`EARLIER`], or begins inside the hard set.
 fn draw(kind: EncounterKind, rng: &mut ChaCha8Rng) -> Option<ShipTrack> {
     let meeting_time = rng.random_range(MEETING_TIME);
     let bearing = rng.random_range(kind.bearings());
@@ -337,7 +295,7 @@ fn draw(kind: EncounterKind, rng: &mut ChaCha8Rng) -> Option<ShipTrack> {
     let course_spread = rng.random_range(COURSE_SPREAD);
     let farther = rng.random_bool(0.5);
 
-    // the range at which the distance to the meeting point is what the target runs until then
+    // the range from which the target reaches the meeting point in time
     let meeting_point = Vector::new(OWN_SPEED * meeting_time, 0.0);
     let sight = direction(-bearing);
     let half = sight.dot(&meeting_point);

@@ -1,4 +1,4 @@
-//! Random encounters, and targets that do anything their sets allow: what the claims are tested with.
+//! Random encounters, and random motions of targets within their sets.
 
 mod behaviour;
 mod encounter_generator;

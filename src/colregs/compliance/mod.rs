@@ -59,8 +59,8 @@ impl ComplianceReport {
         }
     }
 
-    /// Assesses own ship toward one target. A target that stays too far away for any role is assessed
-    /// by the nearest sample alone.
+    /// Assesses own ship toward one target. A target that stays too far away for any role is
+    /// assessed by the nearest sample alone.
     pub(crate) fn along(track: &OwnSamples, target: &ShipTrack, thresholds: &Thresholds) -> Self {
         let (risk, monitor) = (&thresholds.risk, &thresholds.monitor);
         let length = track.hull().length.max(target.hull.length);
@@ -83,7 +83,5 @@ impl ComplianceReport {
     }
 }
 
-#[cfg(test)]
-mod hand_worked_tests;
 #[cfg(test)]
 mod tests;

@@ -44,7 +44,8 @@ pub enum Measure {
 /// Result of one monitor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MonitorResult {
-    /// `S`, `R1` (in extremis), `R3` (crossing), `R4` (head-on), `R5` (overtaking) or `R6` (stand-on).
+    /// `S`, `R1` (in extremis), `R3` (crossing), `R4` (head-on), `R5` (overtaking) or `R6`
+    /// (stand-on).
     pub monitor: &'static str,
     /// The verdict.
     pub verdict: Verdict,
@@ -132,8 +133,8 @@ impl Trace<'_> {
         found
     }
 
-    /// `G(role begins and persists -> F[react + 2 manoeuvre](range shrinks until turn >= m.turn))`, the
-    /// turn to starboard, or to either side.
+    /// `G(role begins and persists -> F[react + 2 manoeuvre](range shrinks until turn >= m.turn))`,
+    /// the turn to starboard, or to either side.
     fn turns(&self, monitor: &'static str, role: Role, either: bool) -> MonitorResult {
         let m = &self.t.monitor;
         let mut worst: Option<(f64, f64)> = None;
@@ -195,8 +196,8 @@ impl Trace<'_> {
         Self::result("S", Measure::Distance, Some(worst), false)
     }
 
-    /// `G(in extremis -> F not in extremis, before the hulls meet)`. In extremis, the hulls meet within
-    /// the time to manoeuvre if both hold course and speed.
+    /// `G(in extremis -> F not in extremis, before the hulls meet)`. In extremis, the hulls meet
+    /// within the time to manoeuvre if both hold course and speed.
     fn leaves_extremis(&self) -> MonitorResult {
         // negated on purpose: what is not known to be later is within
         let within = |s: &&EncounterSample| !(s.meets_in > self.t.monitor.manoeuvre);

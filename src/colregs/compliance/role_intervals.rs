@@ -38,7 +38,8 @@ fn past_and_clear(sample: &EncounterSample, length: f64, t: &Thresholds) -> bool
 /// Roles of own ship toward the target, in order of time. A role begins with the first of
 /// `evaluations` consecutive samples at risk (at once at the very first sample), and ends with the
 /// first of as many at which the risk is over. If the risk returns before the target is past and
-/// clear, so does the role: no later change of bearing turns an overtaking ship into a crossing one.
+/// clear, so does the role: no later change of bearing turns an overtaking ship into a crossing
+/// one.
 pub fn roles(encounter: &EncounterSamples, t: &Thresholds) -> Vec<RoleInterval> {
     let length = encounter.length();
     let mut intervals: Vec<RoleInterval> = Vec::new();
@@ -125,7 +126,8 @@ mod tests {
         assert!(of(&straight, 700.0, 0.0, PI, 0.0).is_empty());
     }
 
-    /// An overtaking ship that steers across the other's course from her quarter is still overtaking her.
+    /// An overtaking ship that steers across the other's course from its quarter is still
+    /// overtaking it.
     #[test]
     fn bearing_that_changes_later_makes_no_crossing_ship() {
         let weaving = [

@@ -97,8 +97,8 @@ pub struct EncounterSamples {
 }
 
 impl EncounterSamples {
-    /// Samples from the start of a trajectory to its end, the target on its nominal track. Own ship's
-    /// heading is taken for its course: drift is not seen. O(duration).
+    /// Samples from the start of a trajectory to its end, the target on its nominal track. Own
+    /// ship's heading is taken for its course: drift is not seen. O(duration).
     pub fn along(trajectory: &Trajectory, own: Hull, target: &ShipTrack) -> Self {
         OwnSamples::along(trajectory, own).encounter(target, f64::INFINITY)
     }
@@ -158,7 +158,8 @@ impl OwnSamples {
         self.greatest_speed + target.speed
     }
 
-    /// All samples of a target, or the nearest sample alone if the hulls are never within `far` metres.
+    /// All samples of a target, or the nearest sample alone if the hulls are never within `far`
+    /// metres.
     pub(crate) fn encounter(&self, target: &ShipTrack, far: f64) -> EncounterSamples {
         let nearest = far.is_finite().then(|| self.nearest(target)).flatten();
         let samples = match nearest {
@@ -291,7 +292,8 @@ impl Between {
         theirs.into_iter().chain(ours).fold(f64::INFINITY, f64::min)
     }
 
-    /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite if it never is.
+    /// Seconds until a point that leaves the origin at a velocity is in the sum; infinite if it
+    /// never is.
     fn seconds_to(&self, velocity: Vector) -> f64 {
         let (mut from, mut until) = (0.0_f64, f64::INFINITY);
         for (axis, _) in &self.halves {

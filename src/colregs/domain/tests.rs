@@ -1,4 +1,4 @@
-//! Shapes: nested, swept to the side that the rules forbid, drawn back from own ship's start.
+//! Ship domains: nested, swept to the forbidden side, reduced around own ship's start.
 
 use super::*;
 use crate::colregs::{Role, SteadyShip, raw_role, risk_distance};
@@ -101,7 +101,7 @@ fn the_fixtures_are_swept_to_the_side_that_the_rules_forbid() {
     assert!((give_way - diagonal).norm() < 1e-9, "{give_way:?}");
     let overtaking = in_body(&at(432.0, 0.0, 0.0, 2.4));
     assert!((overtaking - Vector::new(0.0, -length)).norm() < 1e-9);
-    // own ship well on her starboard quarter passes to starboard: the port side is the bad one
+    // own ship well on its starboard quarter passes to starboard: the port side is closed
     let off = in_body(&at(432.0, 80.0, 0.0, 2.4));
     assert!(off.y > 0.9 * length, "{off:?}");
     let slightly = in_body(&at(432.0, 30.0, 0.0, 2.4));

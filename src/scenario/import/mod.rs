@@ -40,7 +40,8 @@ pub enum Format {
 /// use searoom::scenario::import::{Assumed, Contents, Format};
 ///
 /// let file = "scenarios/dnv/traffic_situation_01.json".as_ref();
-/// let Contents::Situations { format, situations } = Contents::read(file, &Assumed::default())? else {
+/// let contents = Contents::read(file, &Assumed::default())?;
+/// let Contents::Situations { format, situations } = contents else {
 ///     panic!("situations");
 /// };
 /// assert_eq!((format, situations.len()), (Format::Dnv, 1));

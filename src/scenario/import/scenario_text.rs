@@ -1,5 +1,5 @@
-//! A situation as the text of a scenario file: the one way from a foreign file to a scenario, so that what is imported and
-//! what is run at once are the same.
+//! A situation as the text of a scenario file: the only way from an imported file to a scenario, so
+//! that importing a file and running it directly are the same.
 
 use std::fmt::{Display, Write};
 
@@ -12,20 +12,20 @@ use crate::input::Fault;
 use crate::scenario::{Scenario, limits};
 use crate::vessel::Hull;
 
-/// A scenario made of a foreign situation.
+/// A scenario made from an imported situation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// The scenario.
     pub scenario: Scenario,
-    /// The text of the scenario file that says the same.
+    /// The text of its scenario file.
     pub text: String,
-    /// What was assumed or not used, in sentences.
+    /// Assumptions and unused parts of the file, in sentences.
     pub notes: Vec<String>,
 }
 
 impl Situation {
-    /// The scenario, with what the file does not say assumed. Faults name the field of the foreign file, or that of the
-    /// scenario file where only the whole is wrong.
+    /// The scenario with its assumptions. Faults name the field of the imported file, or of the
+    /// scenario file if only the whole is wrong.
     pub fn scenario(&self, assumed: &Assumed) -> Result<Imported, Vec<Fault>> {
         let mut writing = Writing::new(self, assumed);
         writing.situation();
@@ -63,7 +63,7 @@ struct Writing<'a> {
     text: String,
     notes: Vec<String>,
     faults: Vec<Fault>,
-    /// Ships whose hull is assumed, and which it is: one for all of them.
+    /// Ships with an assumed hull, and this hull.
     sizeless: Vec<String>,
     taken: Option<Hull>,
 }
@@ -82,7 +82,7 @@ impl<'a> Writing<'a> {
     }
 
     fn line(&mut self, line: impl Display) {
-        // writing to a text cannot fail
+        // writing to a string cannot fail
         let _ = writeln!(self.text, "{line}");
     }
 
@@ -156,7 +156,7 @@ impl<'a> Writing<'a> {
         let margin = self.assumed.safety_margin(hull.length);
         self.line(format_args!("safety_margin_m = {margin:?}"));
         if own.speed == 0.0 {
-            // she could not be given speeds by the rule of the scenario file
+            // the default speeds of a scenario file are fractions of own speed
             let speeds: Vec<f64> = own
                 .leg_speeds
                 .iter()
@@ -176,7 +176,7 @@ impl<'a> Writing<'a> {
         self.line(format_args!("leg_speeds_mps = {:?}", own.leg_speeds));
     }
 
-    /// The hull said or assumed; a fault, and nothing, where there is none.
+    /// The given or assumed hull; a fault if there is none.
     fn hull(&mut self, whose: &str, said: &GivenHull) -> Option<Hull> {
         match said {
             GivenHull::Known(hull) => Some(*hull),
@@ -231,16 +231,16 @@ impl<'a> Writing<'a> {
                 deg_from_radians(steady.spread.course).min(limits::COURSE_SPREAD.high);
             self.line(format_args!("course_spread_deg = {course_spread:?}"));
         } else {
-            // explicit sets have no hull: hers on any heading, own ship's and the margin are in the initial set
+            // explicit sets have no hull: the initial set contains both hulls and the margin
             let around = outer_disc(hull.half_diagonal() + clearance, 0.0);
             let initial = vertices(&around.translated(track.start()));
             self.line(format_args!(
                 "initial_set = {{ vertices_m = {initial} }}\nvelocity_sets = ["
             ));
-            for spell in track.outer_spells(&spread, horizon, limits::VELOCITY_SETS) {
-                let velocities = vertices(&spell.velocities);
-                let until = if spell.until.is_finite() {
-                    format!("until_s = {:?}, ", spell.until)
+            for set in track.outer_velocity_sets(&spread, horizon, limits::VELOCITY_SETS) {
+                let velocities = vertices(&set.velocities);
+                let until = if set.until.is_finite() {
+                    format!("until_s = {:?}, ", set.until)
                 } else {
                     String::new()
                 };
@@ -250,13 +250,15 @@ impl<'a> Writing<'a> {
             }
             self.line("]");
             self.notes.push(format!(
-                "{name}: a track with changes, as velocity sets one after another; margin and hulls on any heading are in her set"
+                "{name}: a track with changes, as velocity sets one after another; \
+                 margin and hulls on any heading are in its set"
             ));
         }
         if track.end() < horizon {
             let (end, horizon) = (track.end(), horizon);
             self.notes.push(format!(
-                "{name}: her track ends at {end:.0} s, before the horizon of {horizon:.0} s; taken to go on as on its last stretch"
+                "{name}: its track ends at {end:.0} s, before the horizon of {horizon:.0} s; \
+                 taken to go on as on its last stretch"
             ));
         }
     }
@@ -269,12 +271,12 @@ fn hull_of(own: &Own, assumed: &Assumed) -> Hull {
     }
 }
 
-/// Metres to keep between a set and own ship's centre, whatever her heading.
+/// Metres between a set and own ship's centre on any heading.
 fn hull_clearance(own: &Hull, assumed: &Assumed) -> f64 {
     own.half_diagonal() + assumed.safety_margin(own.length)
 }
 
-/// As a text of TOML: what JSON escapes, TOML does too.
+/// A TOML string: TOML has the escapes of JSON.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

@@ -1,4 +1,4 @@
-//! The declared track of a target: stretches one after another, and the velocities that she may have on them.
+//! The declared track of a target: consecutive stretches, and the possible velocities on them.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,17 +7,17 @@ use crate::geometry::ConvexPolygon;
 use crate::target::{DomainKind, ShipTrack, VelocitySpell};
 use crate::vessel::Hull;
 
-/// Half-widths up to which stretches one after another are taken as one: radians (1°) and m/s.
+/// Half-widths up to which consecutive stretches become one: radians (1°) and m/s.
 const ONE_COURSE: f64 = std::f64::consts::PI / 180.0;
 const ONE_SPEED: f64 = 0.1;
 
-/// Seconds. Changes nearer to one another than this are one.
-const LEAST_SPELL: f64 = 0.01;
+/// Seconds: changes nearer to one another than this are one.
+const LEAST_INTERVAL: f64 = 0.01;
 
-/// Changes of a long track that are weighed against one another; of more every second or third is looked at.
+/// Most changes of a track that are compared; of more only every second or third is used.
 const MOST_CHANGES: usize = 1000;
 
-/// Metres that a straight of no length still has, so that two turns never share a point.
+/// Metres: least length of a straight, so that two turns never share a point.
 const NO_LENGTH: f64 = 1e-3;
 
 /// A point of a route.
@@ -25,24 +25,24 @@ const NO_LENGTH: f64 = 1e-3;
 pub(super) struct RoutePoint {
     /// Metres.
     pub(super) position: Vector,
-    /// Radius of the turn here, metres; `None` where nobody says.
+    /// Radius of the turn here, metres; `None` if unknown.
     pub(super) turn_radius: Option<f64>,
 }
 
-/// A leg of a route: between which speeds she runs it, m/s.
+/// A leg of a route: least and greatest speed, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RouteLeg {
     pub(super) slow: f64,
     pub(super) fast: f64,
 }
 
-/// A piece of a track: how long it is, which courses and which speeds it has.
+/// A stretch of a track: length, courses and speeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stretch {
-    /// Metres, by the shortest and by the longest way.
+    /// Least and greatest length, metres.
     shortest: f64,
     longest: f64,
-    /// Radians, counter-clockwise from east, and half the width.
+    /// Middle of the courses, radians counter-clockwise from east, and half their width.
     course: f64,
     half: f64,
     /// m/s.
@@ -51,7 +51,7 @@ struct Stretch {
 }
 
 impl Stretch {
-    /// Both, one after the other; `None` where they are too different to be one.
+    /// This stretch and the next as one; `None` if they are too different.
     fn joined(&self, next: &Self) -> Option<Self> {
         let turn = wrap(next.course - self.course);
         let low = f64::min(-self.half, turn - next.half);
@@ -68,7 +68,7 @@ impl Stretch {
         same.then_some(one)
     }
 
-    /// The ship with every velocity of this stretch, spreads added; only her velocities are of use.
+    /// A ship with every velocity of this stretch, spreads added; only its velocities are of use.
     fn ship(&self, spread: &Spread) -> ShipTrack {
         ShipTrack {
             pose: Pose::new(Vector::zeros(), self.course),
@@ -86,7 +86,7 @@ impl Stretch {
     }
 }
 
-/// By how much she may differ from what is declared.
+/// Allowed deviation from the declared track.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spread {
     /// Half-width, m/s.
@@ -95,36 +95,36 @@ pub(super) struct Spread {
     pub(super) course: f64,
 }
 
-/// One course and one speed for ever.
+/// One constant course and speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Steady {
-    /// Where she is at t = 0, and her course.
+    /// Position at t = 0, and course.
     pub(super) pose: Pose,
     /// m/s.
     pub(super) speed: f64,
-    /// The spreads, widened by what the track itself varies.
+    /// The spreads, widened by the variation of the track itself.
     pub(super) spread: Spread,
 }
 
-/// Why a route is no track.
+/// Reason why a route is not a track.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum TrackError {
     /// The turn at a point does not fit into the legs beside it.
     Turn {
-        /// Which point, from 0.
+        /// Index of the point.
         point: usize,
         /// Metres from the point at which the turn would begin.
         begins: f64,
     },
 }
 
-/// A declared track: she appears at `appears` at its start, where she is taken to have stood still before, follows it, and
-/// goes on as at its end.
+/// A declared track. The ship rests at its start until `appears`, follows the track, and continues
+/// as on its last stretch.
 ///
-/// *Following it within a spread* means: on the stretch that she has come to, her course differs from the track's by at
-/// most `spread.course`, her speed from the declared one by at most `spread.speed`; she comes to the next stretch when the
-/// way that she has made along the track is as long as the stretch. At a point without a radius she turns on the
-/// spot, or on an arc of any radius up to the one assumed.
+/// A ship follows the track within a spread if, on each stretch, its course differs from the
+/// track's by at most `spread.course` and its speed from the declared one by at most
+/// `spread.speed`. It reaches the next stretch when it has made good the length of this one. At a
+/// point without a radius it turns on the spot, or on an arc of any radius up to the assumed one.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Track {
     start: Vector,
@@ -133,7 +133,7 @@ pub(super) struct Track {
 }
 
 impl Track {
-    /// Straight on for ever, or at rest: `course` radians, `speed` m/s.
+    /// A straight track without end, or a ship at rest: `course` radians, `speed` m/s.
     pub(super) fn straight(start: Vector, course: f64, speed: f64) -> Self {
         let only = Stretch {
             shortest: f64::INFINITY,
@@ -150,9 +150,9 @@ impl Track {
         }
     }
 
-    /// Along a route of at least two points; `legs` has one entry less. The points are apart. Where a point names no
-    /// radius, arcs up to `usual_radius` are allowed for, as far as they fit. `heading`: where she points at the start, if
-    /// that is another course than the first leg's.
+    /// The track along a route of at least two different points; `legs` has one entry less. A point
+    /// without a radius allows arcs up to `usual_radius`, if they fit. `heading` is the heading at
+    /// the start, if it is not the course of the first leg.
     pub(super) fn along(
         points: &[RoutePoint],
         legs: &[RouteLeg],
@@ -180,7 +180,7 @@ impl Track {
             let (course, length) = (heading_of(*way), way.norm());
             let next = ways.get(index + 1).zip(legs.get(index + 1));
             let turn = next.map(|(next, _)| wrap(heading_of(*next) - course));
-            // metres before the next point at which its turn begins
+            // metres before the next point at which the turn begins
             let mut ends = 0.0;
             if let (Some(turn), Some((next_way, _))) = (turn, next) {
                 let half = 0.5 * turn.abs();
@@ -209,7 +209,7 @@ impl Track {
             });
             if let (Some(turn), Some((_, next_leg))) = (turn, next) {
                 let half = 0.5 * turn.abs();
-                // an arc that begins `ends` before the point; never longer than the two sides
+                // an arc that begins `ends` before the point is never longer than the two sides
                 let arc = if half > 0.0 {
                     ends / half.min(FRAC_PI_2).tan() * turn.abs()
                 } else {
@@ -229,11 +229,11 @@ impl Track {
         Ok(Self {
             start: points.first().map_or(Vector::zeros(), |p| p.position),
             appears: 0.0,
-            stretches: one_by_one(stretches),
+            stretches: joined_stretches(stretches),
         })
     }
 
-    /// The same elsewhere, metres.
+    /// This track moved by a vector, metres.
     pub(super) fn translated(self, shift: Vector) -> Self {
         Self {
             start: self.start + shift,
@@ -241,7 +241,7 @@ impl Track {
         }
     }
 
-    /// The same, but she is not there before `time` seconds.
+    /// This track, on which the ship appears at `time` seconds.
     pub(super) fn appearing(self, time: f64) -> Self {
         Self {
             appears: time,
@@ -249,20 +249,20 @@ impl Track {
         }
     }
 
-    /// Where she is when she appears, metres.
+    /// First position, metres.
     pub(super) fn start(&self) -> Vector {
         self.start
     }
 
-    /// When she is at the end of her track if she runs every stretch at the middle of its speeds, seconds; infinite where
-    /// the track has no end.
+    /// Time at the end of the track at the mean speed of every stretch, seconds; infinite if the
+    /// track has no end.
     pub(super) fn end(&self) -> f64 {
         let took = |s: &Stretch| 0.5 * (s.shortest + s.longest) / (0.5 * (s.slow + s.fast));
         self.appears + self.stretches.iter().map(took).sum::<f64>()
     }
 
-    /// One course and one speed, where the track has no more than that and begins at t = 0. The velocities within the
-    /// widened spreads hold those of every stretch.
+    /// Constant course and speed, if the track is a single stretch that begins at t = 0. The
+    /// velocities within the widened spreads contain those of the stretch.
     pub(super) fn steady(&self, spread: &Spread) -> Option<Steady> {
         let [only] = self.stretches.as_slice() else {
             return None;
@@ -281,14 +281,15 @@ impl Track {
         })
     }
 
-    /// Velocity sets one after another that hold, at every instant, the velocity of every ship that follows the track within
-    /// the spread: so her place is in the start ⊕ their sum. At most `most` of them.
+    /// At most `most` timed velocity sets that contain, at every instant, the velocity of every
+    /// ship that follows the track within the spread. Its position is then in the start ⊕ their
+    /// sum.
     ///
-    /// A stretch is entered at the earliest when all before it were run by the shortest way at the greatest speed,
-    /// and left at the latest when all up to it were run by the longest way at the least speed made good; each set is the hull of
-    /// the sets of the stretches that she may then be on. Changes that are too many are left out: what a longer spell
-    /// holds is the hull of more stretches, which errs outward. O(stretches²).
-    pub(super) fn outer_spells(
+    /// A stretch is entered at the earliest on the shortest way at the greatest speed, and left at
+    /// the latest on the longest way at the least speed made good. Each set is the hull of the
+    /// velocities of all stretches possible in its time interval. Excess changes are omitted: a
+    /// longer interval has the hull of more stretches, which errs outward. O(stretches²).
+    pub(super) fn outer_velocity_sets(
         &self,
         spread: &Spread,
         horizon: f64,
@@ -298,16 +299,16 @@ impl Track {
         let mut changes: Vec<f64> = times
             .iter()
             .flat_map(|&(enters, leaves)| [enters, leaves])
-            .filter(|time| *time > LEAST_SPELL && *time < horizon)
+            .filter(|time| *time > LEAST_INTERVAL && *time < horizon)
             .collect();
         changes.sort_by(f64::total_cmp);
-        changes.dedup_by(|later, earlier| *later - *earlier < LEAST_SPELL);
+        changes.dedup_by(|later, earlier| *later - *earlier < LEAST_INTERVAL);
         if changes.len() > MOST_CHANGES {
             let every = changes.len().div_ceil(MOST_CHANGES);
             changes = changes.into_iter().step_by(every).collect();
         }
         while changes.len() + 1 > most.max(1) {
-            // the one that ends the shortest spell
+            // the change that ends the shortest time interval
             let length = |k: usize| changes[k] - if k == 0 { 0.0 } else { changes[k - 1] };
             let shortest = (0..changes.len()).min_by(|a, b| length(*a).total_cmp(&length(*b)));
             let Some(shortest) = shortest else { break };
@@ -315,29 +316,29 @@ impl Track {
         }
         changes.push(f64::INFINITY);
         let mut from = 0.0;
-        let mut spells = Vec::with_capacity(changes.len());
+        let mut sets = Vec::with_capacity(changes.len());
         for until in changes {
             let mut vertices = Vec::new();
             if from < self.appears {
                 vertices.push(Vector::zeros());
             }
             for (stretch, (enters, leaves)) in self.stretches.iter().zip(&times) {
-                // touching is for no time at all
+                // touching intervals have no instant in common
                 if *enters < until && *leaves > from {
                     let velocities = stretch.ship(spread).outer_velocity_set();
                     vertices.extend_from_slice(velocities.vertices());
                 }
             }
-            // never empty: of the stretches in a row one is left after the next is entered
+            // never empty: a stretch is left after the next one is entered
             let velocities = ConvexPolygon::hull(&vertices)
                 .unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()));
-            spells.push(VelocitySpell { until, velocities });
+            sets.push(VelocitySpell { until, velocities });
             from = until;
         }
-        spells
+        sets
     }
 
-    /// The earliest and the latest second on every stretch.
+    /// Earliest and latest time on every stretch, seconds.
     fn times(&self, spread: &Spread) -> Vec<(f64, f64)> {
         let (mut enters, mut leaves) = (self.appears, self.appears);
         let last = self.stretches.len().saturating_sub(1);
@@ -356,8 +357,8 @@ impl Track {
     }
 }
 
-/// Stretches one after another that hardly differ become one.
-fn one_by_one(stretches: Vec<Stretch>) -> Vec<Stretch> {
+/// Joins consecutive stretches that hardly differ.
+fn joined_stretches(stretches: Vec<Stretch>) -> Vec<Stretch> {
     let mut joined: Vec<Stretch> = Vec::new();
     for stretch in stretches {
         match joined.last_mut().and_then(|last| last.joined(&stretch)) {

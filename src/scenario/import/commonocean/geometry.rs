@@ -9,17 +9,17 @@ use crate::input::Range;
 use crate::scenario::limits;
 use crate::vessel::Hull;
 
-/// Metres: sizes of things and regions.
+/// Metres: sizes of objects and regions.
 const SIZE: Range = Range::between(1e-3, 1e6);
 /// Radians.
 const ANGLE: Range = Range::within(4.0 * std::f64::consts::PI);
 
-/// A convex shape about the place of its owner.
+/// A convex shape relative to its object.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Shape {
     /// Metres.
     pub(super) outline: ConvexPolygon,
-    /// Along and across, about the place: of a hull that holds it.
+    /// Size of a hull that contains it, along and across.
     pub(super) length: f64,
     pub(super) width: f64,
 }
@@ -72,7 +72,7 @@ fn one(entry: &Xml) -> Option<Shape> {
                 entry.fault(format_args!("{count} points"), "at least 3");
                 return None;
             }
-            // from outside: a bay of a coast is taken as land
+            // an outer approximation: a bay becomes land
             ConvexPolygon::hull(&points).ok()?
         }
         other => {
@@ -104,7 +104,7 @@ pub(super) struct State {
     pub(super) orientation: f64,
     /// Steps.
     pub(super) time: f64,
-    /// m/s along the orientation, where it is said.
+    /// m/s along the orientation, if the file has it.
     pub(super) velocity: Option<f64>,
 }
 

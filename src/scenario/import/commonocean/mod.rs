@@ -1,5 +1,5 @@
-//! CommonOcean scenarios (XML 2022a; 2020a, which names some elements otherwise): metres, m/s, seconds; angles
-//! counter-clockwise from east, radians; times in steps.
+//! CommonOcean scenarios (XML 2022a, and 2020a with other names of some elements). Metres, m/s,
+//! seconds; angles counter-clockwise from east in radians; times in steps.
 
 mod geometry;
 mod problem;
@@ -37,7 +37,7 @@ const TYPES: [&str; 14] = [
     "watersboundary",
 ];
 
-/// What is looked at, and what says nothing of where ships may be.
+/// Elements that are read, or that say nothing about where ships may be.
 const KNOWN: [&str; 12] = [
     "location",
     "scenarioTags",
@@ -53,7 +53,7 @@ const KNOWN: [&str; 12] = [
     "additionalInformation",
 ];
 
-/// Versions: two of one grammar but for some names.
+/// Supported versions.
 const VERSIONS: [&str; 2] = ["2022a", "2020a"];
 
 /// The situations of a file, one per planning problem.
@@ -112,7 +112,7 @@ pub(super) fn situations(
     Ok(problems.iter().zip(owns).map(situation).collect())
 }
 
-/// The situation of one own ship, in the plane about her start: coordinates may be those of a grid as wide as the world.
+/// The situation of one own ship, relative to its start: coordinates may be those of a global grid.
 fn about(
     own: Own,
     others: &[Other],
@@ -140,7 +140,7 @@ fn about(
     }
 }
 
-/// What is not used, in notes.
+/// Notes unused elements.
 fn unused(root: &Xml, notes: &mut Vec<String>) {
     let count = |name: &str| root.all(name).count();
     let ways = count("waterway") + count("waters");
@@ -162,7 +162,7 @@ fn unused(root: &Xml, notes: &mut Vec<String>) {
     }
 }
 
-/// Every obstacle and every shallow. `None` where one is faulty.
+/// Every obstacle and every shallow. `None` if one is faulty.
 fn others(root: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Vec<Other>> {
     let mut others = Vec::new();
     let mut sound = true;
@@ -215,7 +215,7 @@ fn named(element: &Xml, kind: &str, part: Option<usize>) -> String {
     }
 }
 
-/// A thing that stands still: a convex part of it each.
+/// The convex parts of an object at rest.
 fn fixed(element: &Xml) -> Option<Vec<Other>> {
     let kind = kind(element);
     let parts = element
@@ -249,7 +249,7 @@ fn shallow(element: &Xml) -> Option<Vec<Other>> {
     Some(parts.into_iter().enumerate().map(part).collect())
 }
 
-/// A ship along her recorded states.
+/// A ship with its recorded states.
 fn moving(element: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Other> {
     let kind = kind(element);
     let hull = match element.take("shape") {
@@ -288,7 +288,7 @@ fn hull(entry: &Xml, parts: &[Shape]) -> Option<GivenHull> {
     }))
 }
 
-/// Along the recorded places: a leg from each to the next, at the speed that it takes.
+/// Track with a leg between consecutive states, at the speed that it takes.
 fn track(
     element: &Xml,
     initial: &State,
@@ -347,7 +347,7 @@ fn track(
         }
         last = *state;
     }
-    // what she does after a rest at the end is not known: she may stay
+    // the motion after a rest at the end is unknown: the ship may stay
     if rests > 0
         && let Some(leg) = legs.last_mut()
     {

@@ -1,4 +1,4 @@
-//! A planning problem: own ship, where she is to go, and by when.
+//! A planning problem: own ship, its goal, and the time of arrival.
 
 use super::super::situation::{GivenHull, Own};
 use super::super::xml::Xml;
@@ -10,18 +10,16 @@ use crate::scenario::limits;
 /// Steps of a goal; it may begin before the scenario.
 const STEPS: Range = Range::within(1e9);
 
-/// Own ship of a problem: her route runs over the waypoints to the middle of the goal, at her speed, or at the one that
-/// takes her there in the goal's time.
+/// Own ship of a problem. Its route leads over the waypoints to the middle of the goal, at its
+/// speed, or at the speed that fits the goal's time.
 pub(super) fn own(entry: &Xml, step: f64, notes: &mut Vec<String>) -> Option<Own> {
     let initial = entry
         .require("initialState", "position, orientation, time, velocity")
         .and_then(|entry| state(&entry));
-    let goal = entry
-        .require("goalState", "where she is to go")
-        .and_then(|goal| {
-            let place = goal.require("position", "a point or a shape")?;
-            Some((middle(&place)?, times(&goal, step)?))
-        });
+    let goal = entry.require("goalState", "the goal").and_then(|goal| {
+        let place = goal.require("position", "a point or a shape")?;
+        Some((middle(&place)?, times(&goal, step)?))
+    });
     if entry.all("goalState").count() > 1 {
         notes.push(format!(
             "{}: the first of several goals taken",

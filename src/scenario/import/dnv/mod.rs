@@ -1,5 +1,6 @@
-//! DNV traffic situations (maritime-schema 0.1 and 0.2, JSON): degrees of WGS84, knots, degrees clockwise from true north,
-//! metres; turn radii in nautical miles; the leg that ends at a waypoint is described there.
+//! DNV traffic situations (maritime-schema 0.1 and 0.2, JSON). Degrees of WGS84, knots, degrees
+//! clockwise from true north, metres; turn radii in nautical miles. A waypoint describes the leg
+//! that ends there.
 
 mod ship;
 
@@ -16,10 +17,10 @@ use crate::input::{Fault, Faults, Field, Range};
 use crate::scenario::{limits, plane};
 use ship::{Initial, fixed, initial};
 
-/// Degrees. A heading nearer to the first leg's course than this is that course, rounded.
+/// Degrees: a heading nearer to the first leg's course than this is that course, rounded.
 const ROUNDED_DEG: f64 = 1.0;
 
-/// Keys that are read, and keys that mean nothing to a planner.
+/// Keys that are read, or that mean nothing to a planner.
 const ROOT_KEYS: [&str; 8] = [
     "version",
     "schemaVersion",
@@ -55,7 +56,7 @@ pub(super) fn situation(root: &Field, faults: &Faults) -> Result<Situation, Vec<
             Some(Vec::new())
         }
     };
-    // own ship's first place is looked at twice
+    // own ship's first position is read twice
     let mut noted: Vec<Fault> = Vec::new();
     for fault in faults.take() {
         if !noted.contains(&fault) {
@@ -76,7 +77,7 @@ pub(super) fn situation(root: &Field, faults: &Faults) -> Result<Situation, Vec<
     })
 }
 
-/// What a title like "HO, CR-GW" says: a kind of encounter per target, in their order.
+/// Statements of a title like "HO, CR-GW": a kind of encounter for each target.
 fn declared(title: &str) -> Declared {
     let sides: Option<Vec<Option<Side>>> = title
         .split(',')
@@ -96,7 +97,7 @@ fn declared(title: &str) -> Declared {
     }
 }
 
-/// Notes every key that is not read and may mean something.
+/// Notes every unknown key.
 fn unused(field: &Field, known: &[&str], notes: &mut Vec<String>) {
     for key in field.keys().filter(|key| !known.contains(key)) {
         let dot = if field.path().is_empty() { "" } else { "." };
@@ -118,7 +119,7 @@ fn waypoints<'a>(ship: &Field<'a>, least: usize) -> Option<Vec<Field<'a>>> {
         .list(least..=limits::ROUTE_POINTS, "waypoints")
 }
 
-/// The plane about own ship's first place.
+/// The plane about own ship's first position.
 fn origin(own: &Field) -> Option<Georeference> {
     let start = own
         .get("initial")
@@ -168,7 +169,7 @@ fn own(field: &Field, earth: &Georeference, notes: &mut Vec<String>) -> Option<O
     }
     if route.points.iter().any(|p| p.turn_radius.is_some()) {
         notes.push(format!(
-            "{}: turn radii of own ship's waypoints not used; hers is {TURNING_LENGTHS} lengths",
+            "{}: turn radii of own ship's waypoints not used; its radius is {TURNING_LENGTHS} lengths",
             field.path()
         ));
     }
@@ -223,7 +224,7 @@ fn other(
     };
     let track = if fixed.delay > 0.0 {
         notes.push(format!(
-            "{}: appears after {} s; taken to stand at her start until then",
+            "{}: appears after {} s; taken to stand at its start until then",
             field.path(),
             fixed.delay
         ));
@@ -234,7 +235,7 @@ fn other(
     Some((fixed.name, fixed.hull, track))
 }
 
-/// One place, and on from there.
+/// A track from one point, with constant course and speed.
 fn steady(field: &Field, start: Vector, initial: &Initial) -> Option<Track> {
     match (initial.speed, initial.course) {
         (Some(speed), course) if speed == 0.0 => {
@@ -306,7 +307,7 @@ fn along(
     }
 }
 
-/// Nautical miles: radii of turns, stretches of changing speed.
+/// Nautical miles: radii of turns, distances over which the speed changes.
 const MILES: Range = Range::between(0.0, 100.0);
 
 /// Points of a route and the speeds between them.
@@ -368,7 +369,8 @@ fn route(
     sound.then_some(route)
 }
 
-/// Speed of the leg that ends at a waypoint, m/s, and the metres before and after the waypoint over which it changes.
+/// Speed of the leg that ends at a waypoint, m/s, and the metres before and after the waypoint over
+/// which the speed changes.
 fn leg(
     waypoint: &Field,
     initial_speed: Option<f64>,

@@ -1,4 +1,4 @@
-//! A ship of a DNV situation: how she is at the start, and what does not change about her.
+//! A ship of a DNV situation: its initial state and its static data.
 
 use super::super::situation::GivenHull;
 use super::{knots, near, unused};
@@ -7,9 +7,9 @@ use crate::input::{Field, Range};
 use crate::scenario::limits;
 use crate::vessel::Hull;
 
-/// Metres by which the distances from the reference point to the ends may miss the length.
+/// Metres: rounding of the sum of distances from the reference point to both ends.
 const LENGTH_ROUNDED: f64 = 0.5;
-/// Seconds that a ship may be late in appearing.
+/// Seconds until a ship appears.
 const DELAY: Range = Range::between(0.0, 1e6);
 const STATIC_KEYS: [&str; 10] = [
     "id",
@@ -26,16 +26,16 @@ const STATIC_KEYS: [&str; 10] = [
 const INITIAL_KEYS: [&str; 5] = ["position", "sog", "cog", "heading", "navStatus"];
 const DIMENSION_KEYS: [&str; 8] = ["length", "width", "height", "draught", "a", "b", "c", "d"];
 
-/// What a ship is at the start, as far as the file says.
+/// The initial state of a ship, as far as the file has it.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Initial {
     /// Metres.
     pub(super) position: Option<Vector>,
     /// m/s.
     pub(super) speed: Option<f64>,
-    /// Where she goes, or points where that is not said: radians.
+    /// Course, or else heading, radians.
     pub(super) course: Option<f64>,
-    /// Where she points, or goes where that is not said: radians.
+    /// Heading, or else course, radians.
     pub(super) heading: Option<f64>,
 }
 
@@ -74,7 +74,7 @@ pub(super) fn initial(
     })
 }
 
-/// What does not change about a ship.
+/// Static data of a ship.
 #[derive(Debug, Clone)]
 pub(super) struct Static {
     pub(super) name: Option<String>,
@@ -116,7 +116,7 @@ pub(super) fn fixed(ship: &Field, notes: &mut Vec<String>) -> Option<Static> {
     })
 }
 
-/// Length and breadth. Where the reference point is not in the middle, the hull that reaches as far to all sides.
+/// Length and breadth. If the reference point is not in the middle, a larger hull about this point.
 fn hull(field: &Field, notes: &mut Vec<String>) -> Option<GivenHull> {
     unused(field, &DIMENSION_KEYS, notes);
     let lengths = [("length", ["a", "b"]), ("width", ["c", "d"])].map(|(whole, ends)| {

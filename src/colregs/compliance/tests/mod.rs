@@ -1,5 +1,7 @@
 //! Fixtures of docs/colregs.md 0.1 with good and bad manoeuvres.
 
+mod hand_worked;
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::*;
@@ -11,7 +13,8 @@ use crate::vessel::Hull;
 /// Metres, of both ships.
 pub const LENGTH: f64 = 50.0;
 
-/// Turns (radians, to port positive; arcs of 2.5 lengths) each followed by seconds of straight line, from the origin east.
+/// Turns (radians, to port positive; arcs of 2.5 lengths) each followed by seconds of straight
+/// line, from the origin east.
 pub fn planned(legs: &[(f64, f64)], speed: f64) -> Trajectory {
     let radius = 2.5 * LENGTH;
     let mut segments: Vec<Segment> = Vec::new();

@@ -1,15 +1,14 @@
-//! Scores and monitors of short traces against values worked out by hand from the definitions: rectangles, arcs and the formulas
-//! alone, by a program of its own in another language, to twelve figures.
+//! Scores and monitors of short encounters against values from the definitions: rectangles, arcs
+//! and the formulas alone, by a program in another language, to twelve digits.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::tests::{LENGTH, standard, steady};
-use super::{ComplianceReport, Measure, Verdict};
+use super::{ComplianceReport, LENGTH, Measure, Verdict, standard, steady};
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector, deg_from_radians, radians_from_deg};
 use crate::trajectory::{Segment, Trajectory};
 
-/// What own ship does next.
+/// A leg of own ship.
 #[derive(Debug, Clone, Copy)]
 enum Leg {
     /// Seconds at m/s.
@@ -20,7 +19,7 @@ enum Leg {
 
 use Leg::{Straight, Turn};
 
-/// From the origin east.
+/// The trajectory of these legs from the origin east.
 fn sailed(legs: &[Leg]) -> Trajectory {
     let mut segments: Vec<Segment> = Vec::new();
     for leg in legs {
@@ -44,7 +43,7 @@ fn sailed(legs: &[Leg]) -> Trajectory {
     Trajectory::new(segments).expect("a trajectory")
 }
 
-/// Own ship, and a target at east, north with heading and speed; the role that own ship begins with.
+/// The report for a target at `[east, north, heading, speed]`; own ship begins in `role`.
 fn judged(legs: &[Leg], target: [f64; 4], role: Role) -> ComplianceReport {
     let [east, north, heading, speed] = target;
     let conduct = ComplianceReport::judge(
@@ -55,7 +54,7 @@ fn judged(legs: &[Leg], target: [f64; 4], role: Role) -> ComplianceReport {
     conduct
 }
 
-/// Legs, target, role, and what comes of it.
+/// Legs, target, role, and expected result.
 type Case<'a, T> = (&'a [Leg], [f64; 4], Role, T);
 
 fn assert_scores(cases: &[Case<&[(&str, f64)]>]) {
@@ -72,7 +71,7 @@ fn assert_scores(cases: &[Case<&[(&str, f64)]>]) {
     }
 }
 
-/// Toward own ship on a parallel line, so many metres north of its own.
+/// A target on the opposite course, on a line `north` metres north of own ship's.
 const fn opposite(north: f64) -> [f64; 4] {
     [1440.0, north, PI, 6.0]
 }
@@ -152,7 +151,8 @@ fn rule_17_scores_are_those_worked_out_by_hand() {
         let expected = [("safety", safety), ("rule_17", rule_17)];
         assert_scores(&[(legs, FROM_PORT, Role::StandOn, &expected)]);
     };
-    // half of a safe distance, and half of the pose: both ships see each other 45 degrees off the bow
+    // half of a safe distance, and half of the pose: both ships see each other 45 degrees off the
+    // bow
     let held = 0.5 + 0.5 * (1.0 - 0.5_f64.sqrt()).powi(2);
     scored(&[Straight(90.0, 6.0)], held, held);
     let turned = [Straight(20.0, 6.0), Turn(-16.0), Straight(70.0, 6.0)];
@@ -203,7 +203,7 @@ fn scores_of_giving_way_and_of_overtaking_are_those_worked_out_by_hand() {
     ]);
 }
 
-/// Per monitor the verdict, the robustness in metres, seconds or degrees, and when.
+/// Verdict, robustness in metres, seconds or degrees, and time of a monitor.
 type Found = Option<(Verdict, f64, f64)>;
 
 #[test]
