@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use rerun::external::re_log_types::TimeType;
 use rerun::log::Chunk;
 
+use super::document::{joined, unpacked};
 use super::messages::Messages;
 use super::table::{EntityTable, text_of};
 use super::{APPLICATION, COMPARISON, DOCUMENT, TIMING, frames};
-use crate::document::{joined, unpacked};
 
 /// Bytes, 1 GiB: more is no plan of ours, and would have to fit into memory.
 const FILE_BYTES: u64 = 1 << 30;
