@@ -108,13 +108,13 @@ fn plan(criterion: &mut Criterion) {
         .map(|s| s.shaped)
         .collect();
     let land = pipeline::land_within_reach(&scenario);
-    let coast = pipeline::coast(&scenario, &land);
-    let asked = pipeline::problem(&scenario, &obstacles, &coast);
+    let land_obstacle = pipeline::land_obstacle(&scenario, &land);
+    let asked = pipeline::problem(&scenario, &obstacles, &land_obstacle);
     let id = format!("plan/3 targets, {} pieces of land", land.len());
     criterion.bench_function(&id, |b| b.iter(|| space_time::plan(black_box(&asked))));
     criterion.bench_function("plan/land folded in", |b| {
         b.iter(|| {
-            pipeline::coast(
+            pipeline::land_obstacle(
                 &scenario,
                 &pipeline::land_within_reach(black_box(&scenario)),
             )

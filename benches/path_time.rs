@@ -6,7 +6,7 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, outer_disc};
-use searoom::obstacle::{Coast, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use searoom::obstacle::{LandObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::planner::{Objective, Planned, Problem, SearchKind, path_time};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
@@ -84,7 +84,7 @@ fn problem(scene: &Scene, objective: Objective) -> Problem<'_> {
         alternatives: &[],
         objective,
         obstacles: &scene.obstacles,
-        coast: Coast::none(),
+        land_obstacle: LandObstacle::none(),
         horizon: scene.horizon,
         time_weight: SPEED * SPEED,
         search: SearchKind::AStar,

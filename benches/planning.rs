@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use searoom::obstacle::{Coast, Obstacle};
+use searoom::obstacle::{LandObstacle, Obstacle};
 use searoom::pipeline::{self, problem};
 use searoom::planner::{Outcome, Problem, SearchKind, space_time};
 use searoom::scenario::Scenario;
@@ -43,7 +43,7 @@ fn assert_planned(scenario: &Scenario) {
 fn time_plan(criterion: &mut Criterion, id: &str, scenario: &Scenario) {
     assert_planned(scenario);
     let obstacles = shaped(scenario);
-    let problem = problem(scenario, &obstacles, Coast::none());
+    let problem = problem(scenario, &obstacles, LandObstacle::none());
     criterion.bench_function(id, |b| b.iter(|| space_time::plan(black_box(&problem))));
 }
 
@@ -60,7 +60,7 @@ fn one_target(criterion: &mut Criterion) {
 fn dijkstra(criterion: &mut Criterion) {
     let drawn = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin).expect("drawn");
     let obstacles = shaped(&drawn.scenario);
-    let a_star = problem(&drawn.scenario, &obstacles, Coast::none());
+    let a_star = problem(&drawn.scenario, &obstacles, LandObstacle::none());
     let dijkstra = Problem {
         search: SearchKind::Dijkstra,
         ..a_star.clone()
@@ -103,7 +103,7 @@ fn times(scenes: impl Iterator<Item = Scenario>) -> Vec<f64> {
     let mut times: Vec<f64> = scenes
         .map(|scenario| {
             let obstacles = shaped(&scenario);
-            let problem = problem(&scenario, &obstacles, Coast::none());
+            let problem = problem(&scenario, &obstacles, LandObstacle::none());
             (0..RUNS)
                 .map(|_| {
                     let start = Instant::now();

@@ -9,7 +9,7 @@ mod shared;
 use std::time::Duration;
 
 use searoom::frame::{Pose, Vector};
-use searoom::obstacle::Coast;
+use searoom::obstacle::LandObstacle;
 use searoom::planner::{Objective, Problem, SearchKind, path_time};
 use searoom::report::figure::{
     Figure, FigureError, ProfileLine, Stroke, path_panel, path_time_panel,
@@ -39,7 +39,7 @@ fn main() -> Result<(), FigureError> {
         alternatives: &[],
         objective: Objective::Time,
         obstacles: &obstacles,
-        coast: Coast::none(),
+        land_obstacle: LandObstacle::none(),
         first_turn: None,
         encountered: &[],
         horizon: 200.0,

@@ -1,9 +1,10 @@
-//! The plane of the program and its border with the navigator's.
+//! The program's plane, and its conversion to nautical units.
 //!
-//! Inside: east and north in metres, headings counter-clockwise from east in radians, time in
-//! seconds, speeds in m/s. At the border: courses clockwise from true north in degrees, knots, and
-//! latitudes and longitudes, which a [`Georeference`] lays on the plane. This is the only file that
-//! knows a degree or a knot. Port and starboard are named here: no other file needs a sign for them.
+//! Inside the program: east and north in metres, headings counter-clockwise from east in radians,
+//! time in seconds, speeds in m/s. In files and reports: courses clockwise from true north in
+//! degrees, knots, latitudes and longitudes, which a [`Georeference`] projects to the plane. Only
+//! this file knows degrees and knots. It also names port and starboard, so that no other file needs
+//! a sign for them.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,7 +17,7 @@ pub const NAUTICAL_MILE_M: f64 = 1852.0;
 /// One international knot in m/s (exact by definition).
 pub const KNOT_MPS: f64 = NAUTICAL_MILE_M / 3600.0;
 
-/// Where a ship is and where she points.
+/// Position and heading of a ship.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Hull centre, metres.
@@ -71,7 +72,7 @@ impl Side {
         }
     }
 
-    /// The sign of a turn to this side in the program's frame (counter-clockwise positive).
+    /// Sign of a turn to this side in the program's frame (counter-clockwise positive).
     pub fn turn_sign(self) -> f64 {
         match self {
             Self::Port => 1.0,
@@ -79,7 +80,7 @@ impl Side {
         }
     }
 
-    /// The side of a turn with this rate, `None` when it is zero or not a number.
+    /// The side of a turn with this rate; `None` when it is zero or NaN.
     pub fn of_turn(turn_rate: f64) -> Option<Self> {
         match turn_rate.partial_cmp(&0.0)? {
             std::cmp::Ordering::Greater => Some(Self::Port),
@@ -109,12 +110,12 @@ pub fn heading_of(v: Vector) -> f64 {
     v.y.atan2(v.x)
 }
 
-/// The vector turned a quarter circle to port.
+/// The vector rotated a quarter turn to port.
 pub fn to_port(v: Vector) -> Vector {
     Vector::new(-v.y, v.x)
 }
 
-/// The vector turned a quarter circle to starboard.
+/// The vector rotated a quarter turn to starboard.
 pub fn to_starboard(v: Vector) -> Vector {
     Vector::new(v.y, -v.x)
 }
@@ -124,12 +125,12 @@ pub fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// The same angle in `(-pi, pi]`.
+/// The equivalent angle in `(-pi, pi]`.
 pub fn wrap(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;
     }
-    // one turn off, as most are: the same without a division
+    // the common case of one turn, without a division
     if angle > PI && angle < 9.0 {
         return angle - TAU;
     }
@@ -140,7 +141,7 @@ pub fn wrap(angle: f64) -> f64 {
     if wrapped > PI { wrapped - TAU } else { wrapped }
 }
 
-/// The same angle in `[0, 2 pi)`.
+/// The equivalent angle in `[0, 2 pi)`.
 pub fn wrap_positive(angle: f64) -> f64 {
     let wrapped = angle.rem_euclid(TAU);
     // rem_euclid rounds a tiny negative angle up to the full circle
@@ -148,7 +149,7 @@ pub fn wrap_positive(angle: f64) -> f64 {
 }
 
 /// Relative bearing of `point` from a ship, clockwise from ahead, in `(-pi, pi]`: positive to
-/// starboard, as the rules of the road have it.
+/// starboard.
 pub fn relative_bearing(ship: &Pose, point: Vector) -> f64 {
     let bearing = wrap(ship.heading - heading_of(point - ship.position));
     if bearing == -PI { PI } else { bearing }
@@ -165,13 +166,13 @@ pub fn course_deg_from_heading(heading: f64) -> f64 {
     if course >= 360.0 { 0.0 } else { course }
 }
 
-/// A turn at the border, degrees clockwise, from radians counter-clockwise. Zero keeps its positive sign.
+/// A turn in degrees clockwise, from radians counter-clockwise. Zero keeps its positive sign.
 pub fn clockwise_deg(turn: f64) -> f64 {
     clockwise_deg_per_s(turn)
 }
 
-/// A turn rate at the border, degrees per second clockwise, from radians per second
-/// counter-clockwise. Zero keeps its positive sign.
+/// A turn rate in degrees per second clockwise, from radians per second counter-clockwise. Zero
+/// keeps its positive sign.
 pub fn clockwise_deg_per_s(turn_rate: f64) -> f64 {
     if turn_rate == 0.0 {
         0.0
@@ -180,12 +181,12 @@ pub fn clockwise_deg_per_s(turn_rate: f64) -> f64 {
     }
 }
 
-/// Radians from degrees: a spread or a half-width, which has no direction.
+/// Radians from degrees, for angles without a direction such as a half-width.
 pub const fn radians_from_deg(degrees: f64) -> f64 {
     degrees.to_radians()
 }
 
-/// Degrees from radians: an angle without a direction, or one already clockwise.
+/// Degrees from radians, for angles without a direction or already clockwise.
 pub fn deg_from_radians(radians: f64) -> f64 {
     radians.to_degrees()
 }
@@ -200,7 +201,7 @@ pub fn knots_from_mps(speed: f64) -> f64 {
     speed / KNOT_MPS
 }
 
-/// A place on the WGS84 ellipsoid.
+/// A position on the WGS84 ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geographic {
     /// Degrees north of the equator.
@@ -222,30 +223,30 @@ impl std::fmt::Display for Geographic {
     }
 }
 
-/// Equatorial radius of WGS84, metres, and its flattening (by definition).
+/// Equatorial radius of WGS84, metres, by definition; its flattening follows.
 const WGS84_RADIUS_M: f64 = 6_378_137.0;
 const WGS84_FLATTENING: f64 = 1.0 / 298.257_223_563;
 
-/// Scale on the central meridian. A little below 1, as every secant projection has it: distances from the
-/// origin are then within 0.1 m at 30 km to all sides, not only north and south.
+/// Scale on the central meridian, slightly below 1 as in every secant projection. Distances from
+/// the origin are then within 0.1 m at 30 km in all directions.
 const CENTRAL_SCALE: f64 = 1.0 - 1e-6;
 
-/// Metres from the origin of a georeference within which places are taken: lengths at its rim are 0.012 % too
-/// long. Farther out is another part of the world, or a latitude and a longitude that were exchanged.
+/// Greatest distance from the origin of a georeference, metres. Lengths there are 0.012 % too long.
+/// Positions farther away are a mistake, such as an exchanged latitude and longitude.
 pub const GEOREFERENCE_REACH_M: f64 = 100_000.0;
 
-/// Degrees. No origin is nearer to a pole than 1°: courses make no sense there.
+/// Largest latitude of an origin, degrees: courses are meaningless near a pole.
 pub const LARGEST_ORIGIN_LAT_DEG: f64 = 89.0;
 
-/// The plane of a scenario on the earth: a transverse Mercator projection of WGS84 about an origin, where
-/// north on the plane is true north.
+/// The plane of a scenario on the earth: a transverse Mercator projection of WGS84 about an origin,
+/// where north on the plane is true north.
 ///
-/// By Krüger's series to the fourth order in the third flattening, whose own error is below a micrometre
+/// Krüger's series to the fourth order in the third flattening, with an error below a micrometre
 /// (C. F. F. Karney, "Transverse Mercator with an accuracy of a few nanometers", 2011,
-/// doi:10.1007/s00190-011-0445-3). As a map of the earth: distances and bearings from the origin put a place
-/// within 0.1 m of where the geodesic leads at 30 km; lengths at 100 km from its meridian are 0.012 % too
-/// long. Away from the meridian of the origin north on the plane differs from true north, by
-/// `(lon - lon_origin) sin(lat)`: half a degree at 30 km east in 63° N.
+/// doi:10.1007/s00190-011-0445-3). A position given by distance and bearing from the origin is
+/// within 0.1 m of the geodesic's end at 30 km. Lengths at 100 km from the central meridian are
+/// 0.012 % too long. Away from that meridian north on the plane differs from true north by `(lon -
+/// lon_origin) sin(lat)`: half a degree at 30 km east in 63° N.
 ///
 /// ```
 /// use searoom::frame::{Geographic, Georeference, Vector};
@@ -263,7 +264,8 @@ pub struct Georeference {
 }
 
 impl Georeference {
-    /// About an origin; `None` when it is not on the earth or beyond [`LARGEST_ORIGIN_LAT_DEG`].
+    /// A georeference about an origin; `None` when it is not on the earth or beyond
+    /// [`LARGEST_ORIGIN_LAT_DEG`].
     pub fn new(origin: Geographic) -> Option<Self> {
         let sound = origin.lat_deg.abs() <= LARGEST_ORIGIN_LAT_DEG && origin.is_on_earth();
         sound.then(|| {
@@ -276,12 +278,12 @@ impl Georeference {
         })
     }
 
-    /// The place that the plane's zero stands for.
+    /// The position of the plane's origin.
     pub fn origin(&self) -> Geographic {
         self.origin
     }
 
-    /// Metres east and north of the origin. NaN in, NaN out.
+    /// Metres east and north of the origin. NaN for a NaN.
     pub fn to_plane(&self, place: Geographic) -> Vector {
         let (lat, lon) = (
             place.lat_deg.to_radians(),
@@ -300,7 +302,7 @@ impl Georeference {
         Vector::new(series.radius * x, series.radius * y - self.northing)
     }
 
-    /// The same for a place on the earth within [`GEOREFERENCE_REACH_M`] of the origin, `None` for any other.
+    /// [`Georeference::to_plane`] within [`GEOREFERENCE_REACH_M`] of the origin; `None` elsewhere.
     pub fn to_near_plane(&self, place: Geographic) -> Option<Vector> {
         let point = self.to_plane(place);
         (place.is_on_earth() && point.norm() <= GEOREFERENCE_REACH_M).then_some(point)
@@ -337,7 +339,7 @@ impl Georeference {
     }
 }
 
-/// Tangent of the conformal latitude from that of the geographic one.
+/// Tangent of the conformal latitude from that of the geographic latitude.
 fn conformal(tan_lat: f64) -> f64 {
     let e = (WGS84_FLATTENING * (2.0 - WGS84_FLATTENING)).sqrt();
     let secant = tan_lat.hypot(1.0);

@@ -1,46 +1,49 @@
-//! Searoom plans how a ship keeps clear of others when nobody knows exactly what they will do.
+//! Searoom plans how a ship keeps clear of others whose motion is uncertain.
 //!
 //! # The problem
 //!
-//! A target is known by two convex sets: `O_0`, every place where own ship's centre would be too near to
-//! her at t = 0, and `V`, every velocity that she may take. At time `t` own ship has to be outside
+//! Two convex sets describe a target. `O_0` contains every position where own ship's centre would be
+//! too near to the target at t = 0. `V` contains every velocity that the target may have. At time
+//! `t` own ship must be outside the Minkowski sum
 //!
 //! ```text
-//! O_t = O_0 ⊕ t V                                    (⊕: every sum of a point of one and a point of the other)
+//! O_t = O_0 ⊕ t V
 //! ```
 //!
-//! Because `V` is convex, `O_t` holds whatever she does with a velocity that stays in `V`, changing or
-//! not. Own ship is meant to follow the desired trajectory, at `x_d` when it is `t_d`, for `T_d` seconds. A
-//! plan is a motion `x(t)` of lines and of arcs with her turning radius, at speeds of a finite set, from
-//! her pose at t = 0 to the last waypoint at `T`, or along given paths at any speed up to her greatest. It costs its space-time error
+//! `V` is convex, so `O_t` holds for every velocity that stays in `V`, constant or not. Own ship
+//! should follow the desired trajectory, which is at `x_d` at `t_d` and lasts `T_d` seconds. A plan is
+//! a motion `x(t)` of lines and of arcs with the turning radius, at speeds of a finite set, from the
+//! pose at t = 0 to the last waypoint at `T`. Alternatively it follows given paths at any speed up to
+//! the largest. Its cost is the space-time error
 //!
 //! ```text
 //! J = 1/T_d ∫ min over σ of ( |x(t) - x_d(σ)|² + q (t - t_d(σ))² ) dt          m², t from 0 to T
 //! ```
 //!
-//! and has to satisfy, for every target,
+//! It must satisfy, for every target,
 //!
 //! ```text
 //! x(t) ∉ int O_t    for all 0 <= t <= T,    T <= horizon
 //! ```
 //!
-//! Sets are closed and touching is allowed: planners go at most 1e-7 m deep, the independent check rejects
-//! a depth over 1e-6 m ([`tolerance::DEPTH_M`]). Of the candidates that the planner makes, the cheapest
-//! clear one wins; that no cheaper plan exists is not claimed.
+//! Sets are closed and touching is allowed. Planners go at most 1e-7 m deep; the independent check
+//! rejects a depth over 1e-6 m ([`tolerance::DEPTH_M`]). The planner returns the cheapest clear
+//! candidate that it found. It does not claim that no cheaper plan exists.
 //!
 //! The sets, the graph and the numbers of equations come from A. B. Martinsen and A. M. Lekkas, "Two
 //! Space-Time Obstacle Representations Based on Ellipsoids and Polytopes" (2022).
 //!
 //! # Conventions
 //!
-//! - Plane: east, north, metres. Headings in radians, counter-clockwise from east. Time in seconds from
-//!   the scenario's start, speeds in m/s. Courses (degrees clockwise from true north) and knots exist in
-//!   files and reports only; [`frame`] converts.
+//! - Plane: east, north, metres. Headings in radians, counter-clockwise from east. Time in seconds
+//!   from the scenario's start, speeds in m/s. Courses (degrees clockwise from true north) and knots
+//!   exist in files and reports only; [`frame`] converts.
 //! - Port and starboard are [`frame::Side`], never a sign.
-//! - Approximations say which way they err: `outer_…` contains what it stands for. Safety rests on these.
+//! - Names of approximations say which way they err: `outer_…` contains the exact set. Safety rests
+//!   on these.
 //! - Comparisons fail closed: a NaN is a collision.
 //! - "No plan" is an [`planner::Outcome`], not an error.
-//! - The same input gives the same result. The clock is read for the deadline and for the time taken.
+//! - Equal input gives equal results. The clock is read for the deadline and for the time taken.
 //!
 //! # Modules
 //!
@@ -53,13 +56,13 @@
 //! | --- | --- |
 //! | [`frame`] | the plane, poses, headings; the border to degrees, knots, latitudes and longitudes |
 //! | [`tolerance`] | every tolerance with its unit and its reason |
-//! | [`geometry`] | convex polygons and ellipses, points and segments included; any polygon, cut into convex pieces |
+//! | [`geometry`] | convex sets (polygon or ellipse); polygons and their decomposition into convex pieces |
 //! | [`map`] | land from GeoJSON, cut into convex pieces, indexed |
 //! | [`search`] | A* and Dijkstra over a graph given by its successors |
 //! | [`trajectory`] | lines and arcs in time; the desired trajectory |
-//! | [`vessel`] | own ship and her limits; Dubins paths |
-//! | [`target`] | a tracked ship and what is not known of her |
-//! | [`colregs`] | roles by the rules of the road; the shapes that answer them |
+//! | [`vessel`] | own ship and its limits; Dubins paths; manoeuvring models |
+//! | [`target`] | a tracked ship or explicit sets, with their uncertainty |
+//! | [`colregs`] | roles by the rules of the road; ship domains |
 //! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
 //! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
 //! | [`evaluation`] | judges any trajectory, without the sets and contact tests of the planner |
@@ -113,9 +116,9 @@
 //! println!("{}", plan_text(&run));
 //!
 //! let plan = run.planned.outcome.plan().expect("there is room");
-//! let evaluation = run.evaluation.as_ref().expect("every plan is judged");
+//! let evaluation = run.evaluation.as_ref().expect("every plan is evaluated");
 //! assert!(evaluation.verified());
-//! // the hulls keep the safety margin, by default one own length, whatever the ferry does within her sets
+//! // hulls keep the safety margin, by default one own length, for every motion within the sets
 //! assert!(evaluation.min_clearance >= run.scenario.own_ship.safety_margin);
 //! assert!((plan.trajectory.end().position - run.scenario.desired.end()).norm() < 1e-5);
 //! ```
@@ -129,6 +132,7 @@ pub mod frame;
 pub mod geometry;
 pub mod input;
 pub mod map;
+mod numerics;
 pub mod obstacle;
 mod output;
 pub mod pipeline;

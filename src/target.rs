@@ -1,29 +1,31 @@
-//! A target: a tracked ship as two sets, where she may be now and every velocity she may take.
+//! A target: a tracked ship or explicit sets, with its possible positions at t = 0 and its possible
+//! velocities.
 
 use crate::frame::{Pose, Vector, direction, to_port};
 use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse};
 use crate::vessel::Hull;
 
-/// Half the angle between two tangents of the faster arc: 5°, radians.
+/// Half the angle between two tangents of the outer arc, radians: 5°.
 const TANGENT_SPACING: f64 = std::f64::consts::PI / 36.0;
 
-/// The turn that one spell of a turning target stands for: 5°, radians.
-const TURN_OF_A_SPELL: f64 = std::f64::consts::PI / 36.0;
+/// Turn within one time interval of a turning target, radians: 5°.
+const TURN_PER_INTERVAL: f64 = std::f64::consts::PI / 36.0;
 
-/// Of a hull's half-diagonal. A side of the outer polygon of a turned hull that is shorter is left out.
+/// Sides of a turned hull's outer polygon shorter than this fraction of the half-diagonal are
+/// omitted.
 const SHORT_SIDE: f64 = 1e-3;
 
-/// Sides of the polygon that stands for an ellipse in figures: 0.12 % beyond it at most.
+/// Number of sides of the polygon around an ellipse in figures: at most 0.12 % too large.
 const SET_SIDES: usize = 64;
 
-/// How the initial set of a target is shaped for the rules of the road.
+/// Kind of ship domain around a target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DomainKind {
-    /// A symmetric base swept to the side that the encounter forbids.
+    /// A symmetric base, extended to the side that the encounter forbids.
     Colregs,
     /// One convex polygon, large in front and to starboard, sized by the target's length.
     Paper,
-    /// No shape: the hull and the margin alone.
+    /// No domain: only hull and margin.
     Hull,
     /// Distances from the hull's edge, metres.
     Custom {
@@ -38,23 +40,23 @@ pub enum DomainKind {
     },
 }
 
-/// A set of velocities and until when it holds: one of several, one after another.
+/// A velocity set that holds until some time, one of a sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocitySpell {
     /// Seconds from the scenario's start; infinite for the last.
     pub until: f64,
-    /// Every velocity possible until then, m/s.
+    /// Every possible velocity until then, m/s.
     pub velocities: ConvexPolygon,
 }
 
-/// A tracked ship: nominal motion and what is not known of it.
+/// A tracked ship: nominal motion and its uncertainty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShipTrack {
-    /// Estimated hull centre and heading at t = 0. Course and heading are one: no drift.
+    /// Estimated hull centre and heading at t = 0. The course equals the heading: no drift.
     pub pose: Pose,
     /// Estimated speed, m/s, not negative.
     pub speed: f64,
-    /// Her hull.
+    /// Hull.
     pub hull: Hull,
     /// Standard deviation of the position, metres per axis.
     pub position_std: f64,
@@ -62,10 +64,10 @@ pub struct ShipTrack {
     pub speed_spread: f64,
     /// Half-width of the course, radians.
     pub course_spread: f64,
-    /// How fast she may turn to either side, radians per second, not negative: her course at `t` is within
-    /// `course_spread + turn_rate t`.
+    /// Largest turn rate to either side, radians per second, not negative: the course at `t` is
+    /// within `course_spread + turn_rate t`.
     pub turn_rate: f64,
-    /// The shape asked for.
+    /// The requested ship domain.
     pub domain: DomainKind,
 }
 
@@ -83,20 +85,22 @@ impl ShipTrack {
         )
     }
 
-    /// Half-width of her heading at `time`, which is her course, radians: at most half a turn.
+    /// Half-width of the heading, and so of the course, at `time`, radians: at most half a turn.
     pub fn heading_spread(&self, time: f64) -> f64 {
         let turned = if self.turn_rate == 0.0 {
             0.0
         } else {
             self.turn_rate.abs() * time
         };
-        // of a NaN and a number the least is the number: every heading
+        // `min` of a NaN and a number is the number: every heading
         (self.course_spread + turned).min(std::f64::consts::PI)
     }
 
-    /// An outer polygon of her hull at t = 0 on every heading that she may have until `time`: on the nominal one
-    /// the hull itself, otherwise at most 2 % of its half-diagonal larger. Its sides are among those of
-    /// [`crate::geometry::outer_disc`] about her heading, so that the sum with such a disc has no more vertices than the disc.
+    /// An outer polygon of the hull at t = 0 for every possible heading until `time`.
+    ///
+    /// For a known heading it is the hull itself, otherwise at most 2 % of the half-diagonal
+    /// larger. Its sides are among those of [`crate::geometry::outer_disc`] about the heading, so
+    /// the sum with such a disc has no more vertices than the disc.
     pub fn outer_hull(&self, time: f64) -> ConvexPolygon {
         let spread = self.heading_spread(time);
         if spread == 0.0 {
@@ -106,7 +110,7 @@ impl ShipTrack {
             self.hull.half_diagonal(),
             self.hull.beam.atan2(self.hull.length),
         );
-        // a quarter of the sides, from ahead to abeam; the others are its mirror images
+        // a quarter of the sides, from ahead to abeam; the others are reflections
         let quarter = DISC_SIDES / 4;
         let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
         let support = |side: f64| {
@@ -137,30 +141,34 @@ impl ShipTrack {
         ConvexPolygon::from_ccw(points)
     }
 
-    /// An outer polygon of every velocity with a speed in `[speed - spread, speed + spread]`,
-    /// clipped at 0, and a course within `course_spread`. The faster arc is replaced by tangents at
-    /// most 5° from their touching point: it reaches at most 0.4 % beyond the largest speed.
+    /// An outer polygon of the velocities with a speed in `[speed - spread, speed + spread]`, at
+    /// least 0, and a course within `course_spread`.
+    ///
+    /// Tangents at most 5° from their touching points replace the outer arc. It exceeds the largest
+    /// speed by at most 0.4 %.
     pub fn outer_velocity_set(&self) -> ConvexPolygon {
         self.outer_velocities_within(self.course_spread)
     }
 
-    /// Outer sets of every velocity that she may have while she turns at up to `turn_rate` radians per second
-    /// to either side: her course at `t` is within `course_spread + turn_rate t`. Every set is that of the end
-    /// of its spell, when it is widest; a spell is at most as long as 5° of turn take, so a half-width is never
-    /// more than 5° too wide. From `horizon` seconds on, or from when they are, all courses are possible. A rate
-    /// of 0 gives one set; one that is not finite gives every course at once.
+    /// Outer velocity sets of the ship while it turns at up to `turn_rate` radians per second to
+    /// either side, so that its course at `t` is within `course_spread + turn_rate t`.
+    ///
+    /// Each set is that of the end of its time interval, when it is widest. An interval lasts at
+    /// most until 5° of turn, so a half-width is at most 5° too wide. All courses are possible from
+    /// `horizon` seconds on, or earlier where they are. A rate of 0 gives one set; a rate that is
+    /// not finite gives every course at once.
     pub fn outer_velocity_spells(&self, turn_rate: f64, horizon: f64) -> Vec<VelocitySpell> {
-        let spell = |until, spread| VelocitySpell {
+        let timed = |until, spread| VelocitySpell {
             until,
             velocities: self.outer_velocities_within(spread),
         };
         let rate = turn_rate.abs();
         if rate == 0.0 {
-            return vec![spell(f64::INFINITY, self.course_spread)];
+            return vec![timed(f64::INFINITY, self.course_spread)];
         }
         let all = std::f64::consts::PI;
-        let duration = TURN_OF_A_SPELL / rate;
-        let mut spells = Vec::new();
+        let duration = TURN_PER_INTERVAL / rate;
+        let mut sets = Vec::new();
         let mut start = 0.0;
         while start < horizon && rate.is_finite() {
             let until = f64::min(start + duration, horizon);
@@ -168,11 +176,11 @@ impl ShipTrack {
             if !(spread < all && until > start) {
                 break;
             }
-            spells.push(spell(until, spread));
+            sets.push(timed(until, spread));
             start = until;
         }
-        spells.push(spell(f64::INFINITY, all));
-        spells
+        sets.push(timed(f64::INFINITY, all));
+        sets
     }
 
     fn outer_velocities_within(&self, course_spread: f64) -> ConvexPolygon {
@@ -195,7 +203,7 @@ impl ShipTrack {
                 points.push(direction(middle) * (fast / half.cos()));
             }
         }
-        // finite by the type's contract; should a number overflow, every velocity is possible
+        // finite by the contract of the type; should a number overflow, every velocity is possible
         ConvexPolygon::hull(&points).unwrap_or_else(|_| everything())
     }
 }
@@ -210,44 +218,44 @@ fn everything() -> ConvexPolygon {
     ])
 }
 
-/// What is known of a target's motion.
+/// Motion of a target, as far as it is known.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Motion {
     /// A tracked ship.
     Ship(ShipTrack),
-    /// The two sets outright: own ship is then a point, and nothing is added.
+    /// Two explicit polygons. Own ship is a point, and nothing is added.
     Sets {
-        /// Where it may be at t = 0, metres.
+        /// Possible positions at t = 0, metres.
         initial: ConvexPolygon,
-        /// Every velocity it may take, m/s.
+        /// Possible velocities, m/s.
         velocity: ConvexPolygon,
     },
-    /// The same, as ellipses.
+    /// Two explicit ellipses, used like [`Self::Sets`].
     Ellipses {
-        /// Where it may be at t = 0, metres.
+        /// Possible positions at t = 0, metres.
         initial: Ellipse,
-        /// Every velocity it may take, m/s.
+        /// Possible velocities, m/s.
         velocity: Ellipse,
     },
-    /// The same with velocity sets one after another.
+    /// An explicit polygon with consecutive velocity sets, used like [`Self::Sets`].
     Spells {
-        /// Where it may be at t = 0, metres.
+        /// Possible positions at t = 0, metres.
         initial: ConvexPolygon,
-        /// In order of time; the ends increase and the last one's is infinite.
+        /// In order of time: the ends increase, and the last one is infinite.
         spells: Vec<VelocitySpell>,
     },
 }
 
-/// What the sets of a target are made of.
+/// Kind of a target's sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Representation {
-    /// Polygons as they are.
+    /// Polygons, unchanged.
     Polytope,
     /// The smallest ellipses around them.
     Ellipsoid,
 }
 
-/// A target.
+/// A tracked target.
 ///
 /// ```
 /// use searoom::frame::{Pose, Vector};
@@ -276,28 +284,30 @@ pub enum Representation {
 pub struct Target {
     /// Unique within a scenario.
     pub name: String,
-    /// What is known of it.
+    /// Its motion, as far as it is known.
     pub motion: Motion,
-    /// What its sets are made of; of no meaning where ellipses or several velocity sets are given.
+    /// Kind of its sets; unused where ellipses or several velocity sets are given.
     pub representation: Representation,
 }
 
 impl Target {
-    /// Nominal centre at `time`: the estimated position, or the centroids of the two sets.
+    /// Nominal position at `time`: the estimate, or the centroids of the sets.
     pub fn position_at(&self, time: f64) -> Vector {
         match &self.motion {
             Motion::Ship(ship) => ship.pose_at(time).position,
             Motion::Sets { initial, velocity } => initial.centroid() + velocity.centroid() * time,
             Motion::Ellipses { initial, velocity } => initial.center() + velocity.center() * time,
-            Motion::Spells { initial, spells } => stretches(spells, time)
+            Motion::Spells { initial, spells } => durations(spells, time)
                 .fold(initial.centroid(), |at, (duration, velocities)| {
                     at + velocities.centroid() * duration
                 }),
         }
     }
 
-    /// Where a target whose sets are given outright may be at `time >= 0`, metres: the sum of its sets, of ellipses
-    /// from outside, by their circumscribed 64-gons. `None` for a tracked ship.
+    /// Possible positions at `time >= 0` of a target with explicit sets, metres; `None` for a
+    /// tracked ship.
+    ///
+    /// The Minkowski sum of its sets; for ellipses an outer set from their circumscribed 64-gons.
     pub fn outer_set_at(&self, time: f64) -> Option<ConvexPolygon> {
         match &self.motion {
             Motion::Ship(_) => None,
@@ -309,14 +319,14 @@ impl Target {
                 Some(initial.minkowski_sum(&velocity.scaled(time)))
             }
             Motion::Spells { initial, spells } => Some(
-                stretches(spells, time).fold(initial.clone(), |set, (duration, velocities)| {
+                durations(spells, time).fold(initial.clone(), |set, (duration, velocities)| {
                     set.minkowski_sum(&velocities.scaled(duration))
                 }),
             ),
         }
     }
 
-    /// The instants at which its velocity set changes, seconds.
+    /// The times at which its velocity set changes, seconds.
     pub fn changes(&self) -> Vec<f64> {
         match &self.motion {
             Motion::Spells { spells, .. } => spells.iter().map(|s| s.until).collect(),
@@ -324,7 +334,7 @@ impl Target {
         }
     }
 
-    /// The tracked ship, where it is one.
+    /// The tracked ship, if it is one.
     pub fn ship(&self) -> Option<&ShipTrack> {
         match &self.motion {
             Motion::Ship(ship) => Some(ship),
@@ -333,11 +343,11 @@ impl Target {
     }
 }
 
-/// For how long each velocity set holds until `time`, seconds.
-fn stretches(spells: &[VelocitySpell], time: f64) -> impl Iterator<Item = (f64, &ConvexPolygon)> {
-    let starts = std::iter::once(0.0).chain(spells.iter().map(|s| s.until));
+/// Duration of each velocity set until `time`, seconds.
+fn durations(sets: &[VelocitySpell], time: f64) -> impl Iterator<Item = (f64, &ConvexPolygon)> {
+    let starts = std::iter::once(0.0).chain(sets.iter().map(|s| s.until));
     starts
-        .zip(spells)
+        .zip(sets)
         .map(move |(start, s)| (s.until.min(time) - start, &s.velocities))
         .filter(|(duration, _)| *duration > 0.0)
 }

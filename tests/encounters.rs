@@ -26,7 +26,7 @@ use rayon::prelude::*;
 use searoom::colregs::Role;
 use searoom::frame::{Pose, Side, Vector, direction, heading_of, wrap};
 use searoom::geometry::ConvexPolygon;
-use searoom::obstacle::{Coast, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use searoom::obstacle::{LandObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::pipeline::{self, problem};
 use searoom::planner::{Outcome, Planned, Problem, SearchKind, space_time};
 use searoom::scenario::{Compliance, Scenario};
@@ -481,7 +481,11 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
                 seed,
                 random_encounter(kind, seed, Placement::Origin).expect("drawn"),
             );
-            let problem = problem(&record.drawn.scenario, &record.obstacles, Coast::none());
+            let problem = problem(
+                &record.drawn.scenario,
+                &record.obstacles,
+                LandObstacle::none(),
+            );
             let cost = record.plan.map_or(f64::INFINITY, |p| p.1);
             let answer = searched(
                 &problem,
@@ -580,7 +584,7 @@ fn larger(scenario: &Scenario, factor: f64) -> Planned {
         own: &own,
         desired: &desired,
         horizon: scenario.horizon * factor,
-        ..problem(scenario, &obstacles, Coast::none())
+        ..problem(scenario, &obstacles, LandObstacle::none())
     };
     let planned = space_time::plan(&problem);
     let plan = planned.outcome.plan().expect("a plan");

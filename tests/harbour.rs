@@ -258,8 +258,8 @@ fn a_star_costs_what_dijkstra_costs_among_land() {
             .map(|s| s.hard)
             .collect();
         let land = pipeline::land_within_reach(scenario);
-        let coast = pipeline::coast(scenario, &land);
-        let asked = pipeline::problem(scenario, &obstacles, &coast);
+        let land_obstacle = pipeline::land_obstacle(scenario, &land);
+        let asked = pipeline::problem(scenario, &obstacles, &land_obstacle);
         let graph_cost = |search| {
             let planned = space_time::plan(&Problem {
                 search,

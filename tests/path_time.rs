@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::{
-    Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    EllipsoidObstacle, LandObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use searoom::planner::{NoPlan, Objective, Outcome, Planned, Problem, SearchKind, path_time};
 use searoom::target::VelocitySpell;
@@ -140,7 +140,7 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         alternatives: &[],
         objective,
         obstacles: &drawn.obstacles,
-        coast: Coast::none(),
+        land_obstacle: LandObstacle::none(),
         horizon: drawn.horizon,
         time_weight: 25.0,
         search,
@@ -564,7 +564,7 @@ fn alternatives_are_as_good_as_the_best_way_through_them() {
             let planned = path_time::plan(&Problem {
                 first_turn: None,
                 encountered: &[],
-                coast: Coast::none(),
+                land_obstacle: LandObstacle::none(),
                 own: &own,
                 desired: &desired,
                 alternatives: &alternatives,
@@ -621,7 +621,7 @@ fn risk_is_weighed_against_length() {
     let problem = Problem {
         first_turn: None,
         encountered: &[],
-        coast: Coast::none(),
+        land_obstacle: LandObstacle::none(),
         own: &own,
         desired: &desired,
         alternatives: &detour,

@@ -5,7 +5,7 @@ use std::time::Duration;
 use rayon::prelude::*;
 use searoom::frame::{Vector, radians_from_deg};
 use searoom::geometry::Ellipse;
-use searoom::obstacle::{Coast, Obstacle, SpaceTimeObstacle};
+use searoom::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
 use searoom::pipeline::{self, Relaxation, Run};
 use searoom::planner::{Problem, SearchKind, space_time};
 use searoom::scenario::{Compliance, Scenario};
@@ -148,7 +148,7 @@ fn a_star_finds_the_cost_of_dijkstra() {
                     let planned = space_time::plan(&Problem {
                         search,
                         deadline: Duration::from_secs(120),
-                        ..pipeline::problem(&changed, &obstacles, Coast::none())
+                        ..pipeline::problem(&changed, &obstacles, LandObstacle::none())
                     });
                     planned.outcome.plan().and_then(|p| p.graph_cost)
                 };
@@ -204,7 +204,11 @@ fn cutting_time_hardly_changes_what_a_plan_costs() {
             })
             .collect();
         let cost = |obstacles: &[Obstacle]| {
-            let planned = space_time::plan(&pipeline::problem(&scenario, obstacles, Coast::none()));
+            let planned = space_time::plan(&pipeline::problem(
+                &scenario,
+                obstacles,
+                LandObstacle::none(),
+            ));
             planned.outcome.plan().map(|p| p.cost)
         };
         if let (Some(a), Some(b)) = (cost(&whole), cost(&cut)) {

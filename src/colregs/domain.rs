@@ -9,9 +9,6 @@ use crate::target::{DomainKind, ShipTrack};
 use crate::tolerance;
 use crate::vessel::OwnShip;
 
-/// Standard deviations of the position that the sets cover.
-const POSITION_SIGMAS: f64 = 3.0;
-
 /// The two initial sets of one target, for own ship's centre, metres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shapes {
@@ -69,7 +66,9 @@ pub fn shapes(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f
 /// The same of a target at the origin.
 fn shapes_about(own: &OwnShip, target: &ShipTrack, risk: Option<&Risk>, horizon: f64) -> Shapes {
     let around = outer_disc(
-        own.hull.half_diagonal() + own.safety_margin + POSITION_SIGMAS * target.position_std,
+        own.hull.half_diagonal()
+            + own.safety_margin
+            + tolerance::POSITION_SIGMAS * target.position_std,
         target.pose.heading,
     );
     let hull = target.outer_hull(horizon);

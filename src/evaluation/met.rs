@@ -14,9 +14,6 @@ use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
 
-/// Standard deviations of the position that the worst-case hull covers.
-const POSITION_SIGMAS: f64 = 3.0;
-
 /// The velocities of a ship scaled about their centre by `1 - risk`: the centroid of the polygon, or the centre of the
 /// smallest ellipse around it, as her representation has it.
 fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<VelocitySpell> {
@@ -64,7 +61,10 @@ pub(super) fn passage<P: Piece>(
                 velocities: ConvexPolygon::point(ship.velocity()),
             };
             let nominal = MovingSlabs::new(&hull, &[held]);
-            let unknown = outer_disc(POSITION_SIGMAS * ship.position_std, ship.pose.heading);
+            let unknown = outer_disc(
+                tolerance::POSITION_SIGMAS * ship.position_std,
+                ship.pose.heading,
+            );
             let turned = |until: f64| {
                 let hull = TurnedHull::of(ship, until).outer_polygon();
                 hull.minkowski_sum(&unknown)

@@ -73,8 +73,8 @@ fn places_and_points_are_inverse() {
     }
 }
 
-/// The geodesic from the origin, by another library's solution of another problem, leads within 0.1 m of
-/// the point with its length and bearing on the plane.
+/// Geodesics from the origin, computed by another library, end within 0.1 m of the point with their
+/// length and bearing on the plane.
 #[test]
 fn the_plane_keeps_distances_and_bearings_from_the_origin() {
     use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
@@ -96,7 +96,8 @@ fn the_plane_keeps_distances_and_bearings_from_the_origin() {
             }
         }
     }
-    // along the meridian the projection is exact but for its scale, between any two places nearly so
+    // along the meridian the projection is exact except for its scale, nearly so between any two
+    // points
     let earth = Georeference::new(TRONDHEIM).expect("valid");
     for i in 0..50 {
         let k = f64::from(i);

@@ -1,9 +1,9 @@
-//! Upright boxes.
+//! Axis-aligned boxes.
 
 use super::ConvexPolygon;
 use crate::frame::Vector;
 
-/// An upright box.
+/// An axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// South-western corner.
@@ -13,7 +13,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// The least one around some points; `None` without points.
+    /// The smallest box around points; `None` without points.
     pub fn around<'a>(points: impl IntoIterator<Item = &'a Vector>) -> Option<Self> {
         let mut points = points.into_iter();
         let first = points.next()?;
@@ -40,8 +40,10 @@ impl Window {
         }
     }
 
-    /// The vertices of what of a convex set is within the box, counter-clockwise; empty where nothing is. Cut side by
-    /// side (Sutherland & Hodgman, doi:10.1145/360767.360802).
+    /// Vertices of the part of a convex set inside the box, counter-clockwise; empty where there is
+    /// none.
+    ///
+    /// Clips side by side (Sutherland & Hodgman, doi:10.1145/360767.360802).
     pub fn part_of(&self, set: &ConvexPolygon) -> Vec<Vector> {
         let sides = [
             (Vector::new(1.0, 0.0), self.high.x),

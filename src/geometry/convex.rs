@@ -1,38 +1,39 @@
-//! Convex polygons, degenerate ones included: a point is a polygon of one vertex, a segment of two.
+//! Convex polygons, including points (one vertex) and segments (two).
 
 use super::rounded;
 use crate::frame::{Vector, cross, to_starboard};
 use crate::tolerance;
 
-/// Why points do not make a convex polygon.
+/// Why points are not a convex polygon.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeometryError {
-    /// No points at all.
+    /// No points.
     #[error("no vertices; at least one is needed")]
     Empty,
-    /// A coordinate that is not a finite number, or so large that its fourth power is none.
+    /// A coordinate that is not finite, or whose fourth power is not.
     #[error("vertex {index} is not finite")]
     NotFinite {
-        /// Which vertex, from 0.
+        /// Index of the vertex, from 0.
         index: usize,
     },
     /// A vertex lies inside the hull of the others.
     #[error("vertex {index} inside the hull of the others, {:?} deep", rounded(*depth))]
     NotConvex {
-        /// Which vertex, from 0.
+        /// Index of the vertex, from 0.
         index: usize,
-        /// How deep, in the unit of the coordinates.
+        /// Depth in the unit of the coordinates.
         depth: f64,
     },
 }
 
-/// A coordinate beyond it has no finite fourth power.
+/// Largest coordinate with a finite fourth power.
 const LARGEST: f64 = 1e75;
 
 /// A convex polygon with counter-clockwise vertices, none repeated and none on the line through its
 /// neighbours. One vertex is a point, two are a segment.
 ///
-/// The set is its support function `h(n) = max n . p`: membership, half-spaces and sums follow.
+/// The set is defined by its support function `h(n) = max n . p`; membership, half-spaces and sums
+/// follow.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -50,14 +51,16 @@ pub struct ConvexPolygon {
 }
 
 impl ConvexPolygon {
-    /// The convex hull of a non-empty set of finite points, in O(n log n). Points closer than
-    /// [`tolerance::DUPLICATE`] of the extent are one; a hull thinner than [`tolerance::THIN`] of it
-    /// is a segment; vertices are dropped by their turn angle, so that genuine short edges stay.
+    /// The convex hull of a non-empty set of finite points, in O(n log n).
+    ///
+    /// Points closer than [`tolerance::DUPLICATE`] of the extent are merged. A hull thinner than
+    /// [`tolerance::THIN`] of it is a segment. Vertices are dropped by their turn angle, so that
+    /// genuine short edges remain.
     pub fn hull(points: &[Vector]) -> Result<Self, GeometryError> {
         if points.is_empty() {
             return Err(GeometryError::Empty);
         }
-        // negated on purpose: a NaN is none
+        // negated so that a NaN is rejected
         let too_large = |p: &Vector| !(p.x.abs() <= LARGEST && p.y.abs() <= LARGEST);
         if let Some(index) = points.iter().position(too_large) {
             return Err(GeometryError::NotFinite { index });
@@ -93,9 +96,10 @@ impl ConvexPolygon {
         Ok(Self::from_ccw(chain))
     }
 
-    /// A polygon from vertices that must all lie on its boundary, in any order of turning:
-    /// duplicates and points on an edge are accepted, a vertex inside is an error. What a user writes
-    /// by hand goes through here.
+    /// A polygon from vertices that must all lie on its boundary, in either orientation.
+    ///
+    /// Duplicates and points on an edge are accepted; a vertex inside is an error. For vertices
+    /// written by a user.
     pub fn from_vertices(points: &[Vector]) -> Result<Self, GeometryError> {
         let hull = Self::hull(points)?;
         let limit = 1e-9 * extent(points);
@@ -103,7 +107,7 @@ impl ConvexPolygon {
         let mut corners = hull.vertices.clone();
         corners.sort_by(by_place);
         for (index, p) in unsigned_zeros(points).iter().enumerate() {
-            // most of what is written by hand is a corner
+            // most given points are corners
             if corners.binary_search_by(|c| by_place(c, p)).is_ok() {
                 continue;
             }
@@ -115,13 +119,15 @@ impl ConvexPolygon {
         Ok(hull)
     }
 
-    /// The set of one point.
+    /// A single point.
     pub fn point(p: Vector) -> Self {
         Self { vertices: vec![p] }
     }
 
-    /// A polygon from the counter-clockwise boundary of a convex set; cleans duplicates, collinear
-    /// vertices and slivers. Panics never; an empty list is the origin.
+    /// A polygon from the counter-clockwise boundary of a convex set.
+    ///
+    /// Removes duplicates, collinear vertices and slivers. Never panics; an empty list gives the
+    /// origin.
     pub(crate) fn from_ccw(points: Vec<Vector>) -> Self {
         let mut v = unsigned_zeros(&points);
         let extent = extent(&v);
@@ -129,7 +135,7 @@ impl ConvexPolygon {
         while v.len() > 1 && (v[0] - v[v.len() - 1]).norm() <= tolerance::DUPLICATE * extent {
             v.pop();
         }
-        // drop by turn angle, until nothing more drops
+        // remove vertices by turn angle until none is left to remove
         let mut i = 0;
         let mut kept = 0;
         while v.len() > 2 && kept < v.len() {
@@ -162,7 +168,7 @@ impl ConvexPolygon {
         if v.is_empty() {
             v.push(Vector::zeros());
         }
-        // lowest, then leftmost first: one polygon has one representation
+        // lowest, then leftmost first: a polygon has one representation
         let first = (0..v.len())
             .min_by(|&i, &j| v[i].y.total_cmp(&v[j].y).then(v[i].x.total_cmp(&v[j].x)))
             .unwrap_or(0);
@@ -183,8 +189,10 @@ impl ConvexPolygon {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The vertices farthest in directions that go around counter-clockwise with gaps of at most half a turn, as those vertices do: each
-    /// search goes on from the last one. O(vertices + directions).
+    /// The farthest vertices in directions sorted counter-clockwise with gaps of at most half a
+    /// turn. O(vertices + directions).
+    ///
+    /// The farthest vertices are sorted likewise, so each search starts at the last result.
     pub(crate) fn extremes<'a>(
         &'a self,
         directions: &'a [Vector],
@@ -211,19 +219,20 @@ impl ConvexPolygon {
         })
     }
 
-    /// `h` in the directions of [`Self::extremes`].
+    /// Supports in the directions of [`Self::extremes`].
     pub(crate) fn supports(&self, directions: &[Vector]) -> Vec<f64> {
         let farthest = self.extremes(directions).zip(directions);
         farthest.map(|(p, along)| along.dot(&p)).collect()
     }
 
-    /// At least the largest distance between two points of it, and at most twice that.
+    /// An upper bound of the diameter, at most twice as large.
     pub(crate) fn across(&self) -> f64 {
         2.0 * self.translated(-self.vertices[0]).reach()
     }
 
-    /// Outward unit normals whose half-spaces are the set: one per edge; for a segment both
-    /// perpendiculars and both ends; for a point the four axes.
+    /// Outward unit normals of half-spaces whose intersection is the set.
+    ///
+    /// One per edge; for a segment both perpendiculars and both ends; for a point the four axes.
     pub fn normals(&self) -> Vec<Vector> {
         match self.vertices.as_slice() {
             [_] => vec![
@@ -244,7 +253,7 @@ impl ConvexPolygon {
         }
     }
 
-    /// Directed edges, counter-clockwise; a segment has one to and one fro, a point has none.
+    /// Directed edges, counter-clockwise; a segment has one in each direction, a point has none.
     pub fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> + '_ {
         let n = if self.vertices.len() < 2 {
             0
@@ -280,7 +289,7 @@ impl ConvexPolygon {
         Self::from_ccw(points)
     }
 
-    /// The set moved by `shift`. Vertices that rounding makes one there are one.
+    /// The set translated by `shift`. Vertices that coincide after rounding are merged.
     pub fn translated(&self, shift: Vector) -> Self {
         let vertices: Vec<Vector> = self.vertices.iter().map(|p| p + shift).collect();
         let next = vertices.iter().cycle().skip(1);
@@ -290,7 +299,7 @@ impl ConvexPolygon {
         Self { vertices }
     }
 
-    /// The set turned by `angle` radians about the origin.
+    /// The set rotated by `angle` radians about the origin.
     pub fn rotated(&self, angle: f64) -> Self {
         let (s, c) = angle.sin_cos();
         Self::from_ccw(
@@ -306,7 +315,7 @@ impl ConvexPolygon {
         Self::from_ccw(self.vertices.iter().map(|p| p * factor).collect())
     }
 
-    /// The set mirrored through the origin, `-P`.
+    /// The set reflected through the origin, `-P`.
     pub fn negated(&self) -> Self {
         Self::from_ccw(self.vertices.iter().map(|p| -p).collect())
     }
@@ -336,8 +345,10 @@ impl ConvexPolygon {
         self.edges().map(|(a, b)| cross(a - o, b - o)).sum::<f64>() * 0.5
     }
 
-    /// Euclidean distance from `p` to the set, negative inside: minus the distance to the boundary.
-    /// A segment and a point have no inside. NaN in, NaN out. O(vertices).
+    /// Euclidean distance from `p` to the set; inside, minus the distance to the boundary.
+    /// O(vertices).
+    ///
+    /// A segment and a point have no inside. NaN for a NaN.
     pub fn signed_distance(&self, p: Vector) -> f64 {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return f64::NAN;
@@ -356,14 +367,14 @@ impl ConvexPolygon {
         if outside { nearest } else { -nearest }
     }
 
-    /// True when `p` is in the closed set. NaN is inside: what is not known to be clear is not.
+    /// True when `p` is in the closed set. NaN is inside.
     pub fn contains(&self, p: Vector) -> bool {
-        // negated on purpose: a NaN must not be outside
+        // negated so that a NaN is inside
         !(self.signed_distance(p) > 0.0)
     }
 
-    /// Euclidean distance between two sets, negative when they overlap: minus the shortest
-    /// translation that separates them. O(n + m).
+    /// Euclidean distance between two sets; where they overlap, minus the shortest separating
+    /// translation. O(n + m).
     pub fn separation(&self, other: &Self) -> f64 {
         self.minkowski_sum(&other.negated())
             .signed_distance(Vector::zeros())
@@ -375,7 +386,7 @@ impl ConvexPolygon {
     }
 }
 
-/// Total orders tell -0 from 0, geometry does not.
+/// Replaces -0 by 0, which total orders distinguish.
 fn unsigned_zeros(points: &[Vector]) -> Vec<Vector> {
     points.iter().map(|p| p.add_scalar(0.0)).collect()
 }
@@ -396,8 +407,9 @@ fn extent(points: &[Vector]) -> f64 {
     }
 }
 
-/// True where a convex polygon is wider than the thinnest that is one, by [`WIDE`]: its area is at most its width times its extent.
-/// O(vertices), where [`farthest_pair`] looks at every pair.
+/// True where a polygon is certainly wider than a segment, by the factor [`WIDE`]. O(vertices).
+///
+/// The area is at most the width times the extent. [`farthest_pair`] compares every pair.
 fn is_wide(vertices: &[Vector], extent: f64) -> bool {
     let from = |p: &Vector| p - vertices[0];
     let twice: f64 = (vertices.windows(2))
@@ -406,7 +418,7 @@ fn is_wide(vertices: &[Vector], extent: f64) -> bool {
     twice > 2.0 * WIDE * tolerance::THIN * extent * extent
 }
 
-/// Far above the roundings of an area.
+/// Far above the rounding error of an area.
 const WIDE: f64 = 1e3;
 
 fn farthest_pair(points: &[Vector]) -> (Vector, Vector) {

@@ -1,15 +1,17 @@
-//! Discs, as polygons that contain them.
+//! Polygons around discs.
 
 use super::ConvexPolygon;
 use crate::frame::{Vector, direction};
 
-/// Sides of the polygon that stands for a disc. At 16 the polygon reaches at most 2 % beyond the
+/// Number of sides of the polygon around a disc. With 16 sides it extends at most 2 % beyond the
 /// radius.
 pub const DISC_SIDES: usize = 16;
 
-/// An outer approximation of the disc of `radius` metres about the origin: the circumscribed
-/// regular [`DISC_SIDES`]-gon with one edge normal along `axis` (radians). A radius of zero is the
-/// point. Excess over the disc: at most `radius (1 / cos(pi / 16) - 1)`, 1.96 % of the radius.
+/// Outer approximation of the disc of `radius` metres about the origin: the circumscribed regular
+/// [`DISC_SIDES`]-gon with one edge normal along `axis` (radians).
+///
+/// A radius of zero gives the point. The excess is at most `radius (1 / cos(pi / 16) - 1)`, 1.96 %
+/// of the radius.
 pub fn outer_disc(radius: f64, axis: f64) -> ConvexPolygon {
     if radius == 0.0 {
         return ConvexPolygon::point(Vector::zeros());

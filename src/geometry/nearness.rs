@@ -1,9 +1,9 @@
-//! Which stretch of a straight path is near a convex set.
+//! The part of a straight path that is near a convex set.
 
 use super::ConvexPolygon;
 use crate::frame::{Vector, cross};
 
-/// A stretch of a path from `from` to `to`, as shares of it.
+/// A part of a path, as parameters from 0 at its start to 1 at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
     /// In `[0, 1]`.
@@ -12,10 +12,11 @@ pub struct Stretch {
     pub to: f64,
 }
 
-/// The stretch of the path from `a` to `b` whose points are within `distance >= 0` of the set; `None` when
-/// there is none. In closed form: the distance from a convex set is convex along a line, so the stretch is the
-/// span of those within the set, within the strip beside each of its edges and around each of its vertices.
-/// O(vertices).
+/// The part of the path from `a` to `b` within `distance >= 0` of the set, in closed form; `None`
+/// when there is none. O(vertices).
+///
+/// The distance from a convex set is convex along a line. So the part is the span of the parts
+/// within the set, within the strip beside each edge and around each vertex.
 pub fn stretch_near(set: &ConvexPolygon, [a, b]: [Vector; 2], distance: f64) -> Option<Stretch> {
     let mut span: Option<Stretch> = None;
     let mut keep = |found: Option<Stretch>| {
@@ -49,14 +50,14 @@ pub fn stretch_near(set: &ConvexPolygon, [a, b]: [Vector; 2], distance: f64) -> 
         );
         inside = inside.zip(port).and_then(|(i, p)| both(i, p));
     }
-    // of a point and a segment the vertices and the strips are all
+    // points and segments consist of vertices and strips
     if set.vertices().len() > 2 {
         keep(inside);
     }
     span
 }
 
-/// Where `start + share rate` is between two limits.
+/// Where `start + parameter × rate` is between two limits.
 fn clip(start: f64, rate: f64, low: f64, high: f64) -> Option<Stretch> {
     if rate == 0.0 {
         return (start >= low && start <= high).then_some(Stretch { from: 0.0, to: 1.0 });
@@ -71,7 +72,7 @@ fn both(a: Stretch, b: Stretch) -> Option<Stretch> {
     (from <= to).then_some(Stretch { from, to })
 }
 
-/// Where `offset + share step` is within a distance of zero.
+/// Where `offset + parameter × step` is within a distance of zero.
 fn within_disc(offset: Vector, step: Vector, distance: f64) -> Option<Stretch> {
     let square = step.norm_squared();
     if square == 0.0 {
@@ -93,7 +94,7 @@ mod tests {
     use super::*;
     use rand::{Rng, SeedableRng};
 
-    /// The distance itself, sampled.
+    /// Compares with the distance, sampled.
     #[test]
     fn the_stretch_is_where_the_distance_is_small() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(74);

@@ -1,16 +1,17 @@
-//! Fewer vertices, never less of the set.
+//! Outer approximation of a convex polygon with fewer vertices.
 
 use super::ConvexPolygon;
 use crate::frame::{Vector, cross, direction};
 
-/// Vertices from which on a set is first cut to so many tangents.
+/// Vertex count above which a set is first replaced by the polygon of [`TANGENTS`] tangents.
 const MANY: usize = 256;
 const TANGENTS: usize = 64;
 
-/// An outer approximation with at most `max_vertices` (at least 3): edges are removed one at a time,
-/// always the one whose removal, by extending its neighbours until they meet, adds the least area.
-/// Sets with few enough vertices, points and segments come back unchanged. O(n²), of a set with more than [`MANY`] vertices O(n): it
-/// is first cut to [`TANGENTS`].
+/// An outer approximation with at most `max_vertices` (at least 3) vertices.
+///
+/// Repeatedly removes the edge whose removal, by extending its neighbours until they meet, adds the
+/// least area. Sets with few enough vertices, points and segments are returned unchanged. O(n²);
+/// O(n) for more than [`MANY`] vertices.
 pub fn outer_simplified(set: &ConvexPolygon, max_vertices: usize) -> ConvexPolygon {
     let mut vertices = set.vertices().to_vec();
     if vertices.len() > MANY.max(max_vertices) {
@@ -30,7 +31,7 @@ pub fn outer_simplified(set: &ConvexPolygon, max_vertices: usize) -> ConvexPolyg
     ConvexPolygon::from_ccw(vertices)
 }
 
-/// The corners between tangents in directions that are evenly spaced.
+/// The corners between tangents in evenly spaced directions.
 fn between_tangents(set: &ConvexPolygon) -> Vec<Vector> {
     let step = std::f64::consts::TAU / TANGENTS as f64;
     let tangent = |k: usize| {
@@ -44,8 +45,8 @@ fn between_tangents(set: &ConvexPolygon) -> Vec<Vector> {
         .collect()
 }
 
-/// Where the neighbours of the edge from vertex `i` meet, and the area that this adds; `None` when they
-/// diverge.
+/// Where the neighbours of the edge from vertex `i` meet, and the area that this adds; `None` when
+/// they diverge.
 fn corner_without_edge(v: &[Vector], i: usize) -> Option<(Vector, f64)> {
     let n = v.len();
     let (a, b) = (v[(i + n - 1) % n], v[i]);

@@ -5,22 +5,22 @@ use super::{MovingVertex, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::{Vector, cross};
 use crate::tolerance;
 
-/// Most distances of a search; ten are usual.
-const MAX_LOOKS: usize = 200;
+/// Bound on the distance evaluations of a search; ten are usual.
+const MAX_EVALUATIONS: usize = 200;
 
-/// Of own speed. A distance that changes more slowly than this does not change.
+/// Relative to own speed. A distance that changes more slowly is constant.
 const SLOPE: f64 = 1e-13;
 
-/// The least distance to an obstacle and when it is reached.
+/// The least distance to an obstacle and its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosestApproach {
     /// dCPA, metres; 0 in contact.
     pub distance: f64,
-    /// tCPA, seconds: the earliest instant at that distance, to [`tolerance::LENGTH_M`]; the first contact
-    /// where there is one.
+    /// tCPA, seconds: the earliest time of that distance, to [`tolerance::LENGTH_M`], or of the
+    /// first contact.
     pub time: f64,
-    /// False when the distance goes on falling for ever without a horizon: then `distance` is what it falls to
-    /// by [`tolerance::FOREVER_S`], and `time` is infinite.
+    /// False when the distance decreases for ever, which needs an infinite horizon. Then `distance`
+    /// is its value at [`tolerance::FOREVER_S`], and `time` is infinite.
     pub attained: bool,
 }
 
@@ -35,7 +35,8 @@ impl ClosestApproach {
     }
 }
 
-/// What is not a number is in contact at once; a horizon that is none is infinite.
+/// The horizon, at least 0; infinite for a NaN. `None` where position or velocity is not finite,
+/// which counts as contact at once.
 pub(super) fn usable_horizon(position: Vector, velocity: Vector, horizon: f64) -> Option<f64> {
     let finite = [position.x, position.y, velocity.x, velocity.y]
         .iter()
@@ -47,7 +48,7 @@ pub(super) fn usable_horizon(position: Vector, velocity: Vector, horizon: f64) -
     })
 }
 
-/// The least of some candidates, and the least but one.
+/// The smallest and the second smallest candidate.
 struct Nearest {
     squared: f64,
     time: f64,
@@ -65,16 +66,18 @@ impl Nearest {
         }
     }
 
-    /// True when another candidate may be as near.
+    /// True when another candidate may be equally near.
     fn is_tied(&self) -> bool {
-        // (d + e)² from above
+        // (d + e)² bounded from above
         self.next <= self.squared + 2.0 * tolerance::LENGTH_M * (1.0 + self.squared)
     }
 }
 
-/// The closest approach to a polytope in closed form: contact by its faces; otherwise the nearest point of the
-/// hull of all relative positions lies on the way of a moving vertex, on an edge of `O_0`, or on an edge of the
-/// section at the horizon. O(n + m).
+/// The closest approach to a polytope in closed form, in O(n + m).
+///
+/// Contact follows from the faces. Otherwise the nearest point of the hull of all relative
+/// positions lies on the track of a moving vertex, on an edge of `O_0`, or on an edge of the
+/// section at the horizon.
 pub(super) fn polytope_approach(
     obstacle: &PolytopeObstacle,
     position: Vector,
@@ -111,7 +114,8 @@ pub(super) fn polytope_approach(
     }
 }
 
-/// Offers squared distances and their times, the nearest among them, and the earliest of those that tie.
+/// Offers squared distances and their times, among them the nearest, and the earliest of equal
+/// ones.
 #[inline]
 fn each_candidate(
     obstacle: &PolytopeObstacle,
@@ -130,7 +134,7 @@ fn each_candidate(
         }
         offer((arm + relative * time).norm_squared(), time);
     }
-    // the ends of the edges are vertices on their way
+    // the ends of edges are covered by the moving vertices
     let initial = obstacle.initial().vertices();
     let mut from = initial[initial.len() - 1];
     for to in initial {
@@ -153,14 +157,14 @@ fn each_candidate(
     }
 }
 
-/// The squared distance from the line of an edge, where the nearest point is between its ends.
+/// Squared distance from the line of an edge, where the nearest point lies between its ends.
 fn beside_edge(point: Vector, from: Vector, to: Vector) -> Option<f64> {
     let (arm, edge) = (point - from, to - from);
     let (along, squared) = (arm.dot(&edge), edge.norm_squared());
     (along > 0.0 && along < squared).then(|| cross(edge, arm).powi(2) / squared)
 }
 
-/// The shortest displacement from the edge to the point.
+/// Shortest displacement from the edge to the point.
 pub(super) fn from_edge(point: Vector, from: Vector, to: Vector) -> Vector {
     let (arm, edge) = (point - from, to - from);
     let squared = edge.norm_squared();
@@ -171,9 +175,12 @@ pub(super) fn from_edge(point: Vector, from: Vector, to: Vector) -> Vector {
     }
 }
 
-/// The closest approach to any convex obstacle that is not met within the horizon: the distance is convex in
-/// time, and its derivative is `n . v - dh/dt (n, t)` with the normal `n` at the nearest point. Bracketed
-/// root of it; some ten distances. The time is exact to rounding where the distance has a curvature.
+/// The closest approach to a convex obstacle that is not met within the horizon, in about ten
+/// distance evaluations.
+///
+/// The distance is convex in time, and its derivative is `n . v - dh/dt (n, t)` with the normal `n`
+/// at the nearest point. A bracketing search finds the root of the derivative. The time is exact to
+/// rounding where the distance has curvature.
 pub(super) fn searched_approach<O: SpaceTimeObstacle>(
     obstacle: &O,
     position: Vector,
@@ -182,22 +189,22 @@ pub(super) fn searched_approach<O: SpaceTimeObstacle>(
     guess: f64,
 ) -> ClosestApproach {
     let end = horizon.min(tolerance::FOREVER_S);
-    let look = |time: f64| {
+    let sample = |time: f64| {
         let away = obstacle.signed_distance(position + velocity * time, time);
         let slope = velocity.dot(&away.normal) - obstacle.support(away.normal, time).rate;
-        Look {
+        Sample {
             time,
             slope,
             distance: away.distance.max(0.0),
         }
     };
-    let mut low = look(0.0);
-    // a slope that is not a number ends the search where it is
+    let mut low = sample(0.0);
+    // a NaN slope ends the search at the start
     if !(low.slope < 0.0) || end <= 0.0 {
         return low.reached();
     }
     let guess = if guess.is_finite() { guess } else { 1.0 };
-    let mut high = look(guess.clamp(f64::min(1.0, end), end));
+    let mut high = sample(guess.clamp(f64::min(1.0, end), end));
     while high.slope < 0.0 {
         if high.time >= end {
             return if horizon > end {
@@ -211,15 +218,15 @@ pub(super) fn searched_approach<O: SpaceTimeObstacle>(
             };
         }
         low = high;
-        high = look((2.0 * high.time).min(end));
+        high = sample((2.0 * high.time).min(end));
     }
     let flat = SLOPE * velocity.norm();
-    // the chord, with the weight of an end that stays put reduced (Anderson and Björck 1973); the middle when
-    // three steps have not halved the bracket, as where the nearest point rounds the end of a needle
+    // regula falsi with the retained end's weight reduced (Anderson and Björck 1973); bisection
+    // when three steps have not halved the bracket, as near the rounded end of a needle
     let (mut weight_low, mut weight_high) = (low.slope, high.slope);
     let mut side = 0_i32;
     let mut widths = [f64::INFINITY; 3];
-    for _ in 0..MAX_LOOKS {
+    for _ in 0..MAX_EVALUATIONS {
         let width = high.time - low.time;
         if width <= 4.0 * f64::EPSILON * high.time {
             break;
@@ -233,7 +240,7 @@ pub(super) fn searched_approach<O: SpaceTimeObstacle>(
             side = 0;
             low.time + 0.5 * width
         };
-        let found = look(at);
+        let found = sample(at);
         if !(found.slope.abs() > flat) {
             return found.reached();
         }
@@ -254,15 +261,15 @@ pub(super) fn searched_approach<O: SpaceTimeObstacle>(
     high.reached()
 }
 
-/// How near at one instant, and how fast that changes.
+/// Distance at one time, and its derivative.
 #[derive(Clone, Copy)]
-struct Look {
+struct Sample {
     time: f64,
     slope: f64,
     distance: f64,
 }
 
-impl Look {
+impl Sample {
     fn reached(&self) -> ClosestApproach {
         ClosestApproach {
             distance: self.distance,

@@ -1,4 +1,5 @@
-//! Sets without an interior, grown until they have one: a motion can be deep in what is grown, a segment is crossed at no depth.
+//! Outer sets with an interior: a motion has a depth in them, while it crosses a segment at depth
+//! 0.
 
 use std::borrow::Cow;
 
@@ -8,13 +9,15 @@ use crate::geometry::{ConvexPolygon, Ellipse, outer_disc};
 use crate::tolerance::HALF_WIDTH_M;
 
 impl Obstacle {
-    /// An outer set that is at least a millimetre wide at every time: the set itself where it is, else grown by half a
-    /// millimetre. To be clear of it to rounding is not to touch the set.
+    /// An outer set that is at least a millimetre wide at every time: the set itself, or the set
+    /// grown by half a millimetre. A motion that is clear of it to rounding does not touch the set.
     pub(crate) fn outer_with_interior(&self) -> Self {
         match self {
             Self::Polytope(o) => widened(o).into(),
             Self::Slabs(o) => outer_grown(o.initial())
-                .and_then(|grown| SlabObstacle::new(o.name(), grown, o.spells().to_vec()).ok())
+                .and_then(|grown| {
+                    SlabObstacle::new(o.name(), grown, o.velocity_sets().to_vec()).ok()
+                })
                 .unwrap_or_else(|| o.clone())
                 .into(),
             Self::Ellipsoid(o) => match o.flat() {
@@ -24,8 +27,8 @@ impl Obstacle {
         }
     }
 
-    /// [`Obstacle::outer_with_interior`] of a set whose sections are points or segments for a while; the set itself where they are
-    /// not, however narrow it is.
+    /// [`Obstacle::outer_with_interior`] of a set whose sections are points or segments for some
+    /// time; other sets unchanged, however narrow.
     pub(crate) fn outer_where_flat(&self) -> Cow<'_, Self> {
         if self.is_flat_for_a_while() {
             Cow::Owned(self.outer_with_interior())
@@ -41,13 +44,13 @@ impl Obstacle {
         match self {
             Self::Polytope(o) => flat(o.initial(), o.velocity()),
             // sections do not become flat again
-            Self::Slabs(o) => flat(o.initial(), &o.spells()[0].velocities),
+            Self::Slabs(o) => flat(o.initial(), &o.velocity_sets()[0].velocities),
             Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
         }
     }
 }
 
-/// `None` where it is wide enough.
+/// The set grown to sufficient width; `None` where it is wide enough.
 fn outer_grown(initial: &ConvexPolygon) -> Option<ConvexPolygon> {
     // the area is at most the width times the extent
     let reach = initial.translated(-initial.centroid()).reach();
@@ -89,7 +92,8 @@ mod tests {
     use crate::frame::Pose;
     use crate::trajectory::Segment;
 
-    /// Own ship crosses a segment, a point's way and a flat ellipse at right angles: of the sets themselves she is in none.
+    /// Own ship crosses a segment, the track of a point and a flat ellipse at right angles, and is
+    /// inside none of these sets.
     #[test]
     fn what_has_no_interior_is_met_where_it_is_crossed() {
         let at = |x: f64, y: f64| Vector::new(x, y);

@@ -1,4 +1,4 @@
-//! Land as own ship's centre sees it: an obstacle that does not move, of many convex blocks.
+//! Land as an obstacle for own ship's centre: many static convex blocks.
 
 use std::sync::LazyLock;
 
@@ -7,49 +7,51 @@ use crate::frame::Vector;
 use crate::geometry::{BoxIndex, ConvexPolygon, Window, outer_disc};
 use crate::trajectory::Segment;
 
-/// The name of the land among the names of targets.
+/// Name of land among the names of targets.
 pub const LAND: &str = "land";
 
-/// An outer approximation of the places where own ship's centre is nearer to land than a radius: the union of
-/// blocks, each a convex piece of land with a circumscribed 16-gon folded in, 2 % of the radius too large at most.
+/// Outer approximation of the points nearer to land than a radius: a union of convex blocks. Each
+/// block is the Minkowski sum of a convex piece of land and a circumscribed 16-gon, at most 2 % of
+/// the radius too large.
 ///
-/// A block is a space-time polytope with one velocity, zero, so that a plan treats it like any other. Pieces of one
-/// land touch, their blocks overlap by twice the radius: what slips between two pieces is inside both blocks.
+/// A block is a space-time polytope whose only velocity is zero, so planners treat it like any
+/// other. Pieces of one land touch and their blocks overlap by twice the radius, so no path passes
+/// between two pieces.
 ///
 /// ```
 /// use searoom::frame::Vector;
 /// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::Coast;
+/// use searoom::obstacle::LandObstacle;
 ///
 /// let quay = [(0.0, 0.0), (100.0, 0.0), (100.0, 20.0), (0.0, 20.0)];
 /// let quay = ConvexPolygon::hull(&quay.map(|(x, y)| Vector::new(x, y)))?;
-/// let coast = Coast::around([&quay], 15.0);
-/// assert!(coast.depth(Vector::new(50.0, 30.0)).is_some(), "5 m too near");
-/// assert!(coast.depth(Vector::new(50.0, 40.0)).is_none());
-/// assert!(Coast::none().is_empty());
+/// let land = LandObstacle::around([&quay], 15.0);
+/// assert!(land.depth(Vector::new(50.0, 30.0)).is_some(), "5 m too near");
+/// assert!(land.depth(Vector::new(50.0, 40.0)).is_none());
+/// assert!(LandObstacle::none().is_empty());
 /// # Ok::<(), searoom::geometry::GeometryError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Coast {
+pub struct LandObstacle {
     blocks: Vec<PolytopeObstacle>,
     index: BoxIndex,
 }
 
-impl Coast {
+impl LandObstacle {
     /// No land.
     pub fn none() -> &'static Self {
-        static NONE: LazyLock<Coast> = LazyLock::new(|| Coast::around([], 0.0));
+        static NONE: LazyLock<LandObstacle> = LazyLock::new(|| LandObstacle::around([], 0.0));
         &NONE
     }
 
-    /// Around convex pieces of land, by `radius >= 0` metres: own ship's half-diagonal, so that she may have any
-    /// heading, and what she keeps from land.
+    /// Land around convex pieces, grown by `radius >= 0` metres: own ship's half-diagonal, which
+    /// permits any heading, plus the margin to land.
     pub fn around<'a>(pieces: impl IntoIterator<Item = &'a ConvexPolygon>, radius: f64) -> Self {
         let disc = outer_disc(radius, 0.0);
         Self::of(pieces.into_iter().map(|p| p.minkowski_sum(&disc)))
     }
 
-    /// The same land elsewhere, block by block.
+    /// A copy with every block mapped.
     pub(crate) fn mapped(&self, to: impl Fn(&ConvexPolygon) -> ConvexPolygon) -> Self {
         Self::of(self.blocks.iter().map(|b| to(b.initial())))
     }
@@ -73,17 +75,17 @@ impl Coast {
         self.blocks.is_empty()
     }
 
-    /// The blocks.
+    /// The convex blocks.
     pub fn blocks(&self) -> &[PolytopeObstacle] {
         &self.blocks
     }
 
-    /// The blocks whose boxes meet a window, in no order.
+    /// Indices of the blocks whose boxes meet a window, in no order.
     pub fn near<'a>(&'a self, window: &Window) -> impl Iterator<Item = usize> + use<'a> {
         self.index.meeting(window)
     }
 
-    /// Metres that a place is inside, in the block that it is deepest in; `None` on water, NaN for a NaN.
+    /// Largest depth of a position in any block, metres; `None` on water, NaN for a NaN.
     pub fn depth(&self, position: Vector) -> Option<f64> {
         if !(position.x.is_finite() && position.y.is_finite()) {
             return Some(f64::NAN);
@@ -94,10 +96,11 @@ impl Coast {
             .max_by(f64::total_cmp)
     }
 
-    /// Metres from a place in a direction, a unit vector, to where the ray first is in no block; 0 on water.
+    /// Distance from a position along the unit vector `toward` to the first point outside every
+    /// block, metres; 0 on water.
     pub fn way_out(&self, position: Vector, toward: Vector) -> f64 {
         let mut gone = 0.0;
-        // a ray that has left a block does not enter it again
+        // a ray does not enter a convex block twice
         for _ in 0..=self.blocks.len() {
             let here = position + toward * gone;
             let step = self
@@ -127,7 +130,7 @@ impl Coast {
     }
 }
 
-/// Metres from a place inside a block to its edge in a direction.
+/// Distance from a position inside a block to its edge along `toward`, metres.
 fn exit(block: &PolytopeObstacle, position: Vector, toward: Vector) -> f64 {
     block
         .faces()
@@ -139,7 +142,7 @@ fn exit(block: &PolytopeObstacle, position: Vector, toward: Vector) -> f64 {
         .max(0.0)
 }
 
-/// A box around the places of a segment; of one that is not finite everything.
+/// A box around a segment; all of the plane where the segment is not finite.
 pub(crate) fn window_of(segment: &Segment) -> Window {
     if !segment.is_valid() {
         let all = Vector::repeat(f64::MAX);
@@ -156,7 +159,7 @@ pub(crate) fn window_of(segment: &Segment) -> Window {
     if !segment.is_arc() {
         return ends;
     }
-    // no place of an arc is farther from its chord than the sagitta, of a half circle or more than the radius
+    // an arc is within its sagitta of its chord, or within its radius for half a circle or more
     let turn = (segment.turn_rate * segment.duration).abs();
     let half = 0.5 * turn.min(std::f64::consts::PI);
     let sagitta = segment.radius().abs() * (1.0 - half.cos());
@@ -175,7 +178,7 @@ mod tests {
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    fn random_coast(rng: &mut ChaCha8Rng) -> (Vec<ConvexPolygon>, f64, Coast) {
+    fn random_land(rng: &mut ChaCha8Rng) -> (Vec<ConvexPolygon>, f64, LandObstacle) {
         let pieces: Vec<ConvexPolygon> = (0..rng.random_range(1..25))
             .map(|_| {
                 let centre = Vector::new(
@@ -189,16 +192,16 @@ mod tests {
             })
             .collect();
         let radius = rng.random_range(0.1..30.0);
-        let coast = Coast::around(&pieces, radius);
-        (pieces, radius, coast)
+        let land = LandObstacle::around(&pieces, radius);
+        (pieces, radius, land)
     }
 
-    /// Outer, and not by much: against the distance from the pieces themselves.
+    /// Outer and tight, compared with the distance from the pieces themselves.
     #[test]
     fn blocks_hold_every_place_within_the_radius_and_little_more() {
         let mut rng = ChaCha8Rng::seed_from_u64(81);
         for _ in 0..100 {
-            let (pieces, radius, coast) = random_coast(&mut rng);
+            let (pieces, radius, land) = random_land(&mut rng);
             for _ in 0..200 {
                 let p = Vector::new(
                     rng.random_range(-400.0..400.0),
@@ -208,25 +211,24 @@ mod tests {
                     .iter()
                     .map(|c| c.signed_distance(p))
                     .fold(f64::INFINITY, f64::min);
-                let inside = coast.depth(p).is_some();
+                let inside = land.depth(p).is_some();
                 assert!(inside || distance > radius - 1e-9);
                 assert!(!inside || distance < 1.02 * radius + 1e-9);
             }
             assert!(
-                coast
-                    .depth(Vector::new(f64::NAN, 0.0))
+                land.depth(Vector::new(f64::NAN, 0.0))
                     .is_none_or(|d| d.is_nan())
             );
         }
     }
 
-    /// Every block, one by one; the index loses none.
+    /// The index finds every block that a search of all blocks finds.
     #[test]
     fn contacts_match_a_scan_over_all_blocks() {
         let mut rng = ChaCha8Rng::seed_from_u64(82);
         let (mut met, mut clear) = (0, 0);
         for _ in 0..200 {
-            let (_, _, coast) = random_coast(&mut rng);
+            let (_, _, land) = random_land(&mut rng);
             for _ in 0..20 {
                 let segment = Segment {
                     start: Pose::new(
@@ -241,13 +243,13 @@ mod tests {
                     speed: 5.0,
                     turn_rate: [0.0, 0.05, -0.1][rng.random_range(0..3)],
                 };
-                let first = coast
+                let first = land
                     .blocks()
                     .iter()
                     .filter_map(|b| contact::first_contact(b, &segment, 1e-7))
                     .min_by(f64::total_cmp);
-                assert_eq!(coast.first_contact(&segment, 1e-7), first, "{segment:?}");
-                assert_eq!(coast.meets(&segment, 1e-7), first.is_some());
+                assert_eq!(land.first_contact(&segment, 1e-7), first, "{segment:?}");
+                assert_eq!(land.meets(&segment, 1e-7), first.is_some());
                 met += usize::from(first.is_some());
                 clear += usize::from(first.is_none());
             }
@@ -260,8 +262,8 @@ mod tests {
             speed: 5.0,
             turn_rate: 0.0,
         };
-        let (_, _, coast) = random_coast(&mut rng);
-        assert!(coast.meets(&lost, 1e-7));
+        let (_, _, land) = random_land(&mut rng);
+        assert!(land.meets(&lost, 1e-7));
     }
 
     /// Small steps along the ray.
@@ -270,16 +272,19 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(83);
         let mut through_several = 0;
         for _ in 0..300 {
-            let (_, _, coast) = random_coast(&mut rng);
-            let block = coast.blocks()[0].initial().centroid();
+            let (_, _, land) = random_land(&mut rng);
+            let block = land.blocks()[0].initial().centroid();
             let toward = direction(rng.random_range(-3.0..3.0));
-            let out = coast.way_out(block, toward);
-            assert!(coast.depth(block + toward * (out + 1e-6)).is_none());
-            let inside = |gone: f64| coast.depth(block + toward * gone).is_some();
+            let out = land.way_out(block, toward);
+            assert!(land.depth(block + toward * (out + 1e-6)).is_none());
+            let inside = |gone: f64| land.depth(block + toward * gone).is_some();
             assert!((0..=200).all(|k| inside(out * f64::from(k) / 200.0 * (1.0 - 1e-9))));
-            through_several += usize::from(out > exit(&coast.blocks()[0], block, toward) + 1.0);
+            through_several += usize::from(out > exit(&land.blocks()[0], block, toward) + 1.0);
         }
         assert!(through_several > 20, "{through_several}");
-        assert_eq!(Coast::none().way_out(Vector::zeros(), direction(1.0)), 0.0);
+        assert_eq!(
+            LandObstacle::none().way_out(Vector::zeros(), direction(1.0)),
+            0.0
+        );
     }
 }

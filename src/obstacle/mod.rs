@@ -2,7 +2,7 @@
 //!
 //! [`PolytopeObstacle`] is exact for its sets. [`SlabObstacle`] is a sequence of polytopes: its
 //! velocity set changes with time. [`EllipsoidObstacle`] is an outer set. All three implement
-//! [`SpaceTimeObstacle`]; [`Obstacle`] is any of them. [`Coast`] is land: many static convex sets.
+//! [`SpaceTimeObstacle`]; [`Obstacle`] is any of them. [`LandObstacle`] is land: many static convex sets.
 
 mod closest_approach;
 pub mod contact;
@@ -20,7 +20,7 @@ pub use closest_approach::ClosestApproach;
 pub use ellipsoid::EllipsoidObstacle;
 pub use ellipsoid::velocity_obstacle::EllipsoidVelocityObstacle;
 pub(crate) use land::window_of;
-pub use land::{Coast, LAND};
+pub use land::{LAND, LandObstacle};
 pub use polytope::slabs::{Slab, SlabError, SlabObstacle};
 pub use polytope::{HalfSpace, MovingVertex, PolytopeObstacle, Slack};
 pub use projection::{

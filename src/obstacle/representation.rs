@@ -1,4 +1,4 @@
-//! An obstacle in any of the representations.
+//! An obstacle of any kind.
 
 use super::closest_approach::ClosestApproach;
 use super::polytope::slabs::Slab;
@@ -11,18 +11,18 @@ use crate::geometry::{ConvexPolygon, ConvexSet, SignedDistance};
 use crate::target::VelocitySpell;
 use crate::trajectory::{Segment, Trajectory};
 
-/// Sides of the polygon that stands for a section that is an ellipse.
+/// Sides of the polygon around an elliptic section.
 const SECTION_SIDES: usize = 64;
 
-/// One of the representations. An enum and not a trait object: the set is closed, a planner takes each apart in
-/// its own way, a document writes each with its own keys, and a level set is of its obstacle's own kind.
+/// An obstacle of any kind. It is an enum and not a trait object because planners match on the
+/// kind, documents write each kind with its own keys, and a level set has the kind of its obstacle.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Obstacle {
-    /// Paper eqs. (2)-(9).
+    /// Exact, paper eqs. (2)-(9).
     Polytope(PolytopeObstacle),
-    /// Paper eqs. (12)-(19), from outside. Boxed: it is several times as large as the others.
+    /// Outer set, paper eqs. (12)-(19). Boxed because it is several times larger than the others.
     Ellipsoid(Box<EllipsoidObstacle>),
-    /// Velocity sets one after another.
+    /// Consecutive velocity sets.
     Slabs(SlabObstacle),
 }
 
@@ -35,7 +35,7 @@ impl Obstacle {
         }
     }
 
-    /// The polytope, where it is one.
+    /// The polytope, if it is one.
     pub fn as_polytope(&self) -> Option<&PolytopeObstacle> {
         match self {
             Self::Polytope(o) => Some(o),
@@ -43,7 +43,7 @@ impl Obstacle {
         }
     }
 
-    /// `"polytope"` or `"ellipsoid"`: what the sections are made of.
+    /// Kind of the sections: `"polytope"` or `"ellipsoid"`.
     pub fn representation(&self) -> &'static str {
         match self {
             Self::Polytope(_) | Self::Slabs(_) => "polytope",
@@ -60,16 +60,18 @@ impl Obstacle {
         }
     }
 
-    /// The section as a polygon, metres: exact for polytopes and slabs, the circumscribed 64-gon for an
-    /// ellipse.
+    /// Polygon that contains the section, metres: exact for polytopes and slabs, the circumscribed
+    /// 64-gon of an ellipse.
     pub fn outer_section(&self, time: f64) -> ConvexPolygon {
         self.section(time).outer_polygon(SECTION_SIDES)
     }
 
-    /// The same set from a time in seconds on, by a clock that starts then: exact for polytopes and slabs; the ellipses
-    /// around a section that is an ellipse contain the set. A time below 0, or that is not a number, is 0.
+    /// The obstacle from `time` on, with a clock that starts then.
+    ///
+    /// Exact for polytopes and slabs; an outer set for ellipsoids. A time below 0 or NaN counts as
+    /// 0.
     pub fn remainder(&self, time: f64) -> Self {
-        // negated on purpose: a NaN is no time
+        // negated so that a NaN counts as 0
         if !(time > 0.0) {
             return self.clone();
         }
@@ -81,14 +83,14 @@ impl Obstacle {
                 EllipsoidObstacle::new(o.name(), o.outer_section(time), *o.velocity()).into()
             }
             Self::Slabs(o) => {
-                let ends = o.slabs().iter().map(Slab::end).zip(o.spells());
+                let ends = o.slabs().iter().map(Slab::end).zip(o.velocity_sets());
                 let later = ends.filter(|(end, _)| *end > time);
-                let spells = later.map(|(end, spell)| VelocitySpell {
+                let sets = later.map(|(end, set)| VelocitySpell {
                     until: end - time,
-                    velocities: spell.velocities.clone(),
+                    velocities: set.velocities.clone(),
                 });
-                // the last slab has no end, so there is one, and they go on in order
-                match SlabObstacle::new(o.name(), o.section(time), spells.collect()) {
+                // the last slab never ends, so one remains, and the ends increase
+                match SlabObstacle::new(o.name(), o.section(time), sets.collect()) {
                     Ok(rest) => rest.into(),
                     Err(_) => self.clone(),
                 }
@@ -96,8 +98,10 @@ impl Obstacle {
         }
     }
 
-    /// The velocity obstacle as convex regions of half-planes, of which it is the union; `None` for ellipses,
-    /// whose velocity obstacle is one convex region without corners: [`EllipsoidObstacle::velocity_obstacle`].
+    /// The velocity obstacle as a union of convex regions.
+    ///
+    /// `None` for ellipsoids: their velocity obstacle is one convex region without corners,
+    /// [`EllipsoidObstacle::velocity_obstacle`].
     pub fn velocity_obstacles(
         &self,
         position: Vector,
@@ -106,7 +110,7 @@ impl Obstacle {
         match self {
             Self::Polytope(o) => Some(vec![o.velocity_obstacle(position, horizon)]),
             Self::Slabs(o) => Some(o.velocity_obstacles(position, horizon)),
-            // parallel segments and points: the sixteen sides of an outer polygon fall together
+            // for parallel segments and points the sixteen sides of the outer polygon coincide
             Self::Ellipsoid(o) if o.is_flat() => Some(vec![
                 o.sum_outer_polytope().velocity_obstacle(position, horizon),
             ]),

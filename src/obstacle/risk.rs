@@ -1,5 +1,5 @@
-//! Risk: by how much the velocities of a target have to shrink before a point is out of reach; paper eqs.
-//! (22)-(25), docs/theory.md section 4.
+//! Risk: the factor by which a target's velocities must shrink until a point is out of reach, paper
+//! eqs. (22)-(25), docs/theory.md section 4.
 
 use super::HalfSpace;
 use crate::frame::Vector;
@@ -10,10 +10,9 @@ use crate::trajectory::Segment;
 /// The largest risk along a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakRisk {
-    /// In `[0, 1]`. Where it is found by bisection it errs to the high side, by at most
-    /// [`tolerance::RISK`].
+    /// In `[0, 1]`. Bisection errs to the high side by at most [`tolerance::RISK`].
     pub risk: f64,
-    /// Seconds: an instant at which it is attained; the start where the risk is 0 throughout.
+    /// Seconds: a time at which it is attained; the start where the risk is 0 throughout.
     pub time: f64,
 }
 
@@ -45,12 +44,12 @@ pub(super) fn scaled_velocities(velocity: &ConvexPolygon, alpha: f64) -> ConvexP
     ConvexPolygon::from_ccw(velocity.vertices().iter().map(scale).collect())
 }
 
-/// What alpha moves of one face.
+/// Dependence of one face on alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FaceSpread {
     /// `n . v` for the centroid `v` of the velocities, m/s.
     pub nominal_rate: f64,
-    /// `1 / (h_V(n) - n . v)`, s/m; infinite where alpha does not move the face.
+    /// `1 / (h_V(n) - n . v)`, s/m; infinite where the face does not depend on alpha.
     pub per_rate: f64,
 }
 
@@ -58,7 +57,7 @@ impl FaceSpread {
     pub(super) fn of(face: &HalfSpace, centroid: Vector) -> Self {
         let nominal_rate = face.normal.dot(&centroid);
         let spread = face.velocity_support - nominal_rate;
-        // less than this is what rounding leaves of none
+        // smaller spreads are rounding errors
         let none = tolerance::THIN * (face.velocity_support.abs() + nominal_rate.abs());
         Self {
             nominal_rate,
@@ -71,7 +70,8 @@ impl FaceSpread {
     }
 }
 
-/// `alpha* = max over faces of (n . (x - v t) - h_O0(n)) / (t (h_V(n) - n . v))`, docs/theory.md section 4. O(n + m).
+/// `alpha* = max over faces of (n . (x - v t) - h_O0(n)) / (t (h_V(n) - n . v))`, docs/theory.md
+/// section 4. O(n + m).
 pub(super) fn polytope_alpha(
     faces: &[HalfSpace],
     spreads: &[FaceSpread],
@@ -95,7 +95,7 @@ pub(super) fn polytope_alpha(
     if most == 0.0 { 0.0 } else { most / time }
 }
 
-/// A straight motion: own ship at `origin` at t = 0, with `velocity`, from `start` to `end`.
+/// A straight motion: `origin` is own ship's position at t = 0, extrapolated from `[start, end]`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     pub origin: Vector,
@@ -105,7 +105,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// A straight segment, from t = 0 on.
+    /// The motion of a straight segment, from t = 0 on.
     pub(super) fn of(segment: &Segment) -> Self {
         let velocity = segment.start.ahead() * segment.speed;
         Self {
@@ -130,17 +130,19 @@ impl Affine {
     }
 }
 
-/// The largest risk along a straight motion, in closed form. With `u = 1 / t` every face's ratio is affine,
-/// so alpha is a maximum of affine functions; its least value is found by descending from both ends to where
-/// the lowest two of them cross, in at most as many steps as there are faces. Errs to the high side: a face that
-/// alpha moves by no more than [`tolerance::LENGTH_M`] until the end is taken where it is at 1.
+/// The largest risk along a straight motion in closed form.
+///
+/// With `u = 1 / t` every face's ratio is affine, so alpha is a maximum of affine functions. Its
+/// minimum is found by descent from both ends to the crossing of the active functions, in at most
+/// as many steps as there are faces. Errs to the high side: a face that moves by at most
+/// [`tolerance::LENGTH_M`] with alpha is placed where it is for alpha = 1.
 pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &Line) -> PeakRisk {
     let none = PeakRisk {
         risk: 0.0,
         time: line.start,
     };
     let certain = PeakRisk { risk: 1.0, ..none };
-    // the part of the motion that no face which alpha cannot move forbids
+    // the part of the motion inside all faces that do not depend on alpha
     let (mut start, mut end) = (line.start, line.end);
     let mut rows = Vec::with_capacity(faces.len() + 1);
     rows.push(Affine {
@@ -154,7 +156,7 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
         if (at_zero + rate).is_nan() {
             return certain;
         }
-        // one that alpha hardly moves stays where it is at 1: its ratio would be made of rounding
+        // faces that hardly depend on alpha stay at alpha = 1: their ratio would be rounding errors
         if line.end <= tolerance::LENGTH_M * spread.per_rate {
             let rate = ahead - face.velocity_support;
             if rate > 0.0 {
@@ -184,7 +186,7 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
             time: start,
         };
     }
-    // at t = 0 nothing but O_0 is in reach
+    // at t = 0 only O_0 is reachable
     if !(end > 0.0) {
         return none;
     }
@@ -216,7 +218,7 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
     } else {
         f64::NAN
     };
-    // no alpha on the line is less
+    // lower bound of alpha on the line
     let mut bound = f64::INFINITY;
     if u.is_nan() {
         u = low;
@@ -227,7 +229,7 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
                 bound = f64::INFINITY;
                 break;
             }
-            // where they cross both say the same; rounding hurts the flatter one less
+            // both are equal at the crossing; rounding affects the flatter one less
             bound = if left.slope.abs() < right.slope.abs() {
                 left.at(u)
             } else {
@@ -244,7 +246,7 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
         }
     }
     let time = (1.0 / u).clamp(start, end);
-    // all are alpha at that instant; rounding errs to the high side of the risk
+    // all three are alpha at that time; rounding errs to the high side of the risk
     let alpha = at(time).min(bound).min(highest(u).at(u)).max(0.0);
     PeakRisk {
         risk: risk_of(alpha),
@@ -252,8 +254,9 @@ pub(super) fn polytope_peak(faces: &[HalfSpace], spreads: &[FaceSpread], line: &
     }
 }
 
-/// The largest risk along any segment: the highest level whose set the segment meets, by bisection on the
-/// exact contact. `contact` gives the first contact with the set of a risk. Errs to the high side by at most
+/// The largest risk along any segment, by bisection on the exact contact with level sets.
+///
+/// `contact` returns the first contact with the set of a risk. Errs to the high side by at most
 /// [`tolerance::RISK`]; about 40 contacts.
 pub(super) fn peak_by_bisection(
     start_time: f64,

@@ -1,4 +1,4 @@
-//! What every obstacle answers, whatever its sets are made of.
+//! The trait of all space-time obstacles.
 
 use super::closest_approach::ClosestApproach;
 use super::risk::{PeakRisk, risk_of};
@@ -7,23 +7,23 @@ use crate::geometry::SignedDistance;
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
-/// Instants at which the risk of a piece of a motion under forces is looked at.
-const LOOKS: usize = 32;
+/// Number of steps at which the risk is sampled along one piece of a motion under forces.
+const SAMPLES: usize = 32;
 
-/// The support function of a section and how it changes.
+/// The support function of a section and its time derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support {
     /// `h(n, t) = max over O_t of n . x`, metres.
     pub value: f64,
-    /// Its derivative in time from above, m/s: how fast the boundary moves outward.
+    /// Right derivative in time, m/s: how fast the boundary moves outward.
     pub rate: f64,
 }
 
-/// A set in space-time that contains every position a target may reach: its sections `O_t`, `t >= 0`, are
-/// convex, each given by its support function. East-north frame, metres, seconds from the scenario's start.
+/// A set in space-time that contains every position a target may reach.
 ///
-/// Fails closed: a position or velocity that is not a number is inside, at distance NaN, at risk 1. Before
-/// t = 0 there is no obstacle.
+/// Its sections `O_t`, `t >= 0`, are convex and given by their support function. East-north frame,
+/// metres, seconds from the scenario's start. There is no obstacle before t = 0. Fails closed: a
+/// position or velocity that is NaN is inside, with distance NaN and risk 1.
 ///
 /// ```
 /// use searoom::frame::{Pose, Vector};
@@ -69,24 +69,27 @@ pub trait SpaceTimeObstacle {
     /// Support of the section at `time >= 0` in the direction of the unit vector `normal`.
     fn support(&self, normal: Vector, time: f64) -> Support;
 
-    /// Euclidean distance from the section at `time >= 0`, negative inside, and the outward normal at the
-    /// nearest point of its boundary.
+    /// Euclidean distance from the section at `time >= 0`, negative inside, with the outward normal
+    /// at the nearest boundary point.
     fn signed_distance(&self, position: Vector, time: f64) -> SignedDistance;
 
     /// True when the point is in the closed set.
     fn contains(&self, position: Vector, time: f64) -> bool;
 
-    /// The first instant at which the segment is at least `depth` metres inside, or `None`. A segment or depth
-    /// that is not finite is in contact at once. At depth 0 touching counts.
+    /// The first time at which the segment is at least `depth` metres inside, or `None`.
+    ///
+    /// A segment or depth that is not finite is in contact at once. At depth 0 touching counts.
     fn first_contact(&self, segment: &Segment, depth: f64) -> Option<f64>;
 
-    /// `alpha*`, the least `alpha >= 0` for which the point is in `O_alpha`, the set with the velocities
-    /// scaled by alpha about their centre, paper eqs. (22)-(24). It is at most 1 just inside the set and
-    /// may exceed 1 outside; infinite where no scaling reaches, and before t = 0.
+    /// `alpha*`: the least `alpha >= 0` for which the point is in `O_alpha`, paper eqs. (22)-(24).
+    ///
+    /// `O_alpha` is the set with velocities scaled by alpha about their centre. `alpha*` is at most
+    /// 1 inside the set and may exceed 1 outside. It is infinite where no scaling reaches, and
+    /// before t = 0.
     fn alpha(&self, position: Vector, time: f64) -> f64;
 
-    /// `risk = 1 - alpha*`, at least 0, paper eq. (25): 0 outside the set, 1 where even the target that keeps
-    /// the centre of its velocities is. Not a probability.
+    /// `risk = 1 - alpha*`, at least 0, paper eq. (25). It is 0 outside the set and 1 in the set of
+    /// a target with the central velocity. Not a probability.
     fn risk(&self, position: Vector, time: f64) -> f64 {
         risk_of(self.alpha(position, time))
     }
@@ -94,29 +97,34 @@ pub trait SpaceTimeObstacle {
     /// The largest risk along a segment.
     fn peak_risk(&self, segment: &Segment) -> PeakRisk;
 
-    /// The largest risk along a trajectory: that of its segments, the first of those that tie. Along a motion under
-    /// forces the largest of `LOOKS` instants a piece at which it is deeper than [`tolerance::DEPTH_M`] in the set.
+    /// The largest risk along a trajectory, the first of equal ones.
+    ///
+    /// A motion under forces is sampled at `SAMPLES` steps per piece. Samples no deeper than
+    /// [`tolerance::DEPTH_M`] in the set do not count.
     fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
         largest_risk_of_parts(self, trajectory)
     }
 
-    /// The set `O_alpha` with `alpha = 1 - risk`: to stay out of it is to stay at or below `risk`. Risk 0 is
-    /// the set itself, and so is a risk that is not within `[0, 1]`.
+    /// The level set `O_alpha` with `alpha = 1 - risk`: outside it the risk is at most `risk`.
+    ///
+    /// Risk 0, or a risk outside `[0, 1]`, gives the set itself.
     fn at_risk(&self, risk: f64) -> Self
     where
         Self: Sized;
 
-    /// Least distance, and its earliest time, of own ship at `position` at t = 0 with constant `velocity`, over
-    /// `[0, horizon]`, paper eq. (26). `horizon` may be infinite.
+    /// The least distance, and its earliest time, of own ship with constant `velocity` from
+    /// `position` at t = 0, over `[0, horizon]`, paper eq. (26). `horizon` may be infinite.
     fn closest_approach(&self, position: Vector, velocity: Vector, horizon: f64)
     -> ClosestApproach;
 
-    /// True when `velocity`, kept from `position` at t = 0, meets the set within `[0, horizon]`: membership of
-    /// the velocity obstacle `{v : position + v t in O_t for some t}`. `horizon` may be infinite.
+    /// True when constant `velocity` from `position` at t = 0 meets the set within `[0, horizon]`.
+    ///
+    /// This is membership in the velocity obstacle `{v : position + v t in O_t for some t}`.
+    /// `horizon` may be infinite.
     fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool;
 }
 
-/// The largest risk of the pieces and segments of a trajectory, one by one.
+/// The largest risk over the pieces and segments of a trajectory.
 pub(super) fn largest_risk_of_parts<S: SpaceTimeObstacle + ?Sized>(
     set: &S,
     trajectory: &Trajectory,
@@ -130,8 +138,8 @@ pub(super) fn largest_risk_of_parts<S: SpaceTimeObstacle + ?Sized>(
         .iter()
         .flat_map(|motion| motion.pieces())
     {
-        for look in 0..=LOOKS {
-            let part = look as f64 / LOOKS as f64;
+        for sample in 0..=SAMPLES {
+            let part = sample as f64 / SAMPLES as f64;
             let (position, time) = (
                 piece.position(part),
                 piece.start_time + part * piece.duration,

@@ -1,10 +1,11 @@
-//! The velocity obstacle of polytopes as a region of velocities: paper eq. (26), docs/theory.md section 5.3.
+//! The velocity obstacle of polytopes as a set of half-planes: paper eq. (26), docs/theory.md
+//! section 5.3.
 
 use super::{HalfSpace, PolytopeObstacle, SlabObstacle};
 use crate::frame::{Vector, cross, to_port, to_starboard};
 use crate::geometry::ConvexPolygon;
 
-/// `normal . v <= offset` in the plane of velocities, with a unit normal.
+/// Half-plane `normal . v <= offset` of velocities, with a unit normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfPlane {
     /// Outward unit normal.
@@ -13,11 +14,12 @@ pub struct HalfPlane {
     pub offset: f64,
 }
 
-/// Every velocity of own ship that meets the obstacle within the horizon, as an intersection of half-planes;
-/// convex, and unbounded away from the target where the horizon is infinite or own ship's place is near.
+/// The velocities of own ship that meet the obstacle within the horizon, as an intersection of
+/// half-planes.
 ///
-/// `V ⊕ (O_0 - x) / T ⊕ cone(O_0 - x)`: exact for a finite horizon `T`. For an infinite one it is the closure,
-/// which adds the velocities that come arbitrarily near and never touch.
+/// Convex: `V ⊕ (O_0 - x) / T ⊕ cone(O_0 - x)`. Exact for a finite horizon `T`. An infinite horizon
+/// gives the closure, which adds velocities that come arbitrarily near and never touch. Unbounded
+/// away from the target where the horizon is infinite or own ship is near.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -42,8 +44,10 @@ pub struct VelocityObstacle {
 }
 
 impl VelocityObstacle {
-    /// For own ship at `position` at t = 0, within `horizon` seconds, which may be infinite. From a position in
-    /// `O_0`, or one that is not a number, every velocity. O(n + m).
+    /// For own ship at `position` at t = 0, within `horizon` seconds, which may be infinite. O(n +
+    /// m).
+    ///
+    /// Contains every velocity where the position is in `O_0` or NaN.
     pub fn new(obstacle: &PolytopeObstacle, position: Vector, horizon: f64) -> Self {
         let (initial, velocity) = (obstacle.initial(), obstacle.velocity());
         if obstacle.contains(position, 0.0) {
@@ -75,7 +79,7 @@ impl VelocityObstacle {
                 offset: face.velocity_support + reach / horizon,
             }
         };
-        // the reach of the two sides is zero by construction, whatever the horizon
+        // the support of the two sides is zero by construction for every horizon
         let side = |normal: Vector| HalfPlane {
             normal,
             offset: velocity.support(normal),
@@ -94,12 +98,12 @@ impl VelocityObstacle {
         Self { half_planes }
     }
 
-    /// The velocities within some half-planes.
+    /// The intersection of half-planes.
     pub(super) fn of(half_planes: Vec<HalfPlane>) -> Self {
         Self { half_planes }
     }
 
-    /// The hull of some velocities; every velocity when one is not a number.
+    /// The convex hull of velocities; every velocity when one is NaN.
     fn around(velocities: &[Vector]) -> Self {
         let half_planes = ConvexPolygon::hull(velocities).map_or_else(
             |_| Vec::new(),
@@ -114,21 +118,22 @@ impl VelocityObstacle {
         Self { half_planes }
     }
 
-    /// The half-planes; none means every velocity.
+    /// The half-planes; an empty list means every velocity.
     pub fn half_planes(&self) -> &[HalfPlane] {
         &self.half_planes
     }
 
     /// True when the velocity, m/s, is in the region. NaN is inside. O(half-planes).
     pub fn contains(&self, velocity: Vector) -> bool {
-        // negated on purpose: what is not known to be clear is not
+        // negated so that a NaN is inside
         !self
             .half_planes
             .iter()
             .any(|h| h.normal.dot(&velocity) > h.offset)
     }
 
-    /// The part of the region with both components within `limit` m/s, for pictures; `None` where it is empty.
+    /// The part of the region with both components within `limit` m/s, for figures; `None` if
+    /// empty.
     pub fn clipped(&self, limit: f64) -> Option<ConvexPolygon> {
         let mut polygon = vec![
             Vector::new(-limit, -limit),
@@ -156,10 +161,13 @@ impl VelocityObstacle {
 }
 
 impl SlabObstacle {
-    /// The velocity obstacle within `horizon` seconds as a union of convex regions, one per slab. The vertices of the
-    /// velocities `(O_t - x) / t` move in straight lines with `1 / t`, so the region of a slab that starts after t = 0
-    /// is the hull of those of its two ends. Exact for a finite horizon, the closure for an infinite one. From a
-    /// position in `O_0`, or one that is not a number, every velocity. O(n log n) in the faces of each slab.
+    /// The velocity obstacle within `horizon` seconds as a union of convex regions, one per slab.
+    /// O(n log n) in the faces of each slab.
+    ///
+    /// The vertices of `(O_t - x) / t` move in straight lines with `1 / t`. So the region of a slab
+    /// that starts after t = 0 is the convex hull of the sets at its two ends. Exact for a finite
+    /// horizon, the closure for an infinite one. Contains every velocity where the position is in
+    /// `O_0` or NaN.
     pub fn velocity_obstacles(&self, position: Vector, horizon: f64) -> Vec<VelocityObstacle> {
         let horizon = if horizon.is_nan() {
             f64::INFINITY

@@ -1,12 +1,12 @@
 //! Motions that enter hard sets, and when they have left them.
 
-use super::relaxation::TOUCH_M;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::planner::space_time::{self, NominalTarget};
 use crate::planner::{Outcome, Planned, PlannerKind, Problem, path_time};
 use crate::scenario::Scenario;
 use crate::target::Motion;
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
 
@@ -131,7 +131,7 @@ fn greatest_speed(set: &Obstacle) -> f64 {
     match set {
         Obstacle::Polytope(o) => o.velocity().reach(),
         Obstacle::Slabs(o) => {
-            let reaches = o.spells().iter().map(|spell| spell.velocities.reach());
+            let reaches = o.velocity_sets().iter().map(|set| set.velocities.reach());
             reaches.fold(0.0, f64::max)
         }
         Obstacle::Ellipsoid(_) => f64::INFINITY,

@@ -67,7 +67,7 @@ pub fn judge_free(
     judged(scenario, &claims, trajectory, Freedom::Any)
 }
 
-/// What a trajectory is claimed to be clear of.
+/// Sets that a trajectory is claimed to be clear of.
 struct Claims<'a> {
     obstacles: &'a [Obstacle],
     /// Seconds, per set: the time from which it counts, where the trajectory enters it.
@@ -96,7 +96,7 @@ fn judged(
         },
         Obstacle::Slabs(o) => SetShape::Polygons {
             initial: o.initial().clone(),
-            spells: o.spells().to_vec(),
+            spells: o.velocity_sets().to_vec(),
         },
     };
     let released = claims

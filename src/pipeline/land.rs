@@ -1,7 +1,7 @@
 //! Land of a scenario as an obstacle of the planners.
 
 use crate::geometry::{ConvexPolygon, Window};
-use crate::obstacle::Coast;
+use crate::obstacle::LandObstacle;
 use crate::scenario::Scenario;
 
 /// The convex pieces of land that own ship could reach before the horizon.
@@ -27,6 +27,6 @@ fn footprint(scenario: &Scenario) -> f64 {
 }
 
 /// The pieces from [`land_within_reach`], grown by own ship's footprint.
-pub fn coast(scenario: &Scenario, land: &[ConvexPolygon]) -> Coast {
-    Coast::around(land, footprint(scenario))
+pub fn land_obstacle(scenario: &Scenario, land: &[ConvexPolygon]) -> LandObstacle {
+    LandObstacle::around(land, footprint(scenario))
 }

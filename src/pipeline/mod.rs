@@ -11,7 +11,7 @@ mod rules;
 mod sets;
 
 pub use judge::{judge, judge_free};
-pub use land::{coast, land_within_reach};
+pub use land::{land_obstacle, land_within_reach};
 pub use no_return::{NO_RETURN_STEP_S, NoReturn};
 pub use outcome::{Relaxation, Verdict};
 pub use relaxation::{RISK_STEP, RelaxationLevel};
@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 
 use crate::evaluation::Evaluation;
 use crate::geometry::ConvexPolygon;
-use crate::obstacle::{Coast, Obstacle, PeakRisk, SpaceTimeObstacle};
+use crate::obstacle::{LandObstacle, Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::planner::optimal_control::ControlReport;
 use crate::planner::{NoPlan, Outcome, Planned, PlannerKind, Problem};
 use crate::scenario::{Compliance, Scenario};
@@ -97,7 +97,7 @@ impl Run {
 pub fn problem<'a>(
     scenario: &'a Scenario,
     obstacles: &'a [Obstacle],
-    coast: &'a Coast,
+    land_obstacle: &'a LandObstacle,
 ) -> Problem<'a> {
     Problem {
         own: &scenario.own_ship,
@@ -105,7 +105,7 @@ pub fn problem<'a>(
         alternatives: &scenario.alternatives,
         objective: scenario.objective,
         obstacles,
-        coast,
+        land_obstacle,
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: scenario.search,
@@ -128,19 +128,19 @@ pub fn run(scenario: Scenario) -> Run {
     let sets = sets(&scenario);
     let begun = Instant::now();
     let land = land_within_reach(&scenario);
-    let near_land;
-    let coast: &Coast = match scenario.planner {
+    let around_land;
+    let land_obstacle: &LandObstacle = match scenario.planner {
         PlannerKind::SpaceTime | PlannerKind::OptimalControl => {
-            near_land = coast(&scenario, &land);
-            &near_land
+            around_land = land_obstacle(&scenario, &land);
+            &around_land
         }
         // reading a scenario checks that its paths are clear of land
-        PlannerKind::PathTime => Coast::none(),
+        PlannerKind::PathTime => LandObstacle::none(),
     };
     let relaxer = Relaxer {
         scenario: &scenario,
         sets: &sets,
-        coast,
+        land_obstacle,
         begun,
     };
     let answer = relaxer.answer();

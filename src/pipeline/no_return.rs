@@ -1,7 +1,6 @@
 //! The time of no return: the last moment from which a plan clear of every hard set was found.
 
-use super::sets::TargetSets;
-use super::{Run, coast, problem};
+use super::{Run, land_obstacle, problem};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::{PlannerKind, space_time};
 
@@ -43,13 +42,13 @@ impl Run {
         if scenario.planner != PlannerKind::SpaceTime {
             return None;
         }
-        let hard: Vec<Obstacle> = self.sets.iter().map(TargetSets::hard_set).collect();
-        let coast = coast(scenario, &self.land);
-        let asked = problem(scenario, &hard, &coast);
+        let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
+        let land_obstacle = land_obstacle(scenario, &self.land);
+        let asked = problem(scenario, &hard, &land_obstacle);
         let held = space_time::nominal_motion(&asked)?;
         let contacts = hard.iter().filter_map(|set| {
             held.iter()
-                .find_map(|s| set.first_contact(s, super::relaxation::TOUCH_M))
+                .find_map(|s| set.first_contact(s, crate::tolerance::TOUCH_M))
         });
         let Some(met) = contacts.min_by(f64::total_cmp) else {
             return Some(NoReturn::Never);

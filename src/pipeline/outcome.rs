@@ -114,7 +114,7 @@ impl Verdict {
 }
 
 impl Run {
-    /// What the plan enters from start to arrival; `None` without a plan. An unverified plan is
+    /// Safety of the plan from start to arrival; `None` without a plan. An unverified plan is
     /// unsafe.
     pub fn safety(&self) -> Option<Safety> {
         let evaluation = self.evaluation.as_ref()?;

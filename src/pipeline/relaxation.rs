@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::entered;
 use super::rules::{encountered, first_turn};
 use super::sets::TargetSets;
-use crate::obstacle::{Coast, Obstacle, SpaceTimeObstacle};
+use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
 use crate::planner::optimal_control::{self, ControlReport, Controlled};
 use crate::planner::{
     NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time,
@@ -33,9 +33,6 @@ const RETAINED_HALVINGS: usize = 10;
 
 /// Accuracy of the least risk. No plan is sought at a risk above 1 less this. Dimensionless.
 pub const RISK_STEP: f64 = 1.0 / 64.0;
-
-/// Metres. A plan that is deeper than this in a set enters it; a tenth of what a checker rejects.
-pub(super) const TOUCH_M: f64 = 0.1 * crate::tolerance::DEPTH_M;
 
 /// How much of the request a plan satisfies, in the order in which requirements are given up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,7 +89,7 @@ impl Attempt {
 pub(super) struct Relaxer<'a> {
     pub scenario: &'a Scenario,
     pub sets: &'a [TargetSets],
-    pub coast: &'a Coast,
+    pub land_obstacle: &'a LandObstacle,
     pub begun: Instant,
 }
 
@@ -393,7 +390,7 @@ impl Relaxer<'_> {
     }
 
     fn has_domains(&self) -> bool {
-        self.sets.iter().any(TargetSets::has_shape)
+        self.sets.iter().any(TargetSets::has_domain)
     }
 
     /// True for a planner that has a plan for every subset of the sets that it has a plan for.
@@ -407,7 +404,7 @@ impl Relaxer<'_> {
         Problem {
             deadline: self.time_left(),
             first_turn: shaped.then(|| first_turn(self.sets)).flatten(),
-            ..super::problem(self.scenario, obstacles, self.coast)
+            ..super::problem(self.scenario, obstacles, self.land_obstacle)
         }
     }
 
@@ -536,10 +533,10 @@ impl Relaxer<'_> {
             let clear = |scale: f64| {
                 let set = sets.scaled(self.scenario, target, scale).obstacle;
                 let set = if risk > 0.0 { set.at_risk(risk) } else { set };
-                let enters = |s| set.first_contact(s, TOUCH_M).is_some();
+                let enters = |s| set.first_contact(s, crate::tolerance::TOUCH_M).is_some();
                 !trajectory.segments().iter().any(enters)
             };
-            if !sets.has_shape() || clear(1.0) {
+            if !sets.has_domain() || clear(1.0) {
                 return 1.0;
             }
             let (mut retained, mut entered) = (0.0, 1.0);

@@ -27,7 +27,7 @@ pub(super) fn without_domains_of_give_way_targets(
             .iter_mut()
             .filter(|s| s.encounter.role.duties().stands_on)
         {
-            set.give_up_shape();
+            set.remove_domain();
         }
     }
     sets

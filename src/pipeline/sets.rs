@@ -40,18 +40,13 @@ impl TargetSets {
         if shaped { &self.shaped } else { &self.hard }
     }
 
-    /// A copy of the hard set.
-    pub(super) fn hard_set(&self) -> Obstacle {
-        self.hard.clone()
-    }
-
     /// True where the domain is larger than the hard set.
-    pub(super) fn has_shape(&self) -> bool {
+    pub(super) fn has_domain(&self) -> bool {
         self.shapes.is_some()
     }
 
     /// Removes the ship domain.
-    pub(super) fn give_up_shape(&mut self) {
+    pub(super) fn remove_domain(&mut self) {
         self.shaped = self.hard.clone();
         (self.shape_reduced, self.shape_reach) = (0.0, 0.0);
         self.shapes = None;

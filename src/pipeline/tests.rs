@@ -1,4 +1,4 @@
-//! Which sets are used, what is given up, what the judge sees.
+//! Which sets are used, what is given up, and what the evaluation sees.
 
 use super::*;
 use crate::colregs::Role;
@@ -89,7 +89,7 @@ fn compliance_chooses_the_sets() {
 }
 
 #[test]
-fn a_shape_over_the_start_is_drawn_back_and_said_so() {
+fn a_domain_over_the_start_is_reduced_and_reported() {
     let target = track(100.0, -50.0, FRAC_PI_2, 5.0);
     let relaxed = run(scenario(target.clone(), Compliance::Shape));
     assert!(matches!(
@@ -98,7 +98,7 @@ fn a_shape_over_the_start_is_drawn_back_and_said_so() {
     ));
     let start = relaxed.scenario.own_ship.pose.position;
     assert!(polytope(&relaxed.obstacles[0]).slack(start, 0.0).value > 0.0);
-    // the hard sets were never shaped
+    // the hard sets have no domain
     assert!(
         run(scenario(target, Compliance::None))
             .relaxations
@@ -107,7 +107,7 @@ fn a_shape_over_the_start_is_drawn_back_and_said_so() {
 }
 
 #[test]
-fn the_judge_sees_the_undisturbed_trajectory_hit_the_set() {
+fn the_evaluation_finds_the_nominal_trajectory_in_the_set() {
     let scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
     let sets = sets(&scenario);
     let straight = Trajectory::new(vec![Segment {
@@ -135,10 +135,11 @@ fn the_judge_sees_the_undisturbed_trajectory_hit_the_set() {
     assert!(judged.space_time_error.abs() < 1e-9 && judged.delay.abs() < 1e-9);
 }
 
-/// Own ship starts at the edge of a shape that then grows over her: no plan is clear of it, one is clear of
-/// what is left of it, which contains the hard set, and the run says what was given up.
+/// Own ship starts at the edge of a domain that then grows over it. No plan is clear of the domain;
+/// one is clear of the reduced domain, which contains the hard set, and the run reports the
+/// reduction.
 #[test]
-fn where_no_plan_clears_the_shapes_they_are_drawn_back_as_far_as_the_plan_needs() {
+fn domains_that_no_plan_clears_are_reduced_as_far_as_the_plan_needs() {
     use crate::simulation::{EncounterKind, Placement, random_encounter};
     let drawn = random_encounter(EncounterKind::GiveWay, 104, Placement::Origin);
     let run = run(drawn.expect("drawn").scenario);
@@ -156,7 +157,7 @@ fn where_no_plan_clears_the_shapes_they_are_drawn_back_as_far_as_the_plan_needs(
     assert!(run.evaluation.is_some_and(|e| e.verified()));
 }
 
-/// A ship that comes to meet own ship in a channel of ships that stand still: no way around.
+/// A ship on the opposite course in a channel of ships at rest: no way around.
 fn in_a_channel(spread: f64) -> Scenario {
     let mut scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
     let wide = |x: f64, y: f64| {
@@ -196,10 +197,10 @@ fn in_a_channel(spread: f64) -> Scenario {
     scenario
 }
 
-/// The ship ahead may drift across the channel: only at a risk is there a way past her. It is the least, to a step: at one that is
-/// two steps less the planner finds none, and at what was found it does.
+/// The ship ahead may drift across the channel, so passing it takes a risk. It is the least to one
+/// step: the planner finds a plan at this risk, and none at two steps less.
 #[test]
-fn without_a_way_clear_of_the_hard_sets_the_least_risk_is_taken_and_said() {
+fn without_a_plan_clear_of_the_hard_sets_the_least_risk_is_taken_and_reported() {
     assert_eq!(run(in_a_channel(0.1)).level, RelaxationLevel::Compliant);
     let scenario = in_a_channel(2.0);
     let run = run(scenario.clone());
@@ -243,10 +244,11 @@ fn changes_of_speed(trajectory: &Trajectory) -> usize {
         .count()
 }
 
-/// A ship close ahead may go anywhere and faster than own ship, so no way leads out of its set. On its nominal track it crosses
-/// ahead: at full speed own ship rams it, at a low one it passes astern of it.
+/// A ship close ahead may go anywhere, faster than own ship, so no motion leaves its set. On its
+/// nominal track it crosses ahead: own ship rams it at full speed and passes astern of it at low
+/// speed.
 #[test]
-fn where_no_way_leads_out_own_ship_slows_and_meets_no_nominal_hull() {
+fn where_no_motion_leaves_the_sets_own_ship_slows_and_meets_no_nominal_hull() {
     for deadline in [60.0, 0.0] {
         let scenario = Scenario {
             deadline,
@@ -266,7 +268,7 @@ fn where_no_way_leads_out_own_ship_slows_and_meets_no_nominal_hull() {
     }
 }
 
-/// Alongside one ship and with another ahead, out of time before anything was planned.
+/// Alongside one ship and with another ahead; the time is up before anything is planned.
 #[test]
 fn out_of_time_own_ship_still_meets_no_nominal_hull() {
     let scenario = Scenario {
@@ -281,7 +283,8 @@ fn out_of_time_own_ship_still_meets_no_nominal_hull() {
     assert!(judged.verified() && judged.passages.iter().all(|p| p.dcpa > 0.0));
 }
 
-/// Own ship lies at the last waypoint, in a set: it has arrived, and nothing is claimed of the set.
+/// Own ship rests at the last waypoint, in a set: it has arrived, and nothing is claimed of the
+/// set.
 #[test]
 fn at_the_goal_inside_a_set_own_ship_has_arrived() {
     let run = run(fault("infeasible-at-goal.toml"));
@@ -296,8 +299,9 @@ fn at_the_goal_inside_a_set_own_ship_has_arrived() {
     assert!(run.evaluation.expect("judged").verified());
 }
 
-/// Own ship turns away from a ship close ahead and slows until it is out of its set: they come no nearer than they are. From then on
-/// it is clear of the set; a set that it does not start in it is clear of all along.
+/// Own ship turns away from a ship close ahead and slows until it has left its set; the distance
+/// never decreases. From then on it is clear of the set, and always clear of a set that it does not
+/// start in.
 #[test]
 fn from_within_a_hard_set_own_ship_slows_and_turns_away_and_claims_begin_outside() {
     let mut scenario = scenario(track(70.0, 20.0, 0.4, 3.0), Compliance::Shape);
@@ -336,9 +340,10 @@ fn from_within_a_hard_set_own_ship_slows_and_turns_away_and_claims_begin_outside
     assert!(judged.min_clearance > start - 1.0, "{start}");
 }
 
-/// One end of the relaxation levels: boxed in for good, own ship holds on, and nothing is claimed of what it runs into.
+/// The last level: own ship is enclosed for ever and continues; nothing is claimed of what it runs
+/// into.
 #[test]
-fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
+fn where_no_motion_leaves_the_sets_own_ship_continues_and_reports_it() {
     let mut scenario = in_a_channel(0.0);
     let around = [
         (-900.0, -900.0),
@@ -356,7 +361,7 @@ fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
     let end = plan.trajectory.end_time();
     assert_eq!(off_paths.released, [Some(end), None, None]);
     assert!(off_paths.evaluation.expect("judged").verified());
-    // along its path it stops, and the box, 900 m to its edge at 5 m/s, sails away from over it
+    // along its path it stops, and the box, 900 m to its edge at 5 m/s, moves away
     let along = run(Scenario {
         planner: PlannerKind::PathTime,
         ..scenario
@@ -371,7 +376,7 @@ fn where_nothing_leads_out_own_ship_holds_on_and_says_so() {
     assert!(plan.to_go > 0.0 && along.evaluation.expect("judged").verified());
 }
 
-/// Out of time before anything was found: what is known is said, as what it is.
+/// The time is up before anything is found: the run reports what is known.
 #[test]
 fn out_of_time_there_is_still_an_answer() {
     let mut scenario = scenario(track(1500.0, 0.0, PI, 5.0), Compliance::Shape);
@@ -385,9 +390,9 @@ fn out_of_time_there_is_still_an_answer() {
     ));
 }
 
-/// Three ships leave no way that stays near the path: a wide one is found, clear of every hard set.
+/// Three ships leave no way near the path: a wide detour is found, clear of every hard set.
 #[test]
-fn a_wide_way_is_found_where_there_is_none_near_the_path() {
+fn a_wide_detour_is_found_where_no_plan_stays_near_the_path() {
     use crate::scenario::import::{Assumed, Contents};
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenarios/dnv/traffic_situation_47.json");
@@ -416,9 +421,10 @@ fn the_time_of_no_return_is_between_the_start_and_the_first_contact() {
     assert_eq!(at(60.0, 0.0), Some(NoReturn::Past));
 }
 
-/// Whatever course she takes, her hull turned with it, and own ship on any heading a margin away from it, are in the hard set.
+/// The hard set contains, for every course of the target, its hull on that heading and own hull on
+/// any heading a margin away.
 #[test]
-fn the_hard_set_holds_the_hull_as_it_turns_with_the_course() {
+fn the_hard_set_contains_the_hull_at_every_heading() {
     let mut rng = ChaCha8Rng::seed_from_u64(41);
     for case in 0..200 {
         let mut within = |a: f64, b: f64| rng.random_range(a..b);

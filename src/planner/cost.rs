@@ -4,22 +4,8 @@ use std::f64::consts::PI;
 
 use super::line_error;
 use crate::frame::cross;
+use crate::numerics::{GAUSS_2, GAUSS_4};
 use crate::trajectory::{DesiredLeg, DesiredTrajectory, Mover, Nearest, Segment};
-
-/// Nodes and weights of the 4-point Gauss-Legendre rule on [0, 1].
-pub(crate) const GAUSS_4: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
-
-/// Nodes and weights of the 2-point rule on [0, 1]. It is exact for cubics, and the squared error
-/// along a line is quadratic.
-pub(crate) const GAUSS_2: [(f64, f64); 2] = [
-    (0.211_324_865_405_187_13, 0.5),
-    (0.788_675_134_594_812_9, 0.5),
-];
 
 /// Largest radius (metres) and smallest turn (radians) of the closed form. It loses digits on
 /// flatter or shorter arcs.
@@ -28,7 +14,7 @@ const SHORT_RAD: f64 = 1e-3;
 
 /// Subdivision of an arc that has no closed form.
 #[derive(Debug, Clone, Copy)]
-struct Cut {
+struct Subdivision {
     /// Longest initial piece, radians.
     arc: f64,
     /// Least number of pieces.
@@ -44,13 +30,13 @@ const MAX_HALVINGS: u32 = 10;
 const MANY_LEGS: usize = 6;
 
 /// Subdivision used during the search.
-const SEARCHED: Cut = Cut {
+const SEARCH_SUBDIVISION: Subdivision = Subdivision {
     arc: PI / 4.0,
     pieces: 1.0,
 };
 
 /// Subdivision used for reported costs.
-const TOLD: Cut = Cut {
+const REPORT_SUBDIVISION: Subdivision = Subdivision {
     arc: PI / 64.0,
     pieces: 64.0,
 };
@@ -61,7 +47,7 @@ const TOLD: Cut = Cut {
 /// pieces up to pi/4. A piece in which the nearest leg or the clamp at its ends changes is halved,
 /// down to a thousandth.
 pub fn space_time_error(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64) -> f64 {
-    integral(desired, segment, time_weight, SEARCHED) / desired.duration()
+    integral(desired, segment, time_weight, SEARCH_SUBDIVISION) / desired.duration()
 }
 
 /// Space-time error `J` of a whole motion, m². Arcs are divided finely enough to see a leg that is
@@ -73,14 +59,19 @@ pub fn whole_space_time_error(
 ) -> f64 {
     let parts = motion.iter();
     let sum: f64 = parts
-        .map(|segment| integral(desired, segment, time_weight, TOLD))
+        .map(|segment| integral(desired, segment, time_weight, REPORT_SUBDIVISION))
         .sum();
     sum / desired.duration()
 }
 
-fn integral(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64, cut: Cut) -> f64 {
+fn integral(
+    desired: &DesiredTrajectory,
+    segment: &Segment,
+    time_weight: f64,
+    subdivision: Subdivision,
+) -> f64 {
     if let [leg] = desired.legs()
-        && let Some(integral) = Alone::new(leg, segment, time_weight).integral()
+        && let Some(integral) = SingleLeg::new(leg, segment, time_weight).integral()
     {
         return integral;
     }
@@ -89,29 +80,29 @@ fn integral(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64, cu
     {
         return integral;
     }
-    let pieces = (segment.turn_rate.abs() * segment.duration / cut.arc)
+    let pieces = (segment.turn_rate.abs() * segment.duration / subdivision.arc)
         .ceil()
-        .max(cut.pieces);
+        .max(subdivision.pieces);
     let duration = segment.duration / pieces;
-    let mut stretch = Stretch {
+    let mut integrand = Integrand {
         desired,
         near: None,
         mover: Mover::new(segment),
         time_weight,
-        bent: segment.is_arc(),
+        is_arc: segment.is_arc(),
     };
     let legs = desired.legs().len();
     let near = (legs > MANY_LEGS).then(|| {
         let all: Vec<usize> = (0..legs).collect();
-        stretch.near(&all, segment.start_time, segment.duration)
+        integrand.near(&all, segment.start_time, segment.duration)
     });
     (0..pieces as usize)
         .map(|k| {
             let from = segment.start_time + duration * k as f64;
             if let Some(near) = &near {
-                stretch.near = Some(stretch.near(near, from, duration));
+                integrand.near = Some(integrand.near(near, from, duration));
             }
-            stretch.integral(from, duration, MAX_HALVINGS)
+            integrand.integral(from, duration, MAX_HALVINGS)
         })
         .sum()
 }
@@ -119,7 +110,7 @@ fn integral(desired: &DesiredTrajectory, segment: &Segment, time_weight: f64, cu
 /// Segment relative to the only leg. Where the nearest point lies between the leg's ends, the error
 /// is `across² + kappa lag²`. Where it is an end, the error is the space-time distance from that
 /// end.
-struct Alone<'a> {
+struct SingleLeg<'a> {
     leg: &'a DesiredLeg,
     segment: &'a Segment,
     time_weight: f64,
@@ -134,7 +125,7 @@ struct Alone<'a> {
     share: f64,
 }
 
-impl<'a> Alone<'a> {
+impl<'a> SingleLeg<'a> {
     fn new(leg: &'a DesiredLeg, segment: &'a Segment, time_weight: f64) -> Self {
         let offset = segment.start.position - leg.start;
         let ahead = segment.start.ahead();
@@ -250,16 +241,16 @@ impl<'a> Alone<'a> {
     }
 }
 
-struct Stretch<'a> {
+struct Integrand<'a> {
     desired: &'a DesiredTrajectory,
     /// Legs that may be nearest, where there are many.
     near: Option<Vec<usize>>,
     mover: Mover,
     time_weight: f64,
-    bent: bool,
+    is_arc: bool,
 }
 
-impl Stretch<'_> {
+impl Integrand<'_> {
     fn at(&self, time: f64) -> Nearest {
         let (position, q) = (self.mover.position_at(time), self.time_weight);
         match &self.near {
@@ -308,7 +299,7 @@ impl Stretch<'_> {
                 .iter()
                 .all(|f| self.regime(from + duration * f) == first)
         {
-            let nodes: &[(f64, f64)] = if self.bent { &GAUSS_4 } else { &GAUSS_2 };
+            let nodes: &[(f64, f64)] = if self.is_arc { &GAUSS_4 } else { &GAUSS_2 };
             return duration
                 * nodes
                     .iter()

@@ -49,7 +49,7 @@ impl Parabola {
     }
 
     /// First time in `[from, to]` at which `other` crosses this parabola from above.
-    fn passed_by(&self, other: &Self, from: f64, to: f64) -> Option<f64> {
+    fn crossing(&self, other: &Self, from: f64, to: f64) -> Option<f64> {
         let c = other.c - self.c;
         let b = other.slope(from) - self.slope(from);
         let a = (other.at(from) - self.at(from)).max(0.0);
@@ -125,12 +125,12 @@ impl FromLeg {
     }
 
     /// First time from `from` on at which `other` becomes nearer.
-    fn passed_by(&self, other: &Self, from: f64, to: f64) -> Option<f64> {
+    fn crossing(&self, other: &Self, from: f64, to: f64) -> Option<f64> {
         let mut time = from;
         while time < to {
             let (mine, theirs) = (self.part(time), other.part(time));
             let until = mine.0.min(theirs.0).min(to);
-            if let Some(passed) = mine.1.passed_by(&theirs.1, time, until) {
+            if let Some(passed) = mine.1.crossing(&theirs.1, time, until) {
                 return Some(passed);
             }
             time = until;
@@ -171,7 +171,7 @@ pub(crate) fn integral(
         let current = legs.swap_remove(nearest);
         let mut next = (duration, None);
         for (index, other) in legs.iter().enumerate() {
-            if let Some(passed) = current.passed_by(other, time, next.0)
+            if let Some(passed) = current.crossing(other, time, next.0)
                 && (next.1.is_none() || passed < next.0)
             {
                 next = (passed, Some(index));

@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use crate::colregs::{Duty, Encountered};
 use crate::frame::{Side, Vector};
-use crate::obstacle::{Coast, Obstacle};
+use crate::obstacle::{LandObstacle, Obstacle};
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::OwnShip;
 
@@ -114,14 +114,14 @@ impl Objective {
 /// # Examples
 ///
 /// ```
-/// use searoom::obstacle::Coast;
+/// use searoom::obstacle::LandObstacle;
 /// use searoom::pipeline;
 /// use searoom::planner::{Problem, space_time};
 /// use searoom::scenario::Scenario;
 ///
 /// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
 /// let sets: Vec<_> = pipeline::sets(&scenario).into_iter().map(|target| target.hard).collect();
-/// let asked = pipeline::problem(&scenario, &sets, Coast::none());
+/// let asked = pipeline::problem(&scenario, &sets, LandObstacle::none());
 /// let clear = space_time::plan(&asked).outcome;
 /// // the same without anybody else
 /// let alone = space_time::plan(&Problem { obstacles: &[], ..asked }).outcome;
@@ -142,7 +142,7 @@ pub struct Problem<'a> {
     /// Sets to avoid, inflated by own ship's footprint.
     pub obstacles: &'a [Obstacle],
     /// Land to avoid, inflated by own ship's footprint.
-    pub coast: &'a Coast,
+    pub land_obstacle: &'a LandObstacle,
     /// Latest arrival, seconds. The obstacles are known until then.
     pub horizon: f64,
     /// Weight `q` of eq. (30), m²/s².

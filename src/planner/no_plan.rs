@@ -15,7 +15,7 @@ pub enum NoPlan {
     },
     /// Own ship starts closer to land than it may be on some heading.
     #[error(
-        "own ship starts {depth:.1} m nearer to land than her half-diagonal and the land margin allow"
+        "own ship starts {depth:.1} m closer to land than its half-diagonal and the land margin allow"
     )]
     StartAshore {
         /// Depth, metres.
@@ -122,7 +122,7 @@ pub enum NoPlan {
     NoTrajectory,
     /// No initial guess of the optimal-control planner led to a motion clear of every set.
     #[error(
-        "of {starts} starts none leads to a plan clear of every set; the least deep of those solved is {depth:.3} m inside the set of '{target}' at {time:.1} s"
+        "none of {starts} initial guesses leads to a plan clear of every set; the shallowest solution is {depth:.3} m inside the set of '{target}' at {time:.1} s"
     )]
     Locked {
         /// Number of initial guesses tried.
@@ -135,7 +135,7 @@ pub enum NoPlan {
         depth: f64,
     },
     /// No initial guess of the optimal-control planner was solved.
-    #[error("of {starts} starts none was solved: {why}")]
+    #[error("none of {starts} initial guesses was solved: {why}")]
     Unsolved {
         /// Number of initial guesses tried.
         starts: usize,
@@ -144,7 +144,7 @@ pub enum NoPlan {
     },
     /// There are plans on a coarse grid, but none on the finer grid that the ship's dynamics need.
     #[error(
-        "there are plans on {coarse} intervals, but they are too coarse for the ship, and on {intervals} the cheapest is lost: {why}"
+        "there are plans on {coarse} intervals, but they are too coarse for the ship, and on {intervals} the solver lost the cheapest: {why}"
     )]
     Lost {
         /// Number of intervals requested.
@@ -156,7 +156,7 @@ pub enum NoPlan {
     },
     /// Between the nodes the motion deviates from the ship's dynamics.
     #[error(
-        "with {intervals} intervals, the most that were tried, the ship would be off the plan by {off:.1e} of her units at the end of an interval, {allowed:.0e} allowed; what may help: more intervals (planner.optimal_control), a shorter horizon"
+        "with {intervals} intervals, the most that were tried, the ship would be off the plan by {off:.1e} of its units at the end of an interval, {allowed:.0e} allowed; what may help: more intervals (planner.optimal_control), a shorter horizon"
     )]
     Coarse {
         /// Number of intervals.

@@ -1,7 +1,8 @@
-//! A* and Dijkstra over a graph that is given by its successors. Knows nothing of ships.
+//! A* and Dijkstra over a graph that is given by its successors.
 //!
-//! States are continuous, so two ways to one place are two nodes: the search is over the tree of
-//! ways. Edges are tested when their node leaves the queue, not when it enters: most never do.
+//! States are continuous, so two paths to one position are two nodes: the search tree contains
+//! paths. An edge is tested when its node leaves the queue, not when it enters: most nodes never
+//! leave it.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -43,19 +44,21 @@ use ordered_float::OrderedFloat;
 /// assert!(expanded > 3);
 /// ```
 pub trait Space {
-    /// What a node is.
+    /// The state of a node.
     type State;
 
-    /// Adds every state that can follow, with the cost of its edge (not negative).
+    /// Adds all successors of a state, each with the cost of its edge (not negative).
     fn successors(&mut self, state: &Self::State, out: &mut Vec<(Self::State, f64)>);
 
-    /// A lower bound of the cost from here to any goal; infinite where there is no way to one. Zero turns
-    /// A* into Dijkstra.
+    /// A lower bound of the cost from here to any goal; infinite where no goal is reachable. Zero
+    /// turns A* into Dijkstra.
     fn bound(&mut self, state: &Self::State) -> f64;
 
-    /// A greater bound that takes longer. Asked for once, of nodes that would be expanded next; those that it
-    /// lifts go back into the queue.
-    fn closer_bound(&mut self, _: &Self::State) -> f64 {
+    /// A tighter bound that costs more time.
+    ///
+    /// It is evaluated once per node, when the node would be expanded next. A node whose bound
+    /// increases returns to the queue.
+    fn tight_bound(&mut self, _: &Self::State) -> f64 {
         0.0
     }
 
@@ -66,21 +69,21 @@ pub trait Space {
     /// the queue.
     fn admits(&mut self, state: &Self::State) -> bool;
 
-    /// True when the search is to stop where it is. Asked before every node; successors and bounds made since it
+    /// True when the search must stop. Asked before every node; successors and bounds made since it
     /// turned true are not used.
     fn is_out_of_time(&self) -> bool {
         false
     }
 }
 
-/// What became of a node.
+/// Status of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
-    /// Still in the queue; its edge is not tested, or the closer bound put it back.
+    /// In the queue; its edge is untested, or the tighter bound put it back.
     Queued,
     /// Its edge is not admitted.
     Rejected,
-    /// Its successors were made.
+    /// Its successors were generated.
     Expanded,
     /// A goal that was reached.
     Goal,
@@ -89,48 +92,50 @@ pub enum Fate {
 /// A node of the search tree.
 #[derive(Debug, Clone)]
 pub struct Node<S> {
-    /// What it is.
+    /// Its state.
     pub state: S,
-    /// The node before it; `None` at the root.
+    /// Its predecessor; `None` at the root.
     pub parent: Option<usize>,
     /// Cost from the root.
     pub cost: f64,
-    /// What became of it.
+    /// Its status.
     pub fate: Fate,
 }
 
 /// Why a search stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
-    /// The cheapest goal not yet reported; its node.
+    /// Index of the cheapest goal not yet reported.
     Goal(usize),
-    /// There are no more goals.
+    /// No goals remain.
     Exhausted,
-    /// The budget of expansions is spent.
+    /// The budget of expansions is used up.
     Budget,
-    /// The space has no more time.
+    /// [`Space::is_out_of_time`] is true.
     Time,
 }
 
-/// Counts of a search.
+/// Counters of a search.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Nodes whose successors were made.
+    /// Expanded nodes.
     pub expanded: usize,
-    /// Nodes made.
+    /// Generated nodes.
     pub generated: usize,
-    /// Edges tested.
+    /// Tested edges.
     pub tested: usize,
 }
 
-/// A best-first search that can be resumed: each [`Search::next_goal`] gives the next cheapest goal.
-/// Ties: less cost plus bound first, then the greater cost (nearer the goal), then the older node.
+/// A best-first search that can be resumed: each [`Search::next_goal`] gives the next cheapest
+/// goal.
+///
+/// Ties are broken by smaller cost plus bound, then by greater cost (nearer the goal), then by age.
 #[derive(Debug)]
 pub struct Search<S> {
     nodes: Vec<Node<S>>,
     queue: BinaryHeap<Reverse<Entry>>,
     counts: Counts,
-    /// What bounds are multiplied by.
+    /// Factor of the bounds.
     weight: f64,
 }
 
@@ -139,7 +144,7 @@ struct Entry {
     estimate: OrderedFloat<f64>,
     cost: OrderedFloat<f64>,
     node: usize,
-    /// Its edge is tested and its bound the closer one.
+    /// Its edge is tested and its bound is the tighter one.
     ready: bool,
 }
 
@@ -185,9 +190,11 @@ impl<S> Search<S> {
         }
     }
 
-    /// Multiplies every bound by a factor, at least 1, from now on: fewer nodes are expanded, and goals that are reported cost at
-    /// most so many times the cheapest that is left (weighted A*, doi:10.1016/0004-3702(70)90007-X). Without bounds nothing
-    /// changes.
+    /// Multiplies every bound by a factor of at least 1 from now on (weighted A*,
+    /// doi:10.1016/0004-3702(70)90007-X).
+    ///
+    /// Fewer nodes are expanded. Reported goals cost at most this factor times the cheapest
+    /// remaining one. Without bounds nothing changes.
     pub fn weigh(&mut self, weight: f64) {
         let change = weight / self.weight;
         let queue = std::mem::take(&mut self.queue).into_vec();
@@ -204,22 +211,22 @@ impl<S> Search<S> {
         self.weight = weight;
     }
 
-    /// Every node made so far.
+    /// All nodes generated so far.
     pub fn nodes(&self) -> &[Node<S>] {
         &self.nodes
     }
 
-    /// Every node made, given up by the search.
+    /// All generated nodes, by value.
     pub fn into_nodes(self) -> Vec<Node<S>> {
         self.nodes
     }
 
-    /// What was done so far.
+    /// Counters of the search so far.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Nodes from the root to `node`.
+    /// Indices of the nodes from the root to `node`.
     pub fn way_to(&self, node: usize) -> Vec<usize> {
         let mut way = vec![node];
         let mut at = node;
@@ -231,9 +238,10 @@ impl<S> Search<S> {
         way
     }
 
-    /// Runs until the next cheapest goal, the end, or `max_expanded` expansions in all. The `k`-th
-    /// goal reported is the `k`-th cheapest when the bound never exceeds the true cost to go. An edge
-    /// whose cost or bound is not a number is dropped as not admitted.
+    /// Runs until the next cheapest goal, exhaustion, or `max_expanded` expansions in total.
+    ///
+    /// The `k`-th goal reported is the `k`-th cheapest if the bound never exceeds the true cost to
+    /// go. An edge whose cost or bound is NaN is dropped as not admitted.
     pub fn next_goal<G: Space<State = S>>(&mut self, space: &mut G, max_expanded: usize) -> Stop {
         let mut successors = Vec::new();
         loop {
@@ -260,7 +268,7 @@ impl<S> Search<S> {
                 return Stop::Goal(index);
             }
             if !entry.ready {
-                let to_go = space.closer_bound(&self.nodes[index].state);
+                let to_go = space.tight_bound(&self.nodes[index].state);
                 let estimate = entry.cost + self.weight * to_go;
                 if estimate > entry.estimate {
                     if estimate.is_finite() {

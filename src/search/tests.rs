@@ -1,6 +1,6 @@
 use super::*;
 
-/// Lattice steps east and north with costs from a hash; some cells closed; goal at a corner.
+/// Lattice steps east and north with costs from a hash, some closed cells, and a goal at a corner.
 struct Grid {
     size: i32,
     informed: bool,
@@ -29,7 +29,7 @@ impl Space for Grid {
             0.0
         }
     }
-    fn closer_bound(&mut self, &(x, y): &(i32, i32)) -> f64 {
+    fn tight_bound(&mut self, &(x, y): &(i32, i32)) -> f64 {
         if self.closer {
             let steps = 2 * self.size - 2 - x - y;
             f64::from(steps)
@@ -69,7 +69,7 @@ fn costs(informed: bool, closer: bool) -> (Vec<f64>, Counts) {
     (found, search.counts())
 }
 
-/// Every way, by plain recursion.
+/// Costs of all paths, by plain recursion.
 fn all_costs(grid: &mut Grid, at: (i32, i32), cost: f64, out: &mut Vec<f64>) {
     if grid.is_goal(&at) {
         out.push(cost);

@@ -61,7 +61,7 @@ fn a_ship_that_turns_stays_within_the_set_of_the_moment() {
             let v = direction(course) * speed;
             assert!(now.velocities.signed_distance(v) <= 1e-9, "{ship:?} {t}");
             if t < horizon {
-                let widest = ship.outer_velocities_within(turned + TURN_OF_A_SPELL + 1e-9);
+                let widest = ship.outer_velocities_within(turned + TURN_PER_INTERVAL + 1e-9);
                 for v in now.velocities.vertices() {
                     assert!(widest.signed_distance(*v) <= 0.005 * v.norm() + 1e-9);
                 }
@@ -95,7 +95,8 @@ fn no_spread_is_a_point() {
     assert_eq!(ship.outer_velocity_set().vertices().len(), 1);
 }
 
-/// A tanker, a ferry, a raft: on any heading that she may have she is within the outer hull, which is little larger.
+/// A tanker, a ferry and a raft: at every possible heading the hull is inside the outer hull, which
+/// is only slightly larger.
 #[test]
 fn the_outer_hull_holds_the_hull_on_every_heading() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(6);
@@ -104,7 +105,7 @@ fn the_outer_hull_holds_the_hull_on_every_heading() {
         ship.pose.position = Vector::new(rng.random_range(-1e2..1e2), 50.0);
         ship.hull.length = 10.0_f64.powf(rng.random_range(0.0..3.0));
         ship.hull.beam = ship.hull.length * rng.random_range(0.01..1.2);
-        // from next to nothing to every heading
+        // from nearly none to every heading
         ship.course_spread = match case % 4 {
             0 => 10.0_f64.powf(rng.random_range(-12.0..-3.0)),
             _ => rng.random_range(0.0..1.0),

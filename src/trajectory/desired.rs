@@ -4,10 +4,10 @@ use super::TrajectoryError;
 use crate::frame::{Vector, cross};
 use crate::tolerance;
 
-/// Relative: more than the rounding of a squared distance.
+/// Relative bound of the rounding of a squared distance.
 const ROUNDING: f64 = 1e-12;
 
-/// Metres that are left of a desired trajectory at least: a path is needed to end on.
+/// Shortest remainder of a desired trajectory, metres: a path is needed to end on.
 const LAST_STRETCH_M: f64 = 1.0;
 
 /// One leg of the desired trajectory.
@@ -17,18 +17,18 @@ pub struct DesiredLeg {
     pub start: Vector,
     /// Unit vector along the leg.
     pub direction: Vector,
-    /// Metres, positive.
+    /// Length, metres, positive.
     pub length: f64,
-    /// m/s, positive.
+    /// Speed, m/s, positive.
     pub speed: f64,
-    /// Seconds at which the leg is to be begun.
+    /// Start time, seconds.
     pub start_time: f64,
-    /// Metres along the path at which the leg begins.
+    /// Distance along the path at the start, metres.
     pub start_distance: f64,
 }
 
 impl DesiredLeg {
-    /// Seconds at which the leg is to be finished.
+    /// End time, seconds.
     pub fn end_time(&self) -> f64 {
         self.start_time + self.length / self.speed
     }
@@ -38,7 +38,8 @@ impl DesiredLeg {
         self.start + self.direction * self.length
     }
 
-    /// The squared space-time distance, m², and the metres along the leg of the nearest point.
+    /// Squared space-time distance to the nearest point, m², and its distance along the leg,
+    /// metres.
     fn nearest(&self, position: Vector, time: f64, q: f64) -> (f64, f64) {
         let offset = position - self.start;
         let (along, across) = (self.direction.dot(&offset), cross(self.direction, offset));
@@ -63,7 +64,8 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    /// Takes what a leg offers, `(error, metres along it)`, where that is nearer, or as near on an earlier leg.
+    /// Takes over a leg's candidate `(error, metres along the leg)` if it is nearer, or as near and
+    /// on an earlier leg.
     fn offer(&mut self, index: usize, leg: &DesiredLeg, (error, along): (f64, f64)) {
         if error < self.error || error == self.error && index < self.leg {
             *self = Self {
@@ -75,7 +77,8 @@ impl Nearest {
     }
 }
 
-/// Where own ship is meant to be, and when: starts at t = 0 at the first waypoint.
+/// The desired position as a function of time: a polyline that starts at the first waypoint at t =
+/// 0.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -140,12 +143,12 @@ impl DesiredTrajectory {
         points
     }
 
-    /// `T_d`: seconds from the first waypoint to the last.
+    /// `T_d`: duration, seconds.
     pub fn duration(&self) -> f64 {
         self.legs[self.legs.len() - 1].end_time()
     }
 
-    /// Metres along the path.
+    /// Length of the path, metres.
     pub fn length(&self) -> f64 {
         let last = &self.legs[self.legs.len() - 1];
         last.start_distance + last.length
@@ -156,8 +159,8 @@ impl DesiredTrajectory {
         self.legs[self.legs.len() - 1].end()
     }
 
-    /// True where the path comes by a place before its end, to [`tolerance::ARRIVAL_M`]: a round trip comes by its end when it
-    /// begins.
+    /// True where the path passes a point before its end, to [`tolerance::ARRIVAL_M`]. A round trip
+    /// passes its end at its start.
     pub fn comes_by(&self, place: Vector) -> bool {
         self.legs.iter().any(|leg| {
             let along = leg
@@ -170,7 +173,7 @@ impl DesiredTrajectory {
         })
     }
 
-    /// Desired position at `time`, standing at the ends before and after.
+    /// Desired position at `time`; the end points before the start and after the end.
     pub fn position_at(&self, time: f64) -> Vector {
         let index = self
             .legs
@@ -180,8 +183,8 @@ impl DesiredTrajectory {
         leg.start + leg.direction * ((time - leg.start_time) * leg.speed).clamp(0.0, leg.length)
     }
 
-    /// What is left of it at `time`, by a clock that starts then; once it is over, or as good as over, a last stretch of
-    /// `LAST_STRETCH_M` at the end of the path.
+    /// The remainder from `time` on, with a clock that starts then. At least `LAST_STRETCH_M` at
+    /// the end of the path remain.
     pub fn remaining(&self, time: f64) -> Self {
         let last = &self.legs[self.legs.len() - 1];
         let latest = self.duration() - LAST_STRETCH_M.min(last.length) / last.speed;
@@ -193,8 +196,10 @@ impl DesiredTrajectory {
         Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
-    /// The same motion with fewer legs: waypoints within [`tolerance::LENGTH_M`] of the line from one that is kept to the
-    /// next, met in order and at one speed, are left out. O(legs²) at worst.
+    /// The motion with fewer legs. O(legs²) at worst.
+    ///
+    /// Omits waypoints within [`tolerance::LENGTH_M`] of the line between retained ones, if the
+    /// path meets them in order and at one speed.
     pub fn straightened(&self) -> Self {
         let mut waypoints = vec![self.legs[0].start];
         let mut speeds = Vec::new();
@@ -211,7 +216,7 @@ impl DesiredTrajectory {
         Self::new(&waypoints, &speeds).unwrap_or_else(|_| self.clone())
     }
 
-    /// True when the legs from `first` to `last` are one.
+    /// True when the legs from `first` to `last` are equivalent to one.
     fn is_one_leg(&self, first: usize, last: usize) -> bool {
         let Some(legs) = self.legs.get(first..=last) else {
             return false;
@@ -225,7 +230,7 @@ impl DesiredTrajectory {
         })
     }
 
-    /// [`DesiredTrajectory::nearest`] of some legs alone.
+    /// [`DesiredTrajectory::nearest`] on some of the legs.
     pub(crate) fn nearest_of(
         &self,
         legs: &[usize],
@@ -245,9 +250,12 @@ impl DesiredTrajectory {
         best
     }
 
-    /// The nearest point in space-time: `min over sigma of |x - x_d(sigma)|² + q (t - t_d(sigma))²`,
-    /// docs/theory.md section 7, in closed form per leg. `q` in m²/s². Of equal legs the earlier. Looks from the leg of that
-    /// time on at later and earlier ones, until they are too far off in time alone: O(legs) at worst, and for `q = 0`.
+    /// The nearest point in space-time: `min over sigma of |x - x_d(sigma)|² + q (t -
+    /// t_d(sigma))²`, docs/theory.md section 7.
+    ///
+    /// In closed form per leg, with `q` in m²/s²; the earlier of equal legs. Starts at the leg of
+    /// that time and proceeds to later and earlier legs until their time difference alone excludes
+    /// them. O(legs) at worst, and for `q = 0`.
     pub fn nearest(&self, position: Vector, time: f64, q: f64) -> Nearest {
         let mut best = Nearest {
             error: f64::INFINITY,
@@ -309,10 +317,11 @@ mod tests {
         }
     }
 
-    /// Looking from the time's own leg on finds what a look at every leg finds, the earlier of two that are as near too.
+    /// The search from the leg of the time finds what a search of all legs finds, also among equal
+    /// legs.
     #[test]
     fn no_leg_that_is_left_out_is_nearer() {
-        // to and fro on one line, so that legs tie
+        // back and forth on one line, so that legs tie
         let points: Vec<Vector> = (0..40)
             .map(|i| Vector::new(f64::from(i % 4 * 100), f64::from(i / 8 * 30)))
             .collect();

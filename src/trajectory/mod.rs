@@ -1,5 +1,4 @@
-//! What every planner returns: exact constant-speed lines and arcs in time; and what it is compared
-//! with: the desired trajectory, and the paths that may be sailed.
+//! Trajectories: lines and arcs in time, the desired trajectory, and the network of paths.
 
 mod desired;
 mod network;
@@ -16,22 +15,22 @@ pub use steered::{Cubic, Node, Steered, Swing};
 use crate::frame::{Pose, wrap};
 use crate::tolerance;
 
-/// Why segments or waypoints do not make a trajectory.
+/// Why segments or waypoints are not a trajectory.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrajectoryError {
-    /// No segment at all.
+    /// No segment.
     #[error("a trajectory needs at least one segment")]
     Empty,
     /// A segment with a number that is not finite, a negative duration or a negative speed.
     #[error("segment {index} has a value that is not finite, or a negative duration or speed")]
     Invalid {
-        /// Which segment, from 0.
+        /// Index of the segment, from 0.
         index: usize,
     },
-    /// Two segments do not meet.
+    /// Two consecutive segments do not meet.
     #[error("segment {index} starts {gap:.3e} away from the end of the one before")]
     Gap {
-        /// The later segment, from 0.
+        /// Index of the later segment, from 0.
         index: usize,
         /// The largest of the gaps in metres, seconds and radians.
         gap: f64,
@@ -39,16 +38,18 @@ pub enum TrajectoryError {
     /// Fewer than two waypoints.
     #[error("a desired trajectory needs at least two waypoints")]
     TooFewWaypoints,
-    /// A leg of no length, or at no speed.
+    /// A leg without length or speed.
     #[error("leg {index} must have a positive length and a positive speed")]
     EmptyLeg {
-        /// Which leg, from 0.
+        /// Index of the leg, from 0.
         index: usize,
     },
 }
 
-/// A continuous chain of [`Segment`]s: position continuous, time increasing, and heading continuous but at corners. Or a
-/// motion under forces, which has no segments: see [`Trajectory::steered`].
+/// A continuous chain of [`Segment`]s: position is continuous, time increases, and heading is
+/// continuous except at corners.
+///
+/// A motion under forces has no segments: see [`Trajectory::steered`].
 ///
 /// ```
 /// use searoom::frame::{Pose, Vector};
@@ -78,7 +79,7 @@ pub struct Trajectory {
 }
 
 impl From<Segment> for Trajectory {
-    /// One segment alone; a duration or a speed that is not a number, or negative, becomes 0.
+    /// A single segment; a duration or speed that is NaN or negative becomes 0.
     fn from(segment: Segment) -> Self {
         let segment = Segment {
             duration: segment.duration.max(0.0),
@@ -107,7 +108,7 @@ impl Trajectory {
         Self::chained(segments, |turn| turn)
     }
 
-    /// A trajectory along a path with corners: at the joint of two segments own ship may turn on the spot.
+    /// A trajectory along a path with corners, at which the heading may jump.
     pub fn with_corners(segments: Vec<Segment>) -> Result<Self, TrajectoryError> {
         Self::chained(segments, |_| 0.0)
     }
@@ -128,7 +129,7 @@ impl Trajectory {
                     .norm()
                     .max((before.end_time() - s.start_time).abs())
                     .max(counted(turn));
-                // negated on purpose: a NaN is a gap
+                // negated so that a NaN is a gap
                 if !(gap <= tolerance::JOINT_M) {
                     return Err(TrajectoryError::Gap { index, gap });
                 }
@@ -140,17 +141,17 @@ impl Trajectory {
         })
     }
 
-    /// The segments, in order of time; none for a motion under forces.
+    /// The segments in order of time; empty for a motion under forces.
     pub fn segments(&self) -> &[Segment] {
         &self.segments
     }
 
-    /// The nodes with their forces, where the motion is given by these.
+    /// The nodes with their forces, for a motion under forces.
     pub fn steered(&self) -> Option<&Steered> {
         self.steered.as_ref()
     }
 
-    /// Seconds at which the motion starts.
+    /// Start time, seconds.
     pub fn start_time(&self) -> f64 {
         match &self.steered {
             Some(motion) => motion.nodes()[0].time,
@@ -158,7 +159,7 @@ impl Trajectory {
         }
     }
 
-    /// Seconds at which the motion ends: the arrival of a plan of segments.
+    /// End time, seconds.
     pub fn end_time(&self) -> f64 {
         match &self.steered {
             Some(motion) => motion.nodes()[motion.nodes().len() - 1].time,
@@ -174,7 +175,7 @@ impl Trajectory {
         }
     }
 
-    /// Horizontal length in metres.
+    /// Length, metres.
     pub fn length(&self) -> f64 {
         match &self.steered {
             Some(motion) => motion.length(),
@@ -187,7 +188,7 @@ impl Trajectory {
         &self.segments[after.min(self.segments.len() - 1)]
     }
 
-    /// The pose at `time`, clamped to the trajectory's own time span.
+    /// Pose at `time`, clamped to the trajectory's time span.
     pub fn pose_at(&self, time: f64) -> Pose {
         let clamped = time.clamp(self.start_time(), self.end_time());
         match &self.steered {
@@ -196,7 +197,8 @@ impl Trajectory {
         }
     }
 
-    /// Over ground at `time`, m/s, clamped as the pose is; before the start the first speed, after the end the last.
+    /// Speed over ground at `time`, m/s: that of the first instant before the start, of the last
+    /// one after the end.
     pub fn speed_at(&self, time: f64) -> f64 {
         match &self.steered {
             Some(motion) => {
@@ -208,7 +210,7 @@ impl Trajectory {
         }
     }
 
-    /// Seconds at which the motion changes: the starts of segments, or the nodes.
+    /// Start times of the segments, or times of the nodes, seconds.
     pub fn joints(&self) -> Vec<f64> {
         match &self.steered {
             Some(motion) => motion.nodes().iter().map(|node| node.time).collect(),
@@ -216,8 +218,10 @@ impl Trajectory {
         }
     }
 
-    /// Every multiple of `step` seconds from the start, or of a longer step that makes `most` of them; each segment's
-    /// start or node and the end; increasing, without repetition: a start or a node stands for what is next to it.
+    /// Multiples of `step` from the start, the segments' starts or nodes, and the end, increasing.
+    ///
+    /// A longer step replaces `step` where it would give more than `most` multiples. A start or
+    /// node replaces multiples next to it.
     pub fn sample_times(&self, step: f64, most: u32) -> Vec<f64> {
         let (start, end) = (self.start_time(), self.end_time());
         let step = step.max((end - start) / f64::from(most.max(1)));

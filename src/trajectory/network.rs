@@ -1,57 +1,58 @@
-//! The paths that own ship may sail, as legs between points at which she may change from one to another.
+//! A network of paths: legs between the points at which own ship may change from one path to
+//! another.
 
 use crate::frame::{Vector, cross};
 use crate::tolerance;
 
-/// Why alternatives do not make a network with the main path.
+/// Why alternatives and the main path are not a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NetworkError {
-    /// A path with fewer than two points, a leg of no length, or a number that is none.
+    /// A path with fewer than two points, a leg without length, or a NaN.
     #[error("path {path}: leg {leg} has no length, or there is none")]
     EmptyLeg {
-        /// 0 is the main path, the alternatives follow.
+        /// 0 is the main path; the alternatives follow.
         path: usize,
-        /// From 0.
+        /// Index of the leg, from 0.
         leg: usize,
     },
-    /// An alternative that touches no other path.
+    /// An alternative that shares no point with another path.
     #[error("alternative {alternative} shares no point with another path")]
     NoSharedPoint {
-        /// From 0.
+        /// Index of the alternative, from 0.
         alternative: usize,
     },
-    /// An alternative of which no leg leads from the first waypoint to the last.
+    /// An alternative none of whose legs leads from the first waypoint to the last.
     #[error(
-        "alternative {alternative} is on no way from the first waypoint to the last: it has to be left again where another path goes on"
+        "alternative {alternative} lies on no route from the first waypoint to the last; another path must continue where it ends"
     )]
     NoWayThrough {
-        /// From 0.
+        /// Index of the alternative, from 0.
         alternative: usize,
     },
 }
 
-/// A straight piece of a path between two points at which paths begin, bend, end or meet.
+/// A straight part of a path between two points at which paths begin, bend, end or meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetworkLeg {
-    /// Metres.
+    /// Start, metres.
     pub start: Vector,
     /// Unit vector.
     pub direction: Vector,
-    /// Metres, positive.
+    /// Length, metres, positive.
     pub length: f64,
-    /// 0 is the main path, the alternatives follow.
+    /// 0 is the main path; the alternatives follow.
     pub path: usize,
-    /// Metres along its own path at which the leg begins.
+    /// Distance along its own path at the start, metres.
     pub start_distance: f64,
-    /// The points at its ends.
+    /// Indices of the points at its ends.
     pub ends: [usize; 2],
 }
 
-/// The main path and its alternatives. Each is sailed from its first waypoint to its last; at a point that two of
-/// them share, a waypoint, a crossing or an end of a common stretch, own ship may change from one to the other.
-/// She begins at the main path's first waypoint and arrives at its last.
+/// The main path and its alternatives, each sailed from its first waypoint to its last.
 ///
-/// A path that comes back to its own points is sailed in full: one path does not meet itself.
+/// Own ship may change between two paths at a common point: a waypoint, a crossing or an end of a
+/// common part. It begins at the main path's first waypoint and arrives at its last. A path that
+/// returns to its own points is sailed in full: a path does not meet itself.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -69,11 +70,11 @@ pub struct NetworkLeg {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathNetwork {
     legs: Vec<NetworkLeg>,
-    /// Per point the legs that may be sailed on from there.
+    /// Per point, the legs that start there.
     onward: Vec<Vec<usize>>,
-    /// Per point every point at the same place, itself first.
+    /// Per point, all points at the same position, itself first.
     same_place: Vec<Vec<usize>>,
-    /// Per point metres of the shortest way to the end; infinite where there is none.
+    /// Per point, the shortest distance to the end, metres; infinite where there is none.
     to_go: Vec<f64>,
     places: Vec<Vector>,
     start: usize,
@@ -81,8 +82,9 @@ pub struct PathNetwork {
 }
 
 impl PathNetwork {
-    /// From the waypoints of the main path and of the alternatives, metres. Two points are one when they are within
-    /// [`tolerance::JOINT_M`]. O(legs²) for the points that paths share.
+    /// From the waypoints of the main path and of the alternatives, metres. O(legs²).
+    ///
+    /// Points within [`tolerance::JOINT_M`] of each other are one.
     pub fn new(main: &[Vector], alternatives: &[Vec<Vector>]) -> Result<Self, NetworkError> {
         let paths: Vec<&[Vector]> = std::iter::once(main)
             .chain(alternatives.iter().map(Vec::as_slice))
@@ -147,7 +149,8 @@ impl PathNetwork {
         Ok(network)
     }
 
-    /// Of points at one place from which the same legs may be sailed, the first stands for all at the ends of legs.
+    /// Replaces, at the ends of legs, points at one position with equal continuations by the first
+    /// of them.
     fn join(&mut self) {
         let sorted = |point: usize| {
             let mut legs = self.onward[point].clone();
@@ -167,7 +170,7 @@ impl PathNetwork {
         }
     }
 
-    /// Shortest ways to the end, by relaxation until nothing changes.
+    /// Shortest distances to the end, by relaxation until nothing changes.
     fn measure(&mut self) {
         let mut to_go: Vec<f64> = self
             .is_end
@@ -181,7 +184,7 @@ impl PathNetwork {
                 for leg in onward {
                     let leg = &self.legs[*leg];
                     let through = leg.length + to_go[leg.ends[1]];
-                    // the start of a round trip is where it ends, and has all of it to go
+                    // the start of a round trip is at its end, and has the whole length to go
                     if through < to_go[point] {
                         to_go[point] = through;
                         changed = true;
@@ -222,12 +225,12 @@ impl PathNetwork {
         Ok(())
     }
 
-    /// The legs, path after path, each in its order.
+    /// The legs, path by path, in order.
     pub fn legs(&self) -> &[NetworkLeg] {
         &self.legs
     }
 
-    /// How many points there are: they are numbered from 0.
+    /// The number of points.
     pub fn points(&self) -> usize {
         self.onward.len()
     }
@@ -237,44 +240,44 @@ impl PathNetwork {
         self.start
     }
 
-    /// Where a point is, metres.
+    /// Position of a point, metres.
     pub fn place(&self, point: usize) -> Vector {
         self.places[point]
     }
 
-    /// The legs that may be sailed on from a point.
+    /// The legs that start at a point.
     pub fn onward(&self, point: usize) -> &[usize] {
         &self.onward[point]
     }
 
-    /// The points at the place of this one, itself first.
+    /// The points at the position of this one, itself first.
     pub fn same_place(&self, point: usize) -> &[usize] {
         &self.same_place[point]
     }
 
-    /// True where own ship has arrived.
+    /// True at the arrival point.
     pub fn is_end(&self, point: usize) -> bool {
         self.is_end[point]
     }
 
-    /// Metres of the shortest way from a point to the end; infinite where there is none.
+    /// Shortest distance from a point to the end, metres; infinite where there is none.
     pub fn to_go(&self, point: usize) -> f64 {
         self.to_go[point]
     }
 }
 
-/// One path while the network is built.
+/// A path during construction.
 struct Way {
     path: usize,
     points: Vec<Vector>,
-    /// Metres from the leg's start at which another path is met, per leg.
+    /// Per leg, distances from its start at which another path is met, metres.
     cuts: Vec<Vec<f64>>,
 }
 
 impl Way {
     fn new(path: usize, points: &[Vector]) -> Result<Self, NetworkError> {
         let legs = points.windows(2);
-        // negated on purpose: a NaN has no length
+        // negated so that a NaN has no length
         let empty = legs.clone().position(|p| {
             let length = (p[1] - p[0]).norm();
             !(length > tolerance::JOINT_M && length.is_finite())
@@ -290,7 +293,7 @@ impl Way {
         }
     }
 
-    /// Cuts both where they meet.
+    /// Cuts both paths where they meet.
     fn meet(&mut self, other: &mut Self) {
         for (i, own) in self.points.windows(2).enumerate() {
             for (j, theirs) in other.points.windows(2).enumerate() {
@@ -304,7 +307,7 @@ impl Way {
                 let turn = cross(a, b);
                 let apart = theirs[0] - own[0];
                 let (s, t) = (cross(apart, b) / turn, cross(apart, a) / turn);
-                // parallel legs give no number, and meet at ends only
+                // parallel legs give NaN, and meet at their ends only
                 if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
                     self.cuts[i].push(s * a.norm());
                     other.cuts[j].push(t * b.norm());
@@ -313,7 +316,7 @@ impl Way {
         }
     }
 
-    /// Adds the legs and the points, cut where other paths are met.
+    /// Adds the legs and points, cut where other paths meet.
     fn lay(&mut self, legs: &mut Vec<NetworkLeg>, places: &mut Vec<(usize, Vector)>) {
         let mut distance = 0.0;
         places.push((self.path, self.points[0]));
@@ -355,7 +358,7 @@ impl Way {
     }
 }
 
-/// Where along a leg a point lies, if it lies on it.
+/// Parameter of a point along a leg, if it lies on it.
 fn foot(leg: &[Vector], p: Vector) -> Option<f64> {
     let step = leg[1] - leg[0];
     let length = step.norm();
@@ -372,7 +375,7 @@ mod tests {
         list.iter().map(|&(x, y)| Vector::new(x, y)).collect()
     }
 
-    /// Every way from the start to the end in metres, each leg at most once.
+    /// Lengths of all ways from start to end that use each leg at most once.
     fn ways(network: &PathNetwork) -> Vec<f64> {
         fn follow(n: &PathNetwork, at: usize, used: &mut Vec<usize>, run: f64, out: &mut Vec<f64>) {
             if !used.is_empty() && n.is_end(at) {
@@ -413,7 +416,7 @@ mod tests {
     fn paths_are_changed_at_waypoints_crossings_and_common_stretches() {
         let main = points(&[(0.0, 0.0), (300.0, 0.0)]);
         let detour = |list: &[(f64, f64)]| vec![points(list)];
-        // leaves and comes back on the leg
+        // leaves the leg and returns to it
         let network =
             PathNetwork::new(&main, &detour(&[(100.0, 0.0), (150.0, 50.0), (200.0, 0.0)]))
                 .expect("sound");
@@ -425,11 +428,11 @@ mod tests {
         let zigzag = detour(&[(50.0, -30.0), (90.0, 30.0), (150.0, -30.0)]);
         let network = PathNetwork::new(&main, &zigzag).expect("sound");
         assert_eq!((network.legs().len(), ways(&network).len()), (3 + 4, 2));
-        // a common stretch, then another way to the same end
+        // a common part, then another way to the same end
         let other = detour(&[(0.0, 0.0), (100.0, 0.0), (200.0, 80.0), (300.0, 0.0)]);
         let network = PathNetwork::new(&main, &other).expect("sound");
         assert_eq!(ways(&network).len(), 4);
-        // two detours one after the other, the second from the first
+        // two detours in succession, the second one from the first
         let chained = [
             points(&[(100.0, 0.0), (150.0, 50.0), (200.0, 0.0)]),
             points(&[(150.0, 50.0), (250.0, 90.0), (300.0, 0.0)]),

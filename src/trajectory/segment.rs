@@ -2,8 +2,8 @@
 
 use crate::frame::{Pose, Vector, direction};
 
-/// Motion at constant speed and constant turn rate: a straight line (turn rate 0), a circular arc,
-/// or a wait (speed 0). Exact at every instant.
+/// Motion at constant speed and turn rate: a straight line (turn rate 0), a circular arc, or a wait
+/// (speed 0). Exact at every time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
     /// Pose at `start_time`.
@@ -37,7 +37,7 @@ impl Segment {
             && self.speed.is_finite()
     }
 
-    /// Seconds.
+    /// End time, seconds.
     pub fn end_time(&self) -> f64 {
         self.start_time + self.duration
     }
@@ -47,13 +47,15 @@ impl Segment {
         self.pose_after(self.duration)
     }
 
-    /// Pose at an absolute time in seconds. Not clamped: outside its time the segment's motion goes on.
+    /// Pose at an absolute time in seconds, extrapolated beyond the segment's ends.
     pub fn pose_at(&self, time: f64) -> Pose {
         self.pose_after(time - self.start_time)
     }
 
-    /// Pose `elapsed` seconds after the start. The chord form `2 R sin(turn/2)` is exact for small
-    /// turns too, where the difference of two sines would cancel.
+    /// Pose `elapsed` seconds after the start.
+    ///
+    /// The chord form `2 R sin(turn/2)` is also exact for small turns, where the difference of two
+    /// sines cancels.
     pub fn pose_after(&self, elapsed: f64) -> Pose {
         let turn = self.turn_rate * elapsed;
         let half = 0.5 * turn;
@@ -69,12 +71,12 @@ impl Segment {
         }
     }
 
-    /// Pose halfway.
+    /// Pose at half the duration.
     pub(crate) fn middle(&self) -> Pose {
         self.pose_after(0.5 * self.duration)
     }
 
-    /// Metres.
+    /// Length, metres.
     pub fn length(&self) -> f64 {
         self.speed * self.duration
     }
@@ -84,7 +86,7 @@ impl Segment {
         direction(self.start.heading + self.turn_rate * (time - self.start_time)) * self.speed
     }
 
-    /// True when the segment bends.
+    /// True when the turn rate is not zero.
     pub fn is_arc(&self) -> bool {
         self.turn_rate != 0.0 && self.speed > 0.0
     }
@@ -94,8 +96,10 @@ impl Segment {
         self.speed / self.turn_rate
     }
 
-    /// The part of the segment between two absolute times, clamped to the segment; to the end it lasts as long as the segment does,
-    /// whatever the digits of its end time.
+    /// The part between two absolute times, clamped to the segment.
+    ///
+    /// A part that reaches the end keeps the segment's end exactly, independent of the rounding of
+    /// its end time.
     pub fn between(&self, from: f64, to: f64) -> Self {
         let elapsed = |time: f64| {
             if time >= self.end_time() {
@@ -120,7 +124,7 @@ pub struct Mover {
     start_time: f64,
     origin: Vector,
     velocity: Vector,
-    /// Centre of the circle to the start; of no meaning on a line.
+    /// From the centre of the circle to the start; unused on a line.
     arm: Vector,
     turn_rate: f64,
 }
@@ -145,15 +149,15 @@ impl Mover {
         }
     }
 
-    /// Position at an absolute time in seconds; within rounding of [`Segment::pose_at`] on arcs of more
-    /// than a millionth of a turn.
+    /// Position at an absolute time in seconds; equals [`Segment::pose_at`] to rounding on arcs of
+    /// more than a millionth of a turn.
     pub fn position_at(&self, time: f64) -> Vector {
         let elapsed = time - self.start_time;
         if self.turn_rate == 0.0 {
             return self.origin + self.velocity * elapsed;
         }
         let (sin, cos) = (self.turn_rate * elapsed).sin_cos();
-        // arm turned by the angle, less the arm: 1 - cos without cancellation
+        // rotated arm minus arm: 1 - cos without cancellation
         let versine = sin * sin / (1.0 + cos).max(f64::MIN_POSITIVE);
         let versine = if cos > 0.0 { versine } else { 1.0 - cos };
         self.origin + crate::frame::to_port(self.arm) * sin - self.arm * versine

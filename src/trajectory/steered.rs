@@ -1,27 +1,27 @@
-//! Motion under forces: states at nodes, forces held between them.
+//! Motion under forces: states at nodes, constant forces between them.
 
 use super::TrajectoryError;
 use crate::frame::{Pose, Vector, direction, to_port};
 
-/// The state of a ship at an instant, and the forces on her from then on.
+/// The state of a ship at one time, and the forces from then on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
     /// Seconds.
     pub time: f64,
-    /// Where she is; the heading goes on through full circles.
+    /// Pose; the heading is not wrapped.
     pub pose: Pose,
     /// Velocity in the ship's frame: surge ahead and sway to port, m/s.
     pub velocity: Vector,
     /// rad/s, counter-clockwise.
     pub yaw_rate: f64,
-    /// Surge ahead and sway to port, newtons; held until the next node.
+    /// Surge ahead and sway to port, newtons; constant until the next node.
     pub force: Vector,
-    /// Newton metres, counter-clockwise; held until the next node.
+    /// Yaw moment counter-clockwise, newton metres; constant until the next node.
     pub moment: f64,
 }
 
 impl Node {
-    /// Over ground, m/s.
+    /// Velocity over ground, m/s.
     pub fn ground_velocity(&self) -> Vector {
         let ahead = self.pose.ahead();
         ahead * self.velocity.x + to_port(ahead) * self.velocity.y
@@ -45,28 +45,30 @@ impl Node {
     }
 }
 
-/// Radians, a thirty-sixth of a half circle. A motion under forces never holds a heading quite: what swings by less is
-/// steering, no alteration of course.
+/// Smallest alteration of course, radians: 5°. A motion under forces never holds a heading exactly,
+/// so smaller swings are steering.
 const LEAST_SWING: f64 = std::f64::consts::PI / 36.0;
 
-/// From one extreme of the heading to the next.
+/// A change of heading from one extreme to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
-    /// At the extreme that it begins with, seconds.
+    /// Time of the first extreme, seconds.
     pub start_time: f64,
-    /// Radians, to port positive; 5° at least.
+    /// Radians, positive to port; at least 5°.
     pub turned: f64,
 }
 
-/// A motion given at nodes. Between two of them position and heading are the cubics through both with both rates: what a
-/// plan of forces claims to sail. How near the ship comes to that is for a check to say.
+/// A motion given at nodes. Between two nodes position and heading are the cubics that interpolate
+/// values and rates.
+///
+/// This is what a plan of forces claims; a check decides how closely the ship follows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Steered {
     nodes: Vec<Node>,
 }
 
 impl Steered {
-    /// From at least two nodes of finite numbers, one after another in time.
+    /// From at least two nodes of finite numbers with increasing times.
     pub fn new(nodes: Vec<Node>) -> Result<Self, TrajectoryError> {
         if nodes.len() < 2 {
             return Err(TrajectoryError::Empty);
@@ -80,33 +82,33 @@ impl Steered {
         Ok(Self { nodes })
     }
 
-    /// In order of time.
+    /// The nodes, in order of time.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
-    /// From each node to the next.
+    /// The pieces from each node to the next.
     pub fn pieces(&self) -> impl Iterator<Item = Cubic> + '_ {
         self.nodes
             .windows(2)
             .map(|pair| Cubic::from_nodes(&pair[0], &pair[1]))
     }
 
-    /// The piece in force at `time`; before the start the first, after the end the last.
+    /// The piece at `time`; the first before the start, the last after the end.
     pub fn piece_at(&self, time: f64) -> Cubic {
         let after = self.nodes.partition_point(|node| node.time <= time);
         let index = after.clamp(1, self.nodes.len() - 1);
         Cubic::from_nodes(&self.nodes[index - 1], &self.nodes[index])
     }
 
-    /// The node in force at `time`, clamped as the pieces are.
+    /// The node at `time`, clamped like [`Self::piece_at`].
     pub fn node_at(&self, time: f64) -> &Node {
         let after = self.nodes.partition_point(|node| node.time <= time);
         &self.nodes[after.clamp(1, self.nodes.len()) - 1]
     }
 
-    /// The alterations of course, in order of time: the swings of the heading from node to node of 5° or more. Swings back
-    /// by less are looked through. O(nodes).
+    /// The alterations of course of 5° or more, in order of time, from the headings at the nodes.
+    /// Smaller swings back are ignored. O(nodes).
     pub fn swings(&self) -> Vec<Swing> {
         // time and heading
         let mut extremes: Vec<(f64, f64)> = Vec::new();
@@ -142,9 +144,9 @@ impl Steered {
             .collect()
     }
 
-    /// Metres along the way, to about a thousandth of a per cent.
+    /// Length of the motion, metres, to about 1e-5 of it.
     pub fn length(&self) -> f64 {
-        // Simpson on quarters of each piece
+        // Simpson's rule on quarters of each piece
         let speed = |piece: &Cubic, part: f64| piece.velocity(part).norm();
         self.pieces()
             .map(|piece| {
@@ -163,24 +165,24 @@ impl Steered {
     }
 }
 
-/// Motion between two instants: position and heading are cubics of time.
+/// A piece of motion whose position and heading are cubics of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic {
     /// Seconds.
     pub start_time: f64,
     /// Seconds, positive.
     pub duration: f64,
-    /// Position and its rate over ground at both ends.
+    /// Position at both ends, metres.
     pub positions: [Vector; 2],
-    /// m/s.
+    /// Velocity over ground at both ends, m/s.
     pub velocities: [Vector; 2],
-    /// Heading and yaw rate at both ends.
+    /// Heading at both ends, radians.
     pub headings: [f64; 2],
-    /// rad/s.
+    /// Yaw rate at both ends, rad/s.
     pub yaw_rates: [f64; 2],
 }
 
-/// The largest that some derivatives become in a piece, in absolute value.
+/// Upper bounds of the absolute derivatives in a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bounds {
     /// m/s.
@@ -206,12 +208,12 @@ impl Cubic {
         }
     }
 
-    /// The same cubics between two times within it, the second one later.
+    /// The part between two times within the piece, the second one later.
     pub fn between(&self, from: f64, to: f64) -> Self {
         let [a, b] = [from, to].map(|time| self.part(time));
         Self {
             start_time: from,
-            // an instant is a piece, too: parts of it are 0
+            // an instant is also a piece, with all parameters 0
             duration: (to - from).max(f64::MIN_POSITIVE),
             positions: [self.position(a), self.position(b)],
             velocities: [self.velocity(a), self.velocity(b)],
@@ -220,17 +222,17 @@ impl Cubic {
         }
     }
 
-    /// Seconds.
+    /// End time, seconds.
     pub fn end_time(&self) -> f64 {
         self.start_time + self.duration
     }
 
-    /// Of the duration, at a time in seconds.
+    /// Fraction of the duration at a time in seconds.
     pub fn part(&self, time: f64) -> f64 {
         (time - self.start_time) / self.duration
     }
 
-    /// Position at a part of the duration, in `[0, 1]`.
+    /// Position at a fraction of the duration, in `[0, 1]`.
     pub fn position(&self, part: f64) -> Vector {
         let [a, b, c, d] = hermite(part);
         self.positions[0] * a
@@ -239,7 +241,7 @@ impl Cubic {
             + self.velocities[1] * (d * self.duration)
     }
 
-    /// m/s at a part of the duration.
+    /// Velocity over ground at a fraction of the duration, m/s.
     pub fn velocity(&self, part: f64) -> Vector {
         let [a, b, c, d] = hermite_rate(part);
         self.positions[0] * (a / self.duration)
@@ -248,7 +250,7 @@ impl Cubic {
             + self.velocities[1] * d
     }
 
-    /// Pose at a time in seconds; outside its time the cubic goes on.
+    /// Pose at a time in seconds, extrapolated beyond the ends.
     pub fn pose_at(&self, time: f64) -> Pose {
         let part = self.part(time);
         let [a, b, c, d] = hermite(part);
@@ -259,7 +261,7 @@ impl Cubic {
         Pose::new(self.position(part), heading)
     }
 
-    /// rad/s at a time in seconds.
+    /// Yaw rate at a time in seconds, rad/s.
     pub fn yaw_rate_at(&self, time: f64) -> f64 {
         let [a, b, c, d] = hermite_rate(self.part(time));
         (self.headings[0] * a + self.headings[1] * c) / self.duration
@@ -267,8 +269,10 @@ impl Cubic {
             + self.yaw_rates[1] * d
     }
 
-    /// Bounds over the whole piece: second derivatives of cubics are largest at an end, first ones are within half of
-    /// that times the duration of the mean.
+    /// Bounds over the whole piece.
+    ///
+    /// Second derivatives of cubics are largest at an end. First derivatives differ from their mean
+    /// by at most half of that times the duration.
     pub(crate) fn bounds(&self) -> Bounds {
         let t = self.duration;
         let ends = |rise: f64, first: f64, last: f64| {
@@ -297,7 +301,8 @@ impl Cubic {
     }
 }
 
-/// The four cubics of Hermite: weights of a value, its rate times the duration, the value and that at the end.
+/// Hermite's four cubics: weights of the start value, its rate times the duration, the end value,
+/// and its rate times the duration.
 pub fn hermite(part: f64) -> [f64; 4] {
     let (s, r) = (part, 1.0 - part);
     [
@@ -308,7 +313,7 @@ pub fn hermite(part: f64) -> [f64; 4] {
     ]
 }
 
-/// Their derivatives.
+/// Derivatives of [`hermite`].
 fn hermite_rate(part: f64) -> [f64; 4] {
     let (s, r) = (part, 1.0 - part);
     [
@@ -319,7 +324,7 @@ fn hermite_rate(part: f64) -> [f64; 4] {
     ]
 }
 
-/// Speed along the heading and course over ground differ where she drifts.
+/// Speed along the heading differs from speed over ground where the ship drifts.
 impl Cubic {
     /// Forward and port components of the velocity at a time, m/s.
     pub fn body_velocity_at(&self, time: f64) -> Vector {

@@ -25,9 +25,6 @@ const VELOCITY: &str = "the velocity set";
 const LEVEL: &str = "the velocities at the accepted risk";
 const LEFT: &str = "where she may be when it has been left";
 
-/// Standard deviations of the position that a set covers.
-pub(super) const POSITION_SIGMAS: f64 = 3.0;
-
 /// Places around an ellipse at which it is compared with an ellipse.
 pub(super) const SAMPLED_DIRECTIONS: usize = 720;
 

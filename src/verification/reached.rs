@@ -1,7 +1,7 @@
 //! Where a target may be at a time, with what has to be kept of her, by how far it reaches in directions.
 
 use super::claim::Claim;
-use super::coverage::{POSITION_SIGMAS, about_centroid, largest};
+use super::coverage::{about_centroid, largest};
 use crate::evaluation::TurnedHull;
 use crate::frame::{Vector, direction, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
@@ -23,7 +23,9 @@ pub(super) fn in_order(directions: impl Iterator<Item = Vector>) -> Vec<Vector> 
 
 /// Metres that own ship has to keep from a ship's hull, own ship's middle being what is kept out.
 pub(super) fn reach(claim: &Claim, ship: &ShipTrack) -> f64 {
-    claim.own.hull.half_diagonal() + claim.own.safety_margin + POSITION_SIGMAS * ship.position_std
+    claim.own.hull.half_diagonal()
+        + claim.own.safety_margin
+        + tolerance::POSITION_SIGMAS * ship.position_std
 }
 
 /// The velocities of a target at a level, one set after another: scaled about the centre that her representation has. None of

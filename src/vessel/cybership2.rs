@@ -1,4 +1,5 @@
-//! CyberShip II, a supply ship at 1:70: the model of the paper's appendix with the sign of its rates corrected.
+//! CyberShip II, a supply ship at 1:70: the model of the paper's appendix with the sign of its
+//! rates corrected.
 
 use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3};
 
@@ -10,7 +11,7 @@ const M22: f64 = 33.8;
 const M23: f64 = 1.0115;
 const M33: f64 = 2.76;
 
-/// Damping: linear in surge, sway and yaw rate, and by the square of the speed.
+/// Damping: linear in surge, sway and yaw rate, and quadratic.
 const SURGE: f64 = 0.72;
 const SURGE_SQUARE: f64 = 1.33;
 const SWAY: f64 = 0.86;
@@ -20,25 +21,25 @@ const YAW_BY_SWAY: f64 = -0.11;
 const YAW_BY_SWAY_SQUARE: f64 = -5.04;
 const YAW: f64 = 0.5;
 
-/// m/s. Within this the smoothed model rounds off the kink of `|speed|`: a deviation of 1.5e-5 N at most near the
-/// width itself, a micrometre in two seconds.
+/// Speed below which the smoothed model rounds the kink of `|speed|`, m/s. The deviation is at most
+/// 1.5e-5 N, a micrometre in two seconds.
 const ROUNDED_MPS: f64 = 1e-3;
 
-/// `M v' = tau - C(v) v - D(v) v`, docs/theory.md section 9. The printed rates have the opposite sign, with which damping
-/// adds energy. Unstable on a straight course at transit speed: left alone, an error of the heading grows a
-/// millionfold in 100 s.
+/// The model `M v' = tau - C(v) v - D(v) v`, docs/theory.md section 9.
 ///
-/// Length 1.255 m; forces within 2 N ahead and astern, 1.5 N abeam, 1.5 Nm.
+/// The printed rates have the opposite sign, with which damping adds energy. The model is unstable
+/// on a straight course at transit speed: without control, a heading error grows a millionfold in
+/// 100 s. Length 1.255 m; forces within 2 N in surge, 1.5 N in sway, 1.5 Nm in yaw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyberShip2 {
     rounded: f64,
 }
 
 impl CyberShip2 {
-    /// As published: the damping has kinks in its second derivative at rest.
+    /// The published model. Its damping has kinks in the second derivative at rest.
     pub const EXACT: Self = Self { rounded: 0.0 };
 
-    /// `|speed|` as `sqrt(speed² + (1 mm/s)²)`: twice differentiable everywhere.
+    /// With `sqrt(speed² + (1 mm/s)²)` for `|speed|`: twice differentiable everywhere.
     pub const SMOOTH: Self = Self {
         rounded: ROUNDED_MPS,
     };
@@ -132,7 +133,7 @@ impl Manoeuvring for CyberShip2 {
         let (sin, cos) = state[2].sin_cos();
         let (u, v) = (state[3], state[4]);
         let ([_, _, ddu], [_, _, ddv]) = (self.square(u), self.square(v));
-        // the inertia is symmetric: its inverse may as well weigh the forces
+        // the inertia is symmetric, so its inverse may weigh the forces
         let w = Self::inverse_inertia() * weights.fixed_rows::<3>(3);
         let (east, north) = (weights[0], weights[1]);
         let mut bend = Matrix6::zeros();
@@ -160,7 +161,7 @@ impl Manoeuvring for CyberShip2 {
         bend
     }
 
-    /// All of one: her numbers are of that order in SI.
+    /// All one: the model's SI values are of that order.
     fn scales(&self) -> Scales {
         Scales {
             state: StateVector::repeat(1.0),
@@ -182,7 +183,7 @@ mod tests {
         }
     }
 
-    /// Formulas section 9: `1.33 u² + 0.72 u = tau`.
+    /// docs/theory.md section 9: `1.33 u² + 0.72 u = tau`.
     #[test]
     fn steady_surge_takes_the_published_force_and_pushes_ahead() {
         let force = CyberShip2::EXACT.steady(0.2);
@@ -222,7 +223,8 @@ mod tests {
         }
     }
 
-    /// A Munk moment that the damping does not hold: sway and yaw grow by 0.19 per second at 0.2 m/s.
+    /// The damping does not balance the Munk moment: sway and yaw grow by 0.19 per second at 0.2
+    /// m/s.
     #[test]
     fn she_is_unstable_on_a_straight_course() {
         let state = StateVector::new(0.0, 0.0, 0.0, 0.2, 0.0, 0.0);

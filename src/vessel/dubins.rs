@@ -5,18 +5,19 @@ use std::f64::consts::TAU;
 
 use crate::frame::{Pose, Side, heading_of, wrap, wrap_positive};
 
-/// Radians. An arc this close to a full circle is no arc: otherwise rounding adds a circle to a
-/// straight run.
+/// Radians. An arc this close to a full circle has no length: otherwise rounding adds a circle to a
+/// straight line.
 const FULL_CIRCLE_SLACK: f64 = 1e-10;
 
-/// Metres. Where the end moves by no more than this, the line between two circles of one side leaves at once, or ends at
-/// once: its direction is rounding where the circles are one, and rounding must not add a circle to an arc.
+/// Metres. If the goal moves by at most this, the line between two circles of one side may start or
+/// end at once. Where the circles coincide its direction is rounding, which must not add a circle
+/// to an arc.
 const SAME_CIRCLE_M: f64 = 1e-7;
 
 /// Allowed rounding below zero of a squared length, relative to the radius.
 const ROUNDING: f64 = 1e-12;
 
-/// A piece of a path: an arc to a side, or a line.
+/// A piece of a path: an arc to one side, or a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Side of the turn, `None` on a line.
@@ -25,7 +26,7 @@ pub struct Piece {
     pub length: f64,
 }
 
-/// Three pieces, some possibly of no length.
+/// A path of three pieces, some possibly without length.
 ///
 /// ```
 /// use searoom::frame::{Pose, Vector};
@@ -57,7 +58,7 @@ impl DubinsPath {
     }
 }
 
-/// The six words of Dubins: which way each piece turns.
+/// The six words of Dubins: the turn of each piece.
 const WORDS: [[Option<Side>; 3]; 6] = [
     [Some(Side::Port), None, Some(Side::Port)],
     [Some(Side::Starboard), None, Some(Side::Starboard)],
@@ -71,8 +72,10 @@ const WORDS: [[Option<Side>; 3]; 6] = [
     [Some(Side::Port), Some(Side::Starboard), Some(Side::Port)],
 ];
 
-/// Every word that joins the two poses, in the order LSL, RSR, LSR, RSL, RLR, LRL, to `SAME_CIRCLE_M`. `radius` in
-/// metres, positive. Empty only when an input is not finite.
+/// Every word that joins the two poses, in the order LSL, RSR, LSR, RSL, RLR, LRL, to
+/// `SAME_CIRCLE_M`.
+///
+/// `radius` in metres, positive. Empty only when an input is not finite.
 pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
     let step = to.position - from.position;
     let d = step.norm() / radius;
@@ -82,14 +85,15 @@ pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
     let (sin_b, cos_b) = b.sin_cos();
     let c = (a - b).cos();
     let csc = |square: f64| (square >= -ROUNDING).then(|| square.max(0.0).sqrt());
-    // from centre to centre of the two circles: loses no digits where the way is short beside them
+    // from centre to centre of the two circles: accurate also where the path is short relative to
+    // them
     let same = |x: f64, y: f64| {
         let (line, k) = (x.hypot(y), y.atan2(x));
         let alike = |heading: f64| line * radius * wrap(k - heading).abs() <= SAME_CIRCLE_M;
         let k = [a, b].into_iter().find(|h| alike(*h)).unwrap_or(k);
         line.is_finite().then_some((line, k))
     };
-    // likewise from the first circle to the last: by the cosine eight digits are lost where these are nearly one
+    // likewise between the outer circles: the cosine loses eight digits where they nearly coincide
     let ccc = |x: f64, y: f64| {
         let sine = x.hypot(y) / 4.0;
         (sine <= 1.0 + ROUNDING).then(|| TAU - 2.0 * sine.min(1.0).asin())
@@ -135,7 +139,7 @@ pub fn paths(from: &Pose, to: &Pose, radius: f64) -> Vec<DubinsPath> {
         .collect()
 }
 
-/// The shortest path; of equal ones the first word. `None` only when an input is not finite.
+/// The shortest path, by the first of equal words. `None` only when an input is not finite.
 pub fn shortest(from: &Pose, to: &Pose, radius: f64) -> Option<DubinsPath> {
     paths(from, to, radius)
         .into_iter()
@@ -203,7 +207,7 @@ mod tests {
         }
     }
 
-    /// A way that is short beside the turning circle loses no digits.
+    /// A path that is short relative to the turning circle loses no digits.
     #[test]
     fn short_ways_of_wide_turns_reach_their_goal() {
         let at = |x: f64, y: f64, h: f64| Pose::new(Vector::new(x, y), h);
@@ -215,7 +219,7 @@ mod tests {
         }
     }
 
-    /// Wherever it lies: the two circles of such a way are one, and the direction from the one to the other is rounding.
+    /// Anywhere in the plane: the two circles coincide, and the direction between them is rounding.
     #[test]
     fn an_arc_is_that_arc_and_no_circle_more() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(12);
@@ -243,7 +247,7 @@ mod tests {
         }
     }
 
-    /// Nearly the same pose: no word leaves out a circle that it needs, nor ends beside its goal.
+    /// For nearly equal poses no word omits a circle that it needs, nor ends beside its goal.
     #[test]
     fn every_word_between_poses_a_hair_apart_reaches_its_goal() {
         let from = Pose::new(Vector::zeros(), 0.0);

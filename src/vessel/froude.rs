@@ -1,11 +1,13 @@
-//! A model at another size, by Froude's law.
+//! A model scaled by Froude's law.
 
 use nalgebra::{Matrix6, Matrix6x3};
 
 use super::manoeuvring::{ForceVector, Manoeuvring, Scales, StateVector};
 
-/// The ship of which another is the model, `scale` times as long: times and speeds grow with its root, masses
-/// with its cube (the water is the same), forces with its cube and moments with its fourth power.
+/// A ship that is `scale` times as long as its model.
+///
+/// Times and speeds grow with the square root of the scale, masses and forces with its cube (the
+/// water density is equal), moments with its fourth power.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FroudeScaled<V> {
     model: V,
@@ -15,7 +17,7 @@ pub struct FroudeScaled<V> {
 }
 
 impl<V: Manoeuvring> FroudeScaled<V> {
-    /// `scale`, positive: the ship's length over the model's.
+    /// `scale` is positive: the ship's length over the model's.
     pub fn new(model: V, scale: f64) -> Self {
         let time = scale.sqrt();
         let speed = scale / time;
@@ -81,7 +83,7 @@ mod tests {
         contract::steady_forces_hold_the_speed(&ship);
     }
 
-    /// 25.8 kg at 1:70 are 8,849 t; her time runs 8.37 times as slowly.
+    /// 25.8 kg at 1:70 are 8,849 t; times are 8.37 times as long.
     #[test]
     fn masses_grow_with_the_cube_and_a_manoeuvre_with_the_root() {
         let ship = FroudeScaled::new(CyberShip2::EXACT, 70.0);

@@ -1,19 +1,20 @@
-//! The ships whose models are in the tree, by their names in files.
+//! The built-in ship models, by their names in files.
 
 use super::{CyberShip2, ForceVector, FroudeScaled, Manoeuvring, Scales, StateVector};
 
-/// Metres, of CyberShip II.
+/// Length of CyberShip II, metres.
 const MODEL_LENGTH: f64 = 1.255;
 
-/// Newtons, newtons, newton metres, of CyberShip II.
+/// Force limits of CyberShip II: newtons, newtons, newton metres.
 const MODEL_FORCE_LIMITS: ForceVector = ForceVector::new(2.0, 1.5, 1.5);
 
-/// Weights of the stage cost for CyberShip II where a file names none: a metre off the way costs as much per second as
-/// 0.7 N of each force; the heading is free.
+/// Default stage-cost weights for CyberShip II.
+///
+/// A metre off the path costs as much per second as 0.7 N of each force; the heading has no cost.
 const MODEL_STATE_WEIGHTS: StateVector = StateVector::new(0.05, 0.05, 0.0, 1.0, 1.0, 1.0);
 const MODEL_FORCE_WEIGHTS: ForceVector = ForceVector::new(0.1, 0.1, 0.1);
 
-/// A model of a ship's motion under forces. By Froude's law it stands for a ship of any length.
+/// A manoeuvring model. Froude's law scales it to a ship of any length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VesselKind {
     /// CyberShip II, 1.255 m long.
@@ -21,63 +22,66 @@ pub enum VesselKind {
 }
 
 impl VesselKind {
-    /// All of them.
+    /// All models.
     pub const ALL: [Self; 1] = [Self::CyberShip2];
 
-    /// The words that files may use for it. The second one names the ship that CyberShip II is a model of: the same ship by
-    /// Froude's law.
+    /// Words for a model in files. The second one names the full-size ship of CyberShip II, the
+    /// same ship by Froude's law.
     pub const WORDS: [(&'static str, Self); 2] = [
         ("cybership2", Self::CyberShip2),
         ("cybership2-full", Self::CyberShip2),
     ];
 
-    /// The word for it in documents.
+    /// The word in documents.
     pub fn word(self) -> &'static str {
         match self {
             Self::CyberShip2 => "cybership2",
         }
     }
 
-    /// Of the model, metres.
+    /// Length of the model, metres.
     pub fn length(self) -> f64 {
         match self {
             Self::CyberShip2 => MODEL_LENGTH,
         }
     }
 
-    /// The ship of this length, metres, as published, not smoothed: what plans are judged with.
+    /// The unsmoothed published model for a ship of this length, metres, with which plans are
+    /// checked.
     pub fn exact(self, length: f64) -> Box<dyn Manoeuvring> {
         match self {
             Self::CyberShip2 => Box::new(CyberShip2::EXACT.at_length(length)),
         }
     }
 
-    /// The largest forces that a ship of this length can make: newtons, newtons, newton metres.
+    /// Force limits of a ship of this length: newtons, newtons, newton metres.
     pub fn force_limits(self, length: f64) -> ForceVector {
         MODEL_FORCE_LIMITS.component_mul(&self.units(length).force)
     }
 
-    /// Weights of the stage cost for the states of a ship of this length, per squared unit of [`StateVector`] and second: those
-    /// of the model by Froude's law, so that ships of every size sail the same plan.
+    /// Stage-cost weights of the states for a ship of this length, per squared unit of
+    /// [`StateVector`] and second.
+    ///
+    /// Scaled by Froude's law, so that ships of every size follow the same plan.
     pub fn state_weights(self, length: f64) -> StateVector {
         let unit = self.units(length).state;
         MODEL_STATE_WEIGHTS.component_div(&unit.component_mul(&unit))
     }
 
-    /// The same for its forces, per squared unit of [`ForceVector`] and second.
+    /// Stage-cost weights of the forces, per squared unit of [`ForceVector`] and second.
     pub fn force_weights(self, length: f64) -> ForceVector {
         let unit = self.units(length).force;
         MODEL_FORCE_WEIGHTS.component_div(&unit.component_mul(&unit))
     }
 
-    /// What is one of each component of the model's, for a ship of this length.
+    /// Units of the model's components for a ship of this length.
     fn units(self, length: f64) -> Scales {
         self.exact(length).scales()
     }
 }
 
 impl CyberShip2 {
-    /// The ship of this length, metres, of which this is the model.
+    /// The model scaled to a length in metres.
     pub fn at_length(self, length: f64) -> FroudeScaled<Self> {
         FroudeScaled::new(self, length / MODEL_LENGTH)
     }

@@ -1,15 +1,15 @@
-//! What a planner of forces asks of a ship: three degrees of freedom in the plane.
+//! The interface of a manoeuvring model: three degrees of freedom in the plane.
 
 use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3, Vector6};
 
-/// Position east and north, metres; heading, radians counter-clockwise from east; surge ahead and sway to port, m/s;
-/// yaw rate, rad/s counter-clockwise.
+/// Position east and north, metres; heading, radians counter-clockwise from east; surge ahead and
+/// sway to port, m/s; yaw rate, rad/s counter-clockwise.
 pub type StateVector = Vector6<f64>;
 
 /// Surge ahead and sway to port, newtons; yaw moment counter-clockwise, newton metres.
 pub type ForceVector = Vector3<f64>;
 
-/// What is one of each component for this ship: a solver works in these units.
+/// Units in which the components of a ship's states and forces are of order one, for solvers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
     /// In the units of [`StateVector`].
@@ -18,12 +18,10 @@ pub struct Scales {
     pub force: ForceVector,
 }
 
-/// A ship that moves by the forces on her: `state' = drift(state) + gain force`, twice differentiable, the same
-/// everywhere and at all times (no rate depends on position).
+/// A ship that moves by forces: `state' = drift(state) + gain force`, twice differentiable and
+/// independent of position and time.
 ///
-/// Its derivatives are checked against differences for every implementor.
-///
-/// # Examples
+/// The derivatives of every implementor are checked against differences.
 ///
 /// ```
 /// use searoom::vessel::{ForceVector, Manoeuvring, StateVector, VesselKind};
@@ -46,16 +44,16 @@ pub trait Manoeuvring: std::fmt::Debug + Sync {
     /// The time derivative of the state. O(1).
     fn rates(&self, state: &StateVector, force: &ForceVector) -> StateVector;
 
-    /// The derivative of the rates by the state; the forces do not enter.
+    /// The derivative of the rates with respect to the state, independent of the forces.
     fn jacobian(&self, state: &StateVector) -> Matrix6<f64>;
 
-    /// The derivative of the rates by the forces, a constant.
+    /// The derivative of the rates with respect to the forces, a constant.
     fn gain(&self) -> Matrix6x3<f64>;
 
-    /// The second derivative of `weights . rates` by the state, symmetric.
+    /// The second derivative of `weights . rates` with respect to the state, symmetric.
     fn curvature(&self, state: &StateVector, weights: &StateVector) -> Matrix6<f64>;
 
-    /// The forces that hold a steady surge without sway or yaw, m/s.
+    /// The forces that hold a steady surge speed (m/s) without sway or yaw.
     fn steady(&self, surge: f64) -> ForceVector {
         let state = StateVector::new(0.0, 0.0, 0.0, surge, 0.0, 0.0);
         let drift = self.rates(&state, &ForceVector::zeros());
@@ -64,11 +62,11 @@ pub trait Manoeuvring: std::fmt::Debug + Sync {
         -(inverse * drift.fixed_rows::<3>(3))
     }
 
-    /// Units in which her numbers are of order one.
+    /// Units in which the model's numbers are of order one.
     fn scales(&self) -> Scales;
 }
 
-/// `J(heading) velocity`: the rates of position and heading, whatever moves the ship.
+/// `J(heading) velocity`: the rates of position and heading, for every ship.
 pub(super) fn kinematics(state: &StateVector) -> [f64; 3] {
     let (sin, cos) = state[2].sin_cos();
     [
@@ -80,12 +78,12 @@ pub(super) fn kinematics(state: &StateVector) -> [f64; 3] {
 
 #[cfg(test)]
 pub(super) mod contract {
-    //! Holds for every implementor.
+    //! Tests that hold for every implementor.
 
     use super::*;
 
-    /// States and forces spread over what the ship may meet, in her own units; no speed near zero, where a kink may
-    /// be.
+    /// States and forces over the ship's operating range, in its own units. No speed is near zero,
+    /// where there may be a kink.
     fn cases(ship: &impl Manoeuvring) -> Vec<(StateVector, ForceVector)> {
         let Scales { state, force } = ship.scales();
         (0..40)

@@ -1,4 +1,4 @@
-//! Own ship: her hull, her limits, her shortest paths, and how forces move her.
+//! Own ship: hull, limits, shortest paths and manoeuvring models.
 
 mod cybership2;
 pub mod dubins;
@@ -36,26 +36,26 @@ impl Hull {
         )
     }
 
-    /// Radius of the circle about the centre that contains the hull on any heading, metres.
+    /// Radius of the circle about the centre that contains the hull at any heading, metres.
     pub fn half_diagonal(&self) -> f64 {
         self.length.hypot(self.beam) / 2.0
     }
 }
 
-/// Own ship as the planners see her. Speeds change instantaneously.
+/// Own ship in the planners' model. Speeds change instantaneously.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnShip {
-    /// Where she is at t = 0.
+    /// Pose at t = 0.
     pub pose: Pose,
-    /// m/s at t = 0.
+    /// Speed at t = 0, m/s.
     pub speed: f64,
-    /// Her hull; of no size where the sets already contain it.
+    /// The hull; without size where the sets already include it.
     pub hull: Hull,
-    /// Least radius of a turn at every speed, metres, positive.
+    /// Smallest turning radius at every speed, metres, positive.
     pub turning_radius: f64,
     /// The finite set of speeds, m/s, increasing, not negative, the largest positive.
     pub speeds: Vec<f64>,
-    /// Kept between hulls, metres.
+    /// Required distance between hulls, metres.
     pub safety_margin: f64,
 }
 
@@ -65,7 +65,7 @@ impl OwnShip {
         self.speeds.last().copied().unwrap_or(0.0)
     }
 
-    /// The smallest speed, m/s; zero when she may stand still.
+    /// The smallest speed, m/s; zero when own ship may stop.
     pub fn min_speed(&self) -> f64 {
         self.speeds.first().copied().unwrap_or(0.0)
     }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::*;
 use searoom::geometry::outer_disc;
-use searoom::obstacle::{Coast, Obstacle};
+use searoom::obstacle::{LandObstacle, Obstacle};
 use searoom::planner::{Objective, SearchKind};
 use searoom::scenario::Scenario;
 use searoom::simulation::{EncounterKind, Placement, random_encounter};
@@ -36,7 +36,7 @@ fn problem<'a>(scenario: &'a Scenario, obstacles: &'a [Obstacle]) -> Problem<'a>
         alternatives: &[],
         objective: Objective::SpaceTimeError,
         obstacles,
-        coast: Coast::none(),
+        land_obstacle: LandObstacle::none(),
         horizon: scenario.horizon,
         time_weight: scenario.time_weight,
         search: SearchKind::AStar,

@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::Ellipse;
-use searoom::obstacle::{Coast, EllipsoidObstacle, Obstacle};
+use searoom::obstacle::{EllipsoidObstacle, LandObstacle, Obstacle};
 use searoom::planner::optimal_control::{
     Controls, KeepOut, Profile, Settings, Task, Weights, profile_along,
 };
@@ -132,7 +132,7 @@ pub fn problem<'a>(
         alternatives: &[],
         objective: Objective::SpaceTimeError,
         obstacles,
-        coast: Coast::none(),
+        land_obstacle: LandObstacle::none(),
         horizon: DURATION,
         time_weight: 0.05,
         search: SearchKind::AStar,

@@ -14,8 +14,9 @@ use super::read;
 /// Differences of two plan documents that are listed; the rest is counted.
 const LISTED: usize = 20;
 
-/// When a recording was made, and its title: no part of what it shows.
-const PROPERTIES: &str = "/__properties";
+/// Entities that are not compared row by row: the title, and the documents, which are compared field
+/// by field without the time that planning took.
+const APART: [&str; 3] = ["/__properties", "/plan_document", "/comparison_document"];
 
 /// The differences of two recordings.
 #[derive(Debug, Default, Serialize)]
@@ -53,7 +54,7 @@ pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<
     let document = |r: &Recorded| -> Value {
         let text = r.document().or_else(|| r.comparison());
         let mut value: Value = text
-            .and_then(|t| serde_json::from_str(t).ok())
+            .and_then(|t| serde_json::from_str(&t).ok())
             .unwrap_or_default();
         forget_times(&mut value);
         value
@@ -61,7 +62,7 @@ pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<
     differences(&document(&first), &document(&second), "", &mut found.plan);
     let paths = |r: &Recorded| -> Vec<String> {
         let all = r.entities().into_iter().map(|e| e.path);
-        all.filter(|path| path != PROPERTIES).collect()
+        all.filter(|path| !APART.contains(&path.as_str())).collect()
     };
     let (in_first, in_second) = (paths(&first), paths(&second));
     for path in &in_first {

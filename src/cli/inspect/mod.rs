@@ -40,7 +40,7 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
     }
 }
 
-/// Reads a recording. Whatever goes wrong within the decoder is a fault of the file.
+/// Reads a recording. A panic of the decoder is a fault of the file.
 pub fn read(path: &Path) -> anyhow::Result<Recorded> {
     match guarded(|| Recorded::read(path)) {
         // the message names its cause already
@@ -55,22 +55,15 @@ pub fn plan_document(path: &Path) -> anyhow::Result<String> {
 }
 
 fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
-    if !recorded.is_ours() {
-        bail!(
-            "{}: a recording of the program '{}', which holds no plan document",
-            path.display(),
-            recorded.application
-        );
-    }
     if recorded.comparison().is_some() {
         bail!(
             "{}: the recording of a comparison, which holds no plan document; `searoom inspect --json` prints its own",
             path.display()
         );
     }
-    recorded.document().map(str::to_owned).with_context(|| {
+    recorded.document().with_context(|| {
         format!(
-            "{}: holds no plan document: it was cut short, or written by a Searoom that kept none",
+            "{}: holds no plan document: it was written without one",
             path.display()
         )
     })
@@ -170,7 +163,7 @@ impl EntityDocument {
 struct Contents {
     file: String,
     bytes: u64,
-    application: String,
+    application: &'static str,
     rerun_version: Option<String>,
     /// This and the next ones are from the plan document; null without one.
     scenario: Value,
@@ -243,11 +236,11 @@ impl Contents {
     fn of(file: &Path, recorded: &Recorded) -> Self {
         let document: Value = recorded
             .document()
-            .and_then(|text| serde_json::from_str(text).ok())
+            .and_then(|text| serde_json::from_str(&text).ok())
             .unwrap_or_default();
         let mut compared: Value = recorded
             .comparison()
-            .and_then(|text| serde_json::from_str(text).ok())
+            .and_then(|text| serde_json::from_str(&text).ok())
             .unwrap_or_default();
         let comparison = compared
             .pointer_mut("/comparisons/0")
@@ -262,7 +255,7 @@ impl Contents {
         Self {
             file: file.display().to_string(),
             bytes: recorded.bytes,
-            application: recorded.application.clone(),
+            application: "searoom",
             rerun_version: recorded.version.clone(),
             scenario: scenario.unwrap_or_default(),
             planner: field("planner"),

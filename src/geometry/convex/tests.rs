@@ -32,7 +32,7 @@ fn hulls_of_degenerate_points_are_points_and_segments() {
         ConvexPolygon::hull(&[p, Vector::new(f64::NAN, 0.0)]),
         Err(GeometryError::NotFinite { index: 1 })
     ));
-    // all other points would be one beside it
+    // all other points would coincide with it
     let far = [p, p + Vector::new(1.0, 0.0), Vector::new(1e300, 0.0)];
     assert!(matches!(
         ConvexPolygon::hull(&far),

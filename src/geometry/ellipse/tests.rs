@@ -9,7 +9,7 @@ pub fn random_ellipse(rng: &mut ChaCha8Rng) -> Ellipse {
     Ellipse::from_axes(center, [a, b * thin])
 }
 
-/// Definition: the largest signed distance of a supporting line outside, the least inside.
+/// Reference: the largest signed distance of a supporting line outside, the least inside.
 fn searched(e: &Ellipse, p: Vector) -> f64 {
     let at = |angle: f64| {
         let n = direction(angle);

@@ -1,22 +1,23 @@
 //! First contact with any convex space-time obstacle, from its signed distance alone.
 //!
-//! The signed distance is convex in space and time together, since supports are concave in time. So along
-//! a chord its tangent is a lower bound, and along an arc it is within the sagitta of its chord.
+//! The signed distance is jointly convex in space and time, because supports are concave in time.
+//! So its tangent is a lower bound along a chord, and an arc is within the sagitta of its chord.
 
+use super::CHORD_RAD;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::tolerance;
 use crate::trajectory::{Mover, Segment};
 
-/// Longest arc, radians, that one chord stands for.
-const CHORD_RAD: f64 = 0.4;
-
-/// Most tangents along one chord: each doubles the digits where the motion crosses the boundary.
+/// Bound on the tangents along one chord; each doubles the digits near a crossing.
 const MAX_TANGENTS: usize = 200;
 
-/// The first instant at which the segment is at least `depth` inside, by conservative advancement (Mirtich
-/// 1996). Early only while less than [`tolerance::GRAZE_M`] away from that depth; late never, but for a
-/// nanosecond where a set without interior starts to grow. A segment or depth that is not finite is in contact
-/// at once. Some ten distances on a line, some tens on an arc that comes near.
+/// The first time at which the segment is at least `depth` inside, by conservative advancement
+/// (Mirtich 1996).
+///
+/// Early only where less than [`tolerance::GRAZE_M`] away from that depth. Late by at most a
+/// nanosecond, where a set without an interior starts to grow. A segment or depth that is not
+/// finite is in contact at once. About ten distance evaluations on a line, some tens on an arc that
+/// comes near.
 pub(in crate::obstacle) fn advanced_contact<O: SpaceTimeObstacle>(
     obstacle: &O,
     segment: &Segment,
@@ -35,16 +36,16 @@ pub(in crate::obstacle) fn advanced_contact<O: SpaceTimeObstacle>(
     } else {
         f64::INFINITY
     };
-    // metres per second squared: the sagitta of a chord of duration d is this times d²
+    // m/s²: the sagitta of a chord of duration d is this times d²
     let bend = segment.speed * segment.turn_rate.abs() / 8.0;
     loop {
         let from = mover.position_at(time);
         let gap = obstacle.signed_distance(from, time).distance + depth;
-        // negated on purpose: a NaN is contact
+        // negated so that a NaN is contact
         if !(gap > tolerance::GRAZE_M) {
             return Some(time);
         }
-        // a chord that strays by less than a part of the gap
+        // a chord whose sagitta is a fraction of the gap
         let duration = if bend > 0.0 {
             (0.25 * gap / bend).sqrt().min(longest)
         } else {
@@ -52,7 +53,7 @@ pub(in crate::obstacle) fn advanced_contact<O: SpaceTimeObstacle>(
         };
         let until = (time + duration).min(end);
         if !(until > time) {
-            // at the end; or a bend too sharp for the digits of the time, of which nothing is known
+            // the end, or an arc too tight for the resolution of time, which counts as contact
             return (time < end).then_some(time);
         }
         let sagitta = bend * (until - time).powi(2);
@@ -66,7 +67,7 @@ pub(in crate::obstacle) fn advanced_contact<O: SpaceTimeObstacle>(
                 break;
             }
             let rate = velocity.dot(&here.normal) - obstacle.support(here.normal, at).rate;
-            // by convexity it is not reached before its tangent says so
+            // by convexity there is no contact before the root of the tangent
             let step = if rate < 0.0 {
                 left / -rate
             } else {
@@ -77,7 +78,7 @@ pub(in crate::obstacle) fn advanced_contact<O: SpaceTimeObstacle>(
                 break;
             }
             if !(at + step > at) {
-                // a boundary that starts infinitely steep at t = 0, or a step below rounding
+                // the boundary grows infinitely fast at t = 0, or the step is below rounding
                 at = at.next_up().max(at + tolerance::TIME_S);
                 break;
             }

@@ -1,13 +1,15 @@
-//! Whether a line or an arc in time meets a space-time polytope: the decision alone.
+//! Whether a line or an arc in time meets a space-time polytope, without the time of contact.
 
 use crate::frame::{Vector, to_port};
 use crate::obstacle::PolytopeObstacle;
 use crate::obstacle::contact::{CHORD_RAD, line_contact};
 use crate::trajectory::{Mover, Segment};
 
-/// True when the segment is at least `depth` metres inside the obstacle at some time: the decision alone,
-/// many times faster than `first_contact` on arcs. An arc is compared with its chords, halved until
-/// they decide or one face alone does; what stays open at a sagitta below a hundredth of the depth or a nanometre is contact.
+/// True when the segment is at least `depth` metres inside the obstacle at some time.
+///
+/// Many times faster than `first_contact` on arcs. An arc is compared with its chords, which are
+/// halved until they or a single face decide. A case still open at a sagitta below a hundredth of
+/// the depth, or below a nanometre, is contact.
 pub fn meets(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64) -> bool {
     if !(segment.is_valid() && depth.is_finite()) {
         return true;
@@ -48,14 +50,14 @@ struct Arc<'a> {
 
 impl Arc<'_> {
     fn meets(&self, from: Vector, to: Vector, start: f64, duration: f64) -> bool {
-        // the chord at equal times is within the sagitta of the arc
+        // at equal times the arc is within the sagitta of the chord
         let sagitta = self.radius * (self.rate * duration).powi(2) / 8.0;
         // there is no obstacle before t = 0
         let first = (-start / duration).max(0.0);
         if first > 1.0 {
             return false;
         }
-        // shares of the chord that are nearly, and surely, deep enough
+        // parameter ranges of the chord that are possibly, and certainly, deep enough
         let (mut nearly, mut surely) = ((first, 1.0_f64), (first, 1.0_f64));
         let mut farthest = (f64::NEG_INFINITY, 0);
         for (index, face) in self.obstacle.faces().iter().enumerate() {
@@ -88,9 +90,11 @@ impl Arc<'_> {
         self.meets(from, middle, start, half) || self.meets(middle, to, start + half, half)
     }
 
-    /// True when the distance from a face is nowhere less than at the lesser of the ends: over less than
-    /// half a turn its rate has at most one extremum, so it changes its sign once when the ends' rates differ
-    /// in it, and not at all when they do not and the extremum lies beyond an end.
+    /// True when the distance from a face is smallest at an end of the arc.
+    ///
+    /// Over less than half a turn the derivative of the distance has at most one extremum. So it
+    /// changes its sign once when the derivatives at the ends differ in sign. It does not change it
+    /// when they agree and the extremum lies beyond an end.
     fn keeps_outside(&self, face: usize, start: f64, duration: f64) -> bool {
         let face = &self.obstacle.faces()[face];
         let velocities = [start, start + duration].map(|t| self.mover.velocity_at(t));
@@ -105,7 +109,8 @@ impl Arc<'_> {
     }
 }
 
-/// Narrows shares of a chord to those where a linear value, here at the two ends, is not positive.
+/// Narrows a parameter range of a chord to where a linear function, given at both ends, is not
+/// positive.
 fn narrow(shares: &mut (f64, f64), at_start: f64, at_end: f64) {
     if at_start > 0.0 {
         // both positive: nothing is left
@@ -138,8 +143,8 @@ mod tests {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Arcs that begin or end on the boundary, in a corner or beside one, and some anywhere: as the graph
-    /// makes them. The decision is that of the first contact, and of dense samples.
+    /// Arcs that begin or end on the boundary, in a corner or beside one, and arcs anywhere. The
+    /// decision agrees with the first contact and with dense samples.
     #[test]
     fn arcs_from_and_to_the_boundary_meet_when_their_first_contact_says_so() {
         let mut rng = ChaCha8Rng::seed_from_u64(11);
@@ -175,7 +180,7 @@ mod tests {
                 turn_rate: [1.0, -1.0][rng.random_range(0..2)] * speed / radius,
             };
             if rng.random_bool(0.5) {
-                // the same arc up to there
+                // the same arc, ending there
                 arc.start = arc.pose_after(-arc.duration);
                 arc.start_time -= arc.duration;
             }
@@ -185,7 +190,7 @@ mod tests {
             if met == first_contact(&o, &arc, depth).is_some() {
                 continue;
             }
-            // a matter of rounding, and then on the safe side
+            // differences are rounding errors on the safe side
             let least = least(&o, &arc);
             let tolerance = (0.01 * depth).max(1e-9) + 1e-9;
             let step = 12.0 * arc.duration / 20_000.0;
@@ -195,7 +200,7 @@ mod tests {
             );
         }
         assert!(counts[0] > 5000 && counts[1] > 5000, "{counts:?}");
-        // and where the samples are far from doubt
+        // samples far from the boundary agree exactly
         for _ in 0..500 {
             let points = [0.0, 1.3, 2.2, 4.1].map(|a| direction(a) * rng.random_range(5.0..60.0));
             let velocity = direction(rng.random_range(-3.1..3.1)) * rng.random_range(0.0..6.0);

@@ -1,8 +1,8 @@
-//! First contact of a line or an arc in time with a space-time polytope: exact, docs/theory.md section 10
-//! (iv) and (v).
+//! First contact of a line or an arc in time with a space-time polytope: exact, docs/theory.md
+//! section 10 (iv) and (v).
 //!
-//! Contact at depth `d` is contact with the body whose faces are moved inward by `d` metres: at 0 the
-//! closed set itself, at a positive depth touching does not count.
+//! Contact at depth `d` is contact with the body whose faces are moved inward by `d` metres. At
+//! depth 0 this is the closed set itself; at a positive depth touching does not count.
 
 use std::f64::consts::{PI, TAU};
 
@@ -24,12 +24,13 @@ pub struct Interval {
     pub end: f64,
 }
 
-/// Longest arc, radians, that one chord stands for in the quick test.
+/// Longest arc per chord in the quick test, radians.
 pub(in crate::obstacle) const CHORD_RAD: f64 = 0.4;
 
-/// The first instant at which the segment is at least `depth` metres inside the obstacle, or `None`.
-/// A segment or depth that is not finite is in contact at once. Obstacles exist from t = 0 on.
-/// O(n + m) on a line; O((n + m)(1 + turn/pi)) root findings on an arc that comes near.
+/// The first time at which the segment is at least `depth` metres inside the obstacle, or `None`.
+///
+/// A segment or depth that is not finite is in contact at once. Obstacles exist from t = 0 on. O(n
+/// + m) on a line; O((n + m)(1 + turn/pi)) root findings on an arc that comes near.
 pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64) -> Option<f64> {
     if !(segment.is_valid() && depth.is_finite()) {
         return Some(segment.start_time);
@@ -49,8 +50,11 @@ pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64)
     }
 }
 
-/// The interval during which a straight segment (or a wait) is at least `depth` inside: Cyrus-Beck
-/// over the faces, docs/theory.md section 10 (iv). The body is convex, so there is at most one. O(n + m).
+/// The interval during which a straight segment (or a wait) is at least `depth` inside, in O(n +
+/// m).
+///
+/// Cyrus-Beck clipping by the faces, docs/theory.md section 10 (iv). The body is convex, so there
+/// is at most one interval.
 pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> Option<Interval> {
     let velocity = line.start.ahead() * line.speed;
     clip(
@@ -63,7 +67,8 @@ pub fn line_contact(obstacle: &PolytopeObstacle, line: &Segment, depth: f64) -> 
     )
 }
 
-/// The same for a motion from `position` at `start_time` with `velocity`; `duration` may be infinite.
+/// [`line_contact`] for a motion from `position` at `start_time` with `velocity`; `duration` may be
+/// infinite.
 pub(in crate::obstacle) fn clip(
     obstacle: &PolytopeObstacle,
     position: Vector,
@@ -97,8 +102,10 @@ pub(in crate::obstacle) fn clip(
     Some(inside)
 }
 
-/// Every interval during which an arc is at least `depth` inside, in order: an arc can leave and
-/// enter again. Formulas section 10 (v): per face the roots between the stationary points.
+/// All intervals during which an arc is at least `depth` inside, in order.
+///
+/// An arc can leave and enter again. Each face gives the roots between its stationary points,
+/// docs/theory.md section 10 (v).
 pub fn arc_contacts(obstacle: &PolytopeObstacle, arc: &Segment, depth: f64) -> Vec<Interval> {
     let start = arc.start_time.max(0.0);
     let mut inside = vec![Interval {
@@ -119,7 +126,8 @@ pub fn arc_contacts(obstacle: &PolytopeObstacle, arc: &Segment, depth: f64) -> V
     inside
 }
 
-/// True when a chain of chords, moved inward by their sagitta, is clear: then the arc is.
+/// True when a chain of chords is clear of the obstacle grown by their sagitta, which implies that
+/// the arc is clear.
 fn clear_of_chords(obstacle: &PolytopeObstacle, arc: &Segment, depth: f64) -> bool {
     let count = (arc.turn_rate.abs() * arc.duration / CHORD_RAD)
         .ceil()
@@ -137,7 +145,7 @@ fn clear_of_chords(obstacle: &PolytopeObstacle, arc: &Segment, depth: f64) -> bo
             speed: step.norm() / duration,
             turn_rate: 0.0,
         };
-        // the chord is compared at equal times, where the arc is within the sagitta
+        // at equal times the arc is within the sagitta of the chord
         if !chord.is_valid() || line_contact(obstacle, &chord, depth - sagitta).is_some() {
             return false;
         }
@@ -201,7 +209,7 @@ impl Circle {
             let (fa, fb) = (value(a), value(b));
             match (fa <= 0.0, fb <= 0.0) {
                 (true, true) => keep(a, b),
-                // the root's outer bracket end: the interval errs to the long side by its tolerance
+                // the outer end of the root's bracket: the interval errs to the long side
                 (true, false) => keep(a, bisect(value, a, b).1),
                 (false, true) => keep(bisect(value, b, a).1, b),
                 (false, false) => {}
@@ -211,8 +219,9 @@ impl Circle {
     }
 }
 
-/// Root of a monotone function between a point where it is `<= 0` and one where it is positive, as
-/// the pair (last point `<= 0`, first point `> 0`), adjacent to rounding.
+/// Root of a monotone function, given a point where it is `<= 0` and one where it is positive.
+///
+/// Returns the pair (last point `<= 0`, first point `> 0`), adjacent to rounding.
 pub(in crate::obstacle) fn bisect(
     value: impl Fn(f64) -> f64,
     mut inside: f64,
@@ -224,7 +233,7 @@ pub(in crate::obstacle) fn bisect(
         if width.abs() <= 1e-12 * (1.0 + inside.abs()) {
             break;
         }
-        // alternate between the chord and the middle: fast, and never slower than every second halving
+        // alternating secant and bisection steps: the bracket halves at least every second step
         let chord = inside + width * (fi / (fi - fo));
         let at = if step % 2 == 0 && chord.is_finite() {
             let guard = 1e-3 * width;
@@ -296,7 +305,7 @@ mod tests {
         }
     }
 
-    /// Definition: the slack, sampled densely.
+    /// Reference: the slack, sampled densely.
     fn sampled(o: &PolytopeObstacle, s: &Segment, depth: f64) -> (Option<f64>, f64) {
         let mut least = f64::INFINITY;
         for i in 0..=20_000 {

@@ -1,4 +1,5 @@
-//! First contact of a straight motion with an ellipsoid obstacle, by a cubic; docs/theory.md sections 3 and 10.
+//! First contact of a straight motion with an ellipsoid obstacle, as the root of a cubic;
+//! docs/theory.md sections 3 and 10.
 
 use crate::frame::{Vector, cross};
 use crate::obstacle::EllipsoidObstacle;
@@ -8,7 +9,7 @@ use crate::obstacle::risk::Line;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// A cubic by the coefficients of `s`, `s²`, `s³`, `s = t - about`.
+/// A cubic without its constant term: coefficients of `s`, `s²`, `s³`, `s = t - about`.
 struct Cubic {
     about: f64,
     slopes: [f64; 3],
@@ -21,7 +22,7 @@ impl Cubic {
         c1 + s * (2.0 * c2 + 3.0 * s * c3)
     }
 
-    /// Where the slope is zero; infinite or NaN where it is not.
+    /// Zeros of the slope; infinite or NaN where there are none.
     fn turning_points(&self) -> [f64; 2] {
         let [c1, c2, c3] = self.slopes;
         let (a, b, c) = (3.0 * c3, 2.0 * c2, c1);
@@ -36,7 +37,8 @@ impl Cubic {
 }
 
 impl EllipsoidObstacle {
-    /// The interval during which a line (or a wait) is inside, from t = 0 on; there is at most one. O(1).
+    /// The interval during which a line (or a wait) is inside, from t = 0 on; at most one exists.
+    /// O(1).
     pub fn line_contact(&self, line: &Segment) -> Option<Interval> {
         if let Some(flat) = &self.flat {
             return contact::line_contact(flat, line, 0.0);
@@ -50,8 +52,8 @@ impl EllipsoidObstacle {
         Some(Interval { start, end })
     }
 
-    /// The first instant at which a straight motion is inside: the sign of a cubic in t, whose turning points
-    /// part its roots; docs/theory.md section 3. O(1).
+    /// The first time at which a straight motion is inside, in O(1): a root of a cubic in t,
+    /// isolated by its turning points; docs/theory.md section 3.
     pub(in crate::obstacle) fn line_start(&self, line: &Line) -> Option<f64> {
         if let Some(flat) = &self.flat {
             let at = line.origin + line.velocity * line.start;
@@ -63,7 +65,7 @@ impl EllipsoidObstacle {
         self.enters(&cubic, self.cuts(&cubic, line), line)
     }
 
-    /// From the first of the cuts, in their order, to where the motion is inside.
+    /// The time at which the motion enters between two successive `cuts`, searched in their order.
     fn enters(&self, cubic: &Cubic, cuts: [f64; 4], line: &Line) -> Option<f64> {
         if !(line.start <= line.end) {
             return None;
@@ -71,13 +73,13 @@ impl EllipsoidObstacle {
         let origin = line.origin - self.initial.center();
         let velocity = self.relative(line);
         let value = |t: f64| self.excess(origin + velocity * t, t);
-        // negated on purpose: a NaN is inside
+        // negated so that a NaN is inside
         let inside = |t: f64| !(value(t) > 0.0) && !self.is_beyond(origin + velocity * t, t);
         let first = cuts.iter().position(|t| inside(*t))?;
         if first == 0 {
             return Some(cuts[0]);
         }
-        // Newton within the bracket; the middle where a step leaves it
+        // Newton's method within the bracket; bisection where a step leaves it
         let (mut within, mut without) = (cuts[first], cuts[first - 1]);
         let mut at = 0.5 * (within + without);
         for _ in 0..MAX_STEPS {
@@ -102,11 +104,11 @@ impl EllipsoidObstacle {
         Some(at)
     }
 
-    /// Start, the turning points between, end.
+    /// Start, turning points, end.
     fn cuts(&self, cubic: &Cubic, line: &Line) -> [f64; 4] {
         let end = line.end.min(tolerance::FOREVER_S);
         let [a, b] = cubic.turning_points().map(|turn| {
-            // one that is not there changes nothing
+            // an absent turning point is replaced by the start
             if turn.is_finite() {
                 turn.clamp(line.start, end.max(line.start))
             } else {
@@ -120,8 +122,8 @@ impl EllipsoidObstacle {
         line.velocity - self.velocity.center()
     }
 
-    /// [`Self::excess`] along the line, expanded about the instant at which the centres are nearest, so that a
-    /// distant start costs no digits.
+    /// [`Self::excess`] along the line, expanded about the time at which the centres are nearest,
+    /// so that a distant start costs no digits.
     fn cubic(&self, line: &Line) -> Cubic {
         let w = self.relative(line);
         let start = line.origin - self.initial.center();

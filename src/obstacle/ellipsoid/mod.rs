@@ -1,5 +1,7 @@
-//! The ellipsoid obstacle, paper eqs. (12)-(19): `O_0` and `V` are ellipses, and every section is the ellipse
-//! of least trace that contains their sum in a known family. An outer set.
+//! The ellipsoid obstacle, paper eqs. (12)-(19): an outer set with elliptic sections.
+//!
+//! `O_0` and `V` are ellipses. Each section is the ellipse of least trace, in a known family, that
+//! contains their sum.
 
 mod contact;
 mod exact_sum;
@@ -16,21 +18,23 @@ use crate::obstacle::{PolytopeObstacle, SpaceTimeObstacle, Support};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Most steps to a root; six are usual.
+/// Bound on root-finding steps; six are usual.
 pub(in crate::obstacle) const MAX_STEPS: usize = 100;
 
-/// Every position that a target may reach, from outside: `O_t = E(p_o + p_v t, Q_t)` for `t >= 0` with
+/// Outer set of the positions that a target may reach: `O_t = E(p_o + p_v t, Q_t)` for `t >= 0`
+/// with
 ///
 /// ```text
 /// Q_t = (r_o + r_v t) (Q_o / r_o + t Q_v / r_v),    r = sqrt(trace Q)
 /// ```
 ///
-/// paper eq. (18) in a form that divides by no zero: a term without trace is dropped, and `Q_o`, `Q_v` may be
-/// singular. Convex in space-time (docs/theory.md section 3). It contains the Minkowski sum `O_0 ⊕ t V` and touches
-/// it; see [`EllipsoidObstacle::sum_contains`] for the sum itself and [`EllipsoidObstacle::outer_excess`]
-/// for the difference.
+/// This is paper eq. (18) in a form without division by zero: a term without trace is dropped, and
+/// `Q_o`, `Q_v` may be singular. Convex in space-time (docs/theory.md section 3). It contains the
+/// Minkowski sum `O_0 ⊕ t V` and touches it. [`EllipsoidObstacle::sum_contains`] tests the exact
+/// sum, [`EllipsoidObstacle::outer_excess`] measures the difference.
 ///
-/// Where both sets lie on parallel segments or are points, so does the sum: it is kept as the polytope, exact.
+/// Where both sets lie on parallel segments or are points, the sum does too and is stored as an
+/// exact polytope.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EllipsoidObstacle {
     name: String,
@@ -40,12 +44,12 @@ pub struct EllipsoidObstacle {
     pub(in crate::obstacle) roots: [f64; 2],
     /// Semi-axes of `Q_o / r_o` and of `Q_v / r_v`.
     pub(in crate::obstacle) axes: [[Vector; 2]; 2],
-    /// `det (Q_o / r_o + t Q_v / r_v)` as coefficients of 1, t, t²; none is negative.
+    /// `det (Q_o / r_o + t Q_v / r_v)` as coefficients of 1, t, t²; all are non-negative.
     pub(in crate::obstacle) determinant: [f64; 3],
     pub(in crate::obstacle) flat: Option<PolytopeObstacle>,
 }
 
-/// A section in its own frame, about its centre.
+/// A section in the frame of its axes, about its centre.
 #[derive(Debug, Clone, Copy)]
 struct Section {
     along: Vector,
@@ -54,7 +58,7 @@ struct Section {
 }
 
 impl EllipsoidObstacle {
-    /// From the set of positions at t = 0, metres, and the set of velocities, m/s. O(1).
+    /// From the positions at t = 0, metres, and the velocities, m/s. O(1).
     pub fn new(name: impl Into<String>, initial: Ellipse, velocity: Ellipse) -> Self {
         let name = name.into();
         let root = |e: &Ellipse| {
@@ -72,7 +76,7 @@ impl EllipsoidObstacle {
             })
         };
         let axes = [scaled(&initial, roots[0]), scaled(&velocity, roots[1])];
-        // Cauchy and Binet: sums of squares, so nothing cancels
+        // Cauchy-Binet formula: sums of squares, so nothing cancels
         let [a, b] = axes;
         let mixed = a
             .iter()
@@ -98,7 +102,7 @@ impl EllipsoidObstacle {
         }
     }
 
-    /// The smallest ellipses around the two sets of a polytope: an outer set of it.
+    /// An outer set of a polytope: the smallest ellipses around its two sets.
     pub fn outer_of(polytope: &PolytopeObstacle) -> Self {
         Self::new(
             polytope.name(),
@@ -112,7 +116,7 @@ impl EllipsoidObstacle {
         self.flat.is_some()
     }
 
-    /// The polytope that the set is, exactly, where it is flat.
+    /// The exact polytope of a flat set.
     pub fn flat(&self) -> Option<&PolytopeObstacle> {
         self.flat.as_ref()
     }
@@ -127,8 +131,8 @@ impl EllipsoidObstacle {
         &self.velocity
     }
 
-    /// The polytope of the two circumscribed 16-gons: it contains the sum `O_0 ⊕ t V`, not everywhere this
-    /// set. For graphs and pictures.
+    /// The polytope of the two circumscribed 16-gons: it contains the sum `O_0 ⊕ t V`, but not all
+    /// of this set. For graphs and figures.
     pub fn sum_outer_polytope(&self) -> PolytopeObstacle {
         PolytopeObstacle::new(
             self.name.clone(),
@@ -162,7 +166,7 @@ impl EllipsoidObstacle {
         } else {
             0.0
         };
-        // of the two ways to write the eigenvector, the one that adds
+        // the form of the eigenvector without cancellation
         let along = if difference >= 0.0 {
             Vector::new(difference + root, skew)
         } else {
@@ -181,7 +185,7 @@ impl EllipsoidObstacle {
         }
     }
 
-    /// `r_o + r_v t`, the root of the trace of `Q_t`: no point of the section is farther from its centre.
+    /// `r_o + r_v t`, the root of the trace of `Q_t`: an upper bound of the radius of the section.
     pub(in crate::obstacle) fn reach(&self, time: f64) -> f64 {
         self.roots[0] + self.roots[1] * time
     }
@@ -197,14 +201,17 @@ impl EllipsoidObstacle {
             .map(|[a, b]| cross(y, a).powi(2) + cross(y, b).powi(2))
     }
 
-    /// For `time > 0` of the sign of `y' Q_t^-1 y - 1`. At t = 0 it is zero all along the line of an `O_0` that is
-    /// a segment, and everywhere around a point: [`Self::is_beyond`] tells these apart.
+    /// Has the sign of `y' Q_t^-1 y - 1` for `time > 0`.
+    ///
+    /// At t = 0 it is zero along the line of an `O_0` that is a segment, and everywhere around a
+    /// point. [`Self::is_beyond`] decides these cases.
     pub(in crate::obstacle) fn excess(&self, y: Vector, time: f64) -> f64 {
         let [still, growing] = self.adjugates(y);
         still + time * growing - self.reach(time) * self.determinant_at(time)
     }
 
-    /// Beyond the circle that contains the section: decides where the section is a segment or a point.
+    /// True outside the circle that contains the section; decides where the section is a segment or
+    /// a point.
     pub(in crate::obstacle) fn is_beyond(&self, y: Vector, time: f64) -> bool {
         let reach = self.reach(time);
         y.norm_squared() > reach * reach
@@ -241,7 +248,7 @@ impl EllipsoidObstacle {
         for _ in 0..MAX_STEPS {
             let slope = k[1] + tau * (2.0 * k[2] + 3.0 * tau * k[3]);
             let next = tau - found / slope;
-            // from the right every step falls short of the root, until rounding
+            // Newton's method from the right stays right of the root, up to rounding
             if !(next < tau * (1.0 - f64::EPSILON)) {
                 break;
             }
@@ -273,7 +280,7 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
             .axes
             .map(|[a, b]| normal.dot(&a).powi(2) + normal.dot(&b).powi(2));
         let (mean, reach) = (still + time * growing, self.reach(time));
-        // the root of a product of two lines; at t = 0 it may start steeply
+        // the root of a product of two linear functions; its slope may be infinite at t = 0
         let rate = if self.roots[0] == 0.0 {
             (self.roots[1] * growing).sqrt()
         } else if mean > 0.0 {
@@ -290,7 +297,7 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
         }
     }
 
-    /// To rounding; O(1), some five Newton steps.
+    /// Accurate to rounding; O(1), about five Newton steps.
     fn signed_distance(&self, position: Vector, time: f64) -> SignedDistance {
         if let Some(flat) = &self.flat {
             return flat.signed_distance(position, time);
@@ -305,12 +312,12 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
             return flat.contains(position, time);
         }
         let y = position - self.center(time);
-        // negated on purpose: what is not known to be clear is not
+        // negated so that a NaN is inside
         !(time < 0.0) && !(self.excess(y, time) > 0.0) && !self.is_beyond(y, time)
     }
 
-    /// Exact on a line at depth 0. Otherwise by conservative advancement on the signed distance: on arcs early by
-    /// at most [`tolerance::GRAZE_M`] of the way in.
+    /// Exact on a line at depth 0. Otherwise conservative advancement on the signed distance: on
+    /// arcs early by at most [`tolerance::GRAZE_M`] of depth.
     fn first_contact(&self, segment: &Segment, depth: f64) -> Option<f64> {
         if let Some(flat) = &self.flat {
             return flat.first_contact(segment, depth);
@@ -321,8 +328,9 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
         advanced_contact(self, segment, depth)
     }
 
-    /// The positive root of a cubic: the sets `O_alpha` at `t` are the sections at `alpha t` about the centre of
-    /// `t`, docs/theory.md section 4. O(1). With regard to the outer set, so never below that of the sum.
+    /// The positive root of a cubic, in O(1): the sets `O_alpha` at `t` are the sections at `alpha
+    /// t` about the centre of `t`, docs/theory.md section 4. With respect to the outer set, so
+    /// never below that of the exact sum.
     fn alpha(&self, position: Vector, time: f64) -> f64 {
         if let Some(flat) = &self.flat {
             return flat.alpha(position, time);
@@ -336,8 +344,8 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
         self.alpha_at(position - self.center(time), time)
     }
 
-    /// By bisection over contacts, to [`tolerance::RISK`]: exact ones on a line, on an arc early by
-    /// [`tolerance::GRAZE_M`], which errs to the high side.
+    /// By bisection over contacts, to [`tolerance::RISK`]. Contacts are exact on lines and early by
+    /// [`tolerance::GRAZE_M`] on arcs, which errs to the high side.
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
         match &self.flat {
             Some(flat) => flat.peak_risk(segment),
@@ -352,8 +360,8 @@ impl SpaceTimeObstacle for EllipsoidObstacle {
         Self::new(self.name.clone(), self.initial, velocity)
     }
 
-    /// Contact by the cubic; otherwise a search for the root of the derivative of a convex function, some ten
-    /// distances, to rounding.
+    /// Contact by the cubic; otherwise a search for the minimum of a convex function, about ten
+    /// distance evaluations, to rounding.
     fn closest_approach(
         &self,
         position: Vector,

@@ -1,44 +1,49 @@
-//! The velocity obstacle of an ellipsoid as a region of velocities: paper eq. (26), by its support function.
+//! The velocity obstacle of an ellipsoid as a convex region, by its support function: paper eq.
+//! (26).
 
 use std::f64::consts::PI;
 
 use crate::frame::{Vector, cross, direction, heading_of, to_port, to_starboard};
 use crate::obstacle::{EllipsoidObstacle, HalfPlane, SpaceTimeObstacle, VelocityObstacle};
 
-/// Halvings to the last digit of an angle.
+/// Bisection steps to the last digit of an angle.
 const HALVINGS: usize = 64;
 
-/// Halvings of the normals between two tangents; beside a side that goes on for ever there are more.
+/// Bisection depth of the normals between two tangents; deeper beside an unbounded side.
 const MAX_CUTS: u32 = 12;
 const MAX_CUTS_AT_SIDES: u32 = 48;
 
-/// Every velocity of own ship that comes within `distance` metres of an ellipsoid within the horizon; at distance 0 its
-/// velocity obstacle. Convex, with a smooth boundary, and unbounded away from the target.
+/// Every velocity of own ship that comes within `distance` metres of an ellipsoid within the
+/// horizon. At distance 0 this is the velocity obstacle.
 ///
-/// With `u = 1/t` the velocities that lead into the section of `t` are the ellipse
+/// Convex, with a smooth boundary, and unbounded away from the target. With `u = 1/t` the
+/// velocities that lead into the section of `t` are the ellipse
 ///
 /// ```text
 /// p_v + u z + E(0, (r_o u + r_v)(u Q_o / r_o + Q_v / r_v)),    z = p_o - x
 /// ```
 ///
-/// so the region's support is `n . p_v + max over u >= 1/T of c u + sqrt((r_o u + r_v)(a u + b))`, `c = n . z +
-/// distance`, `a = n' Q_o n / r_o`, `b = n' Q_v n / r_v`. The root is concave in `u`: the largest value is at the root of a
-/// quadratic, or at `1/T`. It is infinite unless `n . (O_0 - x) < -distance`: the sides are the two tangents from own ship
-/// to the widened `O_0`, each moved outward by what `V` adds, and the boundary between them is
-/// [`Self::boundary_point`]. Exact, for a finite horizon as for none (then it is the closure); the obstacle's
-/// sections are outer sets of the sum, and so is this region of the velocities that lead into that.
+/// so the region's support is `n . p_v + max over u >= 1/T of c u + sqrt((r_o u + r_v)(a u + b))`
+/// with `c = n . z + distance`, `a = n' Q_o n / r_o`, `b = n' Q_v n / r_v`. The root is concave in
+/// `u`, so the maximum is at the root of a quadratic or at `1/T`. It is infinite unless `n . (O_0 -
+/// x) < -distance`.
+///
+/// The sides are the two tangents from own ship to the widened `O_0`, each moved outward by the
+/// support of `V`. The boundary between them is [`Self::boundary_point`]. Exact for a finite
+/// horizon, the closure for an infinite one. The obstacle's sections are outer sets of the exact
+/// sum, and so is this region.
 #[derive(Debug, Clone, Copy)]
 pub struct EllipsoidVelocityObstacle<'a> {
     obstacle: &'a EllipsoidObstacle,
     position: Vector,
     horizon: f64,
     distance: f64,
-    /// Angles of the normals of the port and of the starboard side, the second the greater and by less than half a turn;
-    /// `None` where every velocity is in the region.
+    /// Heading of the normals of the port and the starboard side. The second is greater by less
+    /// than half a turn. `None` where every velocity is in the region.
     sides: Option<[f64; 2]>,
 }
 
-/// What a normal makes of the sections: `c u + sqrt((r_o u + r_v)(a u + b))`.
+/// Coefficients of `c u + sqrt((r_o u + r_v)(a u + b))` for one normal.
 #[derive(Debug, Clone, Copy)]
 struct Reach {
     c: f64,
@@ -46,12 +51,12 @@ struct Reach {
     growing: [f64; 2],
 }
 
-/// A line that touches the region.
+/// A tangent line of the region.
 #[derive(Debug, Clone, Copy)]
 struct Tangent {
     angle: f64,
     half_plane: HalfPlane,
-    /// Where it does; a side does so nowhere.
+    /// The tangent point; a side has none.
     at: Option<Vector>,
 }
 
@@ -61,16 +66,16 @@ impl Reach {
         self.c * u + ((ro * u + rv) * (a * u + b)).max(0.0).sqrt()
     }
 
-    /// The `u >= least` of the largest value; infinite where that is nowhere attained.
+    /// The `u >= least` of the largest value; infinite where it is not attained.
     fn largest_at(&self, least: f64) -> f64 {
         let ([a, b], [ro, rv], c) = (self.still, self.growing, -self.c);
-        // the root of c u falls for ever unless this is positive
+        // the root of c u decreases without bound unless this is positive
         let falling = (c - (ro * a).sqrt()) * (c + (ro * a).sqrt());
         if !(c > 0.0 && falling > 0.0) {
             return f64::INFINITY;
         }
-        // of 4 alpha (alpha - c²) u² + 4 beta (alpha - c²) u + beta² - 4 gamma c² = 0 the greater root, without
-        // cancelling where alpha = r_o a is small; beta² - 4 alpha gamma is a square
+        // the greater root of 4 alpha (alpha - c²) u² + 4 beta (alpha - c²) u + beta² - 4 gamma c²
+        // = 0, without cancellation where alpha = r_o a is small; beta² - 4 alpha gamma is a square
         let beta = ro * b + rv * a;
         let below = 2.0 * (c * (ro * b - rv * a).abs() * falling.sqrt() + falling * beta);
         let above = beta * beta - 4.0 * rv * b * c * c;
@@ -81,7 +86,7 @@ impl Reach {
         }
     }
 
-    /// The limit for `u` without end, where the fall of `c u` is just made up for.
+    /// The limit for `u` to infinity, where the decrease of `c u` is just compensated.
     fn limit(&self) -> f64 {
         let ([a, b], [ro, rv]) = (self.still, self.growing);
         let beta = ro * b + rv * a;
@@ -94,8 +99,10 @@ impl Reach {
 }
 
 impl EllipsoidObstacle {
-    /// The velocity obstacle of own ship at `position` at t = 0, within `horizon` seconds, which may be infinite. From a
-    /// position in `O_0`, or one that is not a number, every velocity. O(1).
+    /// The velocity obstacle of own ship at `position` at t = 0, within `horizon` seconds, which
+    /// may be infinite. O(1).
+    ///
+    /// Contains every velocity where the position is in `O_0` or NaN.
     pub fn velocity_obstacle(
         &self,
         position: Vector,
@@ -123,11 +130,12 @@ impl EllipsoidObstacle {
             sides: None,
         };
         let away = self.initial().signed_distance(position);
-        // negated on purpose: from inside, or from nowhere, every velocity meets it
+        // negated so that a NaN, like a position inside, meets it with every velocity
         if !(away.distance > distance) {
             return region;
         }
-        // the support of what is to be hit from here is negative toward own ship, positive away from her
+        // the support of the widened set relative to own ship is negative toward own ship, positive
+        // away
         let toward = heading_of(away.normal);
         let side = |way: f64| {
             let (mut inner, mut outer) = (0.0, PI);
@@ -148,19 +156,20 @@ impl EllipsoidObstacle {
 }
 
 impl EllipsoidVelocityObstacle<'_> {
-    /// True when the velocity, m/s, is in the region. NaN is inside. By the cubic at distance 0, otherwise by the closest
-    /// approach.
+    /// True when the velocity, m/s, is in the region. NaN is inside. By the cubic at distance 0,
+    /// otherwise by the closest approach.
     pub fn contains(&self, velocity: Vector) -> bool {
         let (x, horizon) = (self.position, self.horizon);
         if self.distance == 0.0 {
             return self.obstacle.in_velocity_obstacle(x, velocity, horizon);
         }
         let nearest = self.obstacle.closest_approach(x, velocity, horizon);
-        // negated on purpose: what is not known to be clear is not
+        // negated so that a NaN is inside
         !(nearest.distance > self.distance)
     }
 
-    /// `max over the region of n . v` for a unit vector, m/s; infinite where the region goes on for ever that way. O(1).
+    /// `max over the region of n . v` for a unit vector, m/s; infinite in unbounded directions.
+    /// O(1).
     pub fn support(&self, normal: Vector) -> f64 {
         if self.sides.is_none() {
             return f64::INFINITY;
@@ -174,7 +183,7 @@ impl EllipsoidVelocityObstacle<'_> {
         }
     }
 
-    /// The point of the boundary with this outward unit normal, m/s; `None` where there is none. O(1).
+    /// The boundary point with this outward unit normal, m/s; `None` where there is none. O(1).
     pub fn boundary_point(&self, normal: Vector) -> Option<Vector> {
         self.sides?;
         let u = self.reach(normal).largest_at(1.0 / self.horizon);
@@ -195,9 +204,11 @@ impl EllipsoidVelocityObstacle<'_> {
         Some(center + round + normal * (self.distance * u))
     }
 
-    /// The two sides, port and starboard: lines that the boundary comes ever nearer to. Their normals are those of the
-    /// tangents from own ship to `O_0`, their offsets infinite where it goes away from them instead, as it does from a
-    /// segment seen end on. `None` where every velocity is in the region.
+    /// The port and starboard sides: asymptotes of the boundary. `None` where every velocity is in
+    /// the region.
+    ///
+    /// Their normals are those of the tangents from own ship to `O_0`. An offset is infinite where
+    /// the boundary diverges from the side, as for a segment seen end on.
     pub fn sides(&self) -> Option<[HalfPlane; 2]> {
         let side = |angle: f64| {
             let normal = direction(angle);
@@ -209,8 +220,10 @@ impl EllipsoidVelocityObstacle<'_> {
         Some(self.sides?.map(side))
     }
 
-    /// The region as half-planes, an outer set: none of its velocities with both components within `limit` m/s is more
-    /// than `accuracy` m/s from the region. For pictures, some dozens of half-planes; none means every velocity.
+    /// An outer set of half-planes, for figures; an empty list means every velocity.
+    ///
+    /// Within `limit` m/s in both components it exceeds the region by at most `accuracy` m/s. Some
+    /// dozens of half-planes.
     pub fn outer_half_planes(&self, limit: f64, accuracy: f64) -> VelocityObstacle {
         let (Some([first, last]), Some(sides)) = (self.sides, self.sides()) else {
             return VelocityObstacle::of(Vec::new());
@@ -239,7 +252,7 @@ impl EllipsoidVelocityObstacle<'_> {
         if cuts < most && !view.is_close(&a, &b) && angle > a.angle && angle < b.angle {
             let at = self.boundary_point(normal);
             let offset = self.support(normal);
-            // rounding beside a side: the side alone is left
+            // rounding beside a side: the side alone remains
             if at.is_some() && offset.is_finite() {
                 let middle = Tangent {
                     angle,
@@ -254,7 +267,7 @@ impl EllipsoidVelocityObstacle<'_> {
         found.push(b);
     }
 
-    /// From own ship to the middle of `O_0`, metres.
+    /// From own ship to the centre of `O_0`, metres.
     fn toward(&self) -> Vector {
         self.obstacle.initial().center() - self.position
     }
@@ -270,7 +283,7 @@ impl EllipsoidVelocityObstacle<'_> {
     }
 }
 
-/// How much is to be seen of a region.
+/// The visible part of a region.
 struct View {
     /// m/s.
     limit: f64,
@@ -279,7 +292,8 @@ struct View {
 }
 
 impl View {
-    /// True when what two tangents cut off beyond the boundary is as thin as asked for, or out of sight.
+    /// True when the corner of two tangents exceeds the boundary by at most the accuracy, or is out
+    /// of view.
     fn is_close(&self, a: &Tangent, b: &Tangent) -> bool {
         let (n, m) = (a.half_plane.normal, b.half_plane.normal);
         let far = |p: Option<Vector>| p.is_some_and(|p| !(p.amax() < 4.0 * self.limit));
@@ -292,7 +306,7 @@ impl View {
             (to_starboard(m) * a.half_plane.offset + to_port(n) * b.half_plane.offset) / turn;
         let away = match (a.at, b.at) {
             (Some(p), Some(q)) => beside(corner, p, (q - p).norm(), q - p),
-            // the region goes on along its sides
+            // the region extends along its sides without bound
             (Some(p), None) => beside(corner, p, f64::INFINITY, to_port(m)),
             (None, Some(q)) => beside(corner, q, f64::INFINITY, to_starboard(n)),
             (None, None) => f64::INFINITY,
@@ -301,7 +315,7 @@ impl View {
     }
 }
 
-/// The distance of a point from a piece of a line of some length.
+/// Distance of a point from a segment of a line, or from a ray.
 fn beside(point: Vector, from: Vector, length: f64, way: Vector) -> f64 {
     let arm = point - from;
     let norm = way.norm();

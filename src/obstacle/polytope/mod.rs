@@ -1,4 +1,5 @@
-//! The polytope obstacle `O = {(x, t) : t >= 0, x in O_0 + t V}`, paper eqs. (2)-(9), in support form.
+//! The polytope obstacle `O = {(x, t) : t >= 0, x in O_0 + t V}`, paper eqs. (2)-(9), in support
+//! form.
 
 pub(in crate::obstacle) mod slabs;
 
@@ -14,11 +15,13 @@ use crate::obstacle::risk::{
 use crate::obstacle::{SpaceTimeObstacle, Support, VelocityObstacle, contact};
 use crate::trajectory::Segment;
 
-/// Vertices from which on they are not all looked at.
+/// Vertex count above which a local search replaces the search of all vertices.
 const MANY: usize = 64;
 
-/// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a unit
-/// normal in the plane. Formulas section 1; the corrected eq. (9) is a positive multiple of it.
+/// One face of the space-time body: `normal . x - velocity_support t <= initial_support`, with a
+/// unit normal in the plane.
+///
+/// docs/theory.md section 1; the corrected eq. (9) is a positive multiple of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace {
     /// Outward unit normal `n`.
@@ -36,33 +39,32 @@ impl HalfSpace {
     }
 }
 
-/// How far a point is outside, and by which face.
+/// How far a point is outside, and the face that decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slack {
-    /// `g(x, t)`, metres: inside is `g <= 0`, and then `-g` is the depth; outside `g` is a lower bound
-    /// of the distance.
+    /// `g(x, t)`, metres. Inside `g <= 0` and `-g` is the depth; outside `g` is a lower bound of
+    /// the distance.
     pub value: f64,
-    /// Index of the face that attains it.
+    /// Index of the deciding face.
     pub face: usize,
 }
 
-/// A vertex of the sections `O_t`: it moves in a straight line, and its path is an edge of the
-/// space-time body.
+/// A vertex of the sections `O_t`. It moves in a straight line, which is an edge of the space-time
+/// body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingVertex {
-    /// Index of the vertex of `O_0`, and of `V`.
+    /// Indices of the vertices of `O_0` and of `V`.
     pub indices: (usize, usize),
     /// Position at t = 0, metres.
     pub origin: Vector,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Vector,
 }
 
 /// Every position that a target may reach: `O_t = O_0 + t V` for `0 <= t`, convex in space-time.
-/// Because `V` is convex, `O_t` also contains every position reached with a velocity that varies in
-/// time and stays in `V`.
 ///
-/// # Examples
+/// `V` is convex, so `O_t` also contains every position reached with a velocity that varies in time
+/// and stays in `V`.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -70,10 +72,12 @@ pub struct MovingVertex {
 /// use searoom::obstacle::PolytopeObstacle;
 ///
 /// let square = |half: f64, center: Vector| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| center + Vector::new(x, y)))
+///     let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+///     ConvexPolygon::hull(&corners.map(|(x, y)| center + Vector::new(x, y)))
 /// };
-/// // within 10 m of the origin, on the way east at 4 to 6 m/s and at most 1 m/s north or south
-/// let target = PolytopeObstacle::new("ferry", square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
+/// // within 10 m of the origin, eastbound at 4 to 6 m/s and at most 1 m/s north or south
+/// let (initial, velocity) = (square(10.0, Vector::zeros())?, square(1.0, Vector::new(5.0, 0.0))?);
+/// let target = PolytopeObstacle::new("ferry", initial, velocity);
 /// assert!(target.contains(Vector::new(65.0, 15.0), 10.0));
 /// assert!(!target.contains(Vector::new(75.0, 0.0), 10.0));
 /// let after_10_s = target.section(10.0);
@@ -85,7 +89,7 @@ pub struct PolytopeObstacle {
     shared: Arc<Shared>,
 }
 
-/// One for all clones.
+/// Shared by all clones.
 #[derive(Debug, Clone)]
 struct Shared {
     name: String,
@@ -93,13 +97,13 @@ struct Shared {
     velocity: ConvexPolygon,
     faces: Vec<HalfSpace>,
     spreads: Vec<FaceSpread>,
-    /// Found when they are asked for: level sets that are only tested never are.
+    /// Computed on demand: level sets that are only tested never need them.
     moving: OnceLock<Vec<MovingVertex>>,
 }
 
 impl PartialEq for PolytopeObstacle {
     fn eq(&self, other: &Self) -> bool {
-        // all else follows
+        // everything else follows from these
         self.shared.name == other.shared.name
             && self.shared.initial == other.shared.initial
             && self.shared.velocity == other.shared.velocity
@@ -107,8 +111,9 @@ impl PartialEq for PolytopeObstacle {
 }
 
 impl PolytopeObstacle {
-    /// From the two sets, in O((n + m) log (n + m)): faces are found once, moving vertices when they are first asked for. Points and segments
-    /// are exact.
+    /// From the two sets, in O((n + m) log (n + m)).
+    ///
+    /// Faces are computed once, moving vertices on demand. Points and segments are exact.
     pub fn new(name: impl Into<String>, initial: ConvexPolygon, velocity: ConvexPolygon) -> Self {
         let with_angle = |n: Vector| (n.y.atan2(n.x), n);
         let mut normals: Vec<(f64, Vector)> = [initial.normals(), velocity.normals()]
@@ -118,7 +123,7 @@ impl PolytopeObstacle {
             .collect();
         normals.sort_by(|a, b| a.0.total_cmp(&b.0));
         normals.dedup_by(|a, b| (a.1 - b.1).norm() < 1e-12);
-        // due west from both ends of the range of angles
+        // due west at both ends of the range of angles
         if let [first, .., last] = normals[..]
             && (first.1 - last.1).norm() < 1e-12
         {
@@ -161,12 +166,12 @@ impl PolytopeObstacle {
         &self.shared.velocity
     }
 
-    /// The faces, by the angle of their normals.
+    /// The faces, sorted by the angle of their normals.
     pub fn faces(&self) -> &[HalfSpace] {
         &self.shared.faces
     }
 
-    /// The vertices of the sections for t > 0, counter-clockwise: at most n + m.
+    /// The vertices of the sections for t > 0, counter-clockwise; at most n + m.
     pub fn moving_vertices(&self) -> Vec<MovingVertex> {
         self.moving().to_vec()
     }
@@ -197,7 +202,8 @@ impl PolytopeObstacle {
         }
     }
 
-    /// `g(x, t) = max over faces of the signed distance`, docs/theory.md section 1. O(n + m). NaN in, NaN out.
+    /// `g(x, t) = max over faces of the signed distance`, docs/theory.md section 1. NaN for a NaN.
+    /// O(n + m).
     pub fn slack(&self, position: Vector, time: f64) -> Slack {
         let mut best = Slack {
             value: f64::NEG_INFINITY,
@@ -205,7 +211,7 @@ impl PolytopeObstacle {
         };
         for (face, h) in self.shared.faces.iter().enumerate() {
             let value = h.slack(position, time);
-            // negated on purpose: a NaN is taken over and stays
+            // negated so that a NaN replaces the best and stays
             if !(value <= best.value) {
                 best = Slack { value, face };
                 if value.is_nan() {
@@ -216,9 +222,11 @@ impl PolytopeObstacle {
         best
     }
 
-    /// The same, sought from face to face beginning with one that is near the answer. Outside a convex set the slack of its faces, taken
-    /// in turn about it, rises to one maximum and falls: what is `min over q in O_t of n . (x - q)` is so in `n` where it is
-    /// positive, and the faces are some of all `n`. Where it is not positive all faces are asked. O(1) as a rule.
+    /// [`Self::slack`] by a local search from a face near the answer, usually in O(1).
+    ///
+    /// Outside a convex set the slack of the faces, ordered around it, has one maximum: `min over q
+    /// in O_t of n . (x - q)` is unimodal in `n` where it is positive, and the faces are a subset
+    /// of all `n`. Where the local maximum is not positive, all faces are searched.
     pub(crate) fn slack_near(&self, position: Vector, time: f64, face: usize) -> Slack {
         let (faces, count) = (&self.shared.faces, self.shared.faces.len());
         if !(time >= 0.0) || face >= count {
@@ -234,7 +242,7 @@ impl PolytopeObstacle {
                     (false, k) => k - 1,
                 };
                 let there = faces[next].slack(position, time);
-                // a NaN is not greater, and all faces are asked then
+                // a NaN is not greater and leads to the search of all faces
                 if !(there > value) {
                     break;
                 }
@@ -247,9 +255,10 @@ impl PolytopeObstacle {
         self.slack(position, time)
     }
 
-    /// True when `(position, time)` is in the closed body. A NaN is inside; a time before 0 is outside.
+    /// True when `(position, time)` is in the closed body. A NaN is inside; a time before 0 is
+    /// outside.
     pub fn contains(&self, position: Vector, time: f64) -> bool {
-        // both negated on purpose: what is not known to be clear is not
+        // both negated so that a NaN is inside
         !(time < 0.0) && !(self.slack(position, time).value > 0.0)
     }
 }
@@ -274,7 +283,7 @@ impl SpaceTimeObstacle for PolytopeObstacle {
             distance: slack.value,
             normal: self.shared.faces[slack.face].normal,
         };
-        // negated on purpose: a NaN is handed on
+        // negated so that a NaN is returned
         if !(slack.value > 0.0) {
             return inside;
         }
@@ -314,13 +323,13 @@ impl SpaceTimeObstacle for PolytopeObstacle {
         polytope_alpha(&self.shared.faces, &self.shared.spreads, position, time)
     }
 
-    /// In closed form on a line, O((n + m)²) at worst; on an arc by bisection over exact contacts, to
+    /// Closed form on a line, O((n + m)²) at worst. On an arc bisection over exact contacts, to
     /// [`crate::tolerance::RISK`].
     fn peak_risk(&self, segment: &Segment) -> PeakRisk {
         if segment.is_valid() && !segment.is_arc() {
             polytope_peak(&self.shared.faces, &self.shared.spreads, &Line::of(segment))
         } else {
-            // contact asks the faces alone
+            // contact depends on the faces alone
             let mut level = self.clone();
             peak_by_bisection(segment.start_time, |risk| {
                 let alpha = level_of(risk);
@@ -354,7 +363,7 @@ impl SpaceTimeObstacle for PolytopeObstacle {
         polytope_approach(self, position, velocity, horizon)
     }
 
-    /// By the faces, O(n + m); [`PolytopeObstacle::velocity_obstacle`] is the region.
+    /// By the faces, O(n + m); [`PolytopeObstacle::velocity_obstacle`] gives the region.
     fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool {
         crate::obstacle::closest_approach::usable_horizon(position, velocity, horizon).is_none_or(
             |horizon| contact::clip(self, position, velocity, 0.0, horizon, 0.0).is_some(),
@@ -387,7 +396,7 @@ fn moving_vertices(
     vertices
 }
 
-/// The support of a set in directions that go around counter-clockwise.
+/// Supports of a set in directions sorted counter-clockwise.
 fn supports<'a>(
     set: &'a ConvexPolygon,
     directions: &'a [Vector],
@@ -396,8 +405,10 @@ fn supports<'a>(
     both.map(|(vertex, along)| along.dot(&set.vertices()[vertex]))
 }
 
-/// The vertices farthest in directions that go around counter-clockwise. Of a set with many vertices each search goes on from the last
-/// one, as the vertices go around, too.
+/// Indices of the farthest vertices in directions sorted counter-clockwise.
+///
+/// For a set with many vertices each search starts at the last result, because the vertices are
+/// sorted likewise.
 fn farthest<'a>(
     set: &'a ConvexPolygon,
     directions: &'a [Vector],
@@ -411,7 +422,7 @@ fn farthest<'a>(
             _ => (1..points.len()).fold(0, |best, k| if further(best, k) { k } else { best }),
         };
         for _ in 0..points.len() {
-            // a step ahead may be a tie by rounding
+            // one step may be a tie by rounding
             let ahead = [1, 2].map(|step| (best + step) % points.len());
             match ahead.into_iter().find(|next| further(best, *next)) {
                 Some(next) => best = next,

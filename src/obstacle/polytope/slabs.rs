@@ -1,4 +1,5 @@
-//! Velocity sets that change with time: one polytope after another, docs/theory.md section 10 (ii).
+//! Obstacles whose velocity set changes with time: a sequence of polytopes, docs/theory.md section
+//! 10 (ii).
 
 use std::sync::{Arc, OnceLock};
 
@@ -12,35 +13,35 @@ use crate::target::VelocitySpell;
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
-/// Why velocity sets do not follow one another.
+/// Why velocity sets do not form a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SlabError {
-    /// No velocity set at all.
+    /// No velocity set.
     #[error("no velocity sets; at least one is needed")]
     Empty,
-    /// An end that is not after the one before.
+    /// An end that is not after the previous one.
     #[error(
         "velocity set {index} ends at {found} s; it must end after {after} s, where it starts, and only the last may have no end"
     )]
     NotIncreasing {
-        /// Which set, from 0.
+        /// Index of the set, from 0.
         index: usize,
         /// Its end, seconds.
         found: f64,
-        /// The least that it may be, exclusive, seconds.
+        /// Exclusive lower bound of the end, seconds.
         after: f64,
     },
 }
 
-/// One stretch of time with one set of velocities.
+/// A time interval with one velocity set.
 #[derive(Debug, Clone)]
 pub struct Slab {
     start: f64,
     end: f64,
     obstacle: PolytopeObstacle,
-    /// Found when alpha is first asked for.
+    /// Computed when alpha is first asked for.
     faces: OnceLock<Vec<SlabFace>>,
-    /// Where the target that keeps the centroids is at the start, from where it was, metres.
+    /// Displacement of the target with the central velocities until the slab's start, metres.
     nominal: Vector,
 }
 
@@ -55,31 +56,30 @@ impl Slab {
         self.end
     }
 
-    /// The convex body of this slab: its initial set is the section at the slab's start, and its time counts
-    /// from there.
+    /// The convex body of this slab: its initial set is the section at the slab's start, its clock
+    /// starts there.
     pub fn obstacle(&self) -> &PolytopeObstacle {
         &self.obstacle
     }
 }
 
-/// What alpha moves of one face of a slab.
+/// Dependence of one face of a slab on alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct SlabFace {
     normal: Vector,
     /// `h_O0(n)`, metres.
     initial_support: f64,
-    /// `sum of duration (h_V(n) - n . v)` of the slabs before, metres.
+    /// `sum of duration (h_V(n) - n . v)` over the previous slabs, metres.
     spread_before: f64,
     /// `h_V(n) - n . v` of this slab, m/s.
     spread_rate: f64,
 }
 
-/// Every position that a target may reach whose velocity is in `V_k` from `t_k` to `t_k+1`:
-/// `O_t = O_0 ⊕ sum of (t_j+1 - t_j) V_j ⊕ (t - t_k) V_k`. Exact. Every section and every slab is convex; the whole
-/// is not when the sets grow, so everything is asked of slab by slab. Faces per slab: those of `O_0` and of
-/// all sets so far.
+/// Every position that a target may reach whose velocity is in `V_k` from `t_k` to `t_k+1`. Exact.
 ///
-/// # Examples
+/// `O_t = O_0 ⊕ sum of (t_j+1 - t_j) V_j ⊕ (t - t_k) V_k`. Sections and slabs are convex. The whole
+/// is not where the sets grow, so every query goes slab by slab. A slab has the faces of `O_0` and
+/// of all sets so far.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -87,13 +87,17 @@ struct SlabFace {
 /// use searoom::obstacle::SlabObstacle;
 /// use searoom::target::VelocitySpell;
 ///
-/// let heading_north = |spread: f64| ConvexPolygon::hull(&[(-spread, 4.0), (spread, 4.0), (0.0, 6.0)].map(|(x, y)| Vector::new(x, y)));
-/// // little is unknown of her for a minute, more from then on
-/// let spells = vec![
+/// let heading_north = |spread: f64| {
+///     let corners = [(-spread, 4.0), (spread, 4.0), (0.0, 6.0)];
+///     ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))
+/// };
+/// // little uncertainty for a minute, more from then on
+/// let velocity_sets = vec![
 ///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
 ///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
 /// ];
-/// let target = SlabObstacle::new("ferry", ConvexPolygon::point(Vector::zeros()), spells).expect("in order");
+/// let start = ConvexPolygon::point(Vector::zeros());
+/// let target = SlabObstacle::new("ferry", start, velocity_sets).expect("in order");
 /// let beside = |time| target.section(time).support(Vector::new(1.0, 0.0));
 /// assert!((beside(60.0) - 6.0).abs() < 1e-6);
 /// assert!((beside(90.0) - 66.0).abs() < 1e-6);
@@ -104,23 +108,23 @@ pub struct SlabObstacle {
     shared: Arc<Shared>,
 }
 
-/// One for all clones.
+/// Shared by all clones.
 #[derive(Debug)]
 struct Shared {
     name: String,
     initial: ConvexPolygon,
-    spells: Vec<VelocitySpell>,
+    velocity_sets: Vec<VelocitySpell>,
     slabs: Vec<Slab>,
 }
 
 impl PartialEq for SlabObstacle {
     fn eq(&self, other: &Self) -> bool {
-        // all else follows
+        // everything else follows from these
         let key = |o: &Self| {
             (
                 o.name().to_owned(),
                 o.initial().clone(),
-                o.spells().to_vec(),
+                o.velocity_sets().to_vec(),
             )
         };
         key(self) == key(other)
@@ -128,19 +132,19 @@ impl PartialEq for SlabObstacle {
 }
 
 impl SlabObstacle {
-    /// From the set at t = 0, metres, and the velocity sets in order of time. The last one stays in force for
-    /// ever, whatever its end.
+    /// From the set at t = 0, metres, and the velocity sets in order of time. The last set has no
+    /// end, whatever its `until`.
     pub fn new(
         name: impl Into<String>,
         initial: ConvexPolygon,
-        spells: Vec<VelocitySpell>,
+        velocity_sets: Vec<VelocitySpell>,
     ) -> Result<Self, SlabError> {
-        if spells.is_empty() {
+        if velocity_sets.is_empty() {
             return Err(SlabError::Empty);
         }
         let mut after = 0.0;
-        for (index, spell) in spells[..spells.len() - 1].iter().enumerate() {
-            let found = spell.until;
+        for (index, set) in velocity_sets[..velocity_sets.len() - 1].iter().enumerate() {
+            let found = set.until;
             if !(found > after && found.is_finite()) {
                 return Err(SlabError::NotIncreasing {
                     index,
@@ -150,20 +154,24 @@ impl SlabObstacle {
             }
             after = found;
         }
-        Ok(Self::from_spells(name.into(), initial, spells))
+        Ok(Self::from_sequence(name.into(), initial, velocity_sets))
     }
 
-    fn from_spells(name: String, initial: ConvexPolygon, spells: Vec<VelocitySpell>) -> Self {
-        let mut slabs: Vec<Slab> = Vec::with_capacity(spells.len());
+    fn from_sequence(
+        name: String,
+        initial: ConvexPolygon,
+        velocity_sets: Vec<VelocitySpell>,
+    ) -> Self {
+        let mut slabs: Vec<Slab> = Vec::with_capacity(velocity_sets.len());
         let (mut start, mut section, mut nominal) = (0.0, initial.clone(), Vector::zeros());
-        for (index, spell) in spells.iter().enumerate() {
-            let end = if index + 1 == spells.len() {
+        for (index, set) in velocity_sets.iter().enumerate() {
+            let end = if index + 1 == velocity_sets.len() {
                 f64::INFINITY
             } else {
-                spell.until
+                set.until
             };
-            let obstacle = PolytopeObstacle::new(name.clone(), section, spell.velocities.clone());
-            let centroid = spell.velocities.centroid();
+            let obstacle = PolytopeObstacle::new(name.clone(), section, set.velocities.clone());
+            let centroid = set.velocities.centroid();
             section = if end.is_finite() {
                 obstacle.section(end - start)
             } else {
@@ -185,13 +193,13 @@ impl SlabObstacle {
             shared: Arc::new(Shared {
                 name,
                 initial,
-                spells,
+                velocity_sets,
                 slabs,
             }),
         }
     }
 
-    /// What alpha moves of each face of a slab. O(faces of the slab x slabs before).
+    /// Dependence of each face of a slab on alpha. O(faces of the slab × previous slabs).
     fn faces_of(&self, index: usize) -> Vec<SlabFace> {
         let past: Vec<(f64, &ConvexPolygon, Vector)> = (self.slabs()[..index].iter())
             .map(|slab| (slab.end - slab.start, slab.obstacle.velocity()))
@@ -211,22 +219,22 @@ impl SlabObstacle {
         obstacle.faces().iter().map(of).collect()
     }
 
-    /// The same set as a polytope whose velocities never change: one slab.
+    /// A polytope as a single slab.
     pub fn unchanging(polytope: &PolytopeObstacle) -> Self {
-        let spell = VelocitySpell {
+        let set = VelocitySpell {
             until: f64::INFINITY,
             velocities: polytope.velocity().clone(),
         };
         let (name, initial) = (polytope.name().to_owned(), polytope.initial().clone());
-        Self::from_spells(name, initial, vec![spell])
+        Self::from_sequence(name, initial, vec![set])
     }
 
-    /// The same velocity sets with another set at t = 0, metres.
+    /// These velocity sets with another set at t = 0, metres.
     pub fn with_initial(&self, initial: ConvexPolygon) -> Self {
-        Self::from_spells(
+        Self::from_sequence(
             self.shared.name.clone(),
             initial,
-            self.shared.spells.clone(),
+            self.shared.velocity_sets.clone(),
         )
     }
 
@@ -236,8 +244,8 @@ impl SlabObstacle {
     }
 
     /// The velocity sets in order of time, m/s.
-    pub fn spells(&self) -> &[VelocitySpell] {
-        &self.shared.spells
+    pub fn velocity_sets(&self) -> &[VelocitySpell] {
+        &self.shared.velocity_sets
     }
 
     /// The slabs in order of time; the first starts at 0, the last has no end.
@@ -251,7 +259,7 @@ impl SlabObstacle {
         slab.obstacle.section(time - slab.start)
     }
 
-    /// The slab in force at `time`; before 0, and for a NaN, the first.
+    /// Index of the slab at `time`; the first one before 0 and for a NaN.
     fn slab_at(&self, time: f64) -> &Slab {
         &self.slabs()[self.index_at(time)]
     }
@@ -261,7 +269,7 @@ impl SlabObstacle {
         after.min(self.slabs().len() - 1)
     }
 
-    /// The slabs that a time span meets, each with the part of the span.
+    /// The slabs that a time interval meets, each with its part of the interval.
     fn slabs_within(&self, from: f64, to: f64) -> impl Iterator<Item = (&Slab, f64, f64)> {
         self.shared
             .slabs
@@ -302,7 +310,7 @@ impl SpaceTimeObstacle for SlabObstacle {
                     start_time: part.start_time - slab.start,
                     ..part
                 };
-                // to and from the slab's own time costs a digit
+                // conversion to and from the slab's own time costs a digit
                 slab.obstacle
                     .first_contact(&local, depth)
                     .map(|t| (t + slab.start).max(part.start_time).min(part.end_time()))
@@ -344,7 +352,7 @@ impl SpaceTimeObstacle for SlabObstacle {
         })
     }
 
-    /// The same, each level made once for all segments.
+    /// [`Self::peak_risk`] with each level set built once for all segments.
     fn peak_risk_along(&self, trajectory: &Trajectory) -> PeakRisk {
         if trajectory.steered().is_some() {
             return largest_risk_of_parts(self, trajectory);
@@ -362,22 +370,22 @@ impl SpaceTimeObstacle for SlabObstacle {
         if alpha == 1.0 {
             return self.clone();
         }
-        let spells = self
-            .spells()
+        let velocity_sets = self
+            .velocity_sets()
             .iter()
-            .map(|spell| VelocitySpell {
-                until: spell.until,
-                velocities: scaled_velocities(&spell.velocities, alpha),
+            .map(|set| VelocitySpell {
+                until: set.until,
+                velocities: scaled_velocities(&set.velocities, alpha),
             })
             .collect();
-        Self::from_spells(
+        Self::from_sequence(
             self.shared.name.clone(),
             self.shared.initial.clone(),
-            spells,
+            velocity_sets,
         )
     }
 
-    /// The least over the slabs, each in closed form; the earliest of those that tie.
+    /// The minimum over the slabs, each in closed form; the earliest of equal ones.
     fn closest_approach(
         &self,
         position: Vector,
@@ -402,7 +410,7 @@ impl SpaceTimeObstacle for SlabObstacle {
         best.unwrap_or(ClosestApproach::contact(0.0))
     }
 
-    /// Any slab is met within the horizon. O(faces).
+    /// True where any slab is met within the horizon. O(faces).
     fn in_velocity_obstacle(&self, position: Vector, velocity: Vector, horizon: f64) -> bool {
         let Some(horizon) = usable_horizon(position, velocity, horizon) else {
             return true;

@@ -47,7 +47,7 @@ fn random_set(rng: &mut ChaCha8Rng, scale: f64) -> ConvexPolygon {
     ConvexPolygon::hull(&points).expect("finite")
 }
 
-/// Definition: the hull of all vertex sums, docs/theory.md section 1.
+/// Reference: the hull of all vertex sums, docs/theory.md section 1.
 fn hull_of_sums(o: &PolytopeObstacle, t: f64) -> ConvexPolygon {
     let points: Vec<Vector> = o
         .initial()
@@ -121,7 +121,7 @@ fn degenerate_sets_block_exactly_their_points() {
     assert!(line.contains(at(f64::NAN, 0.0), 1.0) && line.contains(at(1e9, 0.0), f64::NAN));
 }
 
-/// Sought around the set, the faces and vertices of a set of many vertices are those that a look at all of them finds.
+/// Local searches in a set of many vertices find the faces and vertices that a search of all finds.
 #[test]
 fn a_set_of_many_vertices_has_the_supports_of_its_polygons() {
     let round = |count: u32, size: f64| {

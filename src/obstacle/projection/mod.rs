@@ -1,12 +1,13 @@
-//! A space-time obstacle seen along a straight path: paper eqs. (27)-(29), docs/theory.md section 6.
+//! A space-time obstacle seen along a straight path: paper eqs. (27)-(29), docs/theory.md section
+//! 6.
 
 use crate::frame::Vector;
 use crate::obstacle::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle};
 
-/// Metres. No point of the polygon that stands for an ellipsoid is farther than this from the ellipse at its time.
+/// Metres. Largest distance of the polygon around an ellipsoid from the ellipse at any time.
 pub const OUTER_EXCESS_M: f64 = 0.05;
 
-/// Tangent planes that one leg adds at most to those of an ellipsoid; some tens are usual.
+/// Bound on the tangent planes that one leg adds to an ellipsoid; some tens are usual.
 const MAX_CUTS: usize = 200;
 
 /// A point of the path-time diagram.
@@ -36,15 +37,16 @@ impl Track {
     }
 }
 
-/// A face of the space-time body cut by a track: `per_metre s - per_second t <= reach`. Its slack is the distance in
-/// metres, in the plane, of `x(s)` from the face at `t`.
+/// A face of the space-time body cut by a track: `per_metre s - per_second t <= reach`.
+///
+/// Its slack is the distance of `x(s)` from the face at `t`, in metres in the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathTimeFace {
     /// `n . direction`, at most 1.
     pub per_metre: f64,
     /// `h_V(n)`, m/s.
     pub per_second: f64,
-    /// `h_O0(n) - n . start + h_V(n) t_0`, metres; `t_0` is when the clock of the set starts.
+    /// `h_O0(n) - n . start + h_V(n) t_0`, metres; the clock of the set starts at `t_0`.
     pub reach: f64,
 }
 
@@ -65,10 +67,10 @@ impl PathTimeFace {
     }
 }
 
-/// `{(s, t) : x(s) in O_t}` along one track and within some time: a convex polygon, paper eq. (29).
+/// `{(s, t) : x(s) in O_t}` along one track in a time interval: a convex polygon, paper eq. (29).
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathTimeObstacle {
-    /// Those that bound the polygon; along the track the others follow from them.
+    /// The faces that bound the polygon; the others are redundant along the track.
     faces: Vec<PathTimeFace>,
     corners: Vec<PathTime>,
     low: PathTime,
@@ -76,10 +78,12 @@ pub struct PathTimeObstacle {
 }
 
 impl PathTimeObstacle {
-    /// The set whose faces are given, by a clock that starts at `clock` seconds, in force from `times[0]` to `times[1]`
-    /// seconds. The rectangle of track and times is clipped face by face (Sutherland & Hodgman,
-    /// doi:10.1145/360767.360802), O(faces x corners). `None` where no point of it is as deep as `depth` metres inside
-    /// every face, or where a number is none.
+    /// The part of a track inside all faces, whose clock starts at `clock` seconds, from `times[0]`
+    /// to `times[1]` seconds.
+    ///
+    /// Clips the rectangle of track and times face by face (Sutherland & Hodgman,
+    /// doi:10.1145/360767.360802), O(faces × corners). `None` where no point is `depth` metres
+    /// inside every face, or where a number is NaN.
     pub fn new(
         faces: &[HalfSpace],
         clock: f64,
@@ -94,7 +98,8 @@ impl PathTimeObstacle {
         used.sort_unstable();
         used.dedup();
         let faces: Vec<PathTimeFace> = used.into_iter().map(|i| polygon.faces[i]).collect();
-        // of a convex set every side is at most three times as far from some point as from the centroid
+        // in a convex set the distance from a side is nowhere more than three times that of the
+        // centroid
         let middle = centroid(&corners);
         let deep = faces.iter().all(|f| f.slack(middle) <= -depth / 3.0);
         let least = |of: fn(&PathTime) -> f64| corners.iter().map(of).fold(f64::INFINITY, f64::min);
@@ -116,7 +121,7 @@ impl PathTimeObstacle {
         })
     }
 
-    /// The corners in order around the polygon; several may fall together.
+    /// The corners in order around the polygon; some may coincide.
     pub fn corners(&self) -> &[PathTime] {
         &self.corners
     }
@@ -126,7 +131,8 @@ impl PathTimeObstacle {
         self.low
     }
 
-    /// Metres that a point of the track is outside the set; where negative, minus the least distance to a face.
+    /// Signed distance of a point of the track from the set: outside, metres; inside, minus the
+    /// least distance to a face.
     #[cfg(test)]
     pub fn slack(&self, at: PathTime) -> f64 {
         self.faces
@@ -135,10 +141,11 @@ impl PathTimeObstacle {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The part of the line from `from` to `to`, both on the track, that is deeper than `depth` metres inside every face
-    /// and within the time of the set: shares of the line from 0 to 1. `None` where that is no more than an
-    /// instant; what is not a number is inside. A wait at the end of the track is inside where its place is: the ends
-    /// are no faces. O(faces).
+    /// The part of the line from `from` to `to`, as parameters from 0 to 1, that is deeper than
+    /// `depth` metres inside every face and within the set's time interval. O(faces).
+    ///
+    /// Both points are on the track. `None` where the part is at most an instant; a NaN is inside.
+    /// The ends of the track are not faces: a wait at an end is inside where its position is.
     pub fn inside(&self, from: PathTime, to: PathTime, depth: f64) -> Option<[f64; 2]> {
         if to.time <= self.low.time
             || from.time >= self.high.time
@@ -168,15 +175,17 @@ impl PathTimeObstacle {
                 leave = leave.min(share);
             }
         }
-        // negated on purpose: a NaN is inside
+        // negated so that a NaN is inside
         (!(enter >= leave)).then_some([enter, leave])
     }
 }
 
-/// The faces of a polytope that contains an ellipsoid and exceeds it along each of the tracks by no more than
-/// [`OUTER_EXCESS_M`], as long as `MAX_CUTS` tangent planes suffice. Each is a tangent plane of the space-time body, which is convex:
-/// the corner of a track's polygon that is farthest outside is cut off by the plane of its nearest point. At a fixed time the distance to a convex
-/// set is convex in place and time, so no point of the polygon is farther than a corner.
+/// Faces of an outer polytope of an ellipsoid that exceeds it along each track by at most
+/// [`OUTER_EXCESS_M`], as long as `MAX_CUTS` tangent planes suffice.
+///
+/// Each face is a tangent plane of the convex space-time body. It cuts off the corner of a track's
+/// polygon that is farthest outside, at the corner's nearest point. The distance to a convex set is
+/// convex in position and time, so the farthest point of a polygon is a corner.
 pub fn outer_faces_along(
     obstacle: &EllipsoidObstacle,
     tracks: &[Track],
@@ -201,7 +210,7 @@ pub fn outer_faces_along(
             let Some((outside, time)) = farthest else {
                 break;
             };
-            // a NaN adds no plane: fewer planes are an outer set, too
+            // a NaN adds no plane: fewer planes are also an outer set
             if !(outside.distance > OUTER_EXCESS_M) {
                 break;
             }
@@ -216,7 +225,7 @@ pub fn outer_faces_along(
     faces
 }
 
-/// A corner and the face that the side from it to the next lies on; `None` on the rectangle.
+/// A corner, and the face of the side from it to the next; `None` on the rectangle.
 #[derive(Debug, Clone, Copy)]
 struct Side {
     corner: PathTime,
@@ -283,7 +292,7 @@ impl Clipped {
     }
 }
 
-/// The area centroid; of a polygon without area the mean of its corners.
+/// The area centroid; the mean of the corners for a polygon without area.
 fn centroid(corners: &[PathTime]) -> PathTime {
     let first = corners[0];
     let (mut area, mut distance, mut time) = (0.0, 0.0, 0.0);
@@ -308,8 +317,10 @@ fn centroid(corners: &[PathTime]) -> PathTime {
     }
 }
 
-/// The corners of `{(s, t) : start + s direction in O_t}` within `0 <= s <= length`, `0 <= t <= horizon`,
-/// in order around it; empty where they do not meet. `direction` is a unit vector. O((n + m)²).
+/// The corners of `{(s, t) : start + s direction in O_t}` within `0 <= s <= length`, `0 <= t <=
+/// horizon`, in order. O((n + m)²).
+///
+/// Empty where they do not meet. `direction` is a unit vector.
 pub fn along_path(
     obstacle: &PolytopeObstacle,
     start: Vector,
@@ -325,8 +336,10 @@ pub fn along_path(
     corners(obstacle.faces(), &track, 0.0, horizon)
 }
 
-/// Paper eq. (29) with any `t_0`: the corners of `{(s, t) : x(s) in O_(t_0 + t)}` along a track, `0 <= t <= duration` seconds after
-/// `t_0`, in order around it; empty where they do not meet. O((n + m)²).
+/// The corners of `{(s, t) : x(s) in O_(t_0 + t)}` along a track, `0 <= t <= duration`, in order:
+/// paper eq. (29) for any `t_0`. O((n + m)²).
+///
+/// `t` is in seconds after `t_0`. Empty where they do not meet.
 ///
 /// ```
 /// use searoom::frame::Vector;
@@ -334,11 +347,14 @@ pub fn along_path(
 /// use searoom::obstacle::{PolytopeObstacle, Track, along_track_from};
 ///
 /// let square = |half: f64| {
-///     ConvexPolygon::hull(&[(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Vector::new(x, y)))
+///     let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+///     ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))
 /// };
-/// let target = PolytopeObstacle::new("anchored", square(10.0)?, ConvexPolygon::point(Vector::new(1.0, 0.0)));
-/// // a path to the north, 100 m east: the target is on it from 90 to 110 s, and own ship starts at 60 s
-/// let track = Track { start: Vector::new(100.0, -50.0), direction: Vector::new(0.0, 1.0), length: 100.0 };
+/// let velocity = ConvexPolygon::point(Vector::new(1.0, 0.0));
+/// let target = PolytopeObstacle::new("drifting", square(10.0)?, velocity);
+/// // a path to the north, 100 m east; the target is on it from 90 to 110 s, own ship starts at 60 s
+/// let start = Vector::new(100.0, -50.0);
+/// let track = Track { start, direction: Vector::new(0.0, 1.0), length: 100.0 };
 /// let corners = along_track_from(&target, &track, 60.0, 200.0);
 /// let first = corners.iter().map(|c| c.time).fold(f64::INFINITY, f64::min);
 /// assert!((first - 30.0).abs() < 1e-9, "{first} s after the start");
@@ -353,8 +369,10 @@ pub fn along_track_from(
     corners(obstacle.faces(), track, start_time, duration)
 }
 
-/// [`along_track_from`] of an ellipsoid, whose projection is convex with a curved edge: a polygon around it. At no time is a point
-/// of it farther than [`OUTER_EXCESS_M`] from the ellipse at that time.
+/// [`along_track_from`] for an ellipsoid: an outer polygon of its projection, which is convex with
+/// a curved boundary.
+///
+/// No point of it is farther than [`OUTER_EXCESS_M`] from the ellipse at its time.
 pub fn ellipsoid_along_track_from(
     obstacle: &EllipsoidObstacle,
     track: &Track,

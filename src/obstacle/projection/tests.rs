@@ -100,7 +100,7 @@ fn the_polygons_of_an_ellipsoid_contain_it_and_hardly_more() {
     assert!(met > 1000 && most < 2 * MAX_CUTS, "{met} {most}");
 }
 
-/// A line is inside as long as its points are.
+/// A line is inside exactly while its points are.
 #[test]
 fn the_part_of_a_line_inside_is_that_of_its_points() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(53);
@@ -120,7 +120,7 @@ fn the_part_of_a_line_inside_is_that_of_its_points() {
         };
         let times = [10.0, 70.0];
         let seen = PathTimeObstacle::new(o.faces(), 10.0, &track, times, 1e-7);
-        // waits at the ends of the track among them
+        // including waits at the ends of the track
         let s = match case % 4 {
             0 => [0.0, 0.0],
             1 => [200.0, 200.0],
@@ -149,7 +149,7 @@ fn the_part_of_a_line_inside_is_that_of_its_points() {
     assert!(met > 200, "{met}");
 }
 
-/// Paper eq. (29): the time of the diagram is that since own ship starts on the path.
+/// Paper eq. (29): the diagram's time starts when own ship enters the path.
 #[test]
 fn a_later_start_sees_what_is_there_later() {
     let square = |half: f64, x: f64| {

@@ -1,4 +1,4 @@
-//! Land around a path, and the plan from it.
+//! Land around a path, and the resulting plan.
 
 use super::*;
 use crate::geometry::Polygon;
@@ -6,8 +6,8 @@ use crate::map::Map;
 use crate::scenario::Land;
 use std::sync::Arc;
 
-/// A gap in a wall across the path, half as wide as told. Own hull, 30 m by 8 m, would keep its margin of 10 m in one of 14 m; on any
-/// heading it needs 25.6 m.
+/// A gap in a wall across the path with this half-width. Own hull, 30 m by 8 m, with its margin of
+/// 10 m needs 14 m on course, and 25.6 m at any heading.
 #[test]
 fn a_gap_that_only_the_whole_disc_closes_is_closed() {
     for (half, open) in [

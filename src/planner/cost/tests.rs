@@ -45,7 +45,7 @@ fn matches_a_dense_sum_on_lines_arcs_corners_and_clamped_ends() {
 /// Arcs over corners and beyond both ends. Of many arcs, the test takes the one whose cost in the
 /// search is most underestimated.
 #[test]
-fn what_is_told_of_a_plan_is_a_dense_sum_where_that_of_a_search_is_not() {
+fn reported_costs_equal_a_dense_sum() {
     let points = [(0.0, 0.0), (500.0, 0.0), (700.0, 400.0), (660.0, 500.0)];
     let desired = DesiredTrajectory::new(&points.map(|(x, y)| Vector::new(x, y)), &[5.0, 4.0, 2.0])
         .expect("valid");
@@ -104,20 +104,20 @@ fn one_leg_in_closed_form_is_the_sum_by_halves() {
             turn_rate: [0.0, 0.05, -0.06, 0.003, -1e-7][i as usize % 5],
         };
         let q = [0.5, 25.0, 400.0][i as usize % 3];
-        let stretch = Stretch {
+        let integrand = Integrand {
             near: None,
             desired: &desired,
             mover: Mover::new(&segment),
             time_weight: q,
-            bent: segment.is_arc(),
+            is_arc: segment.is_arc(),
         };
         let pieces = 64;
         let duration = segment.duration / f64::from(pieces);
         let halved: f64 = (0..pieces)
             .map(|k| segment.start_time + duration * f64::from(k))
-            .map(|from| stretch.integral(from, duration, 25))
+            .map(|from| integrand.integral(from, duration, 25))
             .sum();
-        let Some(found) = Alone::new(&desired.legs()[0], &segment, q).integral() else {
+        let Some(found) = SingleLeg::new(&desired.legs()[0], &segment, q).integral() else {
             continue;
         };
         closed += 1;
@@ -192,7 +192,7 @@ fn the_desired_motion_costs_nothing_and_a_constant_lag_its_square() {
 
 /// Along a winding path, the legs that are left out are never nearest.
 #[test]
-fn of_many_legs_those_left_out_are_not_the_nearest() {
+fn legs_left_out_are_never_nearest() {
     let place = |k: usize| {
         let k = k as f64;
         Vector::new(60.0 * (0.7 * k).sin() + 9.0 * k, 60.0 * (1.1 * k).cos())
@@ -208,18 +208,18 @@ fn of_many_legs_those_left_out_are_not_the_nearest() {
             speed: 4.0,
             turn_rate: 0.04,
         };
-        let pieces = (segment.turn_rate * segment.duration / SEARCHED.arc).ceil();
-        let stretch = Stretch {
+        let pieces = (segment.turn_rate * segment.duration / SEARCH_SUBDIVISION.arc).ceil();
+        let integrand = Integrand {
             desired: &desired,
             near: None,
             mover: Mover::new(&segment),
             time_weight: 16.0,
-            bent: true,
+            is_arc: true,
         };
         let duration = segment.duration / pieces;
         let all: f64 = (0..pieces as usize)
             .map(|k| segment.start_time + duration * k as f64)
-            .map(|from| stretch.integral(from, duration, MAX_HALVINGS))
+            .map(|from| integrand.integral(from, duration, MAX_HALVINGS))
             .sum();
         let found = space_time_error(&desired, &segment, 16.0) * desired.duration();
         assert!((found - all).abs() <= 1e-12 * all, "{found} {all}");

@@ -9,23 +9,23 @@ use crate::trajectory::Cubic;
 use crate::vessel::Manoeuvring;
 
 /// Largest number of rounds that add rows between the nodes; one or two are usual.
-const ROUNDS: usize = 12;
+const MAX_ROUNDS: usize = 12;
 
 /// Initial barrier parameter after rows were added.
 const WARM_BARRIER: f64 = 1e-4;
 
 /// Solver tolerance while rows are still being added.
-const LOOSE: f64 = 1e-3;
+const LOOSE_TOLERANCE: f64 = 1e-3;
 
 /// Largest constraint violation explained by the solver's tolerance, as a fraction of the set's
 /// level.
-const SHORT: f64 = 1e-4;
+const SOLVER_VIOLATION: f64 = 1e-4;
 
 /// Factor by which the penalty is raised, once.
-const DEARER: f64 = 10.0;
+const PENALTY_FACTOR: f64 = 10.0;
 
 /// Rows within this fraction of an interval from one another are the same row.
-const SAME: f64 = 1e-4;
+const SAME_FRACTION: f64 = 1e-4;
 
 /// Point of a motion inside a set.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +66,7 @@ impl Attempt {
     /// True where the solver made no progress. Exact second derivatives alone may succeed:
     /// Gauss–Newton steps are poor where the state weights are small relative to the force weights.
     pub fn is_lost(&self) -> bool {
-        got_nowhere(self.report.status) || self.priced_out
+        failed(self.report.status) || self.priced_out
     }
 
     /// True when solved and clear.
@@ -95,12 +95,12 @@ pub fn attempt<V: Manoeuvring>(
         .collect();
     let iterate = Iterate::guess(states, forces);
     let work = Workspace::new(&problem);
-    go_on(task, problem, iterate, work, settings, keep_going)
+    resume(task, problem, iterate, work, settings, keep_going)
 }
 
 /// Solves from an iterate, with or without multipliers. The problem may already have more rows than
 /// the base ones.
-pub(super) fn go_on<V: Manoeuvring>(
+pub(super) fn resume<V: Manoeuvring>(
     task: &Task<V>,
     mut problem: Transcription<V>,
     mut iterate: Iterate<6, 3>,
@@ -112,7 +112,7 @@ pub(super) fn go_on<V: Manoeuvring>(
     let mut settings = *settings;
     // the multipliers include those of rows added earlier
     if iterate.multipliers.is_empty() {
-        settings.tolerance = tight.max(LOOSE);
+        settings.tolerance = tight.max(LOOSE_TOLERANCE);
     }
     let mut report = solve(&problem, &mut iterate, &mut work, &settings, keep_going);
     let (mut iterations, mut rounds, mut raised) = (report.iterations, 0, false);
@@ -120,14 +120,14 @@ pub(super) fn go_on<V: Manoeuvring>(
     let mut cheaper: Option<Attempt> = None;
     loop {
         let (deepest, added) = deepest(task, &problem, &iterate);
-        let found = Found {
+        let found = Progress {
             report,
             iterations,
             rounds,
             inside: deepest,
         };
         if let Some(short) = cheaper.take()
-            && got_nowhere(report.status)
+            && failed(report.status)
         {
             return Attempt {
                 iterations,
@@ -136,8 +136,8 @@ pub(super) fn go_on<V: Manoeuvring>(
                 ..short
             };
         }
-        let short = report.shortfall > SHORT.max(settings.tolerance);
-        if report.status != Status::Solved || rounds == ROUNDS || (short && raised) {
+        let short = report.shortfall > SOLVER_VIOLATION.max(settings.tolerance);
+        if report.status != Status::Solved || rounds == MAX_ROUNDS || (short && raised) {
             return found.attempt(&problem, iterate);
         }
         settings.barrier = WARM_BARRIER;
@@ -146,7 +146,7 @@ pub(super) fn go_on<V: Manoeuvring>(
             // does not help
             cheaper = Some(found.attempt(&problem, iterate.clone()));
             raised = true;
-            settings.penalty *= DEARER;
+            settings.penalty *= PENALTY_FACTOR;
             settings.barrier = 1e2 * WARM_BARRIER;
         }
         let fresh = add_rows(task, &mut problem, &mut iterate, &added, &settings);
@@ -167,14 +167,14 @@ pub(super) fn go_on<V: Manoeuvring>(
 
 /// Result of the solves so far.
 #[derive(Debug, Clone, Copy)]
-struct Found {
+struct Progress {
     report: Report,
     iterations: usize,
     rounds: usize,
     inside: Option<Inside>,
 }
 
-impl Found {
+impl Progress {
     fn attempt<V: Manoeuvring>(
         self,
         problem: &Transcription<V>,
@@ -202,13 +202,13 @@ impl Found {
 }
 
 /// True where a solve ended away from any solution.
-fn got_nowhere(status: Status) -> bool {
+fn failed(status: Status) -> bool {
     matches!(status, Status::Iterations | Status::Stalled)
 }
 
 /// Row to be added.
 #[derive(Debug, Clone, Copy)]
-struct Added {
+struct NewRow {
     interval: usize,
     obstacle: usize,
     fraction: f64,
@@ -219,7 +219,7 @@ fn deepest<V: Manoeuvring>(
     task: &Task<V>,
     problem: &Transcription<V>,
     iterate: &Iterate<6, 3>,
-) -> (Option<Inside>, Vec<Added>) {
+) -> (Option<Inside>, Vec<NewRow>) {
     let (mut deepest, mut added) = (None::<Inside>, Vec::new());
     let node = |k: usize| {
         super::task::node(
@@ -234,7 +234,7 @@ fn deepest<V: Manoeuvring>(
         let piece = Cubic::from_nodes(&before, &after);
         for (obstacle, keep) in task.keep_outs.iter().enumerate() {
             for point in low_points(&piece, keep, 1.0) {
-                added.push(Added {
+                added.push(NewRow {
                     interval,
                     obstacle,
                     fraction: point.part,
@@ -259,7 +259,7 @@ fn add_rows<V: Manoeuvring>(
     task: &Task<V>,
     problem: &mut Transcription<V>,
     iterate: &mut Iterate<6, 3>,
-    added: &[Added],
+    added: &[NewRow],
     settings: &Settings,
 ) -> bool {
     let mut fresh = false;
@@ -268,11 +268,11 @@ fn add_rows<V: Manoeuvring>(
         let rows = &mut problem.rows_mut()[interval];
         for new in added.iter().filter(|a| a.interval == interval) {
             let fraction = new.fraction;
-            let known = rows
-                .iter()
-                .any(|r| r.obstacle == new.obstacle && (r.fraction - fraction).abs() < SAME);
+            let known = rows.iter().any(|r| {
+                r.obstacle == new.obstacle && (r.fraction - fraction).abs() < SAME_FRACTION
+            });
             // at the start no state can be changed
-            if known || (interval == 0 && fraction < SAME) {
+            if known || (interval == 0 && fraction < SAME_FRACTION) {
                 continue;
             }
             fresh = true;

@@ -1,6 +1,7 @@
 //! Points between the constrained instants at which a motion is deepest in a set.
 
 use super::keep_out::KeepOut;
+use crate::numerics::GoldenSection;
 use crate::trajectory::Cubic;
 
 /// Least and greatest number of parts in which a piece is sampled.
@@ -71,25 +72,13 @@ pub fn low_points(piece: &Cubic, keep: &KeepOut, below: f64) -> Vec<LowPoint> {
     found
 }
 
-fn least(mut low: f64, mut high: f64, level: &impl Fn(f64) -> f64) -> LowPoint {
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+fn least(low: f64, high: f64, level: &impl Fn(f64) -> f64) -> LowPoint {
     let ends = [(low, level(low)), (high, level(high))];
-    let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut at_left, mut at_right) = (level(left), level(right));
+    let mut search = GoldenSection::new(low, high, level);
     for _ in 0..GOLDEN_STEPS {
-        if at_left < at_right {
-            high = right;
-            (right, at_right) = (left, at_left);
-            left = high - golden * (high - low);
-            at_left = level(left);
-        } else {
-            low = left;
-            (left, at_left) = (right, at_right);
-            right = low + golden * (high - low);
-            at_right = level(right);
-        }
+        search.shorten(level);
     }
-    let (part, level) = [(left, at_left), (right, at_right)]
+    let (part, level) = [search.left, search.right]
         .into_iter()
         .chain(ends)
         .fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });

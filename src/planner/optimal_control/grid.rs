@@ -10,11 +10,11 @@ use crate::trajectory::hermite;
 use crate::vessel::Manoeuvring;
 
 /// Largest number of grids after the first one.
-const REFINEMENTS: usize = 6;
+const MAX_REFINEMENTS: usize = 6;
 
 /// Least and greatest ratio of intervals between two grids.
-const LEAST_FACTOR: f64 = 1.5;
-const MOST_FACTOR: f64 = 4.0;
+const MIN_FACTOR: f64 = 1.5;
+const MAX_FACTOR: f64 = 4.0;
 
 /// Deviations at the end of an interval decrease with this power of its duration.
 const ORDER: f64 = 5.0;
@@ -24,7 +24,7 @@ const REFINED_BARRIER: f64 = 1e-2;
 
 /// Result of the grid refinement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Ended {
+pub(super) enum GridResult {
     /// The grid is fine enough.
     Fine,
     /// The last grid that was tried, or that time allowed, is too coarse.
@@ -40,11 +40,11 @@ pub(super) struct Refined {
     pub intervals: usize,
     /// Largest deviation of the ship at the end of an interval, in its own units.
     pub defect: f64,
-    pub ended: Ended,
+    pub ended: GridResult,
 }
 
 /// Refines the grid of a feasible motion until `exact` follows it to [`tolerance::DEFECT`].
-pub(super) fn brought_to<V: Manoeuvring>(
+pub(super) fn refine_grid<V: Manoeuvring>(
     coarse: &Task<V>,
     found: &Attempt,
     exact: &V,
@@ -56,11 +56,11 @@ pub(super) fn brought_to<V: Manoeuvring>(
     loop {
         let defect = largest_defect(exact, &found.profile, task.step());
         let ended = if !found.is_feasible() {
-            Some(Ended::Lost)
+            Some(GridResult::Lost)
         } else if defect <= tolerance::DEFECT {
-            Some(Ended::Fine)
-        } else if refinements == REFINEMENTS || !keep_going() {
-            Some(Ended::Coarse)
+            Some(GridResult::Fine)
+        } else if refinements == MAX_REFINEMENTS || !keep_going() {
+            Some(GridResult::Coarse)
         } else {
             None
         };
@@ -97,10 +97,10 @@ pub(super) fn brought_to<V: Manoeuvring>(
 /// Number of intervals for which a deviation should be small enough; the greatest one for a NaN.
 fn finer(intervals: usize, defect: f64) -> usize {
     let factor = (defect / tolerance::DEFECT).powf(1.0 / ORDER);
-    let factor = if factor < MOST_FACTOR {
-        factor.max(LEAST_FACTOR)
+    let factor = if factor < MAX_FACTOR {
+        factor.max(MIN_FACTOR)
     } else {
-        MOST_FACTOR
+        MAX_FACTOR
     };
     (intervals as f64 * factor).ceil() as usize
 }

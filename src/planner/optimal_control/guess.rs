@@ -9,10 +9,10 @@ use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 const AMPLITUDES: [f64; 5] = [0.0, -0.135, 0.135, -0.27, 0.27];
 
 /// Number of the worst conflicting sets that are passed on either side, in every combination.
-const SIDED: usize = 4;
+const MAX_SIDED: usize = 4;
 
 /// Clearance from a set as a fraction of its extent.
-const CLEAR: f64 = 0.3;
+const CLEARANCE: f64 = 0.3;
 
 /// Kind of initial guess.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -160,7 +160,7 @@ fn conflicts<V: Manoeuvring>(task: &Task<V>, positions: &[Vector]) -> Vec<Confli
         .filter_map(|keep| conflict(task, positions, keep))
         .collect();
     found.sort_by(|a, b| a.level.total_cmp(&b.level));
-    found.truncate(SIDED);
+    found.truncate(MAX_SIDED);
     found
 }
 
@@ -182,7 +182,7 @@ fn conflict<V: Manoeuvring>(
     let port = to_port(relative.try_normalize(0.0)?);
     let section = keep.set().outer_section(time);
     let lateral = port.dot(&(positions[k] - section.center()));
-    let reach = (1.0 + CLEAR) * section.radius(port);
+    let reach = (1.0 + CLEARANCE) * section.radius(port);
     Some(Conflict {
         time,
         level,

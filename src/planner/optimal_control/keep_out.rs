@@ -43,7 +43,7 @@ impl KeepOut {
             Obstacle::Polytope(o) => (EllipsoidObstacle::outer_of(o), true),
             Obstacle::Slabs(o) => {
                 let velocities: Vec<Vector> = o
-                    .spells()
+                    .velocity_sets()
                     .iter()
                     .flat_map(|s| s.velocities.vertices().iter().copied())
                     .collect();
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_interior_is_widened_and_a_polytope_enclosed() {
+    fn flat_sets_are_widened_and_polytopes_enclosed() {
         let point = ConvexPolygon::point(Vector::new(5.0, 5.0));
         let wall =
             ConvexPolygon::hull(&[Vector::new(0.0, 0.0), Vector::new(0.0, 9.0)]).expect("finite");

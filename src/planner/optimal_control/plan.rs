@@ -7,7 +7,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::attempt::{Attempt, attempt};
-use super::grid::{Ended, Refined, brought_to};
+use super::grid::{GridResult, Refined, refine_grid};
 use super::guess::{Start, family, profile_along};
 use super::keep_out::KeepOut;
 use super::passing::passing_sides;
@@ -30,7 +30,7 @@ const STARTS_SHARE: f64 = 0.6;
 const SPACE_TIME_SHARE: f64 = 0.25;
 
 /// Relative difference of the objective below which two plans are the same.
-const SAME: f64 = 1e-6;
+const SAME_OBJECTIVE: f64 = 1e-6;
 
 /// Outer sets that the planner keeps out of. Ellipsoids are taken unchanged; other sets by the
 /// smallest ellipses around their two sets, at least a millimetre wide.
@@ -68,7 +68,7 @@ struct Planner<'a, V> {
     smooth: V,
     exact: V,
     keep_outs: Vec<KeepOut>,
-    begun: Instant,
+    started: Instant,
 }
 
 impl<'a, V: Manoeuvring> Planner<'a, V> {
@@ -86,16 +86,16 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             smooth,
             exact,
             keep_outs: problem.obstacles.iter().map(KeepOut::outer_of).collect(),
-            begun: Instant::now(),
+            started: Instant::now(),
         }
     }
 
     fn in_time(&self) -> bool {
-        self.begun.elapsed() < self.problem.deadline
+        self.started.elapsed() < self.problem.deadline
     }
 
     fn in_share(&self, share: f64) -> bool {
-        self.begun.elapsed() < self.problem.deadline.mul_f64(share)
+        self.started.elapsed() < self.problem.deadline.mul_f64(share)
     }
 
     fn task(&self, intervals: usize) -> Task<'_, V> {
@@ -150,24 +150,24 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     }
 
     fn find(&self, report: &mut ControlReport) -> Outcome {
-        let mut tried = self.tried(&Settings::default());
+        let mut attempts = self.attempts(&Settings::default());
         let lost =
             |(_, attempt): &(_, Option<Attempt>)| attempt.as_ref().is_none_or(Attempt::is_lost);
-        if tried.iter().all(lost) && self.in_share(STARTS_SHARE) {
-            tried = self.tried(&Settings {
+        if attempts.iter().all(lost) && self.in_share(STARTS_SHARE) {
+            attempts = self.attempts(&Settings {
                 gauss_newton: false,
                 ..Settings::default()
             });
         }
-        let late = tried
+        let late = attempts
             .iter()
             .any(|(report, _)| report.status == Status::OutOfTime);
         let (reports, attempts): (Vec<StartReport>, Vec<Option<Attempt>>) =
-            tried.into_iter().unzip();
+            attempts.into_iter().unzip();
         report.classes = classes(&reports);
         report.starts = reports;
         let attempts: Vec<Attempt> = attempts.into_iter().flatten().collect();
-        match self.finest(&attempts, report) {
+        match self.cheapest_on_fine_grid(&attempts, report) {
             Outcome::Solved(plan) if late || !self.in_time() => Outcome::Deadline(Some(plan)),
             _ if late || !self.in_time() => Outcome::Deadline(None),
             other => other,
@@ -175,7 +175,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     }
 
     /// Results of all initial guesses, in their order.
-    fn tried(&self, settings: &Settings) -> Vec<(StartReport, Option<Attempt>)> {
+    fn attempts(&self, settings: &Settings) -> Vec<(StartReport, Option<Attempt>)> {
         let task = self.task(self.intervals);
         let mut starts: Vec<(Start, Option<Profile>)> = family(&task)
             .into_iter()
@@ -190,16 +190,16 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         starts
             .into_par_iter()
             .filter_map(|(start, guess)| {
-                let tried = self.tried_from(&task, start, guess, settings, &keep_going)?;
-                any_feasible.fetch_or(tried.0.feasible, Ordering::Relaxed);
-                Some(tried)
+                let attempt = self.attempt_from(&task, start, guess, settings, &keep_going)?;
+                any_feasible.fetch_or(attempt.0.feasible, Ordering::Relaxed);
+                Some(attempt)
             })
             .collect()
     }
 
     /// Result of one initial guess. `None` where the space-time planner has no plan; no attempt
     /// after the deadline.
-    fn tried_from(
+    fn attempt_from(
         &self,
         task: &Task<V>,
         start: Start,
@@ -235,7 +235,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
 
     /// Cheapest attempt that can be refined to a fine enough grid; after the deadline, the cheapest
     /// that is on one.
-    fn finest(&self, attempts: &[Attempt], report: &mut ControlReport) -> Outcome {
+    fn cheapest_on_fine_grid(&self, attempts: &[Attempt], report: &mut ControlReport) -> Outcome {
         let mut unrefined = None;
         for found in cheapest_first(attempts) {
             let fine = self.refined(found);
@@ -248,13 +248,13 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
                 Err(reason) => unrefined = unrefined.or(Some(reason)),
             }
         }
-        Outcome::Infeasible(unrefined.unwrap_or_else(|| self.locked(attempts)))
+        Outcome::Infeasible(unrefined.unwrap_or_else(|| self.no_plan_reason(attempts)))
     }
 
     /// Positions of the space-time planner's plan at the nodes; its end point after the arrival.
     fn space_time(&self, task: &Task<V>) -> Option<Profile> {
         let until = self.problem.deadline.mul_f64(SPACE_TIME_SHARE);
-        let left = until.saturating_sub(self.begun.elapsed());
+        let left = until.saturating_sub(self.started.elapsed());
         let planned = space_time::plan(&Problem {
             deadline: left,
             ..self.problem.clone()
@@ -273,12 +273,12 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     /// Attempt refined to a fine enough grid.
     fn refined(&self, found: &Attempt) -> Fine {
         let first = self.task(self.intervals);
-        let grid = brought_to(&first, found, &self.exact, &|| self.in_time());
+        let grid = refine_grid(&first, found, &self.exact, &|| self.in_time());
         let Refined {
             intervals, defect, ..
         } = grid;
         let plan = match grid.ended {
-            Ended::Fine => self
+            GridResult::Fine => self
                 .steered(&self.task(intervals), &grid.found.profile)
                 .map(|motion| Plan {
                     trajectory: Trajectory::from(motion),
@@ -288,12 +288,12 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
                     to_go: 0.0,
                 })
                 .ok_or(NoPlan::NoRoute),
-            Ended::Coarse => Err(NoPlan::Coarse {
+            GridResult::Coarse => Err(NoPlan::Coarse {
                 intervals,
                 off: defect,
                 allowed: tolerance::DEFECT,
             }),
-            Ended::Lost => Err(NoPlan::Lost {
+            GridResult::Lost => Err(NoPlan::Lost {
                 intervals,
                 coarse: self.intervals,
                 why: match grid
@@ -306,7 +306,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
                         self.keep_outs[inside.obstacle].set().name(),
                         inside.time
                     ),
-                    None => said(grid.found.report.status),
+                    None => status_text(grid.found.report.status),
                 },
             }),
         };
@@ -318,7 +318,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
     }
 
     /// Reason why none of the attempts is a plan.
-    fn locked(&self, attempts: &[Attempt]) -> NoPlan {
+    fn no_plan_reason(&self, attempts: &[Attempt]) -> NoPlan {
         let starts = attempts.len();
         let solved = attempts
             .iter()
@@ -329,7 +329,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             let status = attempts.first().map(|a| a.report.status);
             return NoPlan::Unsolved {
                 starts,
-                why: status.map_or_else(|| "no start".to_owned(), said),
+                why: status.map_or_else(|| "no start".to_owned(), status_text),
             };
         };
         let set = self.keep_outs[inside.obstacle].set();
@@ -357,7 +357,7 @@ struct Fine {
 }
 
 /// Solver status in words, with a remedy.
-fn said(status: Status) -> String {
+fn status_text(status: Status) -> String {
     match hint(status) {
         Some(hint) => format!("{status}; {hint}"),
         None => status.to_string(),
@@ -383,7 +383,7 @@ fn cheapest_first(attempts: &[Attempt]) -> Vec<&Attempt> {
     let mut left: Vec<&Attempt> = attempts.iter().filter(|a| a.is_feasible()).collect();
     // stable; then attempts with the same plan in the order of their initial guesses
     left.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-    let same = |a: &Attempt, b: &Attempt| !(a.objective < b.objective * (1.0 - SAME));
+    let same = |a: &Attempt, b: &Attempt| !(a.objective < b.objective * (1.0 - SAME_OBJECTIVE));
     left.dedup_by(|next, kept| same(kept, next));
     left
 }

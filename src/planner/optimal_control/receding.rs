@@ -1,6 +1,6 @@
 //! Receding-horizon control: repeats the optimisation as the ship moves, with a warm start.
 
-use super::attempt::{Attempt, attempt, go_on};
+use super::attempt::{Attempt, attempt, resume};
 use super::keep_out::KeepOut;
 use super::solver::{Iterate, RowPoint, Settings, Workspace};
 use super::task::{Profile, Task};
@@ -95,7 +95,7 @@ impl RecedingHorizon {
             barrier: BARRIER,
             ..self.settings
         };
-        self.attempt = go_on(&next, problem, iterate, work, &settings, keep_going);
+        self.attempt = resume(&next, problem, iterate, work, &settings, keep_going);
         next
     }
 }

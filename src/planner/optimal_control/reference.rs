@@ -40,7 +40,7 @@ mod tests {
     use crate::frame::Vector;
 
     #[test]
-    fn corners_and_the_end_belong_to_the_side_asked_for() {
+    fn corners_and_the_end_belong_to_the_requested_side() {
         let points = [(0.0, 0.0), (10.0, 0.0), (10.0, 6.0)].map(|(x, y)| Vector::new(x, y));
         let desired = DesiredTrajectory::new(&points, &[1.0, 2.0]).expect("valid");
         let at = |time, side| reference(&desired, time, side);

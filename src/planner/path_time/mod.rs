@@ -35,16 +35,13 @@ use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::planner::cost::space_time_error;
 use crate::search::{Counts, Fate, Search, Stop};
-use crate::tolerance;
+use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::{PathNetwork, Segment};
 use graph::{Graph, State};
 use measure::Measure;
 use nodes::{Known, Mark, Node, Place};
 use profile::Profile;
 use scene::{Aim, Scene};
-
-/// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of what a checker rejects.
-const TOUCH_M: f64 = 1e-7;
 
 /// Expansions between two looks at the clock.
 const SLICE: usize = 50;

@@ -188,7 +188,7 @@ fn straightness(desired: &DesiredTrajectory) -> f64 {
 mod tests {
     use super::*;
     use crate::frame::{Pose, direction};
-    use crate::obstacle::Coast;
+    use crate::obstacle::LandObstacle;
     use crate::planner::cost::space_time_error;
     use crate::planner::{Objective, SearchKind};
     use crate::trajectory::Segment;
@@ -269,7 +269,7 @@ mod tests {
                 alternatives: &[],
                 objective: Objective::SpaceTimeError,
                 obstacles: &[],
-                coast: Coast::none(),
+                land_obstacle: LandObstacle::none(),
                 horizon: 1e4,
                 time_weight: q,
                 search: SearchKind::AStar,

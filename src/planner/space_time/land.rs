@@ -2,11 +2,12 @@
 
 use crate::frame::{Pose, Side, Vector, to_port};
 use crate::geometry::{ConvexPolygon, outer_simplified};
-use crate::obstacle::{Coast, LAND, PolytopeObstacle, window_of};
+use crate::obstacle::{LAND, LandObstacle, PolytopeObstacle, window_of};
 use crate::planner::Problem;
 use crate::planner::space_time::graph::tangent::TangentEdges;
-use crate::planner::space_time::proxy::{Proxy, TOUCH_M};
-use crate::planner::space_time::selection::initial_guess::{Conflict, SpeedTable};
+use crate::planner::space_time::proxy::Proxy;
+use crate::planner::space_time::selection::initial_guess::{Conflict, ManoeuvreSpeeds};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 
 /// Metres. Blocks farther than this from the nominal motion get no tangent edges.
@@ -24,33 +25,33 @@ const STEP_S: f64 = 2.0;
 /// Land blocks as proxies, in their order. Their obstacle index refers to no target.
 pub(crate) fn proxies<'a>(problem: &Problem<'a>) -> Vec<Proxy<'a>> {
     let index = problem.obstacles.len();
-    let blocks = problem.coast.blocks().iter();
+    let blocks = problem.land_obstacle.blocks().iter();
     blocks.map(|block| Proxy::at_rest(index, block)).collect()
 }
 
 /// First instant at which a chain of segments is deeper in land than touching.
-pub(crate) fn first_contact(coast: &Coast, segments: &[Segment]) -> Option<f64> {
+pub(crate) fn first_contact(land_obstacle: &LandObstacle, segments: &[Segment]) -> Option<f64> {
     segments
         .iter()
-        .find_map(|s| coast.first_contact(s, TOUCH_M))
+        .find_map(|s| land_obstacle.first_contact(s, TOUCH_M))
 }
 
 /// True when a chain of segments meets land.
-pub(crate) fn meets(coast: &Coast, segments: &[Segment]) -> bool {
-    segments.iter().any(|s| coast.meets(s, TOUCH_M))
+pub(crate) fn meets(land_obstacle: &LandObstacle, segments: &[Segment]) -> bool {
+    segments.iter().any(|s| land_obstacle.meets(s, TOUCH_M))
 }
 
 /// Blocks within `margin` metres of the segments of a manoeuvre, in their order.
 pub(crate) fn near<'s>(
-    coast: &Coast,
+    land_obstacle: &LandObstacle,
     segments: impl Iterator<Item = &'s Segment>,
     margin: f64,
 ) -> Vec<usize> {
-    if coast.is_empty() {
+    if land_obstacle.is_empty() {
         return Vec::new();
     }
     let mut found: Vec<usize> = segments
-        .flat_map(|s| coast.near(&window_of(s).grown(margin)))
+        .flat_map(|s| land_obstacle.near(&window_of(s).grown(margin)))
         .collect();
     found.sort_unstable();
     found.dedup();
@@ -60,18 +61,18 @@ pub(crate) fn near<'s>(
 /// Conflict with a target whose lateral offsets end on land: extends the offsets to the water
 /// behind it.
 pub(crate) fn beyond_land(
-    coast: &Coast,
+    land_obstacle: &LandObstacle,
     conflict: Conflict,
     nominal_motion: &[Segment],
 ) -> Conflict {
     let mut conflict = conflict;
     let middle = 0.5 * (conflict.from + conflict.to);
-    let Some(pose) = pose_at(nominal_motion, middle).filter(|_| !coast.is_empty()) else {
+    let Some(pose) = pose_at(nominal_motion, middle).filter(|_| !land_obstacle.is_empty()) else {
         return conflict;
     };
     for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
         let beam = to_port(pose.ahead()) * side.turn_sign();
-        *offset += coast.way_out(pose.position + beam * *offset, beam);
+        *offset += land_obstacle.way_out(pose.position + beam * *offset, beam);
     }
     conflict
 }
@@ -79,9 +80,9 @@ pub(crate) fn beyond_land(
 /// Conflicts of the nominal motion with land, sampled every [`STEP_S`] from the first contact on,
 /// each with the offsets that clear the land. Land does not move, so there is no waiting and no
 /// passing ahead.
-pub(crate) fn conflicts(coast: &Coast, nominal_motion: &[Segment]) -> Vec<Conflict> {
+pub(crate) fn conflicts(land_obstacle: &LandObstacle, nominal_motion: &[Segment]) -> Vec<Conflict> {
     let mut found: Vec<Conflict> = Vec::new();
-    let Some(first) = first_contact(coast, nominal_motion) else {
+    let Some(first) = first_contact(land_obstacle, nominal_motion) else {
         return found;
     };
     let end = nominal_motion.last().map_or(first, Segment::end_time);
@@ -91,7 +92,9 @@ pub(crate) fn conflicts(coast: &Coast, nominal_motion: &[Segment]) -> Vec<Confli
         let Some(pose) = pose_at(nominal_motion, time) else {
             break;
         };
-        let ashore = coast.depth(pose.position).is_some_and(|d| d > TOUCH_M);
+        let ashore = land_obstacle
+            .depth(pose.position)
+            .is_some_and(|d| d > TOUCH_M);
         // the first contact itself is at the edge
         if !ashore && step > 0 {
             on_water = true;
@@ -112,7 +115,7 @@ pub(crate) fn conflicts(coast: &Coast, nominal_motion: &[Segment]) -> Vec<Confli
             conflict.to = time;
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
-                *offset = offset.max(coast.way_out(pose.position, beam));
+                *offset = offset.max(land_obstacle.way_out(pose.position, beam));
             }
         }
     }
@@ -143,18 +146,22 @@ pub(crate) fn tangent_edges(
     problem: &Problem,
     nominal_motion: &[Segment],
 ) -> impl Iterator<Item = TangentEdges> {
-    let coast = problem.coast;
-    let aground = first_contact(coast, nominal_motion).is_some();
+    let land_obstacle = problem.land_obstacle;
+    let aground = first_contact(land_obstacle, nominal_motion).is_some();
     let blocks = if aground {
-        near(coast, nominal_motion.iter(), AIMED_M)
+        near(land_obstacle, nominal_motion.iter(), AIMED_M)
     } else {
         Vec::new()
     };
-    let speed_table = SpeedTable::of(problem);
+    let speed_table = ManoeuvreSpeeds::of(problem);
     blocks.into_iter().filter_map(move |b| {
-        let block = &coast.blocks()[b];
+        let block = &land_obstacle.blocks()[b];
         let around = outer_simplified(block.initial(), BLOCK_VERTICES);
-        let open = |corner: Vector| !coast.depth(corner).is_some_and(|depth| depth > CORNER_M);
+        let open = |corner: Vector| {
+            !land_obstacle
+                .depth(corner)
+                .is_some_and(|depth| depth > CORNER_M)
+        };
         if !around.vertices().iter().any(|v| open(*v)) {
             return None;
         }

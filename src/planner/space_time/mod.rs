@@ -20,6 +20,7 @@ mod refinement;
 mod route;
 mod rules;
 mod selection;
+mod settings;
 mod similarity;
 
 pub(crate) use fallback::escape::{NominalTarget, escape};
@@ -35,7 +36,7 @@ use crate::trajectory::Segment;
 use fallback::{hybrid_a_star, sequential};
 use graph::{Graph, node};
 use piece::pieces;
-use proxy::{Proxy, TOUCH_M, by_obstacle, first_contact, first_met, within_reach};
+use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
 use refinement::approach::FINE_CHORD_RAD;
 use refinement::trial::Context;
 use route::Route;
@@ -59,7 +60,7 @@ const FURTHER_EXPANDED: usize = 4;
 /// plan unless the deadline is reached. Waypoints on a straight line change nothing.
 pub fn plan(problem: &Problem) -> Planned {
     let clock = Clock::new(problem.deadline);
-    as_usual(problem, |problem, proxies, _| {
+    plan_normalised(problem, |problem, proxies, _| {
         plan_clear_of(problem, proxies, clock)
     })
 }
@@ -68,7 +69,7 @@ pub fn plan(problem: &Problem) -> Planned {
 /// budget. The plan is not refined: use it only where nothing else is found. Ten to several hundred
 /// milliseconds.
 pub fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
-    let planned = as_usual(problem, |problem, _, _| {
+    let planned = plan_normalised(problem, |problem, _, _| {
         let wide = hybrid_a_star::hybrid_a_star(problem);
         Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
     });
@@ -77,7 +78,7 @@ pub fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
 
 /// Plans a problem in normalised coordinates. Where the restored plan touches a set, plans it
 /// without scaling; where that touches too, plans the original problem.
-fn as_usual(
+fn plan_normalised(
     problem: &Problem,
     plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
 ) -> Planned {
@@ -88,28 +89,32 @@ fn as_usual(
     };
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
-    let usual = Similarity::of(problem, &proxies);
-    let found = brought_back(problem, &proxies, &usual, &plan).or_else(|| {
-        let usual = usual.of_its_own_size()?;
-        brought_back(problem, &proxies, &usual, &plan)
+    let similarity = Similarity::of(problem, &proxies);
+    let found = plan_transformed(problem, &proxies, &similarity, &plan).or_else(|| {
+        let similarity = similarity.without_scaling()?;
+        plan_transformed(problem, &proxies, &similarity, &plan)
     });
     found.unwrap_or_else(|| plan(problem, &proxies, None))
 }
 
-fn brought_back(
+fn plan_transformed(
     problem: &Problem,
     proxies: &[Proxy],
-    usual: &Similarity,
+    similarity: &Similarity,
     plan: impl Fn(&Problem, &[Proxy], Option<&Similarity>) -> Planned,
 ) -> Option<Planned> {
-    let alike = usual.alike(problem)?;
-    let alike = alike.problem(problem);
-    let pieces = pieces(alike.obstacles, alike.horizon);
-    let planned = plan(&alike, &within_reach(&alike, &pieces), Some(usual));
-    let planned = usual.restored(planned, problem.horizon);
+    let normalised = similarity.normalised(problem)?;
+    let normalised = normalised.problem(problem);
+    let pieces = pieces(normalised.obstacles, normalised.horizon);
+    let planned = plan(
+        &normalised,
+        &within_reach(&normalised, &pieces),
+        Some(similarity),
+    );
+    let planned = similarity.restored(planned, problem.horizon);
     let touches = |plan: &Plan| {
         let segments = plan.trajectory.segments();
-        first_met(proxies, segments).is_some() || land::meets(problem.coast, segments)
+        first_met(proxies, segments).is_some() || land::meets(problem.land_obstacle, segments)
     };
     (!planned.outcome.plan().is_some_and(touches)).then_some(planned)
 }
@@ -123,15 +128,15 @@ fn has_arrived(problem: &Problem) -> bool {
 }
 
 /// Plan of a ship that has arrived.
-fn stay(problem: &Problem) -> Option<Plan> {
-    let stay = Segment {
+fn arrived_plan(problem: &Problem) -> Option<Plan> {
+    let arrived_plan = Segment {
         start: problem.own.pose,
         start_time: 0.0,
         duration: 0.0,
         speed: problem.own.max_speed(),
         turn_rate: 0.0,
     };
-    Plan::measured(problem, vec![stay], None)
+    Plan::measured(problem, vec![arrived_plan], None)
 }
 
 fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned {
@@ -140,7 +145,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     for proxy in proxies {
         if let Some(slack) = proxy.slack(own.pose.position, 0.0)
             // negated on purpose: a NaN is inside
-            && !(slack >= -TOUCH_M)
+            && !(slack >= -tolerance::TOUCH_M)
         {
             return refuse(NoPlan::StartInside {
                 target: problem.obstacles[proxy.obstacle].name().to_owned(),
@@ -148,14 +153,14 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
             });
         }
     }
-    if let Some(depth) = problem.coast.depth(own.pose.position)
+    if let Some(depth) = problem.land_obstacle.depth(own.pose.position)
         // negated on purpose: a NaN is on land
-        && !(depth <= TOUCH_M)
+        && !(depth <= tolerance::TOUCH_M)
     {
         return refuse(NoPlan::StartAshore { depth });
     }
     if has_arrived(problem) {
-        let plan = stay(problem);
+        let plan = arrived_plan(problem);
         return Planned::of(plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved));
     }
     let Some(route) = Route::new(problem, clock) else {
@@ -180,7 +185,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         chord: FINE_CHORD_RAD,
     };
     let contact = first_contact(proxies, &nominal_motion);
-    let grounding = land::first_contact(problem.coast, &nominal_motion);
+    let grounding = land::first_contact(problem.land_obstacle, &nominal_motion);
     let first_conflict = contact.map(|c| c.1).into_iter().chain(grounding);
     let first_conflict = first_conflict.reduce(f64::min);
     if problem.duty().stands_on
@@ -201,10 +206,10 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         match search.next_goal(&mut graph, budget) {
             Stop::Goal(goal) => {
                 optimum.get_or_insert(search.counts());
-                let way = node::way_to(&search, goal);
-                let is_plan =
-                    selection.offer(search.nodes()[goal].cost, &way.iter().collect::<Vec<_>>());
-                if is_plan && way.len() == 1 {
+                let path = node::path_to(&search, goal);
+                let is_plan = selection
+                    .add_graph_plan(search.nodes()[goal].cost, &path.iter().collect::<Vec<_>>());
+                if is_plan && path.len() == 1 {
                     break;
                 }
                 if is_plan {
@@ -229,9 +234,9 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     if contact.is_some() || grounding.is_some() {
         conflicts = by_obstacle(proxies)
             .filter_map(|h| Conflict::of(h, &nominal_motion))
-            .map(|conflict| land::beyond_land(problem.coast, conflict, &nominal_motion))
+            .map(|conflict| land::beyond_land(problem.land_obstacle, conflict, &nominal_motion))
             .collect();
-        conflicts.extend(land::conflicts(problem.coast, &nominal_motion));
+        conflicts.extend(land::conflicts(problem.land_obstacle, &nominal_motion));
         conflicts.sort_by(|a, b| a.from.total_cmp(&b.from));
         timed_out |= selection.refine(&conflicts, clock);
     }
@@ -240,9 +245,9 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     if !timed_out
         && (sequential::are_several(&conflicts) || is_bent && !selection.has_plan())
         && let Some(motion) =
-            sequential::one_after_another(problem, proxies, &route, &nominal_motion, clock)
+            sequential::resolve_sequentially(problem, proxies, &route, &nominal_motion, clock)
     {
-        selection.consider(motion);
+        selection.add_candidate(motion);
         timed_out = clock.is_up();
     }
     if !timed_out
@@ -251,7 +256,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         && let Some(end) = first_conflict
         && let Some(motion) = stand_on::cheapest(&context, &nominal_motion, end, clock)
     {
-        selection.consider(motion);
+        selection.add_candidate(motion);
         timed_out = clock.is_up();
     }
     let counts = optimum.unwrap_or(search.counts());

@@ -11,7 +11,7 @@ use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 
 /// The graph uses a polytope that contains the ellipsoid, unless that needs a larger factor than
 /// this. Then it uses one that does not; the contact test rejects motions that meet the ellipsoid.
-const MOST_GROWTH: f64 = 2.0;
+const MAX_GROWTH: f64 = 2.0;
 
 /// Convex piece of an obstacle.
 #[derive(Debug)]
@@ -34,12 +34,12 @@ pub(crate) struct Window {
 #[derive(Debug)]
 pub(crate) enum Body {
     Polytope(PolytopeObstacle),
-    Ellipsoid(Box<Rounded>),
+    Ellipsoid(Box<BoundedEllipsoid>),
 }
 
 /// Ellipsoid between two polytopes.
 #[derive(Debug)]
-pub(crate) struct Rounded {
+pub(crate) struct BoundedEllipsoid {
     pub exact: EllipsoidObstacle,
     /// Outer polytope: two 16-gons around its sets, enlarged by the excess of the ellipsoid over
     /// their sum.
@@ -62,7 +62,7 @@ pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
         };
         match o.outer_with_interior() {
             Obstacle::Polytope(polytope) => push(None, Body::Polytope(polytope)),
-            Obstacle::Ellipsoid(ellipsoid) => push(None, rounded(*ellipsoid, horizon)),
+            Obstacle::Ellipsoid(ellipsoid) => push(None, bounded_ellipsoid(*ellipsoid, horizon)),
             Obstacle::Slabs(slabs) => {
                 for slab in slabs.slabs() {
                     let window = (slabs.slabs().len() > 1).then_some(Window {
@@ -79,8 +79,8 @@ pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
     pieces
 }
 
-fn rounded(exact: EllipsoidObstacle, horizon: f64) -> Body {
-    let growth = exact.largest_ratio_to_sum(horizon).min(MOST_GROWTH);
+fn bounded_ellipsoid(exact: EllipsoidObstacle, horizon: f64) -> Body {
+    let growth = exact.largest_ratio_to_sum(horizon).min(MAX_GROWTH);
     let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(DISC_SIDES);
     let within = |e: &Ellipse| {
         // boundary points of a finite ellipse are finite
@@ -90,7 +90,7 @@ fn rounded(exact: EllipsoidObstacle, horizon: f64) -> Body {
     let polytope = |set: &dyn Fn(&Ellipse) -> ConvexPolygon| {
         PolytopeObstacle::new("", set(exact.initial()), set(exact.velocity()))
     };
-    Body::Ellipsoid(Box::new(Rounded {
+    Body::Ellipsoid(Box::new(BoundedEllipsoid {
         around: polytope(&around),
         within: polytope(&within),
         exact,

@@ -4,12 +4,9 @@ use crate::frame::{Pose, Vector, cross, to_port};
 use crate::obstacle::{EllipsoidObstacle, PolytopeObstacle, SpaceTimeObstacle, contact};
 use crate::planner::Problem;
 use crate::planner::space_time::piece::{Body, Piece, Window};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 use crate::vessel::{Hull, OwnShip};
-
-/// Metres. Planned motions may touch a set; deeper than this they meet it. A tenth of the depth
-/// that the checker rejects.
-pub(crate) const TOUCH_M: f64 = 1e-7;
 
 /// Metres by which a disc must stay out of own ship's reach to be ignored: much larger than
 /// rounding errors.
@@ -26,7 +23,7 @@ pub(crate) struct Proxy<'a> {
     /// Polytope within the piece: a motion clear of the piece is clear of it.
     pub within: &'a PolytopeObstacle,
     /// Ellipsoid of the piece, where it is one.
-    pub round: Option<&'a EllipsoidObstacle>,
+    pub ellipsoid: Option<&'a EllipsoidObstacle>,
     /// Time window of the piece; `None` for ever.
     pub window: Option<Window>,
     centre: Vector,
@@ -37,12 +34,12 @@ pub(crate) struct Proxy<'a> {
 
 impl<'a> Proxy<'a> {
     pub(crate) fn new(part: &'a Piece) -> Self {
-        let (body, within, round) = match &part.body {
+        let (body, within, ellipsoid) = match &part.body {
             Body::Polytope(polytope) => (polytope, polytope, None),
             Body::Ellipsoid(e) => (&e.around, &e.within, Some(&e.exact)),
         };
         let (centre, drift) = (body.initial().centroid(), body.velocity().centroid());
-        let (radius, growth) = match round {
+        let (radius, growth) = match ellipsoid {
             // the root of the trace of the outer section is the sum of the roots of the two sets
             Some(e) => (root_of_trace(e.initial()), root_of_trace(e.velocity())),
             None => (
@@ -54,7 +51,7 @@ impl<'a> Proxy<'a> {
             obstacle: part.obstacle,
             body,
             within,
-            round,
+            ellipsoid,
             window: part.window,
             centre,
             drift,
@@ -70,7 +67,7 @@ impl<'a> Proxy<'a> {
             obstacle,
             body,
             within: body,
-            round: None,
+            ellipsoid: None,
             window: None,
             centre,
             drift: Vector::zeros(),
@@ -135,7 +132,7 @@ impl<'a> Proxy<'a> {
     /// Part of a segment within the time window, in the clock of the piece.
     #[cold]
     #[inline(never)]
-    fn meanwhile(window: &Window, segment: &Segment) -> Option<Segment> {
+    fn during(window: &Window, segment: &Segment) -> Option<Segment> {
         if segment.start_time > window.end || segment.end_time() < window.start {
             return None;
         }
@@ -152,7 +149,7 @@ impl<'a> Proxy<'a> {
     pub(crate) fn clearance_bound(&self, segment: &Segment) -> f64 {
         match &self.window {
             None => self.local_clearance_bound(segment),
-            Some(window) => Self::meanwhile(window, segment)
+            Some(window) => Self::during(window, segment)
                 .map_or(f64::INFINITY, |s| self.local_clearance_bound(&s)),
         }
     }
@@ -188,7 +185,7 @@ impl<'a> Proxy<'a> {
             return None;
         }
         let local = time - self.start();
-        Some(match self.round {
+        Some(match self.ellipsoid {
             Some(ellipsoid) => ellipsoid.signed_distance(position, local).distance,
             None => self.body.slack(position, local).value,
         })
@@ -213,7 +210,7 @@ impl<'a> Proxy<'a> {
     }
 
     /// Distance from a point inside to the boundary of the section in a direction, metres.
-    pub(crate) fn way_out(&self, position: Vector, time: f64, toward: Vector) -> f64 {
+    pub(crate) fn exit_distance(&self, position: Vector, time: f64, toward: Vector) -> f64 {
         let local = time - self.start();
         self.body
             .faces()
@@ -246,7 +243,7 @@ impl<'a> Proxy<'a> {
         let Some(window) = &self.window else {
             return self.local_contact(segment);
         };
-        let local = Self::meanwhile(window, segment)?;
+        let local = Self::during(window, segment)?;
         self.local_contact(&local).map(|t| t + window.start)
     }
 
@@ -254,8 +251,8 @@ impl<'a> Proxy<'a> {
         if self.local_clearance_bound(segment) > 0.0 {
             return None;
         }
-        match self.round {
-            Some(ellipsoid) => round_contact(ellipsoid, segment),
+        match self.ellipsoid {
+            Some(ellipsoid) => ellipsoid_contact(ellipsoid, segment),
             None => contact::first_contact(self.body, segment, TOUCH_M),
         }
     }
@@ -264,15 +261,15 @@ impl<'a> Proxy<'a> {
     fn meets_about(&self, segment: &Segment, middle: Vector) -> bool {
         match &self.window {
             None => self.local_meets(segment, middle),
-            Some(window) => Self::meanwhile(window, segment)
+            Some(window) => Self::during(window, segment)
                 .is_some_and(|s| self.local_meets(&s, s.middle().position)),
         }
     }
 
     fn local_meets(&self, segment: &Segment, middle: Vector) -> bool {
         self.bound_about(segment, middle) <= 0.0
-            && match self.round {
-                Some(ellipsoid) => round_contact(ellipsoid, segment).is_some(),
+            && match self.ellipsoid {
+                Some(ellipsoid) => ellipsoid_contact(ellipsoid, segment).is_some(),
                 None => contact::meets(self.body, segment, TOUCH_M),
             }
     }
@@ -284,7 +281,7 @@ fn root_of_trace(set: &crate::geometry::Ellipse) -> f64 {
 }
 
 /// First contact with an ellipsoid. A line that does not touch it is decided in closed form.
-fn round_contact(ellipsoid: &EllipsoidObstacle, segment: &Segment) -> Option<f64> {
+fn ellipsoid_contact(ellipsoid: &EllipsoidObstacle, segment: &Segment) -> Option<f64> {
     if !segment.is_arc() {
         ellipsoid.first_contact(segment, 0.0)?;
     }
@@ -341,7 +338,7 @@ mod tests {
     /// Compares with sampling, for sets that move, rest, approach and recede, and for pieces with
     /// time windows.
     #[test]
-    fn what_is_out_of_reach_is_never_in_it() {
+    fn proxies_out_of_reach_are_never_met() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
         let (mut within, mut beyond) = (0, 0);
         for case in 0..4000 {

@@ -32,7 +32,7 @@ const LEAST_ALTERNATION_M: f64 = 50.0;
 
 /// Line or arc of the route.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
+struct RoutePiece {
     start: Pose,
     /// Distance along the route at its start, metres.
     distance: f64,
@@ -48,7 +48,7 @@ struct Piece {
     speed: Option<f64>,
 }
 
-impl Piece {
+impl RoutePiece {
     fn end(&self) -> Pose {
         self.pose_after(self.length)
     }
@@ -75,7 +75,7 @@ fn segment(start: Pose, start_time: f64, length: f64, speed: f64, curvature: f64
 
 /// Straight stretch of the route on one leg.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stretch {
+pub(crate) struct StraightStretch {
     /// Distance along the route at its start, metres.
     pub distance: f64,
     /// Distances along the leg at its start and end, metres.
@@ -86,7 +86,7 @@ pub(crate) struct Stretch {
 /// Sailable path with its schedule.
 #[derive(Debug, Clone)]
 pub(crate) struct Route {
-    pieces: Vec<Piece>,
+    pieces: Vec<RoutePiece>,
     /// Own ship's speeds, increasing.
     speeds: Vec<f64>,
 }
@@ -250,7 +250,7 @@ impl Route {
                     && cross(l.direction, pose.position - l.start).abs() < tolerance::JOINT_M
                     && wrap(pose.heading - heading_of(l.direction)).abs() < 1e-7
             });
-            let piece = Piece {
+            let piece = RoutePiece {
                 start: on_leg.map_or(pose, |(_, l)| {
                     Pose::new(pose.position, heading_of(l.direction))
                 }),
@@ -288,7 +288,11 @@ impl Route {
     }
 
     /// Straight stretch on a leg, if any.
-    pub(crate) fn stretch(&self, leg: usize, desired: &DesiredTrajectory) -> Option<Stretch> {
+    pub(crate) fn stretch(
+        &self,
+        leg: usize,
+        desired: &DesiredTrajectory,
+    ) -> Option<StraightStretch> {
         let piece = self
             .pieces
             .iter()
@@ -296,7 +300,7 @@ impl Route {
             .max_by(|a, b| a.length.total_cmp(&b.length))?;
         let l = desired.legs().get(leg)?;
         let from = l.direction.dot(&(piece.start.position - l.start));
-        Some(Stretch {
+        Some(StraightStretch {
             distance: piece.distance,
             from,
             to: from + piece.length,
@@ -355,7 +359,7 @@ impl Route {
                 at = past(at, left);
                 continue;
             }
-            let (speed, length) = self.pace(piece, at, left, time);
+            let (speed, length) = self.speed_and_length(piece, at, left, time);
             let step = if left - length < SHORTEST_M {
                 left
             } else {
@@ -390,7 +394,7 @@ impl Route {
     }
 
     /// Speed, and the distance for which to keep it, metres.
-    fn pace(&self, piece: &Piece, at: f64, left: f64, time: f64) -> (f64, f64) {
+    fn speed_and_length(&self, piece: &RoutePiece, at: f64, left: f64, time: f64) -> (f64, f64) {
         if let Some(speed) = piece.speed {
             return (speed, left);
         }

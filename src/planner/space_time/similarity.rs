@@ -12,7 +12,7 @@ use crate::colregs::{Encountered, SteadyShip};
 use crate::frame::{Pose, Vector, cross, heading_of, to_port, wrap};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{
-    Coast, EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
+    EllipsoidObstacle, LandObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use crate::planner::space_time::proxy::{Proxy, by_obstacle};
 use crate::planner::{EdgeVerdict, ExploredGraph, NoPlan, Outcome, Plan, Planned, Problem};
@@ -22,8 +22,8 @@ use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use crate::vessel::{Hull, OwnShip};
 
 /// Turning radius (metres) and desired speed (m/s) of a normalised problem.
-const USUAL_TURN_M: f64 = 300.0;
-const USUAL_MPS: f64 = 5.0;
+const NORMAL_TURN_M: f64 = 300.0;
+const NORMAL_MPS: f64 = 5.0;
 
 /// Radii in metres at that size. Where the first set met has a radius at contact outside this
 /// interval, the set determines the size.
@@ -31,7 +31,7 @@ const SMALLEST_M: f64 = 30.0;
 const LARGEST_M: f64 = 640.0;
 
 /// Normalised radius of such sets, metres.
-const USUAL_M: f64 = 130.0;
+const NORMAL_SET_M: f64 = 130.0;
 
 /// Grids at that size, powers of two, so that grid numbers are exact: positions of sets (0.06 mm),
 /// waypoints, on which plans must end, velocities (m/s), and times (s).
@@ -63,7 +63,7 @@ const STEP: f64 = std::f64::consts::SQRT_2;
 const LONGEST_M: f64 = 5e5;
 
 /// Largest scale factor in either direction.
-const MOST: f64 = 1e12;
+const MAX_SCALE: f64 = 1e12;
 
 /// Metres. A desired path within this distance of own ship's pose is moved to lead through it, so
 /// that rounding adds no joining manoeuvre.
@@ -73,7 +73,7 @@ const ON_PATH_M: f64 = 1e-7;
 const AHEAD_M: f64 = 1e-3;
 
 /// Samples of the desired trajectory.
-const LOOKS: usize = 64;
+const SAMPLES: usize = 64;
 
 /// Similarity transformation from the normalised problem to the original one.
 #[derive(Debug, Clone)]
@@ -82,7 +82,7 @@ pub(crate) struct Similarity {
     /// Unit vector ahead.
     ahead: Vector,
     /// -1 for a reflection of port and starboard, otherwise 1.
-    hand: f64,
+    mirror: f64,
     /// Metres and seconds of the problem per normalised metre and second.
     length: f64,
     time: f64,
@@ -94,11 +94,11 @@ pub(crate) struct Similarity {
 }
 
 /// Normalised problem.
-pub(crate) struct Alike {
+pub(crate) struct NormalisedProblem {
     own: OwnShip,
     desired: DesiredTrajectory,
     obstacles: Vec<Obstacle>,
-    coast: Option<Coast>,
+    land_obstacle: Option<LandObstacle>,
     encountered: Vec<Encountered>,
     horizon: f64,
     time_weight: f64,
@@ -112,25 +112,25 @@ impl Similarity {
         let mut of = Self {
             origin: own.pose,
             ahead: own.pose.ahead(),
-            hand: 1.0,
+            mirror: 1.0,
             length: 1.0,
             time: 1.0,
             speeds: own.speeds.clone(),
             within: by_obstacle(proxies).map(|h| h[0].obstacle).collect(),
             all: problem.obstacles.len(),
         };
-        if !problem.coast.is_empty() || !problem.encountered.is_empty() {
+        if !problem.land_obstacle.is_empty() || !problem.encountered.is_empty() {
             return of;
         }
         (of.length, of.time) = size(problem, proxies);
         if problem.first_turn.is_none() {
-            of.hand = of.handed(problem, proxies);
+            of.mirror = of.mirror_sign(problem, proxies);
         }
         of
     }
 
     /// Same position and direction without scaling.
-    pub(crate) fn of_its_own_size(self) -> Option<Self> {
+    pub(crate) fn without_scaling(self) -> Option<Self> {
         let is_scaled = self.length != 1.0 || self.time != 1.0;
         is_scaled.then_some(Self {
             length: 1.0,
@@ -140,12 +140,12 @@ impl Similarity {
     }
 
     /// Sign of the reflection: -1 where the first object off the line ahead is to port.
-    fn handed(&self, problem: &Problem, proxies: &[Proxy]) -> f64 {
+    fn mirror_sign(&self, problem: &Problem, proxies: &[Proxy]) -> f64 {
         let places = proxies.iter().filter_map(|h| h.disc_at(h.start()));
         let places = places.map(|(centre, _)| self.place(centre).y);
         let ways = proxies
             .iter()
-            .map(|h| self.velocity(h.drift()).y * USUAL_TURN_M / USUAL_MPS);
+            .map(|h| self.velocity(h.drift()).y * NORMAL_TURN_M / NORMAL_MPS);
         let bends = problem
             .desired
             .waypoints()
@@ -160,7 +160,7 @@ impl Similarity {
     }
 
     fn turned(&self, v: Vector) -> Vector {
-        Vector::new(self.ahead.dot(&v), self.hand * cross(self.ahead, v))
+        Vector::new(self.ahead.dot(&v), self.mirror * cross(self.ahead, v))
     }
 
     fn place(&self, place: Vector) -> Vector {
@@ -172,13 +172,13 @@ impl Similarity {
     }
 
     fn pose(&self, pose: Pose) -> Pose {
-        let heading = self.hand * wrap(pose.heading - self.origin.heading);
+        let heading = self.mirror * wrap(pose.heading - self.origin.heading);
         Pose::new(self.place(pose.position), heading)
     }
 
     fn polygon(&self, set: &ConvexPolygon, to: impl Fn(Vector) -> Vector) -> ConvexPolygon {
         let mut vertices: Vec<Vector> = set.vertices().iter().map(|p| to(*p)).collect();
-        if self.hand < 0.0 {
+        if self.mirror < 0.0 {
             vertices.reverse();
         }
         ConvexPolygon::from_ccw(vertices)
@@ -194,7 +194,7 @@ impl Similarity {
         if !(room >= LEAST_ROOM_M) {
             return exact;
         }
-        let grown = 1.0 + taken(horizon / self.time) / room;
+        let grown = 1.0 + rounding_loss(horizon / self.time) / room;
         let vertex = |p: &Vector| on_grid(middle + (p - middle) * grown, SET_GRID_M);
         let vertices: Vec<Vector> = exact.vertices().iter().map(vertex).collect();
         match ConvexPolygon::hull(&vertices) {
@@ -211,10 +211,10 @@ impl Similarity {
     }
 
     /// Normalised problem; `None` where no digits would remain.
-    pub(crate) fn alike(&self, problem: &Problem) -> Option<Alike> {
+    pub(crate) fn normalised(&self, problem: &Problem) -> Option<NormalisedProblem> {
         let (own, speed, horizon) = (problem.own, self.speed(), problem.horizon);
         let legs = problem.desired.legs().iter();
-        let speeds: Vec<f64> = legs.map(|l| digits(l.speed / speed)).collect();
+        let speeds: Vec<f64> = legs.map(|l| rounded(l.speed / speed)).collect();
         let obstacles = self
             .within
             .iter()
@@ -226,25 +226,28 @@ impl Similarity {
             },
             ..*e
         };
-        Some(Alike {
+        Some(NormalisedProblem {
             own: OwnShip {
                 pose: Pose::new(Vector::zeros(), 0.0),
-                speed: digits(own.speed / speed),
+                speed: rounded(own.speed / speed),
                 hull: Hull {
                     length: own.hull.length / self.length,
                     beam: own.hull.beam / self.length,
                 },
-                turning_radius: digits(own.turning_radius / self.length),
-                speeds: own.speeds.iter().map(|u| digits(u / speed)).collect(),
+                turning_radius: rounded(own.turning_radius / self.length),
+                speeds: own.speeds.iter().map(|u| rounded(u / speed)).collect(),
                 safety_margin: own.safety_margin / self.length,
             },
             desired: DesiredTrajectory::new(&self.waypoints(problem), &speeds).ok()?,
             obstacles: obstacles.collect::<Option<_>>()?,
-            coast: (!problem.coast.is_empty())
-                .then(|| problem.coast.mapped(|block| self.places(block, horizon))),
+            land_obstacle: (!problem.land_obstacle.is_empty()).then(|| {
+                problem
+                    .land_obstacle
+                    .mapped(|block| self.places(block, horizon))
+            }),
             encountered: problem.encountered.iter().map(ship).collect(),
-            horizon: digits(horizon / self.time) * (1.0 - 2.0_f64.powi(-DIGITS)),
-            time_weight: digits(problem.time_weight / (speed * speed)),
+            horizon: rounded(horizon / self.time) * (1.0 - 2.0_f64.powi(-DIGITS)),
+            time_weight: rounded(problem.time_weight / (speed * speed)),
         })
     }
 
@@ -292,7 +295,7 @@ impl Similarity {
                 .into()
             }
             Obstacle::Slabs(o) => {
-                let spells = o.spells().iter().map(|s| VelocitySpell {
+                let spells = o.velocity_sets().iter().map(|s| VelocitySpell {
                     until: number_on_grid(s.until / self.time, TIME_GRID_S),
                     velocities: self.velocities(&s.velocities),
                 });
@@ -313,8 +316,8 @@ impl Similarity {
             start: self.pose(s.start),
             start_time: s.start_time / self.time,
             duration: number_on_grid(s.duration / self.time, DURATION_GRID_S),
-            speed: digits(s.speed / self.speed()),
-            turn_rate: self.hand * s.turn_rate * self.time,
+            speed: rounded(s.speed / self.speed()),
+            turn_rate: self.mirror * s.turn_rate * self.time,
         };
         motion.iter().map(segment).collect()
     }
@@ -340,11 +343,11 @@ impl Similarity {
     }
 
     fn restored_pose(&self, pose: Pose) -> Pose {
-        let (along, port) = (self.ahead, to_port(self.ahead) * self.hand);
+        let (along, port) = (self.ahead, to_port(self.ahead) * self.mirror);
         let from = (along * pose.position.x + port * pose.position.y) * self.length;
         Pose::new(
             self.origin.position + from,
-            self.origin.heading + self.hand * pose.heading,
+            self.origin.heading + self.mirror * pose.heading,
         )
     }
 
@@ -358,7 +361,7 @@ impl Similarity {
             start_time: s.start_time * self.time,
             duration: s.duration * self.time,
             speed: known.unwrap_or(speed),
-            turn_rate: self.hand * s.turn_rate / self.time,
+            turn_rate: self.mirror * s.turn_rate / self.time,
         }
     }
 
@@ -411,14 +414,14 @@ impl Similarity {
     }
 }
 
-impl Alike {
+impl NormalisedProblem {
     /// Normalised problem as a [`Problem`]; fields without length or position are the original's.
     pub(crate) fn problem<'a>(&'a self, of: &Problem<'a>) -> Problem<'a> {
         Problem {
             own: &self.own,
             desired: &self.desired,
             obstacles: &self.obstacles,
-            coast: self.coast.as_ref().unwrap_or(of.coast),
+            land_obstacle: self.land_obstacle.as_ref().unwrap_or(of.land_obstacle),
             encountered: &self.encountered,
             horizon: self.horizon,
             time_weight: self.time_weight,
@@ -432,15 +435,15 @@ impl Alike {
 /// turning circle, they follow from that set.
 fn size(problem: &Problem, proxies: &[Proxy]) -> (f64, f64) {
     let desired = problem.desired;
-    let by_turn = problem.own.turning_radius / USUAL_TURN_M;
+    let by_turn = problem.own.turning_radius / NORMAL_TURN_M;
     let usual = SMALLEST_M..=LARGEST_M;
     let radius = radius_met(desired, proxies).map(|radius| radius / by_turn);
     let radius = radius.filter(|r| *r > 0.0 && !usual.contains(r));
     let longer = (desired.length() / by_turn / LONGEST_M).max(1.0);
-    let larger = radius.map_or(1.0, |r| r / USUAL_M).max(longer);
+    let larger = radius.map_or(1.0, |r| r / NORMAL_SET_M).max(longer);
     let length = by_turn * STEP.powf(larger.log(STEP).round());
-    let time = length * USUAL_MPS / desired.legs()[0].speed;
-    let sound = |x: f64| x > 1.0 / MOST && x < MOST;
+    let time = length * NORMAL_MPS / desired.legs()[0].speed;
+    let sound = |x: f64| x > 1.0 / MAX_SCALE && x < MAX_SCALE;
     if sound(length) && sound(time) {
         (length, time)
     } else {
@@ -450,7 +453,7 @@ fn size(problem: &Problem, proxies: &[Proxy]) -> (f64, f64) {
 
 /// Largest reduction of a set by rounding until a time, metres: of its vertices, its velocities,
 /// and the times of their changes.
-fn taken(time: f64) -> f64 {
+fn rounding_loss(time: f64) -> f64 {
     SET_GRID_M + VELOCITY_GRID_MPS * time
 }
 
@@ -468,7 +471,7 @@ fn number_on_grid(x: f64, grid: f64) -> f64 {
 }
 
 /// Number rounded to a fixed count of binary digits.
-fn digits(x: f64) -> f64 {
+fn rounded(x: f64) -> f64 {
     let unit = 2.0_f64.powi(x.abs().max(f64::MIN_POSITIVE).log2().floor() as i32 - DIGITS);
     if unit > 0.0 && x.is_finite() {
         (x / unit).round() * unit
@@ -479,8 +482,8 @@ fn digits(x: f64) -> f64 {
 
 /// Radius of the disc around the section that first contains own ship on schedule, metres.
 fn radius_met(desired: &DesiredTrajectory, proxies: &[Proxy]) -> Option<f64> {
-    (0..=LOOKS).find_map(|look| {
-        let time = desired.duration() * look as f64 / LOOKS as f64;
+    (0..=SAMPLES).find_map(|index| {
+        let time = desired.duration() * index as f64 / SAMPLES as f64;
         let place = desired.position_at(time);
         let met = proxies.iter().filter_map(|h| {
             let (centre, radius) = h.disc_at(time)?;

@@ -4,20 +4,20 @@ use std::time::Duration;
 
 use super::super::defect::largest_defect;
 use super::*;
-use crate::obstacle::Coast;
+use crate::obstacle::LandObstacle;
 use crate::pipeline;
 use crate::scenario::Scenario;
 
 const FIGURE_9: &str = include_str!("../../../../scenarios/paper/figure_9.toml");
 
 #[test]
-fn once_the_time_is_up_a_dearer_plan_whose_grid_is_fine_enough_is_the_answer() {
+fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
     let scenario = Scenario::parse(FIGURE_9).expect("valid");
     let sets = pipeline::sets(&scenario);
     let obstacles: Vec<Obstacle> = sets.into_iter().map(|s| s.hard).collect();
     let problem = Problem {
         deadline: Duration::ZERO,
-        ..pipeline::problem(&scenario, &obstacles, Coast::none())
+        ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
     };
     let exact = CyberShip2::EXACT;
     let planner = Planner::new(&problem, &scenario.control, CyberShip2::SMOOTH, exact);
@@ -32,7 +32,7 @@ fn once_the_time_is_up_a_dearer_plan_whose_grid_is_fine_enough_is_the_answer() {
     assert!(!is_fine(ordered[0]));
     let fine = ordered.iter().find(|a| is_fine(a)).expect("one of many");
     let mut report = planner.plan().report;
-    let Outcome::Solved(plan) = planner.finest(&attempts, &mut report) else {
+    let Outcome::Solved(plan) = planner.cheapest_on_fine_grid(&attempts, &mut report) else {
         panic!("no plan");
     };
     assert_eq!(plan.cost, fine.objective);
@@ -40,7 +40,7 @@ fn once_the_time_is_up_a_dearer_plan_whose_grid_is_fine_enough_is_the_answer() {
     // this one needs a finer grid, and there is no time
     let coarse: Vec<Attempt> = ordered.into_iter().take(1).cloned().collect();
     assert!(matches!(
-        planner.finest(&coarse, &mut report),
+        planner.cheapest_on_fine_grid(&coarse, &mut report),
         Outcome::Infeasible(NoPlan::Coarse { .. })
     ));
 }

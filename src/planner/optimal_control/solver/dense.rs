@@ -166,7 +166,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     #[test]
-    fn factors_solve_both_ways_and_refuse_what_is_singular() {
+    fn factors_solve_both_systems_and_reject_singular_matrices() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         for _ in 0..200 {
             let a = Matrix::<5, 5>::from_fn(|_, _| rng.random_range(-1.0..1.0));

@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_worse_in_both_is_refused_and_the_room_is_kept() {
+    fn points_worse_in_both_are_rejected_and_the_capacity_is_kept() {
         let mut filter = Filter::new(2);
         filter.clear(10.0);
         filter.take(merit(1.0, 1.0));

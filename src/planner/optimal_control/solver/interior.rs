@@ -18,13 +18,13 @@ const LARGE_MULTIPLIER: f64 = 100.0;
 /// Largest ratio of a dual to its central value after a step.
 const DUAL_SPREAD: f64 = 1e10;
 /// Least fraction-to-boundary parameter.
-const TO_LIMIT: f64 = 0.99;
+const FRACTION_TO_BOUNDARY: f64 = 0.99;
 /// Least initial distance of a control from its limits, as a fraction of their distance: for a cold
 /// and for a warm start.
-const PUSH: f64 = 1e-2;
-const PUSH_WARM: f64 = 1e-5;
+const BOUND_PUSH: f64 = 1e-2;
+const BOUND_PUSH_WARM: f64 = 1e-5;
 /// Objective or state beyond which the problem counts as unbounded.
-const FAR: f64 = 1e12;
+const DIVERGED: f64 = 1e12;
 
 /// Solves from an iterate and leaves the result there, whatever the status. `keep_going` is called
 /// before each step and between the trial points of its line search.
@@ -66,7 +66,7 @@ pub fn solve<const N: usize, const M: usize>(
         barrier: settings.barrier,
         last_shift: 0.0,
     };
-    method.begin();
+    method.initialise();
     report.status = method.run(&mut report, keep_going);
     report.shortfall = method
         .work
@@ -116,7 +116,7 @@ impl Errors {
 impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> {
     /// Moves controls within their limits, sets the given first state, and completes the
     /// multipliers.
-    fn begin(&mut self) {
+    fn initialise(&mut self) {
         let n = self.problem.stages();
         let warm = self.at.is_warm();
         self.at.states[0] = self.problem.first();
@@ -128,8 +128,10 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                 let width = if width.is_finite() { width } else { 1.0 };
                 // warm start: the product with the old multiplier is the barrier
                 let keep = |dual: Option<f64>| match dual {
-                    Some(dual) => (barrier / dual).clamp(PUSH_WARM * width, PUSH * width),
-                    None => PUSH * width,
+                    Some(dual) => {
+                        (barrier / dual).clamp(BOUND_PUSH_WARM * width, BOUND_PUSH * width)
+                    }
+                    None => BOUND_PUSH * width,
                 };
                 let (below, above) = if warm {
                     (Some(self.at.low[k][i]), Some(self.at.high[k][i]))
@@ -204,8 +206,8 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                 return Status::Solved;
             }
             let objective = self.objective();
-            let far = |v: &Vector<N>| v.amax() > FAR;
-            if objective < -FAR || self.at.states.iter().any(far) {
+            let far = |v: &Vector<N>| v.amax() > DIVERGED;
+            if objective < -DIVERGED || self.at.states.iter().any(far) {
                 return Status::Unbounded;
             }
             if report.iterations >= self.settings.max_iterations {
@@ -236,7 +238,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                 .for_each(|(t, v)| *t = v.defect);
             self.set_row_targets();
             self.step();
-            let to_limit = TO_LIMIT.max(1.0 - self.barrier);
+            let to_limit = FRACTION_TO_BOUNDARY.max(1.0 - self.barrier);
             let longest = self.longest(to_limit);
             if !longest[0].is_finite() {
                 return Status::NotANumber;
@@ -251,7 +253,7 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
                 Accepted::Not if used == Curvature::Exact && self.settings.gauss_newton => {
                     forced = true;
                 }
-                Accepted::Not => match search.jump(&mut self.work.filter) {
+                Accepted::Not => match search.forced_step(&mut self.work.filter) {
                     Some(fraction) => {
                         self.trial_along(fraction * longest[0]);
                         self.take(fraction * longest[0], longest[1]);

@@ -11,17 +11,17 @@ const SWITCH_OBJECTIVE: f64 = 2.3;
 const LEAST_STEP: f64 = 0.05;
 /// Largest accepted infeasibility, and the one below which descent is required, as multiples of the
 /// initial infeasibility or of one.
-const MOST: f64 = 1e4;
-const LITTLE: f64 = 1e-4;
+const MAX_INFEASIBILITY: f64 = 1e4;
+const SMALL_INFEASIBILITY: f64 = 1e-4;
 /// Factor by which a correction must reduce the infeasibility of the one before.
-const CORRECTED: f64 = 0.99;
-const CORRECTIONS: usize = 2;
+const CORRECTION_DECREASE: f64 = 0.99;
+const MAX_CORRECTIONS: usize = 2;
 /// Largest number of step halvings.
-const HALVINGS: usize = 40;
+const MAX_HALVINGS: usize = 40;
 /// Fraction of the step taken where none is acceptable, after which the filter is cleared, and the
 /// largest number of such steps.
-const JUMP: f64 = 0.1;
-const JUMPS: usize = 6;
+const FORCED_STEP: f64 = 0.1;
+const MAX_FORCED_STEPS: usize = 6;
 /// Relative differences of the objective below this are rounding.
 const ROUNDING: f64 = 10.0 * f64::EPSILON;
 
@@ -40,7 +40,7 @@ pub(super) enum Accepted {
 pub(super) struct Search {
     most: f64,
     little: f64,
-    jumps: usize,
+    forced_steps: usize,
 }
 
 impl Search {
@@ -48,9 +48,9 @@ impl Search {
     pub fn new(infeasibility: f64) -> Self {
         let size = infeasibility.max(1.0);
         Self {
-            most: MOST * size,
-            little: LITTLE * size,
-            jumps: 0,
+            most: MAX_INFEASIBILITY * size,
+            little: SMALL_INFEASIBILITY * size,
+            forced_steps: 0,
         }
     }
 
@@ -61,13 +61,13 @@ impl Search {
 
     /// Fraction of the longest step to take although no step is acceptable; `None` after too many
     /// of these.
-    pub fn jump(&mut self, filter: &mut Filter) -> Option<f64> {
-        self.jumps += 1;
-        if self.jumps > JUMPS {
+    pub fn forced_step(&mut self, filter: &mut Filter) -> Option<f64> {
+        self.forced_steps += 1;
+        if self.forced_steps > MAX_FORCED_STEPS {
             return None;
         }
         self.restart(filter);
-        Some(JUMP)
+        Some(FORCED_STEP)
     }
 
     /// Finds an acceptable fraction of the step, the longest first. `keep_going` is called before
@@ -97,7 +97,7 @@ impl Search {
             (LEAST_STEP * by_descent).min(filter)
         };
         let mut step = longest[0];
-        for halving in 0..HALVINGS {
+        for halving in 0..MAX_HALVINGS {
             if halving > 0 && !keep_going() {
                 return Accepted::OutOfTime;
             }
@@ -173,7 +173,7 @@ impl Search {
     ) -> Option<(f64, bool)> {
         let mut step = first;
         let mut before = f64::INFINITY;
-        for _ in 0..CORRECTIONS {
+        for _ in 0..MAX_CORRECTIONS {
             method.add_trial_to_targets(step);
             method.step();
             step = method.longest(to_limit)[0];
@@ -185,7 +185,7 @@ impl Search {
             if let Some(descends) = self.judge(method, from, descent, first, found) {
                 return Some((step, descends));
             }
-            if !(found.infeasibility <= CORRECTED * before) {
+            if !(found.infeasibility <= CORRECTION_DECREASE * before) {
                 break;
             }
             before = found.infeasibility;

@@ -8,8 +8,8 @@ use super::workspace::RowStep;
 /// Factor between shifts, first shift relative to the largest second derivative of the controls,
 /// and largest number of shifts.
 const SHIFT_FACTOR: f64 = 6.0;
-const SHIFT_FIRST: f64 = 1e-4;
-const SHIFTS: usize = 40;
+const FIRST_SHIFT: f64 = 1e-4;
+const MAX_SHIFTS: usize = 40;
 
 /// Second derivatives of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,9 +48,9 @@ impl<P: StageProblem<N, M>, const N: usize, const M: usize> Method<'_, P, N, M> 
         let mut shift = if self.last_shift > 0.0 {
             self.last_shift / SHIFT_FACTOR / SHIFT_FACTOR
         } else {
-            SHIFT_FIRST * size.max(f64::MIN_POSITIVE)
+            FIRST_SHIFT * size.max(f64::MIN_POSITIVE)
         };
-        for _ in 0..SHIFTS {
+        for _ in 0..MAX_SHIFTS {
             self.assemble(kind, shift);
             if riccati::factorise(&mut self.work.factors, &self.work.hessian) {
                 self.last_shift = shift;

@@ -309,7 +309,7 @@ impl StageProblem<2, 2> for Disc {
 }
 
 #[test]
-fn a_disc_is_left_for_its_nearest_point() {
+fn a_point_in_a_disc_moves_to_its_nearest_point() {
     for gauss_newton in [true, false] {
         for start in [
             Vector::<2>::new(3.0, 1.0),
@@ -355,7 +355,7 @@ fn a_disc_is_left_for_its_nearest_point() {
 
 /// An unsatisfiable row ends at the penalty and reports its shortfall.
 #[test]
-fn what_cannot_be_satisfied_falls_short_by_the_least() {
+fn unsatisfiable_rows_have_the_least_shortfall() {
     let mut toy = Toy::<1, 1>::new(
         1,
         Vector::<1>::new(0.0),
@@ -373,7 +373,7 @@ fn what_cannot_be_satisfied_falls_short_by_the_least() {
 }
 
 #[test]
-fn a_bent_problem_with_rows_satisfies_its_conditions() {
+fn a_nonlinear_problem_with_rows_satisfies_its_conditions() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     for _ in 0..50 {
         let mut any = |_: usize, _: usize| rng.random_range(-0.6..0.6);
@@ -406,7 +406,7 @@ fn a_bent_problem_with_rows_satisfies_its_conditions() {
 }
 
 #[test]
-fn what_runs_away_or_is_no_number_is_said_so() {
+fn divergence_and_nan_are_reported() {
     let mut toy = Toy::<1, 1>::new(
         3,
         Vector::<1>::new(1.0),

@@ -7,28 +7,28 @@ use crate::frame::{Vector, direction, heading_of};
 use crate::planner::space_time::bound::obstacle::ObstacleBound;
 
 /// Angles from the perpendicular to the path, radians, positive toward straight ahead.
-const ASLANT: [f64; LIMITS] = [-1.0, -0.4, 0.2, 0.7, 1.1, 1.57];
-pub(crate) const LIMITS: usize = 6;
+const OBLIQUE_RAD: [f64; OBLIQUE] = [-1.0, -0.4, 0.2, 0.7, 1.1, 1.57];
+pub(crate) const OBLIQUE: usize = 6;
 
 /// Directions in which progress is bounded: perpendicular to the path, straight ahead, and
-/// [`ASLANT`].
-pub(crate) const WAYS: usize = LIMITS + 2;
+/// [`OBLIQUE_RAD`].
+pub(crate) const DIRECTIONS: usize = OBLIQUE + 2;
 
 /// Obstacle faces and directions of progress on one side of the leg. Headings are relative to the
 /// leg.
 #[derive(Debug)]
-pub(crate) struct View {
+pub(crate) struct SideGeometry {
     /// Heading of every direction, radians, and its unit vector.
-    pub headings: [f64; WAYS],
-    pub directions: [Vector; WAYS],
-    pub limits: [Limit; LIMITS],
+    pub headings: [f64; DIRECTIONS],
+    pub directions: [Vector; DIRECTIONS],
+    pub half_planes: [HalfPlane; OBLIQUE],
     /// Products of each face of all obstacles, in order, with each half-plane.
-    pairs: Vec<[Pair; LIMITS]>,
+    pairs: Vec<[Pair; OBLIQUE]>,
 }
 
 /// Half-plane that contains own ship: its outer normal in the metric of the error.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limit {
+pub(crate) struct HalfPlane {
     pub metric: Vector,
     pub scale: f64,
 }
@@ -54,7 +54,7 @@ impl Pair {
     /// first is positive.
     fn least_square(self, a: f64, b: f64) -> f64 {
         if self.spread == 0.0 {
-            greater(a, b).powi(2)
+            fast_max(a, b).powi(2)
         } else if b <= self.cosine * a {
             a * a
         } else if b > 0.0 && a <= self.cosine * b {
@@ -65,50 +65,50 @@ impl Pair {
     }
 }
 
-impl View {
+impl SideGeometry {
     /// `side` is 1 where the path is to port.
     pub(crate) fn new(side: f64, root: f64, obstacle_bound: &ObstacleBound) -> Self {
-        let mut headings = [0.0; WAYS];
+        let mut headings = [0.0; DIRECTIONS];
         headings[0] = side * FRAC_PI_2;
-        let limits: [Limit; LIMITS] = std::array::from_fn(|k| {
-            let normal = Vector::new(ASLANT[k].sin(), side * ASLANT[k].cos());
+        let half_planes: [HalfPlane; OBLIQUE] = std::array::from_fn(|k| {
+            let normal = Vector::new(OBLIQUE_RAD[k].sin(), side * OBLIQUE_RAD[k].cos());
             headings[k + 2] = heading_of(normal);
             let metric = Vector::new(normal.x / root, normal.y);
             let scale = metric.norm();
-            Limit {
+            HalfPlane {
                 metric: metric / scale,
                 scale,
             }
         });
-        let faces = obstacle_bound.bodies().iter().flat_map(|b| &b.faces);
+        let faces = obstacle_bound.obstacles().iter().flat_map(|b| &b.faces);
         let pairs = faces
-            .map(|f| limits.map(|l| Pair::new(-l.metric.dot(&f.metric))))
+            .map(|f| half_planes.map(|l| Pair::new(-l.metric.dot(&f.metric))))
             .collect();
         Self {
             headings,
             directions: headings.map(direction),
-            limits,
+            half_planes,
             pairs,
         }
     }
 }
 
 /// Constraints on own ship in one interval.
-pub(crate) struct HalfPlanes<'a> {
+pub(crate) struct HalfPlaneBound<'a> {
     pub obstacle_bound: &'a ObstacleBound,
-    pub view: &'a View,
-    pub reached: &'a [f64],
+    pub geometry: &'a SideGeometry,
+    pub reach_times: &'a [f64],
     /// Least distance of the scheduled point beyond each half-plane, metres.
-    pub limits: [f64; LIMITS],
+    pub half_planes: [f64; OBLIQUE],
 }
 
-impl HalfPlanes<'_> {
+impl HalfPlaneBound<'_> {
     /// Least mean squared error between two times, outside every obstacle and within the
     /// half-planes. `known` is the bound by the half-planes alone.
     pub(crate) fn least(&self, known: f64, from: f64, to: f64) -> f64 {
         let mut greatest = known;
         let mut first = 0;
-        for body in self.obstacle_bound.bodies() {
+        for body in self.obstacle_bound.obstacles() {
             let faces = first..first + body.faces.len();
             first = faces.end;
             if to < body.from || from > body.to {
@@ -117,61 +117,61 @@ impl HalfPlanes<'_> {
             let (mut a, mut b) = (f64::INFINITY, f64::INFINITY);
             let mut shallowest = (f64::INFINITY, first);
             for (face, index) in body.faces.iter().zip(faces.clone()) {
-                if self.reached[index] <= to {
+                if self.reach_times[index] <= to {
                     let (start, end) = (face.depth_at(from), face.depth_at(to));
-                    (a, b) = (lesser(start, a), lesser(end, b));
-                    let depth = lesser(start, end);
+                    (a, b) = (fast_min(start, a), fast_min(end, b));
+                    let depth = fast_min(start, end);
                     if depth < shallowest.0 {
                         shallowest = (depth, index);
                     }
                 }
             }
-            greatest = greater(greatest, squared_chord(a, b));
+            greatest = fast_max(greatest, squared_chord(a, b));
             // beyond a face that is not deep, only the half-planes count
             if !(shallowest.0 > 0.0) || greatest == f64::INFINITY {
                 continue;
             }
             // the smallest first: it decides most of the others
-            let mut joint = self.both(shallowest.0, shallowest.1);
+            let mut joint = self.beyond_face(shallowest.0, shallowest.1);
             for (face, index) in body.faces.iter().zip(faces) {
                 if joint <= greatest {
                     break;
                 }
-                if self.reached[index] <= to {
-                    let depth = lesser(face.depth_at(from), face.depth_at(to));
+                if self.reach_times[index] <= to {
+                    let depth = fast_min(face.depth_at(from), face.depth_at(to));
                     if depth * depth < joint {
-                        joint = lesser(self.both(depth, index), joint);
+                        joint = fast_min(self.beyond_face(depth, index), joint);
                     }
                 }
             }
-            greatest = greater(greatest, joint);
+            greatest = fast_max(greatest, joint);
         }
         greatest
     }
 
     /// Least squared error of a point beyond a face and within the half-planes.
-    fn both(&self, depth: f64, face: usize) -> f64 {
-        let pairs = self.view.pairs[face].iter();
+    fn beyond_face(&self, depth: f64, face: usize) -> f64 {
+        let pairs = self.geometry.pairs[face].iter();
         pairs
-            .zip(&self.limits)
+            .zip(&self.half_planes)
             .map(|(pair, beyond)| pair.least_square(depth, *beyond))
-            .fold(depth * depth, greater)
+            .fold(depth * depth, fast_max)
     }
 }
 
 /// Minimum; `b` when `a` is a NaN. Compiles to one instruction, unlike [`f64::min`].
-pub(crate) fn lesser(a: f64, b: f64) -> f64 {
+pub(crate) fn fast_min(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 /// Maximum; `b` when `a` is a NaN.
-pub(crate) fn greater(a: f64, b: f64) -> f64 {
+pub(crate) fn fast_max(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// Mean of the squared positive part along a line from `a` to `b`.
 pub(crate) fn squared_chord(a: f64, b: f64) -> f64 {
-    let (low, high) = (lesser(a, b), greater(a, b));
+    let (low, high) = (fast_min(a, b), fast_max(a, b));
     if high <= 0.0 {
         0.0
     } else if low >= 0.0 {

@@ -88,7 +88,7 @@ impl<'a> Heuristic<'a> {
     pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
         let obstacle_bound =
             |from: f64| self.obstacle_bound.cost_from(from) / self.desired.duration();
-        let (across, lag) = self.way_back(pose, time);
+        let (across, lag) = self.unobstructed_bounds(pose, time);
         // bounds over disjoint time intervals add up
         let both = across.cost + lag.cost + obstacle_bound(time + across.span.max(lag.span));
         both.max(across.cost + obstacle_bound(time + across.span))
@@ -96,7 +96,7 @@ impl<'a> Heuristic<'a> {
     }
 
     /// Tighter lower bound for one straight leg, m²; slower than [`Self::cost_to_go`].
-    pub(crate) fn closer_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
+    pub(crate) fn tight_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
         let Some(tight_bound) = &self.tight_bound else {
             return 0.0;
         };
@@ -105,7 +105,7 @@ impl<'a> Heuristic<'a> {
     }
 
     /// True when no trajectory from here clears the obstacles.
-    pub(crate) fn is_dead(&self, pose: &Pose, time: f64) -> bool {
+    pub(crate) fn is_dead_end(&self, pose: &Pose, time: f64) -> bool {
         let [leg] = self.desired.legs() else {
             return false;
         };
@@ -117,7 +117,7 @@ impl<'a> Heuristic<'a> {
     }
 
     /// Bounds that ignore obstacles: cross-track and lag.
-    fn way_back(&self, pose: &Pose, time: f64) -> (Stretch, Stretch) {
+    fn unobstructed_bounds(&self, pose: &Pose, time: f64) -> (CostInterval, CostInterval) {
         let legs = self.desired.legs();
         if let [leg] = legs {
             let offset = pose.position - leg.start;
@@ -130,13 +130,13 @@ impl<'a> Heuristic<'a> {
             let least_time = (self.desired.end() - pose.position).norm() / self.max_speed;
             let scale = 1.0 / self.desired.duration();
             let along = if lag >= 0.0 {
-                self.shrinking(lag, Vector::new(cosine, sine.abs()), leg.speed, least_time)
+                self.decreasing_bound(lag, Vector::new(cosine, sine.abs()), leg.speed, least_time)
             } else {
                 squared_ramp(-lag, -(self.max_speed + leg.speed), least_time)
             };
             // heading relative to the direction straight to the path
             let toward = Vector::new(-across.signum() * sine, cosine.abs());
-            let aside = self.shrinking(across.abs(), toward, 0.0, f64::INFINITY);
+            let aside = self.decreasing_bound(across.abs(), toward, 0.0, f64::INFINITY);
             return (aside.scaled(scale), along.scaled(kappa * scale));
         }
         let off = legs
@@ -150,7 +150,7 @@ impl<'a> Heuristic<'a> {
         let aside = squared_ramp(off, -self.max_speed, f64::INFINITY);
         (
             aside.scaled(1.0 / self.desired.duration()),
-            Stretch {
+            CostInterval {
                 cost: 0.0,
                 span: 0.0,
             },
@@ -160,7 +160,7 @@ impl<'a> Heuristic<'a> {
     /// Lower sum, up to `until`, of the integral of the squared positive part of
     /// `start + growth tau - P(u_max tau)`. `off` is the cosine and sine of the angle, up to pi,
     /// between the heading and the direction that reduces the error fastest.
-    fn shrinking(&self, start: f64, off: Vector, growth: f64, until: f64) -> Stretch {
+    fn decreasing_bound(&self, start: f64, off: Vector, growth: f64, until: f64) -> CostInterval {
         let (u, r) = (self.max_speed, self.radius);
         let angle = heading_of(off);
         let turning = (r * angle / u).min(until);
@@ -180,7 +180,7 @@ impl<'a> Heuristic<'a> {
             }
         }
         let after = squared_ramp(before, growth - u, until - turning);
-        Stretch {
+        CostInterval {
             cost: sum + after.cost,
             span: turning.max(0.0) + after.span,
         }
@@ -189,12 +189,12 @@ impl<'a> Heuristic<'a> {
 
 /// Cost over the next `span` seconds.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stretch {
+pub(crate) struct CostInterval {
     pub cost: f64,
     span: f64,
 }
 
-impl Stretch {
+impl CostInterval {
     fn scaled(self, factor: f64) -> Self {
         Self {
             cost: self.cost * factor,
@@ -205,9 +205,9 @@ impl Stretch {
 
 /// Integral over `[0, duration]` of the squared positive part of `start + slope tau`, and the time
 /// until which that is positive. A decreasing ramp may extend to infinity.
-pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> Stretch {
+pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> CostInterval {
     if start <= 0.0 && slope <= 0.0 || !(duration > 0.0) {
-        return Stretch {
+        return CostInterval {
             cost: 0.0,
             span: 0.0,
         };
@@ -215,14 +215,14 @@ pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> Stretch {
     if slope < 0.0 {
         let span = duration.min(-start / slope).max(0.0);
         let end = (start + slope * span).max(0.0);
-        return Stretch {
+        return CostInterval {
             cost: (start.powi(3) - end.powi(3)) / (-3.0 * slope),
             span,
         };
     }
     // not decreasing: the start value remains a bound
     let span = duration.min(1e9);
-    Stretch {
+    CostInterval {
         cost: start * start * span,
         span,
     }
@@ -239,7 +239,7 @@ mod tests {
     /// Random lines and arcs, then a path to the end: compares the bound at every joint with the
     /// cost that follows.
     #[test]
-    fn the_bound_never_exceeds_the_cost_of_random_ways_to_the_end() {
+    fn the_bound_never_exceeds_the_cost_of_random_paths_to_the_end() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(31);
         let straight = [(0.0, 0.0), (1500.0, 0.0)]
             .map(|(x, y)| Vector::new(x, y))

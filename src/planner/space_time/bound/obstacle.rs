@@ -34,7 +34,7 @@ const STEP_S: f64 = 0.5;
 pub(crate) struct ObstacleBound {
     /// Lower bound of the remaining integral at every multiple of [`STEP_S`], m² s; decreasing.
     to_come: Vec<f64>,
-    bodies: Vec<Body>,
+    obstacles: Vec<EnteredObstacle>,
     /// Envelope of `E` there, and its largest decrease per step, metres.
     least: Vec<f64>,
     fall: f64,
@@ -45,7 +45,7 @@ impl ObstacleBound {
     pub(crate) fn none() -> Self {
         Self {
             to_come: Vec::new(),
-            bodies: Vec::new(),
+            obstacles: Vec::new(),
             least: Vec::new(),
             fall: 0.0,
         }
@@ -62,14 +62,15 @@ impl ObstacleBound {
         let until = (problem.desired.end() - own.pose.position).norm() / own.max_speed();
         let count = (until / STEP_S).floor().max(0.0) as usize;
         let mut least = vec![0.0; count + 1];
-        let mut bodies = Vec::new();
+        let mut obstacles = Vec::new();
         for proxy in proxies {
             let faces = proxy.within.faces().iter();
             let faces: Vec<Face> = faces
-                .map(|f| Face::new(by_the_clock(f, proxy.start()), leg, kappa))
+                .map(|f| Face::new(in_scenario_time(f, proxy.start()), leg, kappa))
                 .collect();
             let mut contact = None;
-            let steps = inside(&faces).map(|time| (time / STEP_S).clamp(0.0, least.len() as f64));
+            let steps =
+                contact_interval(&faces).map(|time| (time / STEP_S).clamp(0.0, least.len() as f64));
             let (first, last) = (steps[0].floor() as usize, steps[1].ceil() as usize + 1);
             for (k, least) in least.iter_mut().enumerate().take(last).skip(first) {
                 let time = STEP_S * k as f64;
@@ -90,7 +91,7 @@ impl ObstacleBound {
             }
             // the tight bound assumes that its faces exist for ever
             let contact = contact.filter(|_| proxy.window.is_none());
-            bodies.extend(contact.map(|(from, to)| Body { faces, from, to }));
+            obstacles.extend(contact.map(|(from, to)| EnteredObstacle { faces, from, to }));
         }
         let fall = rate(own.max_speed(), leg.speed, kappa) * STEP_S;
         for k in 1..least.len() {
@@ -106,7 +107,7 @@ impl ObstacleBound {
         }
         Self {
             to_come,
-            bodies,
+            obstacles,
             least,
             fall,
         }
@@ -121,13 +122,13 @@ impl ObstacleBound {
         }
     }
 
-    pub(crate) fn bodies(&self) -> &[Body] {
-        &self.bodies
+    pub(crate) fn obstacles(&self) -> &[EnteredObstacle] {
+        &self.obstacles
     }
 
     /// Last time at which the scheduled point is inside an obstacle.
     pub(crate) fn last_contact(&self) -> f64 {
-        self.bodies.iter().map(|b| b.to).fold(0.0, f64::max)
+        self.obstacles.iter().map(|b| b.to).fold(0.0, f64::max)
     }
 
     /// Least integral of the squared error from a time on, m² s.
@@ -149,7 +150,7 @@ impl ObstacleBound {
 
 /// Time interval during which the scheduled point is behind every face; empty (first > second)
 /// where it never is.
-fn inside(faces: &[Face]) -> [f64; 2] {
+fn contact_interval(faces: &[Face]) -> [f64; 2] {
     let (mut from, mut to) = (0.0_f64, f64::INFINITY);
     for face in faces {
         let root = -face.depth / face.rate;
@@ -165,7 +166,7 @@ fn inside(faces: &[Face]) -> [f64; 2] {
 }
 
 /// Face in scenario time; its own clock starts at `start`.
-fn by_the_clock(face: &HalfSpace, start: f64) -> HalfSpace {
+fn in_scenario_time(face: &HalfSpace, start: f64) -> HalfSpace {
     HalfSpace {
         initial_support: face.initial_support - face.velocity_support * start,
         ..*face
@@ -174,7 +175,7 @@ fn by_the_clock(face: &HalfSpace, start: f64) -> HalfSpace {
 
 /// Obstacle that the scheduled point is inside of for some time.
 #[derive(Debug, Clone)]
-pub(crate) struct Body {
+pub(crate) struct EnteredObstacle {
     pub faces: Vec<Face>,
     /// Seconds.
     pub from: f64,

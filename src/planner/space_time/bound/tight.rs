@@ -31,7 +31,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::frame::{Pose, Vector, cross, heading_of, wrap};
 use crate::planner::space_time::bound::half_plane::{
-    HalfPlanes, LIMITS, View, WAYS, greater, lesser, squared_chord,
+    DIRECTIONS, HalfPlaneBound, OBLIQUE, SideGeometry, fast_max, fast_min, squared_chord,
 };
 use crate::planner::space_time::bound::obstacle::{Face, ObstacleBound};
 use crate::planner::space_time::bound::squared_ramp;
@@ -55,49 +55,49 @@ pub(crate) struct TightBound<'a> {
     /// Metres.
     radius: f64,
     /// Geometry seen from starboard and from port of the leg.
-    views: [View; 2],
+    sides: [SideGeometry; 2],
 }
 
 /// Angles between the directions of progress and own ship's heading.
-struct Ways {
-    angles: [f64; WAYS],
-    cosines: [f64; WAYS],
-    sines: [f64; WAYS],
+struct HeadingOffsets {
+    angles: [f64; DIRECTIONS],
+    cosines: [f64; DIRECTIONS],
+    sines: [f64; DIRECTIONS],
     greatest: f64,
     radius: f64,
 }
 
-impl Ways {
+impl HeadingOffsets {
     /// `ahead` is the unit vector of `heading`.
-    fn new(heading: f64, ahead: Vector, view: &View, radius: f64) -> Self {
-        let angles = view.headings.map(|h| between(heading, h));
+    fn new(heading: f64, ahead: Vector, geometry: &SideGeometry, radius: f64) -> Self {
+        let angles = geometry.headings.map(|h| between(heading, h));
         Self {
             angles,
-            cosines: view.directions.map(|d| ahead.dot(&d)),
-            sines: view.directions.map(|d| cross(ahead, d).abs()),
+            cosines: geometry.directions.map(|d| ahead.dot(&d)),
+            sines: geometry.directions.map(|d| cross(ahead, d).abs()),
             greatest: angles.into_iter().fold(0.0, f64::max),
             radius,
         }
     }
 
     /// Largest progress in each direction after the given path length, metres.
-    fn made_good(&self, rollout: f64) -> [f64; WAYS] {
-        let (turned, r) = (rollout / self.radius, self.radius);
+    fn made_good(&self, length: f64) -> [f64; DIRECTIONS] {
+        let (turned, r) = (length / self.radius, self.radius);
         if turned >= self.greatest {
             return std::array::from_fn(|k| {
-                greater(rollout - r * (self.angles[k] - self.sines[k]), 0.0)
+                fast_max(length - r * (self.angles[k] - self.sines[k]), 0.0)
             });
         }
         let (sin, cos) = turned.sin_cos();
         std::array::from_fn(|k| {
-            let way = if self.angles[k] > turned {
+            let progress = if self.angles[k] > turned {
                 // sine of the angle left to turn
                 let left = self.sines[k] * cos - self.cosines[k] * sin;
                 r * (self.sines[k] - left)
             } else {
-                rollout - r * (self.angles[k] - self.sines[k])
+                length - r * (self.angles[k] - self.sines[k])
             };
-            way.max(0.0)
+            progress.max(0.0)
         })
     }
 }
@@ -124,7 +124,7 @@ impl<'a> TightBound<'a> {
             root,
             speed,
             radius,
-            views: [1.0, -1.0].map(|side| View::new(side, root, obstacle_bound)),
+            sides: [1.0, -1.0].map(|side| SideGeometry::new(side, root, obstacle_bound)),
         }
     }
 
@@ -143,11 +143,12 @@ impl<'a> TightBound<'a> {
         let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
         // relative to own ship, the scheduled point is at `(lag + u_d tau, -across)` along and
         // across the leg
-        let view = &self.views[usize::from(across.is_sign_positive())];
+        let geometry = &self.sides[usize::from(across.is_sign_positive())];
         let heading = wrap(pose.heading - self.course);
         let ahead = pose.ahead();
         let (along, aside) = (leg.direction.dot(&ahead), cross(leg.direction, ahead));
-        let ways = Ways::new(heading, Vector::new(along, aside), view, self.radius);
+        let offsets =
+            HeadingOffsets::new(heading, Vector::new(along, aside), geometry, self.radius);
         let slope = if lag >= 0.0 {
             leg.speed - u
         } else {
@@ -156,21 +157,21 @@ impl<'a> TightBound<'a> {
         // least distance of the scheduled point from the path, behind schedule, and beyond the
         // half-planes
         let apart = |tau: f64| {
-            let made_good = ways.made_good(u * tau);
+            let made_good = offsets.made_good(u * tau);
             let late = if lag >= 0.0 {
                 lag + leg.speed * tau - made_good[1]
             } else {
                 -lag + slope * tau
             };
             let due = Vector::new(self.root * (lag + leg.speed * tau), -across);
-            let beyond: [f64; LIMITS] = std::array::from_fn(|k| {
-                let limit = &view.limits[k];
+            let beyond: [f64; OBLIQUE] = std::array::from_fn(|k| {
+                let limit = &geometry.half_planes[k];
                 limit.metric.dot(&due) - made_good[k + 2] / limit.scale
             });
             ((across.abs() - made_good[0], late), beyond)
         };
-        let reached = self.reached(obstacle_bound, pose, ahead, time);
-        let turned = ways.angles[0].max(ways.angles[1]) * self.radius / u;
+        let reach_times = self.reach_times(obstacle_bound, pose, ahead, time);
+        let turned = offsets.angles[0].max(offsets.angles[1]) * self.radius / u;
         let until = arrival.min(turned.max(obstacle_bound.last_contact() - time));
         let interval = INTERVAL_S.max(until / MOST_INTERVALS);
         let (mut from, mut sum) = (0.0, 0.0);
@@ -180,16 +181,16 @@ impl<'a> TightBound<'a> {
             let next = apart(to);
             let mut least =
                 squared_chord(back.0, next.0.0) + kappa * squared_chord(back.1, next.0.1);
-            let mut limits = [0.0; LIMITS];
-            for (k, limit) in limits.iter_mut().enumerate() {
-                least = greater(least, squared_chord(beyond[k], next.1[k]));
-                *limit = lesser(beyond[k], next.1[k]);
+            let mut half_planes = [0.0; OBLIQUE];
+            for (k, limit) in half_planes.iter_mut().enumerate() {
+                least = fast_max(least, squared_chord(beyond[k], next.1[k]));
+                *limit = fast_min(beyond[k], next.1[k]);
             }
-            let outside = HalfPlanes {
+            let outside = HalfPlaneBound {
                 obstacle_bound,
-                view,
-                reached: &reached,
-                limits,
+                geometry,
+                reach_times: &reach_times,
+                half_planes,
             };
             least = outside.least(least, time + from, time + to);
             let envelope = obstacle_bound.cost_between(time + from, time + to);
@@ -203,7 +204,7 @@ impl<'a> TightBound<'a> {
     }
 
     /// Earliest time at which own ship can be beyond each face of each obstacle.
-    fn reached(
+    fn reach_times(
         &self,
         obstacle_bound: &ObstacleBound,
         pose: &Pose,
@@ -212,7 +213,7 @@ impl<'a> TightBound<'a> {
     ) -> Vec<f64> {
         let heading = wrap(pose.heading);
         obstacle_bound
-            .bodies()
+            .obstacles()
             .iter()
             .flat_map(|b| &b.faces)
             .map(|face| {
@@ -221,14 +222,14 @@ impl<'a> TightBound<'a> {
                     let sine = cross(ahead, face.plane.normal).abs();
                     (between(face.heading, heading), sine)
                 };
-                time + self.reached_after(face, need, turn)
+                time + self.reach_time(face, need, turn)
             })
             .collect()
     }
 
     /// Seconds until own ship can have moved `need` metres along the face's normal; infinite when
     /// never. `turn` gives the angle to the normal and its sine.
-    fn reached_after(&self, face: &Face, need: f64, turn: impl FnOnce() -> (f64, f64)) -> f64 {
+    fn reach_time(&self, face: &Face, need: f64, turn: impl FnOnce() -> (f64, f64)) -> f64 {
         let faster = self.speed - face.plane.velocity_support;
         if need <= 0.0 {
             return 0.0;
@@ -253,7 +254,7 @@ impl<'a> TightBound<'a> {
 mod tests {
     use std::time::Duration;
 
-    use crate::obstacle::Coast;
+    use crate::obstacle::LandObstacle;
     use crate::pipeline;
     use crate::planner::clock::Clock;
     use crate::planner::cost::space_time_error;
@@ -269,9 +270,9 @@ mod tests {
     use crate::target::{Motion, Representation, Target};
 
     /// The same graph without its heuristic.
-    struct Blind<'a, 'b>(&'b mut Graph<'a>);
+    struct Uninformed<'a, 'b>(&'b mut Graph<'a>);
 
-    impl Space for Blind<'_, '_> {
+    impl Space for Uninformed<'_, '_> {
         type State = State;
         fn successors(&mut self, state: &State, out: &mut Vec<(State, f64)>) {
             self.0.successors(state, out);
@@ -289,7 +290,7 @@ mod tests {
 
     /// Compares the bounds at every joint of every path that Dijkstra finds, and of the refined
     /// plan, with the cost that follows. Returns the largest ratio of the tight bound.
-    fn nearest(problem: &Problem) -> f64 {
+    fn tightest_ratio(problem: &Problem) -> f64 {
         let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
         let mut nominal_motion = Vec::new();
         route.follow(0.0, 0.0, &mut nominal_motion);
@@ -306,11 +307,11 @@ mod tests {
         let mut joints: Vec<(State, f64)> = Vec::new();
         let mut cheapest = None;
         for _ in 0..20 {
-            let Stop::Goal(goal) = search.next_goal(&mut Blind(&mut graph), 1500) else {
+            let Stop::Goal(goal) = search.next_goal(&mut Uninformed(&mut graph), 1500) else {
                 break;
             };
-            let way = search.way_to(goal);
-            let nodes = way.iter().map(|i| &search.nodes()[*i]);
+            let path = search.way_to(goal);
+            let nodes = path.iter().map(|i| &search.nodes()[*i]);
             let cost = search.nodes()[goal].cost;
             cheapest.get_or_insert(cost);
             joints.extend(nodes.map(|n| (n.state.clone(), cost - n.cost)));
@@ -333,9 +334,9 @@ mod tests {
                 joints.push((state, to_go));
             }
         }
-        let mut nearest = 0.0_f64;
+        let mut tightest_ratio = 0.0_f64;
         for (state, to_go) in joints {
-            let (bound, tight_bound) = (graph.bound(&state), graph.closer_bound(&state));
+            let (bound, tight_bound) = (graph.bound(&state), graph.tight_bound(&state));
             let limit = to_go * (1.0 + 1e-9) + 1e-6;
             assert!(bound <= limit, "{bound} > {to_go} at {state:?}");
             assert!(
@@ -343,10 +344,10 @@ mod tests {
                 "closer: {tight_bound} > {to_go} at {state:?}"
             );
             if to_go > 100.0 {
-                nearest = nearest.max(tight_bound / to_go);
+                tightest_ratio = tightest_ratio.max(tight_bound / to_go);
             }
         }
-        nearest
+        tightest_ratio
     }
 
     fn ellipsoid(target: &mut Target) {
@@ -361,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn no_way_costs_less_than_its_bounds() {
+    fn no_path_costs_less_than_its_bounds() {
         let encounters = EncounterKind::ALL.into_iter().flat_map(|kind| {
             (0..12).map(move |guess| random_encounter(kind, guess, Placement::Random))
         });
@@ -377,10 +378,10 @@ mod tests {
                     .into_iter()
                     .map(|s| s.shaped)
                     .collect();
-                greatest = greatest.max(nearest(&Problem {
+                greatest = greatest.max(tightest_ratio(&Problem {
                     search: SearchKind::AStar,
                     deadline: Duration::from_secs(60),
-                    ..pipeline::problem(&scenario, &obstacles, Coast::none())
+                    ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
                 }));
             }
         }

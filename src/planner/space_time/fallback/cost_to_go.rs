@@ -53,7 +53,7 @@ impl CostToGoGrid {
         };
         let ashore: Vec<bool> = (0..CELLS * CELLS)
             .map(|k| {
-                let depth = problem.coast.depth(grid.middle(k));
+                let depth = problem.land_obstacle.depth(grid.middle(k));
                 depth.is_some_and(|depth| depth > 0.0)
             })
             .collect();

@@ -11,11 +11,14 @@
 use crate::frame::{Pose, Side};
 use crate::obstacle::Obstacle;
 use crate::planner::clock::Clock;
-use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, Watch};
+use crate::planner::space_time::fallback::harm::{Harm, LEAST_STEP_M, NominalHulls};
+use crate::planner::space_time::graph::departure::until;
 use crate::planner::space_time::piece::pieces as parts_of;
-use crate::planner::space_time::proxy::{Proxy, TOUCH_M, within_reach};
+use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
+use crate::planner::space_time::settings::{EVASIVE_HOLDS_S, EXIT_HOLDS_S};
 use crate::planner::{Plan, Problem};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::{Hull, OwnShip};
 
@@ -29,24 +32,17 @@ const TURNS: u32 = 36;
 const MOST_SPEEDS: usize = 4;
 
 /// Least interval in seconds between two samples of the exit test, and largest number of samples.
-const LOOK_S: f64 = 1.0;
-const MOST_LOOKS: usize = 400;
+const SAMPLE_S: f64 = 1.0;
+const MAX_SAMPLES: usize = 400;
 
 /// Bisection steps for the exit time: to a microsecond.
 const HALVINGS: usize = 20;
 
 /// Exits from which plans are sought, least harm first.
-const MOST_WAYS: usize = 4;
-
-/// Seconds for which an exit is held before the planner takes over. At the very edge of a growing
-/// set every turn leads back into it.
-const HOLDS_S: [f64; 5] = [0.0, 10.0, 30.0, 60.0, 120.0];
-
-/// Seconds for which a turn is held where own ship is in no set and there is no plan.
-const DETOURS_S: [f64; 3] = [30.0, 60.0, 120.0];
+const MAX_EXITS: usize = 4;
 
 /// Motions that are compared even after the deadline.
-const LEAST_COMPARED: usize = 12;
+const MIN_COMPARED: usize = 12;
 
 /// Target on its nominal track, without uncertainty.
 #[derive(Debug, Clone)]
@@ -72,7 +68,7 @@ pub(crate) struct NominalTarget {
 pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     if crate::planner::space_time::has_arrived(problem) {
-        return crate::planner::space_time::stay(problem);
+        return crate::planner::space_time::arrived_plan(problem);
     }
     let pieces = parts_of(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
@@ -82,50 +78,50 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
     let (hulls, own): (Vec<_>, Vec<_>) = targets.iter().map(|t| (t.hull.clone(), t.own)).unzip();
     let sets: Vec<Obstacle> = targets.into_iter().map(|t| t.set).collect();
     let hulls = parts_of(&hulls, problem.horizon);
-    let watch = Watch::new(&hulls, &own);
+    let nominal_hulls = NominalHulls::new(&hulls, &own);
     let nominal = Problem {
         obstacles: &sets,
         ..problem.clone()
     };
-    let mut sought = (problem, ways_out(problem, &proxies, &watch, clock));
-    if !sought.1.first().is_some_and(|way| way.harm.is_clear()) {
+    let mut leaving = (problem, exits(problem, &proxies, &nominal_hulls, clock));
+    if !leaving.1.first().is_some_and(|exit| exit.harm.is_clear()) {
         let pieces = parts_of(&sets, problem.horizon);
-        let ways = ways_out(
+        let exits = exits(
             &nominal,
             &pieces.iter().map(Proxy::new).collect::<Vec<_>>(),
-            &watch,
+            &nominal_hulls,
             clock,
         );
-        if sought.1.is_empty() || ways.first().is_some_and(|way| way.harm.is_clear()) {
-            sought = (&nominal, ways);
+        if leaving.1.is_empty() || exits.first().is_some_and(|exit| exit.harm.is_clear()) {
+            leaving = (&nominal, exits);
         }
     }
-    let (sought, ways) = sought;
-    let mut aways = aways(&ways);
-    for away in &aways {
+    let (leaving, exits) = leaving;
+    let mut exit_motions = exit_motions(&exits);
+    for beginning in &exit_motions {
         if clock.is_up() {
             break;
         }
-        if let Some(motion) = onward(sought, away, |rest| planned(rest, clock)) {
+        if let Some(motion) = append(leaving, beginning, |rest| planned(rest, clock)) {
             return Plan::measured(problem, motion, None);
         }
     }
-    if ways.is_empty() {
-        aways.extend(detours(problem.own, problem.horizon));
+    if exits.is_empty() {
+        exit_motions.extend(evasive_turns(problem.own, problem.horizon));
     } else {
         // used where every exit is too long for the horizon
-        aways.push(Vec::new());
+        exit_motions.push(Vec::new());
     }
-    let motion = on_to_the_end(problem, &aways, &watch, clock)?;
+    let motion = continue_to_end(problem, &exit_motions, &nominal_hulls, clock)?;
     Plan::measured(problem, motion, None)
 }
 
 /// Continues a few initial motions along the path, or straight to its end, at one speed. Returns
 /// the first that meets no nominal hull, or else the one with the least depth in one.
-fn on_to_the_end(
+fn continue_to_end(
     problem: &Problem,
-    aways: &[Vec<Segment>],
-    watch: &Watch,
+    exit_motions: &[Vec<Segment>],
+    nominal_hulls: &NominalHulls,
     clock: Clock,
 ) -> Option<Vec<Segment>> {
     let problem = &Problem {
@@ -133,15 +129,19 @@ fn on_to_the_end(
         ..problem.clone()
     };
     let mut best: Option<(f64, Vec<Segment>)> = None;
-    let ends = aways.iter().flat_map(|away| [(away, false), (away, true)]);
-    for (compared, (away, straight)) in ends.enumerate() {
-        if clock.is_up() && compared >= LEAST_COMPARED && best.is_some() {
+    let ends = exit_motions
+        .iter()
+        .flat_map(|beginning| [(beginning, false), (beginning, true)]);
+    for (compared, (beginning, straight)) in ends.enumerate() {
+        if clock.is_up() && compared >= MIN_COMPARED && best.is_some() {
             break;
         }
-        let Some(found) = onward(problem, away, |rest| afloat(rest, straight, clock)) else {
+        let Some(found) = append(problem, beginning, |rest| {
+            path_motion(rest, straight, clock)
+        }) else {
             continue;
         };
-        let deep = watch.depth(problem.own, &found, f64::INFINITY);
+        let deep = nominal_hulls.depth(problem.own, &found, f64::INFINITY);
         if best
             .as_ref()
             .is_none_or(|(least, _)| deep < least - LEAST_STEP_M)
@@ -157,7 +157,7 @@ fn on_to_the_end(
 
 /// Motion along the path, or straight to its end, at one speed: the speed nearest to the desired
 /// one, or the greatest where the horizon requires it. `None` where it meets land.
-fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
+fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
     let (own, desired) = (problem.own, problem.desired);
     let mean = desired.length() / desired.duration();
     let speeds = own.speeds.iter().copied().filter(|u| *u > 0.0);
@@ -178,7 +178,7 @@ fn afloat(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment
         (motion.last()?.end_time() <= problem.horizon).then_some(motion)
     };
     let motion = arrives(nearest).or_else(|| arrives(own.max_speed()))?;
-    (!crate::planner::space_time::land::meets(problem.coast, &motion)).then_some(motion)
+    (!crate::planner::space_time::land::meets(problem.land_obstacle, &motion)).then_some(motion)
 }
 
 /// Motion along the path that ignores other ships; `None` where it does not arrive within the
@@ -192,9 +192,9 @@ pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
 }
 
 /// Plan that holds a motion until a time and is clear of every set from then on.
-pub fn after_holding(problem: &Problem, motion: &[Segment], until: f64) -> Option<Plan> {
+pub fn after_holding(problem: &Problem, motion: &[Segment], time: f64) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
-    let motion = onward(problem, &cut(motion, until), |rest| planned(rest, clock))?;
+    let motion = append(problem, &until(motion, time), |rest| planned(rest, clock))?;
     Plan::measured(problem, motion, None)
 }
 
@@ -209,7 +209,7 @@ fn planned(problem: &Problem, clock: Clock) -> Option<Vec<Segment>> {
 }
 
 /// Motion that is outside the sets from a time on, for as long as it is held.
-struct WayOut {
+struct Exit {
     motion: Vec<Segment>,
     out: f64,
     harm: Harm,
@@ -217,7 +217,12 @@ struct WayOut {
 
 /// Exits from the sets that own ship starts in, least harm first. After the deadline only coarse
 /// turns are tried.
-fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -> Vec<WayOut> {
+fn exits(
+    problem: &Problem,
+    proxies: &[Proxy],
+    nominal_hulls: &NominalHulls,
+    clock: Clock,
+) -> Vec<Exit> {
     let own = problem.own;
     let inside = |h: &&Proxy| {
         h.slack(own.pose.position, 0.0)
@@ -239,32 +244,35 @@ fn ways_out(problem: &Problem, proxies: &[Proxy], watch: &Watch, clock: Clock) -
         let mut pairs = any.iter().flat_map(|h| motion.iter().map(move |s| (h, s)));
         pairs.any(|(h, s)| h.first_contact(s).is_some())
     };
-    let mut ways = Vec::new();
+    let mut exits = Vec::new();
     for (turn, is_coarse) in turns() {
         for speed in speeds(own) {
             if clock.is_up() && !is_coarse || speed == 0.0 && turn != 0.0 {
                 continue;
             }
             let motion = turned(own, speed, turn, problem.horizon);
-            let Some(out) = out_at(&motion, problem.horizon, speed + fastest, depth) else {
+            let Some(out) = exit_time(&motion, problem.horizon, speed + fastest, depth) else {
                 continue;
             };
-            let before = cut(&motion, out);
+            let before = until(&motion, out);
             // own ship may enter a growing set again: then it has not left for good
             if meets(&others, &before)
                 || meets(&held, &after(&motion, out))
-                || before.iter().any(|s| problem.coast.meets(s, TOUCH_M))
+                || before
+                    .iter()
+                    .any(|s| problem.land_obstacle.meets(s, TOUCH_M))
             {
                 continue;
             }
-            let harm = Harm::of(own, watch, &motion, out, depth);
-            ways.push((harm, out, turn, speed));
+            let harm = Harm::of(own, nominal_hulls, &motion, out, depth);
+            exits.push((harm, out, turn, speed));
         }
     }
-    ways.sort_by(|a, b| a.0.total_cmp(&b.0));
-    ways.truncate(MOST_WAYS);
-    ways.into_iter()
-        .map(|(harm, out, turn, speed)| WayOut {
+    exits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    exits.truncate(MAX_EXITS);
+    exits
+        .into_iter()
+        .map(|(harm, out, turn, speed)| Exit {
             motion: turned(own, speed, turn, problem.horizon),
             out,
             harm,
@@ -309,27 +317,29 @@ fn speeds(own: &OwnShip) -> Vec<f64> {
 }
 
 /// Initial motions: every exit held for a while; none where own ship is in no set.
-fn aways(ways: &[WayOut]) -> Vec<Vec<Segment>> {
-    if ways.is_empty() {
+fn exit_motions(exits: &[Exit]) -> Vec<Vec<Segment>> {
+    if exits.is_empty() {
         return vec![Vec::new()];
     }
-    let held = ways.iter().flat_map(|way| HOLDS_S.map(|hold| (way, hold)));
-    held.map(|(way, hold)| cut(&way.motion, way.out + hold))
+    let held = exits
+        .iter()
+        .flat_map(|exit| EXIT_HOLDS_S.map(|hold| (exit, hold)));
+    held.map(|(exit, hold)| until(&exit.motion, exit.out + hold))
         .collect()
 }
 
 /// Turns to either side at a low and at the greatest speed, held for a while.
-fn detours(own: &OwnShip, horizon: f64) -> Vec<Vec<Segment>> {
+fn evasive_turns(own: &OwnShip, horizon: f64) -> Vec<Vec<Segment>> {
     let low = own.speeds.iter().copied().find(|u| *u > 0.0);
-    let mut detours = Vec::new();
-    for hold in DETOURS_S {
+    let mut evasive_turns = Vec::new();
+    for hold in EVASIVE_HOLDS_S {
         for turn in [-6.0, 6.0, -12.0, 12.0, -18.0, 18.0].map(|steps| steps * TURN_RAD) {
             for speed in low.into_iter().chain([own.max_speed()]) {
-                detours.push(cut(&turned(own, speed, turn, horizon), hold));
+                evasive_turns.push(until(&turned(own, speed, turn, horizon), hold));
             }
         }
     }
-    detours
+    evasive_turns
 }
 
 /// Arc and line until the horizon; a wait where the speed is zero.
@@ -354,7 +364,7 @@ fn turned(own: &OwnShip, speed: f64, turn: f64, horizon: f64) -> Vec<Segment> {
 
 /// First instant from which a motion stays clear. `depth` is own ship's depth inside, metres; it
 /// changes by at most `rate` metres per second.
-fn out_at(
+fn exit_time(
     motion: &[Segment],
     horizon: f64,
     rate: f64,
@@ -369,9 +379,9 @@ fn out_at(
     let depth = |time: f64| at(time).map_or(f64::NAN, |pose| depth(&pose, time));
     let (mut inside, mut deep) = (0.0, depth(0.0));
     let mut found = None;
-    for _ in 0..MOST_LOOKS {
+    for _ in 0..MAX_SAMPLES {
         // not outside before
-        let time: f64 = inside + (deep / rate).max(LOOK_S);
+        let time: f64 = inside + (deep / rate).max(SAMPLE_S);
         if !(time <= horizon) {
             return None;
         }
@@ -394,12 +404,6 @@ fn out_at(
     Some(high)
 }
 
-/// Motion until a time.
-fn cut(motion: &[Segment], until: f64) -> Vec<Segment> {
-    let rollout = motion.iter().filter(|s| s.start_time < until);
-    rollout.map(|s| s.between(s.start_time, until)).collect()
-}
-
 /// Motion from a time on.
 fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
     let later = motion.iter().filter(|s| s.end_time() > from);
@@ -407,33 +411,33 @@ fn after(motion: &[Segment], from: f64) -> Vec<Segment> {
 }
 
 /// Appends to a motion another one, whose clock starts at the first one's end.
-fn onward(
+fn append(
     problem: &Problem,
-    away: &[Segment],
+    beginning: &[Segment],
     follow: impl Fn(&Problem) -> Option<Vec<Segment>>,
 ) -> Option<Vec<Segment>> {
-    if crate::planner::space_time::land::meets(problem.coast, away) {
+    if crate::planner::space_time::land::meets(problem.land_obstacle, beginning) {
         return None;
     }
-    let begun = away.last().map_or(0.0, Segment::end_time);
+    let start = beginning.last().map_or(0.0, Segment::end_time);
     let own = OwnShip {
-        pose: away.last().map_or(problem.own.pose, Segment::end),
+        pose: beginning.last().map_or(problem.own.pose, Segment::end),
         ..problem.own.clone()
     };
-    let desired = problem.desired.remaining(begun);
+    let desired = problem.desired.remaining(start);
     let later: Vec<Obstacle> = (problem.obstacles.iter())
-        .map(|set| set.remainder(begun))
+        .map(|set| set.remainder(start))
         .collect();
     let rest = Problem {
         own: &own,
         desired: &desired,
         obstacles: &later,
-        horizon: problem.horizon - begun,
+        horizon: problem.horizon - start,
         ..problem.clone()
     };
-    let mut motion = away.to_vec();
+    let mut motion = beginning.to_vec();
     motion.extend(follow(&rest)?.into_iter().map(|s| Segment {
-        start_time: s.start_time + begun,
+        start_time: s.start_time + start,
         ..s
     }));
     Some(motion)
@@ -460,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn every_turn_is_tried_once_and_few_when_the_time_is_up() {
+    fn every_turn_is_tried_once_and_few_after_the_deadline() {
         let mut all: Vec<(f64, bool)> = turns().collect();
         assert_eq!(all.len(), 73);
         assert_eq!(all.iter().filter(|(_, is_coarse)| *is_coarse).count(), 5);
@@ -478,19 +482,19 @@ mod tests {
     /// A horizon of a day in a set that grows faster than own ship sails costs as many samples as
     /// an hour.
     #[test]
-    fn a_set_that_is_never_left_costs_few_looks() {
+    fn a_set_that_is_never_left_costs_few_samples() {
         let own = own_ship(vec![5.0]);
-        let (growing, looks) = (8.0, Cell::new(0));
+        let (growing, samples) = (8.0, Cell::new(0));
         let depth = |pose: &Pose, time: f64| {
-            looks.set(looks.get() + 1);
+            samples.set(samples.get() + 1);
             60.0 + growing * time - pose.position.norm()
         };
         let motion = turned(&own, 5.0, 0.0, 86_400.0);
-        assert_eq!(out_at(&motion, 86_400.0, 5.0 + growing, depth), None);
-        assert!(looks.get() < 100, "{}", looks.get());
+        assert_eq!(exit_time(&motion, 86_400.0, 5.0 + growing, depth), None);
+        assert!(samples.get() < 100, "{}", samples.get());
         // a set that grows more slowly is left when own ship reaches its edge
         let depth = |pose: &Pose, time: f64| 60.0 + 3.0 * time - pose.position.norm();
-        let out = out_at(&motion, 86_400.0, 8.0, depth).expect("out");
+        let out = exit_time(&motion, 86_400.0, 8.0, depth).expect("out");
         assert!((out - 30.0).abs() < 1e-3, "{out}");
     }
 }

@@ -17,11 +17,11 @@ const TIME_STEP: f64 = 0.1;
 pub(crate) const LEAST_STEP_M: f64 = 0.1;
 
 /// Samples along an exit for its depth in the sets.
-const LOOKS: u32 = 200;
+const SAMPLES: u32 = 200;
 
 /// Largest approach of two ships between two samples, as a fraction of own beam. It doubles after
 /// each [`MANY`] samples.
-const LOOK_BEAMS: f64 = 0.25;
+const SAMPLE_BEAMS: f64 = 0.25;
 const MANY: u32 = 1000;
 
 /// Harm of an exit from sets. Compared in this order: depth in nominal hulls, depth in the sets,
@@ -44,7 +44,7 @@ impl Harm {
     /// Harm of a motion that leaves the sets at `out`; `depth` is its depth in the sets, metres.
     pub(crate) fn of(
         own: &OwnShip,
-        watch: &Watch,
+        nominal_hulls: &NominalHulls,
         motion: &[Segment],
         out: f64,
         depth: impl Fn(&Pose, f64) -> f64,
@@ -53,15 +53,15 @@ impl Harm {
         let steps = |metres: f64| (metres / step).ceil();
         let start = depth(&own.pose, 0.0);
         let mut deepest = start;
-        for look in 1..LOOKS {
-            let time = out * f64::from(look) / f64::from(LOOKS);
+        for sample in 1..SAMPLES {
+            let time = out * f64::from(sample) / f64::from(SAMPLES);
             if let Some(s) = motion.iter().find(|s| time <= s.end_time()) {
                 deepest = deepest.max(depth(&s.pose_at(time), time));
             }
         }
         let first = &motion[0];
         Self {
-            hulls: steps(watch.depth(own, motion, out)),
+            hulls: steps(nominal_hulls.depth(own, motion, out)),
             sets: ((deepest - start) / step).floor(),
             time: (out.ln() / (1.0 + TIME_STEP).ln()).floor(),
             speed: first.speed,
@@ -84,11 +84,11 @@ impl Harm {
 }
 
 /// Hulls of the targets on their nominal tracks.
-pub(crate) struct Watch<'a> {
+pub(crate) struct NominalHulls<'a> {
     hulls: Vec<(Proxy<'a>, Hull)>,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> NominalHulls<'a> {
     /// Builds the set from the convex pieces of the hulls, with own hull toward each.
     pub(crate) fn new(pieces: &'a [Piece], own: &[Hull]) -> Self {
         let hulls = pieces
@@ -105,15 +105,15 @@ impl<'a> Watch<'a> {
         let until = until.min(motion.last().map_or(0.0, Segment::end_time));
         let mut deepest: f64 = 0.0;
         for (proxy, hull) in &self.hulls {
-            let mut least = LOOK_BEAMS * own.hull.beam.max(LEAST_STEP_M);
-            let (mut time, mut at, mut looks): (f64, _, u32) = (0.0, 0, 0);
+            let mut least = SAMPLE_BEAMS * own.hull.beam.max(LEAST_STEP_M);
+            let (mut time, mut at, mut samples): (f64, _, u32) = (0.0, 0, 0);
             while let Some(segment) = motion.get(at) {
                 if segment.end_time() < time {
                     at += 1;
                     continue;
                 }
-                looks += 1;
-                if looks.is_multiple_of(MANY) {
+                samples += 1;
+                if samples.is_multiple_of(MANY) {
                     least *= 2.0;
                 }
                 let turning = segment.turn_rate.abs() * hull.half_diagonal();

@@ -27,7 +27,7 @@ const COURSES: f64 = 12.0;
 
 /// Resolution of the search.
 #[derive(Debug, Clone, Copy)]
-struct Fineness {
+struct Resolution {
     /// Length of a primitive in cells.
     way: f64,
     /// States that are distinguished per cell and time step.
@@ -37,13 +37,13 @@ struct Fineness {
 }
 
 /// Coarse first, then finer.
-const FINENESSES: [Fineness; 2] = [
-    Fineness {
+const RESOLUTIONS: [Resolution; 2] = [
+    Resolution {
         way: 1.5,
         apart: 2.0,
         most: 3_000,
     },
-    Fineness {
+    Resolution {
         way: 0.75,
         apart: 3.0,
         most: 10_000,
@@ -54,22 +54,24 @@ const FINENESSES: [Fineness; 2] = [
 const WEIGHT: f64 = 1.1;
 
 /// Metres. A turn whose circle passes this near to a point has no tangent to it.
-const NEAR_M: f64 = 1e-6;
+const CIRCLE_M: f64 = 1e-6;
 
 /// Motion primitive: a turn and a line, or a wait.
 #[derive(Debug, Clone, Copy)]
-enum Piece {
+enum Primitive {
     /// `turn` in radians to port, `line` in metres.
-    Bent { speed: f64, turn: f64, line: f64 },
+    Turn { speed: f64, turn: f64, line: f64 },
     /// Seconds.
     Wait { duration: f64 },
 }
 
-impl Piece {
+impl Primitive {
     /// Segments of the primitive from a pose and time.
     fn motion(self, pose: &Pose, time: f64, radius: f64) -> Vec<Segment> {
         match self {
-            Self::Bent { speed, turn, line } => bent(pose, time, speed, radius, turn, line),
+            Self::Turn { speed, turn, line } => {
+                turn_and_line(pose, time, speed, radius, turn, line)
+            }
             Self::Wait { duration } => vec![Segment {
                 start: *pose,
                 start_time: time,
@@ -83,30 +85,30 @@ impl Piece {
 
 /// Search node: a state or the end of the path, its parent, and the primitive between them.
 #[derive(Debug)]
-struct Reached {
+struct SearchNode {
     pose: Pose,
     time: f64,
     cost: f64,
-    from: Option<(usize, Piece)>,
+    from: Option<(usize, Primitive)>,
     is_end: bool,
 }
 
 /// Queue entry: least estimate first; among equals the older one.
 #[derive(Debug, PartialEq)]
-struct Open {
+struct QueueEntry {
     total: f64,
     index: usize,
 }
 
-impl Eq for Open {}
+impl Eq for QueueEntry {}
 
-impl PartialOrd for Open {
+impl PartialOrd for QueueEntry {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Open {
+impl Ord for QueueEntry {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_total = other.total.total_cmp(&self.total);
         by_total.then(other.index.cmp(&self.index))
@@ -121,12 +123,12 @@ pub(crate) fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
     let grid = CostToGoGrid::of(problem, &proxies)?;
-    FINENESSES.into_iter().find_map(|fineness| {
-        let mut search = Detour {
+    RESOLUTIONS.into_iter().find_map(|resolution| {
+        let mut search = HybridAStar {
             problem,
             proxies: &proxies,
             grid: &grid,
-            fineness,
+            resolution,
             reached: Vec::new(),
             open: BinaryHeap::new(),
             seen: HashSet::new(),
@@ -137,7 +139,7 @@ pub(crate) fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
 }
 
 /// Plan that leads to a node.
-fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
+fn plan_to(search: &HybridAStar, end: usize) -> Option<Plan> {
     let mut motion = Vec::new();
     let mut at = end;
     while let Some((before, _)) = search.reached[at].from {
@@ -148,27 +150,27 @@ fn plan_to(search: &Detour, end: usize) -> Option<Plan> {
     Plan::measured(search.problem, motion, None)
 }
 
-struct Detour<'a> {
+struct HybridAStar<'a> {
     problem: &'a Problem<'a>,
     proxies: &'a [Proxy<'a>],
     grid: &'a CostToGoGrid,
-    fineness: Fineness,
-    reached: Vec<Reached>,
-    open: BinaryHeap<Open>,
+    resolution: Resolution,
+    reached: Vec<SearchNode>,
+    open: BinaryHeap<QueueEntry>,
     seen: HashSet<[i64; 4]>,
 }
 
-impl Detour<'_> {
+impl HybridAStar<'_> {
     /// Index of the node at the end of the path.
     fn run(&mut self, clock: Clock) -> Option<usize> {
-        self.reach(Reached {
+        self.reach(SearchNode {
             pose: self.problem.own.pose,
             time: 0.0,
             cost: 0.0,
             from: None,
             is_end: false,
         });
-        for _ in 0..self.fineness.most {
+        for _ in 0..self.resolution.most {
             let index = loop {
                 if clock.is_up() {
                     return None;
@@ -190,31 +192,31 @@ impl Detour<'_> {
         None
     }
 
-    fn key(&self, state: &Reached) -> [i64; 4] {
+    fn key(&self, state: &SearchNode) -> [i64; 4] {
         let place = state.pose.position / self.grid.cell;
         let course = wrap(state.pose.heading) / std::f64::consts::TAU * COURSES;
         let time = state.time / self.grid.step;
-        [place.x, place.y, course, time].map(|v| (self.fineness.apart * v).round() as i64)
+        [place.x, place.y, course, time].map(|v| (self.resolution.apart * v).round() as i64)
     }
 
     fn expand(&mut self, index: usize) {
         let own = self.problem.own;
         let pose = self.reached[index].pose;
-        let way = self.fineness.way * self.grid.cell;
+        let way = self.resolution.way * self.grid.cell;
         let end = self.problem.desired.end();
         for speed in own.speeds.iter().copied() {
             if speed == 0.0 {
                 let duration = self.grid.step;
-                self.offer(index, Piece::Wait { duration }, false);
+                self.add_successor(index, Primitive::Wait { duration }, false);
                 continue;
             }
             for turn in TURNS_RAD {
                 let line = (way - turn.abs() * own.turning_radius).max(0.0);
-                self.offer(index, Piece::Bent { speed, turn, line }, false);
+                self.add_successor(index, Primitive::Turn { speed, turn, line }, false);
             }
             for side in [Side::Starboard, Side::Port] {
-                if let Some((turn, line)) = toward(&pose, own.turning_radius, side, end) {
-                    self.offer(index, Piece::Bent { speed, turn, line }, true);
+                if let Some((turn, line)) = turn_to_point(&pose, own.turning_radius, side, end) {
+                    self.add_successor(index, Primitive::Turn { speed, turn, line }, true);
                 }
             }
         }
@@ -224,23 +226,24 @@ impl Detour<'_> {
     fn motion_to(&self, index: usize) -> Vec<Segment> {
         self.reached[index]
             .from
-            .map_or_else(Vec::new, |(before, piece)| {
+            .map_or_else(Vec::new, |(before, primitive)| {
                 let before = &self.reached[before];
-                piece.motion(&before.pose, before.time, self.problem.own.turning_radius)
+                primitive.motion(&before.pose, before.time, self.problem.own.turning_radius)
             })
     }
 
     /// True where the primitive that leads to a node is clear.
     fn admits(&self, index: usize) -> bool {
         let motion = self.motion_to(index);
-        first_met(self.proxies, &motion).is_none() && !land::meets(self.problem.coast, &motion)
+        first_met(self.proxies, &motion).is_none()
+            && !land::meets(self.problem.land_obstacle, &motion)
     }
 
     /// Adds a successor where it is in time and can still reach the end.
-    fn offer(&mut self, from: usize, piece: Piece, is_end: bool) {
+    fn add_successor(&mut self, from: usize, primitive: Primitive, is_end: bool) {
         let problem = self.problem;
         let before = &self.reached[from];
-        let motion = piece.motion(&before.pose, before.time, problem.own.turning_radius);
+        let motion = primitive.motion(&before.pose, before.time, problem.own.turning_radius);
         let Some(last) = motion.last() else {
             return;
         };
@@ -254,22 +257,22 @@ impl Detour<'_> {
         }
         let more = |s| space_time_error(problem.desired, s, problem.time_weight);
         let cost = before.cost + motion.iter().map(more).sum::<f64>();
-        self.reach(Reached {
+        self.reach(SearchNode {
             pose,
             time,
             cost,
-            from: Some((from, piece)),
+            from: Some((from, primitive)),
             is_end,
         });
     }
 
-    fn reach(&mut self, state: Reached) {
+    fn reach(&mut self, state: SearchNode) {
         let to_go = if state.is_end {
             0.0
         } else {
             self.grid.from(state.pose.position, state.time)
         };
-        self.open.push(Open {
+        self.open.push(QueueEntry {
             total: state.cost + WEIGHT * to_go,
             index: self.reached.len(),
         });
@@ -278,7 +281,14 @@ impl Detour<'_> {
 }
 
 /// Arc of `turn` radians to port and a line.
-fn bent(pose: &Pose, time: f64, speed: f64, radius: f64, turn: f64, line: f64) -> Vec<Segment> {
+fn turn_and_line(
+    pose: &Pose,
+    time: f64,
+    speed: f64,
+    radius: f64,
+    turn: f64,
+    line: f64,
+) -> Vec<Segment> {
     let mut motion = Vec::with_capacity(2);
     let arc = Segment {
         start: *pose,
@@ -307,13 +317,13 @@ fn bent(pose: &Pose, time: f64, speed: f64, radius: f64, turn: f64, line: f64) -
 
 /// Turn to a side (radians to port) and line that end at a point; `None` for a point within the
 /// circle.
-fn toward(pose: &Pose, radius: f64, side: Side, point: Vector) -> Option<(f64, f64)> {
+fn turn_to_point(pose: &Pose, radius: f64, side: Side, point: Vector) -> Option<(f64, f64)> {
     let sign = side.turn_sign();
     let center = pose.position + to_port(pose.ahead()) * (sign * radius);
     let away = point - center;
     let far = away.norm();
     // negated on purpose: a NaN is within
-    if !(far > radius + NEAR_M) {
+    if !(far > radius + CIRCLE_M) {
         return None;
     }
     let line = (far * far - radius * radius).sqrt();

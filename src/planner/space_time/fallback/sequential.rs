@@ -35,7 +35,7 @@ pub(crate) fn are_several(conflicts: &[Conflict]) -> bool {
 
 /// Motion to the last waypoint that is clear of every proxy and of land, from a nominal one that is
 /// not. `None` when a conflict has no solution, or a later one begins no later.
-pub(crate) fn one_after_another(
+pub(crate) fn resolve_sequentially(
     problem: &Problem,
     proxies: &[Proxy],
     route: &Route,
@@ -78,10 +78,10 @@ pub(crate) fn one_after_another(
 
 /// The part of a motion to the end that must be clear: until `until`, and for a while from its
 /// start. Later contacts belong to the next conflict.
-pub(crate) fn soon(way: &[Segment], until: f64) -> Vec<Segment> {
-    let begun = way.first().map_or(until, |s| s.start_time);
-    let until = until.max(begun + TOGETHER_S);
-    way.iter()
+pub(crate) fn checked_part(path: &[Segment], until: f64) -> Vec<Segment> {
+    let start = path.first().map_or(until, |s| s.start_time);
+    let until = until.max(start + TOGETHER_S);
+    path.iter()
         .filter(|s| s.start_time < until)
         .map(|s| s.between(s.start_time, until))
         .collect()
@@ -94,6 +94,6 @@ fn first_conflict(problem: &Problem, proxies: &[Proxy], motion: &[Segment]) -> O
         contacts.min_by(f64::total_cmp)
     };
     let target = motion.iter().find_map(met);
-    let land = land::first_contact(problem.coast, motion);
+    let land = land::first_contact(problem.land_obstacle, motion);
     target.into_iter().chain(land).min_by(f64::total_cmp)
 }

@@ -7,7 +7,7 @@ use crate::obstacle::{HalfSpace, MovingVertex};
 
 /// Own ship's turn and line at one speed that shall meet a moving point.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Chase {
+pub(crate) struct Interceptor {
     position: Vector,
     heading: f64,
     ahead: Vector,
@@ -18,7 +18,7 @@ pub(crate) struct Chase {
     time: f64,
     speed: f64,
     /// Turning radius over speed: seconds per radian.
-    pace: f64,
+    seconds_per_radian: f64,
 }
 
 /// Limits of an interception.
@@ -53,7 +53,7 @@ const LAST_STEP_RAD: f64 = 1e-9;
 /// Largest number of iterations for a root; Newton on a concave piece needs about five.
 const MAX_ITERATIONS: usize = 60;
 
-impl Chase {
+impl Interceptor {
     /// From a pose (metres, radians) at a time (seconds), at a positive speed (m/s), turning to one
     /// side with a radius (metres).
     pub(crate) fn new(pose: &Pose, time: f64, speed: f64, radius: f64, side: Side) -> Self {
@@ -68,7 +68,7 @@ impl Chase {
             sigma,
             time,
             speed,
-            pace: radius / speed,
+            seconds_per_radian: radius / speed,
         }
     }
 
@@ -76,7 +76,7 @@ impl Chase {
     pub(crate) fn at_speed(&self, speed: f64) -> Self {
         Self {
             speed,
-            pace: self.radius / speed,
+            seconds_per_radian: self.radius / speed,
             ..*self
         }
     }
@@ -99,7 +99,7 @@ impl Chase {
     /// Position and time at the end of a turn of `turn` radians into `direction`.
     pub(crate) fn turned(&self, direction: Vector, turn: f64) -> (Vector, f64) {
         let position = self.centre - to_port(direction) * (self.sigma * self.radius);
-        (position, self.time + self.pace * turn)
+        (position, self.time + self.seconds_per_radian * turn)
     }
 
     /// Distance of own ship from a plane, metres, positive outside, and the increase of that
@@ -107,14 +107,15 @@ impl Chase {
     /// `across` is the component of the plane's normal to port of the heading after the turn.
     pub(crate) fn slacks(&self, plane: &HalfSpace, across: f64, turn: f64) -> [f64; 2] {
         let before = plane.normal.dot(&to_port(self.ahead));
-        let moved = self.radius * (before - across) - plane.velocity_support * self.pace * turn;
+        let moved = self.radius * (before - across)
+            - plane.velocity_support * self.seconds_per_radian * turn;
         [plane.slack(self.position, self.time), moved]
     }
 
     /// Interception of a moving vertex by a turn between `turns`, where own ship's relative motion
     /// passes the vertex on different sides. `moments` of the vertex about the relative velocity at
     /// the two turns, m²/s, have opposite signs. Root finding by safeguarded Newton.
-    pub(crate) fn touch(
+    pub(crate) fn intercept_tangentially(
         &self,
         vertex: &MovingVertex,
         turns: [f64; 2],
@@ -169,7 +170,7 @@ impl Chase {
     }
 
     /// Path to a fixed point: turn and line. `None` inside the turning circle.
-    pub(crate) fn way_to(&self, point: Vector) -> Option<(f64, f64)> {
+    pub(crate) fn path_to(&self, point: Vector) -> Option<(f64, f64)> {
         let (turn, line, _) = self.tangent(point)?;
         // a full circle is a rounded zero: the point is dead ahead
         Some((
@@ -214,18 +215,18 @@ impl Chase {
             return None;
         }
         let (ahead, centre) = (self.ahead, self.centre);
-        let mut cuts = [from, until, until, until, until];
+        let mut breakpoints = [from, until, until, until, until];
         let mut count = 1;
-        let mut cut = |t: f64| {
+        let mut add_breakpoint = |t: f64| {
             if t > from && t < until {
-                cuts[count] = t;
+                breakpoints[count] = t;
                 count += 1;
             }
         };
         // point on the line ahead: the turn wraps between zero and a full circle
         let drift = cross(ahead, velocity);
         if drift != 0.0 {
-            cut(-cross(ahead, origin - self.position) / drift);
+            add_breakpoint(-cross(ahead, origin - self.position) / drift);
         }
         // point on the turning circle
         let (a, b, c) = (
@@ -236,12 +237,12 @@ impl Chase {
         let discriminant = b * b - a * c;
         if a > 0.0 && discriminant > 0.0 {
             let root = discriminant.sqrt();
-            cut((-b - root) / a);
-            cut((-b + root) / a);
+            add_breakpoint((-b - root) / a);
+            add_breakpoint((-b + root) / a);
         }
-        cuts[..count].sort_by(f64::total_cmp);
-        cuts[count] = until;
-        for pair in cuts[..=count].windows(2) {
+        breakpoints[..count].sort_by(f64::total_cmp);
+        breakpoints[count] = until;
+        for pair in breakpoints[..=count].windows(2) {
             let width = pair[1] - pair[0];
             // one-sided values at a wrap
             let inset = (1e-9 * (1.0 + pair[1].abs())).min(width / 4.0);
@@ -251,11 +252,11 @@ impl Chase {
                 .into_iter()
                 .flatten()
             {
-                let Some((turn, line)) = self.way_to(origin + velocity * root) else {
+                let Some((turn, line)) = self.path_to(origin + velocity * root) else {
                     continue;
                 };
-                let rollout = self.radius * turn + line;
-                let met = (rollout - self.speed * (root - from)).abs() <= MEETING_M;
+                let length = self.radius * turn + line;
+                let met = (length - self.speed * (root - from)).abs() <= MEETING_M;
                 if met && turn <= limits.turn {
                     return Some(Interception {
                         turn,
@@ -269,7 +270,7 @@ impl Chase {
     }
 
     /// `F` and its derivative.
-    fn gap(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
+    fn residual(&self, origin: Vector, velocity: Vector, time: f64) -> Option<(f64, f64)> {
         let (turn, line, course) = self.tangent(origin + velocity * time)?;
         // parallel motion dead ahead: a full circle is a rounded zero
         let wraps = TAU - turn < DEAD_AHEAD_RAD
@@ -281,24 +282,24 @@ impl Chase {
 
     /// Roots of the concave `F` on one piece: at most two, earliest first.
     fn roots(&self, origin: Vector, velocity: Vector, low: f64, high: f64) -> [Option<f64>; 2] {
-        let gap = |t: f64| self.gap(origin, velocity, t);
-        let (Some((fa, da)), Some((fb, db))) = (gap(low), gap(high)) else {
+        let residual = |t: f64| self.residual(origin, velocity, t);
+        let (Some((fa, da)), Some((fb, db))) = (residual(low), residual(high)) else {
             return [None, None];
         };
         if (fa < 0.0) != (fb < 0.0) {
-            return [self.root(gap, low, fa, high), None];
+            return [self.root(residual, low, fa, high), None];
         }
         if fa < 0.0 && da > 0.0 && db < 0.0 {
             let (mut a, mut b) = (low, high);
             for _ in 0..MAX_ITERATIONS {
                 let middle = 0.5 * (a + b);
-                let Some((f, d)) = gap(middle) else {
+                let Some((f, d)) = residual(middle) else {
                     return [None, None];
                 };
                 if f >= 0.0 {
                     return [
-                        self.root(gap, low, fa, middle),
-                        self.root(gap, middle, f, high),
+                        self.root(residual, low, fa, middle),
+                        self.root(residual, middle, f, high),
                     ];
                 }
                 if d > 0.0 {
@@ -317,7 +318,7 @@ impl Chase {
     /// The only sign change between `a` and `b`, by safeguarded Newton.
     fn root(
         &self,
-        gap: impl Fn(f64) -> Option<(f64, f64)>,
+        residual: impl Fn(f64) -> Option<(f64, f64)>,
         a: f64,
         fa: f64,
         b: f64,
@@ -327,7 +328,7 @@ impl Chase {
         // concave: from the negative end Newton converges monotonically
         let mut at = if rising { a } else { b };
         for _ in 0..MAX_ITERATIONS {
-            let (f, d) = gap(at)?;
+            let (f, d) = residual(at)?;
             if (f < 0.0) == rising {
                 low = at
             } else {
@@ -354,7 +355,7 @@ mod tests {
     use rand::{Rng, SeedableRng};
 
     #[test]
-    fn meetings_are_meetings_and_the_earliest_of_a_dense_scan() {
+    fn interceptions_are_the_earliest_of_a_dense_scan() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(21);
         let mut met = 0;
         for _ in 0..3000 {
@@ -365,7 +366,8 @@ mod tests {
             } else {
                 Side::Starboard
             };
-            let chase = Chase::new(&pose, rng.random_range(0.0..50.0), speed, 100.0, side);
+            let interceptor =
+                Interceptor::new(&pose, rng.random_range(0.0..50.0), speed, 100.0, side);
             let origin = Vector::new(
                 rng.random_range(-900.0..900.0),
                 rng.random_range(-900.0..900.0),
@@ -373,18 +375,23 @@ mod tests {
             let velocity = Vector::new(rng.random_range(-7.0..7.0), rng.random_range(-7.0..7.0));
             let limits = Limits {
                 turn: 2.0,
-                time: chase.time + 300.0,
+                time: interceptor.time + 300.0,
             };
-            let found = chase.intercept(origin, velocity, limits);
+            let found = interceptor.intercept(origin, velocity, limits);
             // dense scan for the first sign change with a small turn
             let n = 6000;
             let mut dense = None;
             let mut before: Option<(f64, f64)> = None;
             for i in 0..=n {
-                let t = chase.time + 300.0 * f64::from(i) / f64::from(n);
-                let now = chase.way_to(origin + velocity * t).map(|(turn, line)| {
-                    (chase.speed * (t - chase.time) - 100.0 * turn - line, turn)
-                });
+                let t = interceptor.time + 300.0 * f64::from(i) / f64::from(n);
+                let now = interceptor
+                    .path_to(origin + velocity * t)
+                    .map(|(turn, line)| {
+                        (
+                            interceptor.speed * (t - interceptor.time) - 100.0 * turn - line,
+                            turn,
+                        )
+                    });
                 if let (Some((f0, turn0)), Some((f1, turn1))) = (before, now)
                     && (f0 < 0.0) != (f1 < 0.0)
                     && turn0.max(turn1) < 1.99
@@ -397,8 +404,10 @@ mod tests {
             }
             if let Some(meeting) = found {
                 met += 1;
-                let rollout = 100.0 * meeting.turn + meeting.line;
-                assert!((rollout - chase.speed * (meeting.time - chase.time)).abs() < 1e-6);
+                let length = 100.0 * meeting.turn + meeting.line;
+                assert!(
+                    (length - interceptor.speed * (meeting.time - interceptor.time)).abs() < 1e-6
+                );
             }
             if let Some(t) = dense {
                 let first = found.expect("the scan met it").time;

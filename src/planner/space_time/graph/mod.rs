@@ -19,9 +19,11 @@ use crate::planner::cost::space_time_error;
 use crate::planner::space_time::bound::Heuristic;
 use crate::planner::space_time::bound::obstacle::ObstacleBound;
 use crate::planner::space_time::chain::Chain;
-use crate::planner::space_time::fallback::sequential::{TOGETHER_S, soon};
-use crate::planner::space_time::graph::departure::{apparent_turns, leave_for, until, ways_out};
-use crate::planner::space_time::graph::intercept::{Chase, Limits};
+use crate::planner::space_time::fallback::sequential::{TOGETHER_S, checked_part};
+use crate::planner::space_time::graph::departure::{
+    apparent_turns, departure_motions, leave_for, until,
+};
+use crate::planner::space_time::graph::intercept::{Interceptor, Limits};
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::graph::return_to_line::return_to_line;
 use crate::planner::space_time::graph::tangent::TangentEdges;
@@ -29,6 +31,7 @@ use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
 use crate::planner::space_time::refinement::structure::Ending;
 use crate::planner::space_time::route::Route;
+use crate::planner::space_time::settings::{GRAPH_HOLDS_S, GRAPH_RETURN_ANGLES};
 use crate::planner::{NodeKind, Problem, SearchKind};
 use crate::search::Space;
 use crate::trajectory::Segment;
@@ -36,14 +39,10 @@ use crate::vessel::OwnShip;
 
 /// Times before the first contact at which a manoeuvre may begin, besides t = 0, seconds.
 const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
-/// Angles between a return line and the route, radians.
-const RETURN_ANGLES: [f64; 2] = [0.4, 0.8];
-/// Times for which a course is held beyond a vertex, one after another, seconds.
-const HOLDS_S: [f64; 3] = [20.0, 40.0, 80.0];
 /// Largest turn toward a vertex, radians.
 const MAX_TURN: f64 = 2.0;
 /// Largest duration of an interception, seconds.
-const MAX_CHASE_S: f64 = 240.0;
+const MAX_INTERCEPTION_S: f64 = 240.0;
 /// Largest number of consecutive vertices.
 const MAX_CHAIN: u8 = 5;
 /// Largest numbers of vertices of the initial and velocity sets whose moving vertices are nodes.
@@ -73,7 +72,7 @@ pub(crate) struct Graph<'a> {
     clock: Clock,
     /// Time until which a motion to the end must be clear, where the graph covers one conflict
     /// only.
-    stage: Option<f64>,
+    clear_until: Option<f64>,
 }
 
 impl<'a> Graph<'a> {
@@ -90,7 +89,7 @@ impl<'a> Graph<'a> {
         let mut contacts: Vec<f64> = by_obstacle(proxies)
             .filter_map(|parts| parts.iter().filter_map(first).min_by(f64::total_cmp))
             .chain(
-                land::conflicts(problem.coast, nominal_motion)
+                land::conflicts(problem.land_obstacle, nominal_motion)
                     .iter()
                     .map(|c| c.from),
             )
@@ -140,7 +139,7 @@ impl<'a> Graph<'a> {
             tangent_edges,
             heuristic,
             clock,
-            stage: None,
+            clear_until: None,
         }
     }
 
@@ -158,13 +157,13 @@ impl<'a> Graph<'a> {
         let mut graph = Self::new(problem, proxies, route, near, clock);
         graph.contacts.retain(|c| *c <= contact + TOGETHER_S);
         graph.nominal_motion = rest;
-        graph.stage = Some(contact + TOGETHER_S);
+        graph.clear_until = Some(contact + TOGETHER_S);
         graph
     }
 
     /// Own ship at t = 0.
     pub(crate) fn root(&self) -> State {
-        match (self.stage, self.nominal_motion.first()) {
+        match (self.clear_until, self.nominal_motion.first()) {
             (Some(_), Some(first)) => State {
                 time: first.start_time,
                 ..State::start(first.start)
@@ -231,16 +230,16 @@ impl<'a> Graph<'a> {
         times.push(from.time);
         times.sort_by(f64::total_cmp);
         times.dedup_by(|a, b| *a - *b < 2.0);
-        if self.stage.is_none() {
-            self.paced(from, out);
+        if self.clear_until.is_none() {
+            self.speed_changes(from, out);
         }
         for &time in &times {
             let before = until(self.nominal_motion, time);
             let along = before.len();
-            for (motion, least_turn) in ways_out(self.problem, self.route, &before) {
+            for (motion, least_turn) in departure_motions(self.problem, self.route, &before) {
                 self.interceptions(from, &motion, least_turn, out);
             }
-            for motion in apparent_turns(self.problem, from, &before, HOLDS_S[0]) {
+            for motion in apparent_turns(self.problem, from, &before, GRAPH_HOLDS_S[0]) {
                 self.push(out, NodeKind::Held, Ending::Follow, motion, along, from);
             }
         }
@@ -248,7 +247,7 @@ impl<'a> Graph<'a> {
 
     /// Edges that never leave the route: on schedule, then at the least or greatest speed to touch
     /// a corner of a path-time obstacle, then back on schedule.
-    fn paced(&self, from: &State, out: &mut Vec<(State, f64)>) {
+    fn speed_changes(&self, from: &State, out: &mut Vec<(State, f64)>) {
         let (own, desired) = (self.problem.own, self.problem.desired);
         for (proxy, (index, leg)) in self
             .proxies
@@ -326,9 +325,9 @@ impl<'a> Graph<'a> {
             .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
         let limits = Limits {
             turn: MAX_TURN,
-            time: (time + MAX_CHASE_S).min(self.problem.horizon),
+            time: (time + MAX_INTERCEPTION_S).min(self.problem.horizon),
         };
-        let chases = Side::BOTH.map(|side| Chase::new(&pose, time, 1.0, radius, side));
+        let interceptors = Side::BOTH.map(|side| Interceptor::new(&pose, time, 1.0, radius, side));
         let duty = self.problem.duty();
         let mut scratch = Vec::new();
         let first = out.len();
@@ -341,32 +340,32 @@ impl<'a> Graph<'a> {
                 return;
             }
             let by_its_clock;
-            let chases = if clock == 0.0 {
-                &chases
+            let interceptors = if clock == 0.0 {
+                &interceptors
             } else {
                 by_its_clock =
-                    Side::BOTH.map(|side| Chase::new(&pose, time - clock, 1.0, radius, side));
+                    Side::BOTH.map(|side| Interceptor::new(&pose, time - clock, 1.0, radius, side));
                 &by_its_clock
             };
             let limits = Limits {
                 time: (limits.time - clock).min(until),
                 ..limits
             };
-            tangent_edges.touched(chases, limits, &mut scratch, |aim| {
-                if aim.kind == from.kind || aim.meeting.time < 0.0 {
+            tangent_edges.for_each_edge(interceptors, limits, &mut scratch, |edge| {
+                if edge.kind == from.kind || edge.meeting.time < 0.0 {
                     return;
                 }
-                let apparent = duty.sides().contains(&aim.side) && aim.meeting.turn >= least_turn;
+                let apparent = duty.sides().contains(&edge.side) && edge.meeting.turn >= least_turn;
                 if from.kind == NodeKind::Start && !apparent {
                     return;
                 }
-                let mut chain = Chain::new(pose, time, aim.speed, radius);
+                let mut chain = Chain::new(pose, time, edge.speed, radius);
                 chain.segments.extend_from_slice(before);
-                chain.arc(aim.meeting.turn * radius * aim.side.turn_sign());
-                chain.line(aim.meeting.line);
+                chain.arc(edge.meeting.turn * radius * edge.side.turn_sign());
+                chain.line(edge.meeting.line);
                 // a turn of zero length is found on both sides
                 let known = out[first..].iter().any(|(s, _)| {
-                    s.kind == aim.kind
+                    s.kind == edge.kind
                         && (s.time - chain.time).abs() < 1e-6
                         && (s.pose.heading - chain.pose.heading).abs() < 1e-6
                 });
@@ -375,7 +374,7 @@ impl<'a> Graph<'a> {
                 }
                 self.push(
                     out,
-                    aim.kind,
+                    edge.kind,
                     Ending::Follow,
                     chain.segments,
                     before.len(),
@@ -397,7 +396,7 @@ impl<'a> Graph<'a> {
             };
             let l = &desired.legs()[leg];
             let heading = heading_of(l.direction);
-            for angle in RETURN_ANGLES {
+            for angle in GRAPH_RETURN_ANGLES {
                 let Some(back) = return_to_line(&from.pose, l.start, heading, radius, angle) else {
                     continue;
                 };
@@ -415,12 +414,12 @@ impl<'a> Graph<'a> {
             }
         }
         // the rest of the path belongs to another conflict
-        if self.stage.is_some() && near + 2 < desired.legs().len() {
+        if self.clear_until.is_some() && near + 2 < desired.legs().len() {
             return;
         }
         for side in Side::BOTH {
-            let chase = Chase::new(&from.pose, from.time, speed, radius, side);
-            if let Some((turn, line)) = chase.way_to(desired.end())
+            let interceptor = Interceptor::new(&from.pose, from.time, speed, radius, side);
+            if let Some((turn, line)) = interceptor.path_to(desired.end())
                 && turn <= MAX_TURN
             {
                 let mut chain = Chain::new(from.pose, from.time, speed, radius);
@@ -433,8 +432,8 @@ impl<'a> Graph<'a> {
     }
 
     /// Edges straight on from a vertex: the tangent line stays clear of that obstacle.
-    fn onward(&self, from: &State, out: &mut Vec<(State, f64)>) {
-        let hold = HOLDS_S.get(usize::from(from.held));
+    fn hold_course(&self, from: &State, out: &mut Vec<(State, f64)>) {
+        let hold = GRAPH_HOLDS_S.get(usize::from(from.held));
         if let (Some(last), Some(hold)) = (from.motion.last(), hold) {
             let mut chain = Chain::new(
                 from.pose,
@@ -459,11 +458,11 @@ impl Space for Graph<'_> {
                     self.interceptions(state, &[], 0.0, out);
                 }
                 self.returns(state, out);
-                self.onward(state, out);
+                self.hold_course(state, out);
             }
             NodeKind::Held => {
                 self.returns(state, out);
-                self.onward(state, out);
+                self.hold_course(state, out);
             }
             // the last two kinds belong to path-time graphs
             NodeKind::End | NodeKind::Corner { .. } | NodeKind::Waypoint => {}
@@ -473,15 +472,15 @@ impl Space for Graph<'_> {
     fn bound(&mut self, state: &State) -> f64 {
         match (&self.heuristic, state.kind) {
             (None, _) | (_, NodeKind::End) => 0.0,
-            (Some(heuristic), _) if heuristic.is_dead(&state.pose, state.time) => f64::INFINITY,
+            (Some(heuristic), _) if heuristic.is_dead_end(&state.pose, state.time) => f64::INFINITY,
             (Some(heuristic), _) => heuristic.cost_to_go(&state.pose, state.time),
         }
     }
 
-    fn closer_bound(&mut self, state: &State) -> f64 {
+    fn tight_bound(&mut self, state: &State) -> f64 {
         match (&self.heuristic, state.kind) {
             (None, _) | (_, NodeKind::End) => 0.0,
-            (Some(heuristic), _) => heuristic.closer_cost_to_go(&state.pose, state.time),
+            (Some(heuristic), _) => heuristic.tight_cost_to_go(&state.pose, state.time),
         }
     }
 
@@ -490,14 +489,14 @@ impl Space for Graph<'_> {
     }
 
     fn admits(&mut self, state: &State) -> bool {
-        if let (Some(until), NodeKind::End) = (self.stage, state.kind) {
-            let soon = soon(&state.motion, until);
+        if let (Some(until), NodeKind::End) = (self.clear_until, state.kind) {
+            let soon = checked_part(&state.motion, until);
             let met = first_met(self.proxies, &soon);
             state.met.set(met);
-            return met.is_none() && !land::meets(self.problem.coast, &soon);
+            return met.is_none() && !land::meets(self.problem.land_obstacle, &soon);
         }
         let met = first_met(self.proxies, &state.motion).or_else(|| {
-            let ashore = land::meets(self.problem.coast, &state.motion);
+            let ashore = land::meets(self.problem.land_obstacle, &state.motion);
             ashore.then_some(self.problem.obstacles.len())
         });
         state.met.set(met);

@@ -57,32 +57,32 @@ impl State {
 
 /// Motion from the root to a node.
 pub(crate) fn motion_to(search: &Search<State>, node: usize) -> impl Iterator<Item = Segment> + '_ {
-    let way = search.way_to(node).into_iter().skip(1);
-    way.flat_map(|index| search.nodes()[index].state.motion.iter().copied())
+    let path = search.way_to(node).into_iter().skip(1);
+    path.flat_map(|index| search.nodes()[index].state.motion.iter().copied())
 }
 
 /// Path to a goal for the refinement: the departure, the vertices with the whole lines to and
 /// beyond them, and the end.
-pub(crate) fn way_to(search: &Search<State>, goal: usize) -> Vec<State> {
-    let mut way: Vec<State> = Vec::new();
+pub(crate) fn path_to(search: &Search<State>, goal: usize) -> Vec<State> {
+    let mut path: Vec<State> = Vec::new();
     for index in &search.way_to(goal)[1..] {
         let mut state = search.nodes()[*index].state.clone();
         if state.kind == NodeKind::Held
-            && let Some(vertex) = way.last_mut()
+            && let Some(vertex) = path.last_mut()
         {
             vertex.prolong(&state.motion);
             continue;
         }
-        if way.is_empty() && state.kind != NodeKind::End {
+        if path.is_empty() && state.kind != NodeKind::End {
             let ahead = state.motion.split_off(state.along);
-            way.push(State {
+            path.push(State {
                 motion: std::mem::replace(&mut state.motion, ahead),
                 ..State::start(search.nodes()[0].state.pose)
             });
         }
-        way.push(state);
+        path.push(state);
     }
-    way
+    path
 }
 
 /// Everything that a search generated, with the known test result of each edge.

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 use crate::frame::{Side, Vector, direction, heading_of, to_port};
 use crate::obstacle::{HalfSpace, MovingVertex, PolytopeObstacle};
 use crate::planner::NodeKind;
-use crate::planner::space_time::graph::intercept::{Chase, Interception, Limits};
+use crate::planner::space_time::graph::intercept::{Interception, Interceptor, Limits};
 use crate::planner::space_time::piece::Window;
 use crate::planner::space_time::proxy::Proxy;
 
@@ -21,7 +21,7 @@ const NO_SIGN_M: f64 = 1e-6;
 
 /// Number of sectors between the two tangent directions of a face next to one that moves faster
 /// than own ship.
-const FAN: usize = 4;
+const SUBDIVISIONS: usize = 4;
 
 /// Accuracy of a turn, radians.
 const TURN_RAD: f64 = 1e-13;
@@ -37,7 +37,7 @@ struct Corner {
 
 impl Corner {
     /// True when a line in this direction at this speed touches the corner and stays outside.
-    fn grazed(&self, ahead: Vector, speed: f64) -> bool {
+    fn is_tangent(&self, ahead: Vector, speed: f64) -> bool {
         let rate = |f: &HalfSpace| speed * f.normal.dot(&ahead) - f.velocity_support;
         self.faces.iter().any(|f| rate(f) <= 1e-9) && self.faces.iter().any(|f| rate(f) >= -1e-9)
     }
@@ -46,7 +46,7 @@ impl Corner {
 /// Direction along which the distance from a face is constant, or from another plane that touches
 /// the obstacle in one corner.
 #[derive(Debug, Clone, Copy)]
-struct Level {
+struct TangentDirection {
     ahead: Vector,
     heading: f64,
     plane: HalfSpace,
@@ -56,9 +56,9 @@ struct Level {
 
 /// Sector between two [`TangentDirection`]s, in which tangents touch one corner.
 #[derive(Debug, Clone, Copy)]
-struct Gap {
+struct Sector {
     corner: usize,
-    levels: [usize; 2],
+    directions: [usize; 2],
     /// The moment of the corner's position about the relative velocity, divided by the distance
     /// from the plane of each direction, m/s. The relative velocity points along that plane.
     moments: [f64; 2],
@@ -66,12 +66,12 @@ struct Gap {
 
 /// Sectors for one speed; they do not depend on own ship's position.
 #[derive(Debug)]
-struct Pace {
+struct SpeedSectors {
     speed: f64,
-    levels: Vec<Level>,
-    gaps: Vec<Gap>,
+    directions: Vec<TangentDirection>,
+    sectors: Vec<Sector>,
     /// Corners of sets without an interior: their interceptions are computed one by one.
-    others: Vec<usize>,
+    degenerate: Vec<usize>,
 }
 
 /// Corners of one obstacle with their sectors for every speed.
@@ -80,12 +80,12 @@ pub(crate) struct TangentEdges {
     obstacle: usize,
     window: Option<Window>,
     corners: Vec<Corner>,
-    speed_table: Vec<Pace>,
+    sectors_by_speed: Vec<SpeedSectors>,
 }
 
 /// [`TangentDirection`] relative to own ship.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bearing {
+pub(crate) struct RelativeDirection {
     /// Turn to it, radians, to port positive.
     turn: f64,
     /// Distance from its plane now, metres, and the increase after a turn to it to port; a turn to
@@ -140,12 +140,14 @@ impl TangentEdges {
                 }
             })
             .collect();
-        let speed_table = speeds.map(|u| Pace::new(faces, &corners, u)).collect();
+        let sectors_by_speed = speeds
+            .map(|u| SpeedSectors::new(faces, &corners, u))
+            .collect();
         Self {
             obstacle: proxy.obstacle,
             window: proxy.window,
             corners,
-            speed_table,
+            sectors_by_speed,
         }
     }
 
@@ -166,37 +168,41 @@ impl TangentEdges {
 
     /// Finds every turn and line at one of the speeds that is tangent to a corner. `interceptors`
     /// turn to the sides of [`Side::BOTH`]; their speed is ignored.
-    pub(crate) fn touched(
+    pub(crate) fn for_each_edge(
         &self,
-        chases: &[Chase; 2],
+        interceptors: &[Interceptor; 2],
         limits: Limits,
-        bearings: &mut Vec<Bearing>,
+        relative: &mut Vec<RelativeDirection>,
         mut found: impl FnMut(TangentEdge),
     ) {
-        for pace in &self.speed_table {
-            let chases = chases.map(|c| c.at_speed(pace.speed));
-            bearings.clear();
-            bearings.extend(pace.levels.iter().map(|level| {
-                let turn = nearer(level.heading - chases[0].heading());
-                let [straight, turned] = chases[0].slacks(&level.plane, level.across, turn);
-                Bearing {
+        for speed_sectors in &self.sectors_by_speed {
+            let interceptors = interceptors.map(|c| c.at_speed(speed_sectors.speed));
+            relative.clear();
+            relative.extend(speed_sectors.directions.iter().map(|tangent_direction| {
+                let turn = wrap_difference(tangent_direction.heading - interceptors[0].heading());
+                let [straight, turned] = interceptors[0].slacks(
+                    &tangent_direction.plane,
+                    tangent_direction.across,
+                    turn,
+                );
+                RelativeDirection {
                     turn,
                     straight,
                     turned,
                 }
             }));
-            let mut offer = |corner: usize, side: Side, meeting: Interception| {
+            let mut emit = |corner: usize, side: Side, meeting: Interception| {
                 found(TangentEdge {
                     kind: self.kind(corner),
                     side,
-                    speed: pace.speed,
+                    speed: speed_sectors.speed,
                     meeting,
                 });
             };
-            for gap in &pace.gaps {
-                let ends = gap.levels.map(|l| &bearings[l]);
+            for sector in &speed_sectors.sectors {
+                let ends = sector.directions.map(|l| &relative[l]);
                 let wraps = (ends[0].turn - ends[1].turn).abs() > PI;
-                for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
+                for (side, interceptor) in Side::BOTH.into_iter().zip(&interceptors) {
                     let sign = side.turn_sign();
                     let [a, b] = ends.map(|e| sign * e.turn);
                     let [from, to] = ends.map(|e| e.straight + sign * e.turned);
@@ -210,57 +216,66 @@ impl TangentEdges {
                     }
                     if wraps {
                         if a.max(b) <= limits.turn {
-                            self.seek(gap.corner, chase, limits, |m| offer(gap.corner, side, m));
+                            self.intercept_corner(sector.corner, interceptor, limits, |m| {
+                                emit(sector.corner, side, m)
+                            });
                         }
                         continue;
                     }
-                    let corner = &self.corners[gap.corner];
-                    let moments = [gap.moments[0] * from, gap.moments[1] * to];
-                    let meeting = chase.touch(&corner.vertex, [a, b], moments, limits);
+                    let corner = &self.corners[sector.corner];
+                    let moments = [sector.moments[0] * from, sector.moments[1] * to];
+                    let meeting =
+                        interceptor.intercept_tangentially(&corner.vertex, [a, b], moments, limits);
                     if let Some(meeting) = meeting
-                        && corner.grazed(chase.after(meeting.turn), pace.speed)
+                        && corner.is_tangent(interceptor.after(meeting.turn), speed_sectors.speed)
                     {
-                        offer(gap.corner, side, meeting);
+                        emit(sector.corner, side, meeting);
                     }
                 }
             }
-            for &corner in &pace.others {
-                for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
-                    self.seek(corner, chase, limits, |m| offer(corner, side, m));
+            for &corner in &speed_sectors.degenerate {
+                for (side, interceptor) in Side::BOTH.into_iter().zip(&interceptors) {
+                    self.intercept_corner(corner, interceptor, limits, |m| emit(corner, side, m));
                 }
             }
         }
     }
 
-    fn seek(&self, corner: usize, chase: &Chase, limits: Limits, offer: impl FnOnce(Interception)) {
+    fn intercept_corner(
+        &self,
+        corner: usize,
+        interceptor: &Interceptor,
+        limits: Limits,
+        emit: impl FnOnce(Interception),
+    ) {
         let c = &self.corners[corner];
-        let meeting = chase.intercept(c.vertex.origin, c.vertex.velocity, limits);
+        let meeting = interceptor.intercept(c.vertex.origin, c.vertex.velocity, limits);
         if let Some(meeting) = meeting
-            && c.grazed(chase.after(meeting.turn), chase.speed())
+            && c.is_tangent(interceptor.after(meeting.turn), interceptor.speed())
         {
-            offer(meeting);
+            emit(meeting);
         }
     }
 }
 
-impl Pace {
+impl SpeedSectors {
     fn new(faces: &[HalfSpace], corners: &[Corner], speed: f64) -> Self {
-        let mut pace = Self {
+        let mut speed_sectors = Self {
             speed,
-            levels: Vec::new(),
-            gaps: Vec::new(),
-            others: Vec::new(),
+            directions: Vec::new(),
+            sectors: Vec::new(),
+            degenerate: Vec::new(),
         };
         // directions `k` and `k + 1` belong to a face that has any
         let mut first = vec![None; faces.len()];
         for (first, f) in first.iter_mut().zip(faces) {
             let cosine = f.velocity_support / speed;
             if cosine.abs() < 1.0 {
-                *first = Some(pace.levels.len());
+                *first = Some(speed_sectors.directions.len());
                 let sine = (1.0 - cosine * cosine).sqrt();
                 for sign in [1.0, -1.0] {
                     let ahead = f.normal * cosine + to_port(f.normal) * (sign * sine);
-                    pace.level(ahead, *f);
+                    speed_sectors.add_direction(ahead, *f);
                 }
             }
         }
@@ -277,21 +292,21 @@ impl Pace {
                 _ if all(1.0) || all(-1.0) => {}
                 [a, b] => match (first[a], first[b]) {
                     (Some(a), Some(b)) => {
-                        pace.gap(index, corner, [a, b]);
-                        pace.gap(index, corner, [a + 1, b + 1]);
+                        speed_sectors.add_sector(index, corner, [a, b]);
+                        speed_sectors.add_sector(index, corner, [a + 1, b + 1]);
                     }
-                    (Some(first), None) => pace.fan(index, corner, first, &faces[b]),
-                    (None, Some(first)) => pace.fan(index, corner, first, &faces[a]),
-                    (None, None) => pace.others.push(index),
+                    (Some(first), None) => speed_sectors.subdivide(index, corner, first, &faces[b]),
+                    (None, Some(first)) => speed_sectors.subdivide(index, corner, first, &faces[a]),
+                    (None, None) => speed_sectors.degenerate.push(index),
                 },
-                _ => pace.others.push(index),
+                _ => speed_sectors.degenerate.push(index),
             }
         }
-        pace
+        speed_sectors
     }
 
-    fn level(&mut self, ahead: Vector, plane: HalfSpace) {
-        self.levels.push(Level {
+    fn add_direction(&mut self, ahead: Vector, plane: HalfSpace) {
+        self.directions.push(TangentDirection {
             ahead,
             heading: heading_of(ahead),
             plane,
@@ -299,24 +314,24 @@ impl Pace {
         });
     }
 
-    fn gap(&mut self, index: usize, corner: &Corner, levels: [usize; 2]) {
-        let moments = levels.map(|l| {
-            let level = &self.levels[l];
-            let velocity = level.ahead * self.speed - corner.vertex.velocity;
-            -velocity.dot(&to_port(level.plane.normal))
+    fn add_sector(&mut self, index: usize, corner: &Corner, directions: [usize; 2]) {
+        let moments = directions.map(|l| {
+            let tangent_direction = &self.directions[l];
+            let velocity = tangent_direction.ahead * self.speed - corner.vertex.velocity;
+            -velocity.dot(&to_port(tangent_direction.plane.normal))
         });
-        self.gaps.push(Gap {
+        self.sectors.push(Sector {
             corner: index,
-            levels,
+            directions,
             moments,
         });
     }
 
     /// Sectors from one tangent direction of a face to the other: around its normal where own ship
     /// always approaches the other face, around the opposite where it always recedes.
-    fn fan(&mut self, index: usize, corner: &Corner, first: usize, other: &HalfSpace) {
-        let own = self.levels[first].plane;
-        let from = heading_of(self.levels[first].ahead);
+    fn subdivide(&mut self, index: usize, corner: &Corner, first: usize, other: &HalfSpace) {
+        let own = self.directions[first].plane;
+        let from = heading_of(self.directions[first].ahead);
         let half = (own.velocity_support / self.speed).acos();
         let width = if other.velocity_support > 0.0 {
             -2.0 * half
@@ -324,8 +339,8 @@ impl Pace {
             TAU - 2.0 * half
         };
         let mut before = first;
-        for k in 1..FAN {
-            let ahead = direction(from + width * k as f64 / FAN as f64);
+        for k in 1..SUBDIVISIONS {
+            let ahead = direction(from + width * k as f64 / SUBDIVISIONS as f64);
             let across = to_port(ahead * self.speed - corner.vertex.velocity).normalize();
             let outward = across.dot(&(own.normal + other.normal)).signum();
             let normal = across * outward;
@@ -334,18 +349,18 @@ impl Pace {
                 velocity_support: normal.dot(&corner.vertex.velocity),
                 initial_support: normal.dot(&corner.vertex.origin),
             };
-            let next = self.levels.len();
-            self.level(ahead, plane);
-            self.gap(index, corner, [before, next]);
+            let next = self.directions.len();
+            self.add_direction(ahead, plane);
+            self.add_sector(index, corner, [before, next]);
             before = next;
         }
-        self.gap(index, corner, [before, first + 1]);
+        self.add_sector(index, corner, [before, first + 1]);
     }
 }
 
 /// Difference of two angles in `(-pi, pi]`, wrapped to the same range. Branch-free, unlike
 /// [`crate::frame::wrap`].
-fn nearer(apart: f64) -> f64 {
+fn wrap_difference(apart: f64) -> f64 {
     let over = if apart > PI { TAU } else { 0.0 };
     let under = if apart <= -PI { TAU } else { 0.0 };
     apart - over + under
@@ -361,7 +376,7 @@ mod tests {
 
     /// Compares with the interceptions of every corner one by one.
     #[test]
-    fn every_line_that_only_just_touches_is_found() {
+    fn every_tangent_line_is_found() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
         let speeds = [2.5, 5.0, 6.0];
         let (mut found, mut missed) = (0, 0);
@@ -394,13 +409,16 @@ mod tests {
                 turn: 2.0,
                 time: time + 240.0,
             };
-            let chases = Side::BOTH.map(|side| Chase::new(&pose, time, 1.0, 100.0, side));
-            let mut touched = Vec::new();
-            tangent_edges.touched(&chases, limits, &mut Vec::new(), |aim| touched.push(aim));
-            for aim in &touched {
+            let interceptors =
+                Side::BOTH.map(|side| Interceptor::new(&pose, time, 1.0, 100.0, side));
+            let mut edges = Vec::new();
+            tangent_edges.for_each_edge(&interceptors, limits, &mut Vec::new(), |edge| {
+                edges.push(edge)
+            });
+            for edge in &edges {
                 let corner = tangent_edges.corners.iter().position(|c| {
                     let (initial, velocity) = c.vertex.indices;
-                    aim.kind
+                    edge.kind
                         == NodeKind::Vertex {
                             obstacle: 0,
                             initial,
@@ -408,19 +426,20 @@ mod tests {
                         }
                 });
                 let vertex = &tangent_edges.corners[corner.expect("of this body")].vertex;
-                let chase = chases[usize::from(aim.side == Side::BOTH[1])].at_speed(aim.speed);
-                let ahead = chase.after(aim.meeting.turn);
-                let (from, _) = chase.turned(ahead, aim.meeting.turn);
-                let own = from + ahead * aim.meeting.line;
-                let other = vertex.origin + vertex.velocity * aim.meeting.time;
-                assert!((own - other).norm() < 1e-7, "{aim:?}");
+                let interceptor =
+                    interceptors[usize::from(edge.side == Side::BOTH[1])].at_speed(edge.speed);
+                let ahead = interceptor.after(edge.meeting.turn);
+                let (from, _) = interceptor.turned(ahead, edge.meeting.turn);
+                let own = from + ahead * edge.meeting.line;
+                let other = vertex.origin + vertex.velocity * edge.meeting.time;
+                assert!((own - other).norm() < 1e-7, "{edge:?}");
             }
             for k in 0..tangent_edges.corners.len() {
                 for speed in speeds {
-                    for (side, chase) in Side::BOTH.into_iter().zip(&chases) {
-                        let chase = chase.at_speed(speed);
-                        tangent_edges.seek(k, &chase, limits, |meeting| {
-                            let same = touched.iter().any(|a| {
+                    for (side, interceptor) in Side::BOTH.into_iter().zip(&interceptors) {
+                        let interceptor = interceptor.at_speed(speed);
+                        tangent_edges.intercept_corner(k, &interceptor, limits, |meeting| {
+                            let same = edges.iter().any(|a| {
                                 a.kind == tangent_edges.kind(k)
                                     && a.side == side
                                     && a.speed == speed

@@ -9,19 +9,19 @@ use crate::planner::space_time::refinement::quadratic::{
 };
 
 /// Largest number of steps; a programme of this size needs about as many as it has constraints.
-const MAX_STEPS: usize = 1000;
+const MAX_ITERATIONS: usize = 1000;
 
 /// Rates of a multiplier below this count as zero.
-const FALLING: f64 = 1e-14;
+const MIN_RATE: f64 = 1e-14;
 
 /// Least squared share of a normal that the active normals do not span; less is rounding.
-const INDEPENDENT: f64 = 1e-12;
+const MIN_INDEPENDENT: f64 = 1e-12;
 
 /// Violation in metres at which its price has doubled. This term keeps the Hessian definite.
 pub(crate) const SOFTENED_M: f64 = 1e3;
 
 /// Relative violation that counts as none.
-const SATISFIED: f64 = 1e-9;
+const VIOLATION_TOLERANCE: f64 = 1e-9;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
@@ -67,7 +67,7 @@ struct Point<const N: usize> {
 }
 
 /// Result of adding a constraint.
-enum Entered {
+enum AddResult {
     Active,
     /// It contradicts the active constraints.
     Contradicts,
@@ -102,7 +102,7 @@ impl<const N: usize> Point<N> {
     }
 
     /// Direction of a constraint relative to the active ones.
-    fn bearing(&self, of: &Compact<N>, constraint: Kind) -> Bearing<N> {
+    fn direction_of(&self, of: &Compact<N>, constraint: Kind) -> ConstraintDirection<N> {
         let (n, q) = (of.size, self.count);
         let mut d = [0.0; N];
         for (d, column) in d.iter_mut().zip(&self.j).take(n) {
@@ -117,7 +117,7 @@ impl<const N: usize> Point<N> {
             add_scaled(&mut z, *d, column);
         }
         let back = self.r.solve(&d, q);
-        Bearing { d, z, back }
+        ConstraintDirection { d, z, back }
     }
 
     /// Step at which the first multiplier, each decreasing at its rate, is zero, and the index of
@@ -131,7 +131,7 @@ impl<const N: usize> Point<N> {
             .enumerate()
             .take(self.count)
         {
-            if *rate > FALLING && *multiplier < first.0 * rate {
+            if *rate > MIN_RATE && *multiplier < first.0 * rate {
                 first = (multiplier / rate, Some(i));
             }
         }
@@ -148,28 +148,28 @@ impl<const N: usize> Point<N> {
 
     /// Moves to the minimum over the active constraints and this one, and drops constraints on the
     /// way. `steps` counts down.
-    fn enter(&mut self, of: &Compact<N>, entering: Kind, steps: &mut usize) -> Entered {
+    fn add_constraint(&mut self, of: &Compact<N>, entering: Kind, steps: &mut usize) -> AddResult {
         let mut multiplier = 0.0;
         loop {
             if *steps == 0 || !self.is_finite() {
-                return Entered::Stopped;
+                return AddResult::Stopped;
             }
             *steps -= 1;
             let q = self.count;
-            let Bearing { d, z, back } = self.bearing(of, entering);
+            let ConstraintDirection { d, z, back } = self.direction_of(of, entering);
             let (dual_step, leaving) = self.first_zero(&back);
             let mut free = d;
             free[..q].fill(0.0);
             // z . normal
             let slope = dot(&free, &free);
-            let primal_step = if slope > INDEPENDENT * dot(&d, &d) {
+            let primal_step = if slope > MIN_INDEPENDENT * dot(&d, &d) {
                 -of.value(entering, &self.x) / slope
             } else {
                 f64::INFINITY
             };
             let step = dual_step.min(primal_step);
             if step.is_infinite() {
-                return Entered::Contradicts;
+                return AddResult::Contradicts;
             }
             add_scaled(&mut self.multipliers, -step, &back);
             multiplier += step;
@@ -182,7 +182,7 @@ impl<const N: usize> Point<N> {
                 self.multipliers[q] = multiplier;
                 self.active[q] = entering;
                 self.count += 1;
-                return Entered::Active;
+                return AddResult::Active;
             }
             if let Some(i) = leaving {
                 self.drop(i);
@@ -191,7 +191,7 @@ impl<const N: usize> Point<N> {
     }
 
     /// Recomputes `x` and the multipliers from the factors, without accumulated rounding.
-    fn settle(&mut self, of: &Compact<N>) {
+    fn finish(&mut self, of: &Compact<N>) {
         let mut bounds = [0.0; N];
         for (bound, kind) in bounds.iter_mut().zip(self.active()) {
             *bound = match *kind {
@@ -203,9 +203,13 @@ impl<const N: usize> Point<N> {
         let along = self.r.solve_transposed(&bounds, self.count);
         let (mut x, mut sums) = ([0.0; N], [0.0; N]);
         for (k, column) in self.j.iter().enumerate().take(of.size) {
-            let pull = dot(column, &of.gradient);
-            let share = if k < self.count { along[k] } else { -pull };
-            sums[k] = along[k] + pull;
+            let gradient_form = dot(column, &of.gradient);
+            let share = if k < self.count {
+                along[k]
+            } else {
+                -gradient_form
+            };
+            sums[k] = along[k] + gradient_form;
             add_scaled(&mut x, share, column);
         }
         self.x = x;
@@ -215,7 +219,7 @@ impl<const N: usize> Point<N> {
 
 /// Normal of a constraint in terms of the factors: `J' normal`, and the change of `x` and the
 /// decrease of the multipliers per unit of its own multiplier.
-struct Bearing<const N: usize> {
+struct ConstraintDirection<const N: usize> {
     d: Padded<N>,
     z: Padded<N>,
     back: Padded<N>,
@@ -276,8 +280,8 @@ impl<const N: usize> Compact<N> {
 
     /// Most violated inactive constraint, relative to its scale.
     fn violated(&self, at: &Point<N>, boxes: &[Padded<N>; 2]) -> Option<Kind> {
-        let mut worst = (-SATISFIED, None);
-        let mut look = |kind: Kind, v: f64| {
+        let mut worst = (-VIOLATION_TOLERANCE, None);
+        let mut examine = |kind: Kind, v: f64| {
             if v < worst.0 && !at.active().contains(&kind) {
                 worst = (v, Some(kind));
             }
@@ -299,14 +303,14 @@ impl<const N: usize> Compact<N> {
         };
         let kinds: [fn(usize) -> Kind; 2] = [Kind::Low, Kind::High];
         for (lane, kind) in lanes.iter().zip(kinds) {
-            if least(lane) < -SATISFIED {
+            if least(lane) < -VIOLATION_TOLERANCE {
                 for (i, v) in lane.iter().enumerate() {
-                    look(kind(i), *v);
+                    examine(kind(i), *v);
                 }
             }
         }
         for (r, row) in self.rows.iter().enumerate() {
-            look(Kind::Row(r), row.value(x) * row.scale);
+            examine(Kind::Row(r), row.value(x) * row.scale);
         }
         worst.1
     }
@@ -317,16 +321,16 @@ impl<const N: usize> Compact<N> {
         let Some(mut at) = Point::free(&self) else {
             return Err(Unsolved::Stopped);
         };
-        let mut steps = MAX_STEPS;
+        let mut steps = MAX_ITERATIONS;
         let boxes = [self.low, self.high].map(|bounds| bounds.map(|b| 1.0 / (1.0 + b.abs())));
         while let Some(entering) = self.violated(&at, &boxes) {
-            match at.enter(&self, entering, &mut steps) {
-                Entered::Active => {}
-                Entered::Contradicts => return Err(Unsolved::Contradiction),
-                Entered::Stopped => return Err(Unsolved::Stopped),
+            match at.add_constraint(&self, entering, &mut steps) {
+                AddResult::Active => {}
+                AddResult::Contradicts => return Err(Unsolved::Contradiction),
+                AddResult::Stopped => return Err(Unsolved::Stopped),
             }
         }
-        at.settle(&self);
+        at.finish(&self);
         if !at.is_finite() {
             return Err(Unsolved::Stopped);
         }

@@ -118,7 +118,7 @@ pub(crate) fn add_approaches(
     chord: f64,
     found: &mut Vec<Approach>,
 ) {
-    match proxy.round {
+    match proxy.ellipsoid {
         Some(ellipsoid) => add_of(ellipsoid, proxy, rollout, (middles, chord), found),
         None => add_of(proxy.body, proxy, rollout, (middles, chord), found),
     }
@@ -270,7 +270,7 @@ impl Span {
     }
 }
 
-/// Own ship's velocity at a minimum on the edge of a time window: there the instant is fixed, not
+/// OwnTerms ship's velocity at a minimum on the edge of a time window: there the instant is fixed, not
 /// the fraction of the segment.
 fn velocity_at_edge<F>(proxy: &Proxy, rollout: &Rollout, least: &Minimum<F>) -> Option<Vector> {
     let window = proxy.window?;

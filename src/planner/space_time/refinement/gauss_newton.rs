@@ -20,7 +20,7 @@ pub(crate) type Twist = [f64; 4];
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Residuals {
     weight: Weight,
-    pull: [f64; 3],
+    gradient_form: [f64; 3],
 }
 
 impl Residuals {
@@ -32,7 +32,7 @@ impl Residuals {
         for (w, q) in self.weight.iter_mut().zip(squares) {
             *w += q;
         }
-        for (p, s) in self.pull.iter_mut().zip(s) {
+        for (p, s) in self.gradient_form.iter_mut().zip(s) {
             *p += s * value;
         }
     }
@@ -57,15 +57,15 @@ pub(crate) fn dot4(a: &Twist, b: &Twist) -> f64 {
 
 /// Contribution of the points of one segment variable, or of all segment variables after one.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Moment {
+pub(crate) struct Accumulation {
     weight: Weight,
     /// Sums of `W J` and of `J W J`.
     mixed: [f64; 3],
     square: f64,
-    pull: [f64; 4],
+    gradient_form: [f64; 4],
 }
 
-impl Moment {
+impl Accumulation {
     fn add(&mut self, other: &Self) {
         for (a, b) in self.weight.iter_mut().zip(other.weight) {
             *a += b;
@@ -74,25 +74,25 @@ impl Moment {
             *a += b;
         }
         self.square += other.square;
-        for (a, b) in self.pull.iter_mut().zip(other.pull) {
+        for (a, b) in self.gradient_form.iter_mut().zip(other.gradient_form) {
             *a += b;
         }
     }
 
     /// Gradient with respect to a twist that moves all these points, as a linear form of the twist.
-    pub(crate) fn pull(&self) -> Twist {
-        self.pull
+    pub(crate) fn gradient_form(&self) -> Twist {
+        self.gradient_form
     }
 
     /// Second derivative along such a twist.
-    pub(crate) fn bend(&self, twist: &Twist) -> f64 {
+    pub(crate) fn curvature_along(&self, twist: &Twist) -> f64 {
         dot4(twist, &self.times(twist))
     }
 
     fn times(&self, v: &Twist) -> [f64; 4] {
         let residuals = Residuals {
             weight: self.weight,
-            pull: [0.0; 3],
+            gradient_form: [0.0; 3],
         };
         let base = [v[0], v[1], v[2]];
         let weighed = residuals.weigh(base);
@@ -107,25 +107,25 @@ impl Moment {
 
 /// Contribution of a segment variable's own points with its own rate.
 #[derive(Debug, Clone, Copy, Default)]
-struct Own {
+struct OwnTerms {
     cross: [f64; 4],
     square: f64,
-    pull: f64,
+    gradient_form: f64,
 }
 
 /// Accumulated sums of one manoeuvre.
 #[derive(Debug)]
 pub(crate) struct GaussNewton {
-    variables: Vec<Moment>,
-    own: Vec<Own>,
+    variables: Vec<Accumulation>,
+    own: Vec<OwnTerms>,
 }
 
 impl GaussNewton {
     /// Empty sums for the given number of segment variables.
     pub(crate) fn new(variables: usize) -> Self {
         Self {
-            variables: vec![Moment::default(); variables],
-            own: vec![Own::default(); variables],
+            variables: vec![Accumulation::default(); variables],
+            own: vec![OwnTerms::default(); variables],
         }
     }
 
@@ -148,10 +148,10 @@ impl GaussNewton {
             *a += b;
         }
         moment.square += dot3(lever, mixed);
-        for (a, b) in moment.pull.iter_mut().zip(residuals.pull) {
+        for (a, b) in moment.gradient_form.iter_mut().zip(residuals.gradient_form) {
             *a += b;
         }
-        moment.pull[3] += dot3(lever, residuals.pull);
+        moment.gradient_form[3] += dot3(lever, residuals.gradient_form);
         let weighed = residuals.weigh(own);
         let mine = &mut self.own[index];
         for (a, b) in mine.cross.iter_mut().zip(weighed) {
@@ -159,7 +159,7 @@ impl GaussNewton {
         }
         mine.cross[3] += dot3(lever, weighed);
         mine.square += dot3(own, weighed);
-        mine.pull += dot3(own, residuals.pull);
+        mine.gradient_form += dot3(own, residuals.gradient_form);
     }
 
     /// Adds a point that each of the first segment variables moves at its own `rates`.
@@ -171,7 +171,7 @@ impl GaussNewton {
     ) {
         for (k, rate) in rates.iter().enumerate() {
             let weighed = residuals.weigh(*rate);
-            gradient[k] += dot3(*rate, residuals.pull);
+            gradient[k] += dot3(*rate, residuals.gradient_form);
             for (i, other) in rates[..=k].iter().enumerate() {
                 lower[k][i] += dot3(*other, weighed);
             }
@@ -179,7 +179,7 @@ impl GaussNewton {
     }
 
     /// For every segment variable, the sum over its own points and those of all later ones.
-    pub(crate) fn sums_from_each(&self) -> Vec<Moment> {
+    pub(crate) fn sums_from_each(&self) -> Vec<Accumulation> {
         let mut sums = self.variables.clone();
         for i in (1..sums.len()).rev() {
             let later = sums[i];
@@ -190,12 +190,12 @@ impl GaussNewton {
 
     /// Adds all contributions to the gradient and to the lower triangle of the Hessian.
     pub(crate) fn finish(&self, twists: &[Twist], gradient: &mut Row, lower: &mut [Row]) {
-        let mut later = Moment::default();
+        let mut later = Accumulation::default();
         for (j, twist) in twists.iter().enumerate().rev() {
             let own = &self.own[j];
             let mut column = later.times(twist);
             lower[j][j] += dot4(twist, &column) + own.square;
-            gradient[j] += dot4(twist, &later.pull) + own.pull;
+            gradient[j] += dot4(twist, &later.gradient_form) + own.gradient_form;
             for (c, q) in column.iter_mut().zip(own.cross) {
                 *c += q;
             }
@@ -255,7 +255,7 @@ mod tests {
 
     /// Compares with the explicit sum over points and pairs of segment variables.
     #[test]
-    fn moments_give_the_sum_over_all_points_and_pairs() {
+    fn accumulation_equals_the_sum_over_all_points_and_pairs() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
         let n = 9;
         let twists: Vec<Twist> = (0..n)

@@ -8,13 +8,13 @@
 
 use crate::frame::{Side, Vector};
 use crate::planner::space_time::refinement::InitialGuess;
-use crate::planner::space_time::refinement::gauss_newton::{Moment, Twist, dot4};
-use crate::planner::space_time::refinement::model::Full;
+use crate::planner::space_time::refinement::gauss_newton::{Accumulation, Twist, dot4};
+use crate::planner::space_time::refinement::model::UnreducedModel;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Programme, Row};
-use crate::planner::space_time::refinement::rollout::Owner;
+use crate::planner::space_time::refinement::rollout::SegmentOrigin;
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::selection::initial_guess::SpeedTable;
+use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 
 /// Metres. Shorter segment variables are removed before the insertion.
 const EMPTY_M: f64 = 0.5;
@@ -27,17 +27,17 @@ const LEAST_LINE: f64 = 0.05;
 const PRICING_RADIUS_M: f64 = 20.0;
 
 /// Largest multiplier of a metre of slack, m²/m.
-const DEAREST: f64 = 1e5;
+const MAX_MULTIPLIER: f64 = 1e5;
 
 /// Largest number of insertions at a time.
-const MOST_ADDED: usize = 8;
+const MAX_INSERTIONS: usize = 8;
 
 /// Least predicted gain of the insertions, as a fraction of the cost.
-const WORTH_ADDING: f64 = 1e-3;
+const MIN_GAIN: f64 = 1e-3;
 
 /// Segment variable to be inserted before segment variable `gap`.
 #[derive(Debug, Clone, Copy)]
-struct Addition {
+struct Insertion {
     gap: usize,
     variable: SegmentVariable,
     /// Predicted gain to second order, on its own, m².
@@ -51,8 +51,8 @@ pub(crate) fn with_insertions(
     guess: &InitialGuess,
     uncut: f64,
 ) -> Option<InitialGuess> {
-    let base = cut(context, guess, uncut)?;
-    let found = additions(context, &base)?;
+    let base = split(context, guess, uncut)?;
+    let found = insertions(context, &base)?;
     let mut with_insertions = InitialGuess {
         structure: Structure {
             variables: Vec::with_capacity(MAX_VARIABLES),
@@ -99,7 +99,7 @@ pub(crate) fn pruned(context: &Context, guess: &InitialGuess) -> Option<InitialG
 
 /// Removes empty segment variables and divides long lines, including the dependent line of a
 /// return.
-fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
+fn split(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGuess> {
     let mut pieces: Vec<(SegmentVariable, f64)> = Vec::with_capacity(MAX_VARIABLES);
     let mut add = |variable: SegmentVariable, length: f64| {
         let is_line = matches!(variable, SegmentVariable::Line { .. });
@@ -118,7 +118,7 @@ fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGue
     if let Ending::Return { speed, .. } = guess.structure.ending {
         let rollout = guess
             .structure
-            .sail(context.problem, context.route, &guess.lengths)?;
+            .roll_out(context.problem, context.route, &guess.lengths)?;
         if rollout.solved[0] > uncut {
             add(
                 SegmentVariable::Line { speed },
@@ -144,13 +144,13 @@ fn cut(context: &Context, guess: &InitialGuess, uncut: f64) -> Option<InitialGue
 }
 
 /// Most promising insertions; `None` where their total predicted gain is negligible.
-fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
+fn insertions(context: &Context, base: &InitialGuess) -> Option<Vec<Insertion>> {
     let free = base.structure.free();
     let trial = context.trial(&base.structure, &base.lengths)?;
-    let full = context.full(&base.structure, trial);
+    let unreduced = context.unreduced(&base.structure, trial);
     let multipliers = multipliers(context, base)?;
-    let prices = Prices::new(context, &base.structure, &full, &multipliers);
-    let first = full.trial.rollout.runs;
+    let prices = Prices::new(context, &base.structure, &unreduced, &multipliers);
+    let first = unreduced.trial.rollout.runs;
     let mut found = Vec::new();
     let turn = first_turn(&base.structure);
     let is_seen = !context.problem.duty().is_none();
@@ -165,9 +165,9 @@ fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
             if swings_out || beside.contains(&Some(&variable)) {
                 continue;
             }
-            let gain = prices.gain(context, &full, gap, variable);
+            let gain = prices.gain(context, &unreduced, gap, variable);
             if gain > 0.0 {
-                found.push(Addition {
+                found.push(Insertion {
                     gap,
                     variable,
                     gain,
@@ -176,9 +176,9 @@ fn additions(context: &Context, base: &InitialGuess) -> Option<Vec<Addition>> {
         }
     }
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    found.truncate(MOST_ADDED.min(MAX_VARIABLES - 2 - free));
+    found.truncate(MAX_INSERTIONS.min(MAX_VARIABLES - 2 - free));
     let promised: f64 = found.iter().map(|a| a.gain).sum();
-    (promised > WORTH_ADDING * full.trial.cost).then_some(found)
+    (promised > MIN_GAIN * unreduced.trial.cost).then_some(found)
 }
 
 /// Position and side of the first turn. No turn to the other side is inserted before it: other
@@ -193,7 +193,7 @@ fn first_turn(structure: &Structure) -> Option<(usize, Side)> {
 
 /// Every kind of segment variable after the runs.
 fn kinds(context: &Context) -> impl Iterator<Item = SegmentVariable> + use<> {
-    let speed_table = SpeedTable::of(context.problem);
+    let speed_table = ManoeuvreSpeeds::of(context.problem);
     let mut speeds = vec![speed_table.slow, speed_table.normal, speed_table.fast];
     speeds.dedup();
     speeds.into_iter().flat_map(|speed| {
@@ -213,7 +213,7 @@ fn multipliers(context: &Context, base: &InitialGuess) -> Option<Vec<f64>> {
         low: &base.lengths.map(|l| (-PRICING_RADIUS_M).max(-l)),
         high: &[PRICING_RADIUS_M; MAX_VARIABLES],
         rows: &model.rows,
-        price: Some(DEAREST),
+        price: Some(MAX_MULTIPLIER),
     };
     Some(programme.solve()?.multipliers)
 }
@@ -223,15 +223,20 @@ fn multipliers(context: &Context, base: &InitialGuess) -> Option<Vec<f64>> {
 struct Prices {
     origin: Vector,
     forms: Vec<Twist>,
-    moments: Vec<Moment>,
+    moments: Vec<Accumulation>,
 }
 
 impl Prices {
-    fn new(context: &Context, structure: &Structure, full: &Full, multipliers: &[f64]) -> Self {
+    fn new(
+        context: &Context,
+        structure: &Structure,
+        unreduced: &UnreducedModel,
+        multipliers: &[f64],
+    ) -> Self {
         let (free, all) = (structure.free(), structure.all());
-        let rollout = &full.trial.rollout;
+        let rollout = &unreduced.trial.rollout;
         let origin = context.problem.own.pose.position;
-        let moments = full.moments.sums_from_each();
+        let moments = unreduced.moments.sums_from_each();
         let joined_by = rollout.joined_by(origin);
         // contribution of the return segments, common to all changes
         let mut common = [0.0; 4];
@@ -239,19 +244,19 @@ impl Prices {
             add(form, &joined_by, by_distance);
             add(form, &[0.0, 0.0, 1.0, 0.0], by_time);
         };
-        if let Some(return_segments) = &full.trial.return_segments {
+        if let Some(return_segments) = &unreduced.trial.return_segments {
             add_tail(
                 &mut common,
                 return_segments.by_distance,
                 return_segments.by_time,
             );
         }
-        let mut forms: Vec<Twist> = moments.iter().map(Moment::pull).collect();
+        let mut forms: Vec<Twist> = moments.iter().map(Accumulation::gradient_form).collect();
         let mut of_solved = [0.0; 2];
         for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
-            *price = full.gradient[free + k];
+            *price = unreduced.gradient[free + k];
         }
-        for (approach, multiplier) in full.trial.approaches.iter().zip(multipliers) {
+        for (approach, multiplier) in unreduced.trial.approaches.iter().zip(multipliers) {
             if *multiplier <= 0.0 {
                 continue;
             }
@@ -266,7 +271,7 @@ impl Prices {
                     }
                     place.variable
                 }
-                (None, Owner::ReturnSegments { index }) => {
+                (None, SegmentOrigin::ReturnSegments { index }) => {
                     let (by_distance, by_time) =
                         context.return_segment_rates(rollout, index, approach);
                     add_tail(
@@ -276,10 +281,10 @@ impl Prices {
                     );
                     all
                 }
-                (None, Owner::SegmentVariable { .. }) => continue,
+                (None, SegmentOrigin::SegmentVariable { .. }) => continue,
             };
             if last >= free {
-                let row = context.approach_row(&full.trial, approach);
+                let row = context.approach_row(&unreduced.trial, approach);
                 for (k, price) in of_solved.iter_mut().enumerate().take(all - free) {
                     *price -= multiplier * row[free + k];
                 }
@@ -288,7 +293,7 @@ impl Prices {
         // rows after those of the approaches keep the dependent segment variables positive
         for (price, multiplier) in of_solved
             .iter_mut()
-            .zip(&multipliers[full.trial.approaches.len()..])
+            .zip(&multipliers[unreduced.trial.approaches.len()..])
         {
             *price -= multiplier;
         }
@@ -311,12 +316,12 @@ impl Prices {
     fn rate(
         &self,
         context: &Context,
-        full: &Full,
+        unreduced: &UnreducedModel,
         gap: usize,
         variable: SegmentVariable,
     ) -> Option<(f64, f64)> {
-        let leg = full.trial.rollout.legs.iter().find(
-            |l| matches!(l.owner, Owner::SegmentVariable { index, from, .. } if index == gap && from == 0.0),
+        let leg = unreduced.trial.rollout.legs.iter().find(
+            |l| matches!(l.owner, SegmentOrigin::SegmentVariable { index, from, .. } if index == gap && from == 0.0),
         )?;
         let at = leg.segment.start.position - self.origin;
         let slowness = 1.0 / variable.speed();
@@ -338,17 +343,23 @@ impl Prices {
         let own = slowness / desired.duration() * here.error;
         Some((
             dot4(&twist, &self.forms[gap]) + own,
-            self.moments[gap].bend(&twist),
+            self.moments[gap].curvature_along(&twist),
         ))
     }
 
     /// Predicted gain of one insertion, m², to second order; zero when its first metre costs.
-    fn gain(&self, context: &Context, full: &Full, gap: usize, variable: SegmentVariable) -> f64 {
-        let Some((rate, bend)) = self.rate(context, full, gap, variable) else {
+    fn gain(
+        &self,
+        context: &Context,
+        unreduced: &UnreducedModel,
+        gap: usize,
+        variable: SegmentVariable,
+    ) -> f64 {
+        let Some((rate, curvature_along)) = self.rate(context, unreduced, gap, variable) else {
             return 0.0;
         };
         if rate < 0.0 {
-            0.5 * rate * rate / bend.max(1e-9 * full.trial.cost.max(1.0))
+            0.5 * rate * rate / curvature_along.max(1e-9 * unreduced.trial.cost.max(1.0))
         } else {
             0.0
         }
@@ -369,14 +380,14 @@ mod tests {
     /// Compares every price with the reduced gradient of the structure with the inserted, empty
     /// segment variable.
     #[test]
-    fn prices_are_the_rates_of_the_larger_template() {
+    fn prices_are_the_rates_of_the_larger_structure() {
         at_manoeuvres(|context, guess| {
             let trial = context.trial(&guess.structure, &guess.lengths);
-            let full = context.full(&guess.structure, trial.expect("fits"));
+            let unreduced = context.unreduced(&guess.structure, trial.expect("fits"));
             let multipliers = multipliers(context, guess).expect("solvable");
-            let prices = Prices::new(context, &guess.structure, &full, &multipliers);
+            let prices = Prices::new(context, &guess.structure, &unreduced, &multipliers);
             assert!(multipliers.iter().any(|m| *m > 0.0));
-            for gap in full.trial.rollout.runs..=guess.structure.free() {
+            for gap in unreduced.trial.rollout.runs..=guess.structure.free() {
                 for variable in kinds(context) {
                     let mut larger = guess.clone();
                     larger.structure.variables.insert(gap, variable);
@@ -391,25 +402,26 @@ mod tests {
                         .map(|(row, multiplier)| row.coefficients[gap] * multiplier)
                         .sum();
                     let expected = model.gradient[gap] - of_rows;
-                    let (found, bend) =
-                        prices.rate(context, &full, gap, variable).expect("a place");
+                    let (found, curvature_along) = prices
+                        .rate(context, &unreduced, gap, variable)
+                        .expect("a place");
                     assert!(
                         (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
                         "{variable:?} before {gap}: {found} {expected}"
                     );
-                    assert!(bend >= -1e-9 * (1.0 + found.abs()));
+                    assert!(curvature_along >= -1e-9 * (1.0 + found.abs()));
                 }
             }
         });
     }
 
     #[test]
-    fn a_cut_manoeuvre_is_the_same_manoeuvre() {
+    fn a_split_manoeuvre_has_the_same_rollout() {
         at_manoeuvres(|context, guess| {
             let whole = context
                 .model(&guess.structure, &guess.lengths)
                 .expect("fits");
-            let pieces = cut(context, guess, 30.0).expect("room for pieces");
+            let pieces = split(context, guess, 30.0).expect("room for pieces");
             assert!(pieces.structure.free() > 0);
             let again = context
                 .model(&pieces.structure, &pieces.lengths)

@@ -52,18 +52,18 @@ const BACKTRACK: f64 = 0.4;
 const MAX_BACKTRACKS: usize = 2;
 
 /// Fraction of the attainable change that an unsatisfiable row requires.
-const REACHABLE: f64 = 0.8;
+const ATTAINABLE: f64 = 0.8;
 
 /// Penalty increase for a refinement that has converged inside a set, and the largest number of
 /// increases.
-const DEARER: f64 = 6.0;
+const PENALTY_FACTOR: f64 = 6.0;
 const MAX_RAISES: usize = 3;
 
 /// Least ratio of actual to predicted gain of a step.
 const LEAST_GAIN: f64 = 0.05;
 
 /// Depth in metres that needs no correction.
-const CLEAR_ENOUGH_M: f64 = 1e-3;
+const CORRECTION_M: f64 = 1e-3;
 
 /// Relative decrease that counts as no progress.
 const STALLED: f64 = 1e-3;
@@ -111,7 +111,7 @@ pub(crate) struct Refinement {
     raised: usize,
     steps: usize,
     finished: bool,
-    overtaken: bool,
+    stopped: bool,
 }
 
 impl Refinement {
@@ -159,7 +159,7 @@ impl Refinement {
         let apparent = if context.problem.duty().is_none() {
             None
         } else {
-            Some(Apparent::in_seed(&mut guess, context.problem)?)
+            Some(Apparent::of_guess(&mut guess, context.problem)?)
         };
         let model = context.model(&guess.structure, &guess.lengths)?;
         let penalty = LEAST_PENALTY + PENALTY_PER_COST * model.cost;
@@ -184,9 +184,9 @@ impl Refinement {
             raised: 0,
             steps: 0,
             finished: false,
-            overtaken: false,
+            stopped: false,
         };
-        refinement.keep(context);
+        refinement.keep_if_best(context);
         Some(refinement)
     }
 
@@ -199,7 +199,7 @@ impl Refinement {
         let best = self.best?;
         let rollout = self
             .structure
-            .sail(context.problem, context.route, &best.lengths)?;
+            .roll_out(context.problem, context.route, &best.lengths)?;
         Some(rollout.motion())
     }
 
@@ -244,15 +244,15 @@ impl Refinement {
 
     /// Stops: another refinement is ahead.
     pub(crate) fn stop(&mut self) {
-        (self.finished, self.overtaken) = (true, true);
+        (self.finished, self.stopped) = (true, true);
     }
 
-    pub(crate) fn is_overtaken(&self) -> bool {
-        self.overtaken
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped
     }
 
     /// Only manoeuvres checked with fine chords count as clear.
-    fn keep(&mut self, context: &Context) {
+    fn keep_if_best(&mut self, context: &Context) {
         let clear = self.model.least_slack >= 0.0 && context.chord <= FINE_CHORD_RAD;
         let better = self.best.as_ref().is_none_or(|b| self.model.cost < b.cost);
         if clear && better {
@@ -303,21 +303,21 @@ impl Refinement {
                 return;
             }
             (self.lengths, self.model) = (trial_lengths, model);
-            self.keep(context);
+            self.keep_if_best(context);
         }
     }
 
     /// Evaluates the current manoeuvre again with another chord length.
-    pub(crate) fn look_again(&mut self, context: &Context) {
+    pub(crate) fn reevaluate(&mut self, context: &Context) {
         if let Some(model) = context.model(&self.structure, &self.lengths) {
             self.model = model;
             (self.finished, self.stalled) = (false, 0);
-            self.keep(context);
+            self.keep_if_best(context);
         }
     }
 
     /// Ends the refinement; the result counts as clear if it is nearly so.
-    pub(crate) fn settle(&mut self, context: &Context) {
+    pub(crate) fn finish(&mut self, context: &Context) {
         self.finished = true;
         self.restore(context);
     }
@@ -336,13 +336,13 @@ impl Refinement {
         if !advanced && self.model.least_slack < 0.0 && self.raised < MAX_RAISES {
             // converged inside a set: raise the penalty
             self.raised += 1;
-            self.penalty *= DEARER;
+            self.penalty *= PENALTY_FACTOR;
             self.radius = FIRST_RADIUS_M;
             self.stalled = 0;
             return;
         }
         if self.steps >= MAX_STEPS || !advanced {
-            self.settle(context);
+            self.finish(context);
         }
     }
 
@@ -354,7 +354,7 @@ impl Refinement {
         trial_lengths: &Row,
         trial: &Trial,
     ) -> Option<(Row, Trial)> {
-        if trial.violation <= CLEAR_ENOUGH_M {
+        if trial.violation <= CORRECTION_M {
             return None;
         }
         let mut low = trial_lengths.map(|l| (-self.radius).max(-l));
@@ -402,7 +402,7 @@ impl Refinement {
             if !(least >= row.bound) {
                 // a row that the box cannot satisfy requires only what is attainable
                 rows.push(Constraint {
-                    bound: row.bound.min(REACHABLE * reach),
+                    bound: row.bound.min(ATTAINABLE * reach),
                     ..*row
                 });
             }
@@ -459,10 +459,10 @@ impl Refinement {
             {
                 let model = context.completed(&self.structure, trial);
                 let settled =
-                    gained < STALLED * model.cost.max(1.0) && model.violation < CLEAR_ENOUGH_M;
+                    gained < STALLED * model.cost.max(1.0) && model.violation < CORRECTION_M;
                 self.stalled = if settled { self.stalled + 1 } else { 0 };
                 (self.lengths, self.model) = (trial_lengths, model);
-                self.keep(context);
+                self.keep_if_best(context);
                 if share < 1.0 {
                     self.radius = (2.0 * share * largest)
                         .min(self.radius)

@@ -7,7 +7,7 @@ use crate::planner::space_time::refinement::gauss_newton::{
     GaussNewton, Residuals, reduce, reduce_matrix,
 };
 use crate::planner::space_time::refinement::quadratic::{Constraint, MAX_VARIABLES, Row};
-use crate::planner::space_time::refinement::rollout::{Owner, Place};
+use crate::planner::space_time::refinement::rollout::{Place, SegmentOrigin};
 use crate::planner::space_time::refinement::structure::Structure;
 use crate::planner::space_time::refinement::trial::{Context, Trial, WeightedPoint};
 
@@ -15,7 +15,7 @@ use crate::planner::space_time::refinement::trial::{Context, Trial, WeightedPoin
 const ROOM_M: f64 = 1.0;
 
 /// Metres kept from every set during the refinement, so that the exact test afterwards passes.
-pub(crate) const MARGIN_M: f64 = 0.02;
+pub(crate) const REFINEMENT_MARGIN_M: f64 = 0.02;
 
 /// Local model of one manoeuvre.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ const LEAST_REGULARISED: f64 = 20.0;
 
 /// Model of one manoeuvre in all its segment variables, including the dependent ones.
 #[derive(Debug)]
-pub(crate) struct Full {
+pub(crate) struct UnreducedModel {
     pub trial: Trial,
     pub gradient: Row,
     /// Lower triangle.
@@ -56,12 +56,12 @@ impl Context<'_> {
 
     /// Derivatives of an evaluated trial point.
     pub(crate) fn completed(&self, structure: &Structure, trial: Trial) -> Model {
-        let full = self.full(structure, trial);
-        let trial = &full.trial;
+        let unreduced = self.unreduced(structure, trial);
+        let trial = &unreduced.trial;
         let (all, free) = (structure.all(), structure.free());
         let solved = &trial.rollout.solved_rates[..all - free];
-        let gradient = reduce(&full.gradient, solved, free);
-        let mut hessian = reduce_matrix(full.hessian, solved, free);
+        let gradient = reduce(&unreduced.gradient, solved, free);
+        let mut hessian = reduce_matrix(unreduced.hessian, solved, free);
         for (i, row) in hessian.iter_mut().enumerate() {
             row[i] += REGULARISATION * trial.cost.max(LEAST_REGULARISED);
         }
@@ -85,7 +85,7 @@ impl Context<'_> {
             let coefficients = self.approach_row(trial, approach);
             rows.push(Constraint {
                 coefficients: reduce(&coefficients, solved, free),
-                bound: MARGIN_M - approach.slack,
+                bound: REFINEMENT_MARGIN_M - approach.slack,
             });
         }
         for k in 0..all - free {
@@ -106,19 +106,19 @@ impl Context<'_> {
     }
 
     /// Model before the dependent segment variables are eliminated.
-    pub(crate) fn full(&self, structure: &Structure, trial: Trial) -> Full {
+    pub(crate) fn unreduced(&self, structure: &Structure, trial: Trial) -> UnreducedModel {
         let all = structure.all();
-        let mut full = Full {
+        let mut unreduced = UnreducedModel {
             gradient: [0.0; MAX_VARIABLES],
             hessian: vec![[0.0; MAX_VARIABLES]; all],
             moments: GaussNewton::new(all),
             trial,
         };
-        let trial = &full.trial;
+        let trial = &unreduced.trial;
         let rollout = &trial.rollout;
         let origin = self.problem.own.pose.position;
         for point in &trial.points {
-            full.gradient[point.variable] += point.growth;
+            unreduced.gradient[point.variable] += point.growth;
             let Some(weighed) = &point.weighed else {
                 continue;
             };
@@ -136,34 +136,37 @@ impl Context<'_> {
                 GaussNewton::add_directly(
                     &rates[..=point.variable],
                     &residuals,
-                    &mut full.gradient,
-                    &mut full.hessian,
+                    &mut unreduced.gradient,
+                    &mut unreduced.hessian,
                 );
             } else {
                 let at = place.position - origin;
                 let own = rollout.own_rate(place, point.variable);
-                full.moments
+                unreduced
+                    .moments
                     .add(point.variable, [at.x, at.y], own, &residuals);
             }
         }
         let twists = rollout.twists(origin);
-        full.moments
-            .finish(&twists, &mut full.gradient, &mut full.hessian);
+        unreduced
+            .moments
+            .finish(&twists, &mut unreduced.gradient, &mut unreduced.hessian);
         if let Some(return_segments) = &trial.return_segments {
             let (distance, clock) = &trial.joining;
             let mut lateness = [0.0; MAX_VARIABLES];
             for i in 0..all {
-                full.gradient[i] +=
+                unreduced.gradient[i] +=
                     return_segments.by_time * clock[i] + return_segments.by_distance * distance[i];
                 lateness[i] = clock[i] - return_segments.slowness * distance[i];
             }
             for i in 0..all {
                 for k in 0..=i {
-                    full.hessian[i][k] += return_segments.bend * lateness[i] * lateness[k];
+                    unreduced.hessian[i][k] +=
+                        return_segments.curvature_along * lateness[i] * lateness[k];
                 }
             }
         }
-        full
+        unreduced
     }
 
     /// Residuals of a point whose nearest desired position is `distance` along the path, on `leg`.
@@ -200,7 +203,7 @@ impl Context<'_> {
             rollout.legs[approach.leg].owner,
         ) {
             (Some(place), _) => rollout.rates(&place, of),
-            (None, Owner::ReturnSegments { index }) => {
+            (None, SegmentOrigin::ReturnSegments { index }) => {
                 let (by_distance, by_time) = self.return_segment_rates(rollout, index, approach);
                 let mut row = [0.0; MAX_VARIABLES];
                 let (distances, clocks) = &trial.joining;
@@ -209,7 +212,7 @@ impl Context<'_> {
                 }
                 row
             }
-            (None, Owner::SegmentVariable { .. }) => [0.0; MAX_VARIABLES],
+            (None, SegmentOrigin::SegmentVariable { .. }) => [0.0; MAX_VARIABLES],
         }
     }
 }
@@ -219,7 +222,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::frame::{Pose, Side, Vector};
     use crate::geometry::outer_disc;
-    use crate::obstacle::{Coast, PolytopeObstacle};
+    use crate::obstacle::{LandObstacle, PolytopeObstacle};
     use crate::planner::clock::Clock;
     use crate::planner::space_time::piece::pieces;
     use crate::planner::space_time::proxy::Proxy;
@@ -228,7 +231,7 @@ pub(crate) mod tests {
     use crate::planner::space_time::refinement::structure::Ending;
     use crate::planner::space_time::refinement::structure::SegmentVariable;
     use crate::planner::space_time::route::Route;
-    use crate::planner::space_time::selection::initial_guess::{Canonical, Conflict};
+    use crate::planner::space_time::selection::initial_guess::{Conflict, EvasiveManoeuvre};
     use crate::planner::{Problem, SearchKind};
     use crate::trajectory::DesiredTrajectory;
     use crate::vessel::{Hull, OwnShip};
@@ -265,7 +268,7 @@ pub(crate) mod tests {
             alternatives: &[],
             objective: crate::planner::Objective::SpaceTimeError,
             obstacles: &obstacles,
-            coast: Coast::none(),
+            land_obstacle: LandObstacle::none(),
             horizon: 900.0,
             time_weight: 25.0,
             search: SearchKind::AStar,
@@ -283,12 +286,12 @@ pub(crate) mod tests {
             blocks: &[],
             chord: FINE_CHORD_RAD,
         };
-        let canonical = Canonical {
+        let canonical = EvasiveManoeuvre {
             turn: 0.7,
             lead: 0.9,
             reach: 1.0,
             slow: false,
-            rush: 0.0,
+            fast_share: 0.0,
         };
         let conflict = Conflict {
             from: 140.0,

@@ -196,7 +196,7 @@ mod tests {
     /// Contradictory rows: no change within the box lowers the sum of cost and price of the largest
     /// violation, and without a price there is no solution.
     #[test]
-    fn of_what_contradicts_the_price_is_paid_and_the_sum_is_least() {
+    fn contradictory_rows_minimise_cost_plus_price() {
         let mut rng = ChaCha8Rng::seed_from_u64(43);
         let mut missed = 0;
         for _ in 0..400 {

@@ -14,7 +14,7 @@ pub(crate) struct ReturnSegments {
     pub cost: f64,
     pub by_time: f64,
     pub by_distance: f64,
-    pub bend: f64,
+    pub curvature_along: f64,
     pub slowness: f64,
 }
 
@@ -22,11 +22,11 @@ impl Context<'_> {
     /// Return segments, in closed form where there is one.
     pub(crate) fn return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
         self.straight_return_segments(distance, time)
-            .unwrap_or_else(|| self.bent_return_segments(distance, time))
+            .unwrap_or_else(|| self.general_return_segments(distance, time))
     }
 
     /// Cost of following the route from a position at a time, m².
-    fn tail_cost(&self, distance: f64, time: f64) -> f64 {
+    fn return_cost(&self, distance: f64, time: f64) -> f64 {
         let mut segments = Vec::with_capacity(4);
         self.route.follow(distance, time, &mut segments);
         segments
@@ -71,28 +71,28 @@ impl Context<'_> {
             cost: kappa * lag.abs().powi(3) / 3.0,
             by_time: by_lag * leg.speed,
             by_distance: -by_lag,
-            bend: 2.0 * kappa * lag.abs() * leg.speed * leg.speed,
+            curvature_along: 2.0 * kappa * lag.abs() * leg.speed * leg.speed,
             slowness: 1.0 / leg.speed,
         })
     }
 
     /// General return segments, by differences in the position and time of joining.
-    fn bent_return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
+    fn general_return_segments(&self, distance: f64, time: f64) -> ReturnSegments {
         let (ds, dt) = (0.05, 0.01);
-        let cost = self.tail_cost(distance, time);
+        let cost = self.return_cost(distance, time);
         let (earlier, later) = (
-            self.tail_cost(distance, time - dt),
-            self.tail_cost(distance, time + dt),
+            self.return_cost(distance, time - dt),
+            self.return_cost(distance, time + dt),
         );
         let (back, on) = (
-            self.tail_cost(distance - ds, time),
-            self.tail_cost(distance + ds, time),
+            self.return_cost(distance - ds, time),
+            self.return_cost(distance + ds, time),
         );
         ReturnSegments {
             cost,
             by_time: (later - earlier) / (2.0 * dt),
             by_distance: (on - back) / (2.0 * ds),
-            bend: ((later + earlier - 2.0 * cost) / (dt * dt)).max(0.0),
+            curvature_along: ((later + earlier - 2.0 * cost) / (dt * dt)).max(0.0),
             slowness: (self.route.due_at(distance + ds) - self.route.due_at(distance)) / ds,
         }
     }

@@ -10,7 +10,7 @@ use crate::trajectory::Segment;
 
 /// Origin of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Owner {
+pub(crate) enum SegmentOrigin {
     /// Fractions `[from, to]` of segment variable `index`.
     SegmentVariable { index: usize, from: f64, to: f64 },
     /// The route followed after the manoeuvre.
@@ -23,7 +23,7 @@ pub(crate) struct Leg {
     pub segment: Segment,
     /// Unit vector ahead at its start.
     pub ahead: Vector,
-    pub owner: Owner,
+    pub owner: SegmentOrigin,
 }
 
 impl Leg {
@@ -52,9 +52,9 @@ pub(crate) fn turned(from: Vector, ahead: Vector, length: f64, curvature: f64) -
     (end, ahead * cos + port * sin)
 }
 
-/// Rigid motion of everything after a segment variable, per metre of its length.
+/// RigidMotion motion of everything after a segment variable, per metre of its length.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Rigid {
+pub(crate) struct RigidMotion {
     /// End of the segment variable, direction there, and curvature.
     pub end: Vector,
     pub ahead: Vector,
@@ -62,8 +62,8 @@ pub(crate) struct Rigid {
     pub slowness: f64,
 }
 
-impl Rigid {
-    pub(crate) fn moves(&self, point: Vector) -> Vector {
+impl RigidMotion {
+    pub(crate) fn velocity_of(&self, point: Vector) -> Vector {
         self.ahead + to_port(point - self.end) * self.curvature
     }
 }
@@ -85,7 +85,7 @@ pub(crate) struct Rollout {
     pub solved_rates: [Row; 2],
     /// Number of initial segment variables that follow the route.
     pub runs: usize,
-    pub rigid: Vec<Rigid>,
+    pub rigid_motions: Vec<RigidMotion>,
 }
 
 /// Point of a manoeuvre that belongs to a segment variable.
@@ -114,7 +114,7 @@ impl Rollout {
     /// Point at `fraction` of a segment; `None` on the return segments.
     pub(crate) fn place(&self, leg: usize, fraction: f64) -> Option<Place> {
         let l = &self.legs[leg];
-        let Owner::SegmentVariable { index, from, to } = l.owner else {
+        let SegmentOrigin::SegmentVariable { index, from, to } = l.owner else {
             return None;
         };
         let (position, ahead) = l.along(fraction);
@@ -137,7 +137,7 @@ impl Rollout {
         [
             share * place.ahead.x,
             share * place.ahead.y,
-            share * self.rigid[index].slowness,
+            share * self.rigid_motions[index].slowness,
         ]
     }
 
@@ -146,14 +146,14 @@ impl Rollout {
     pub(crate) fn rates(&self, place: &Place, of: [f64; 3]) -> Row {
         let mut row = [0.0; MAX_VARIABLES];
         let on_route = place.variable < self.runs;
-        let all = row.iter_mut().zip(&self.rigid).enumerate();
-        for (i, (rate, rigid)) in all.take(place.variable + 1) {
+        let all = row.iter_mut().zip(&self.rigid_motions).enumerate();
+        for (i, (rate, rigid_motions)) in all.take(place.variable + 1) {
             *rate = if on_route || i == place.variable {
                 let own = self.own_rate(place, i);
                 of[0] * own[0] + of[1] * own[1] + of[2] * own[2]
             } else {
-                let moved = rigid.moves(place.position);
-                of[0] * moved.x + of[1] * moved.y + of[2] * rigid.slowness
+                let moved = rigid_motions.velocity_of(place.position);
+                of[0] * moved.x + of[1] * moved.y + of[2] * rigid_motions.slowness
             };
         }
         row
@@ -161,7 +161,7 @@ impl Rollout {
 
     /// Twist of each segment variable about `origin`.
     pub(crate) fn twists(&self, origin: Vector) -> Vec<Twist> {
-        let twist = |r: &Rigid| {
+        let twist = |r: &RigidMotion| {
             let end = r.end - origin;
             [
                 r.ahead.x + r.curvature * end.y,
@@ -170,7 +170,7 @@ impl Rollout {
                 r.curvature,
             ]
         };
-        self.rigid.iter().map(twist).collect()
+        self.rigid_motions.iter().map(twist).collect()
     }
 
     /// Rates of the dependent segment variables with any change given as a twist about `origin`, as
@@ -181,7 +181,7 @@ impl Rollout {
         problem: &Problem,
         origin: Vector,
     ) -> [Twist; 2] {
-        let [.., line_or_arc, last] = &self.rigid[..] else {
+        let [.., line_or_arc, last] = &self.rigid_motions[..] else {
             return [[0.0; 4]; 2];
         };
         match ending {
@@ -194,7 +194,7 @@ impl Rollout {
             }
             Ending::Goal { .. } => {
                 let goal = problem.desired.end();
-                let (by_arc, by_line) = (line_or_arc.moves(goal), last.ahead);
+                let (by_arc, by_line) = (line_or_arc.velocity_of(goal), last.ahead);
                 let determinant = cross(by_arc, by_line);
                 let at = goal - origin;
                 [
@@ -207,7 +207,7 @@ impl Rollout {
 
     /// Rate of the joining position along the route, as a linear form of a twist about `origin`.
     pub(crate) fn joined_by(&self, origin: Vector) -> Twist {
-        self.rigid
+        self.rigid_motions
             .last()
             .map_or([0.0; 4], |last| along(last.ahead, last.end - origin))
     }
@@ -217,15 +217,15 @@ impl Rollout {
     pub(crate) fn joining_rates(&self) -> (Row, Row) {
         let mut distance = [0.0; MAX_VARIABLES];
         let mut clock = [0.0; MAX_VARIABLES];
-        let Some(last) = self.rigid.last() else {
+        let Some(last) = self.rigid_motions.last() else {
             return (distance, clock);
         };
-        let runs_only = self.runs == self.rigid.len();
-        for (i, r) in self.rigid.iter().enumerate() {
+        let runs_only = self.runs == self.rigid_motions.len();
+        for (i, r) in self.rigid_motions.iter().enumerate() {
             distance[i] = if runs_only {
                 1.0
             } else {
-                last.ahead.dot(&r.moves(last.end))
+                last.ahead.dot(&r.velocity_of(last.end))
             };
             clock[i] = r.slowness;
         }

@@ -8,10 +8,12 @@
 
 use crate::frame::{Pose, Side, Vector, cross, heading_of, to_port, wrap};
 use crate::planner::Problem;
-use crate::planner::space_time::graph::intercept::Chase;
+use crate::planner::space_time::graph::intercept::Interceptor;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
-use crate::planner::space_time::refinement::rollout::{Leg, Owner, Rigid, Rollout, turned};
-use crate::planner::space_time::route::{Route, Stretch};
+use crate::planner::space_time::refinement::rollout::{
+    Leg, RigidMotion, Rollout, SegmentOrigin, turned,
+};
+use crate::planner::space_time::route::{Route, StraightStretch};
 use crate::trajectory::Segment;
 
 /// Smallest return angle that can be solved, radians.
@@ -73,7 +75,12 @@ impl Structure {
     }
 
     /// Rolls the manoeuvre out with the given lengths; `None` when its ending does not fit.
-    pub(crate) fn sail(&self, problem: &Problem, route: &Route, lengths: &Row) -> Option<Rollout> {
+    pub(crate) fn roll_out(
+        &self,
+        problem: &Problem,
+        route: &Route,
+        lengths: &Row,
+    ) -> Option<Rollout> {
         let radius = problem.own.turning_radius;
         let mut rollout = Rollout {
             legs: Vec::with_capacity(2 * self.all() + 8),
@@ -83,7 +90,7 @@ impl Structure {
             solved: [0.0; 2],
             solved_rates: [[0.0; MAX_VARIABLES]; 2],
             runs: 0,
-            rigid: Vec::with_capacity(self.all()),
+            rigid_motions: Vec::with_capacity(self.all()),
         };
         let mut at = Cursor {
             pose: problem.own.pose,
@@ -98,14 +105,14 @@ impl Structure {
                 at.run(route, index, lengths[index], speed, &mut rollout);
                 runs = index + 1;
             } else {
-                at.sail(*variable, index, lengths[index], &mut rollout);
+                at.roll_out(*variable, index, lengths[index], &mut rollout);
             }
         }
         // runs move what follows along the route at the end of the last run
         rollout.runs = runs;
         if runs > 0 {
             let (pose, curvature) = route.pose_at(lengths[..runs].iter().sum());
-            for r in &mut rollout.rigid[..runs] {
+            for r in &mut rollout.rigid_motions[..runs] {
                 (r.end, r.ahead, r.curvature) = (pose.position, pose.ahead(), curvature);
             }
         }
@@ -128,7 +135,7 @@ impl Structure {
                 rollout.legs.push(Leg {
                     segment,
                     ahead,
-                    owner: Owner::ReturnSegments { index },
+                    owner: SegmentOrigin::ReturnSegments { index },
                 });
                 at.pass(&segment, ahead);
             }
@@ -149,7 +156,7 @@ impl Structure {
         &self,
         problem: &Problem,
         leg: usize,
-        stretch: Stretch,
+        stretch: StraightStretch,
         speed: f64,
         at: &mut Cursor,
         rollout: &mut Rollout,
@@ -173,13 +180,13 @@ impl Structure {
         }
         rollout.solved = [line, radius * relative.abs()];
         let n = self.variables.len();
-        at.sail(
+        at.roll_out(
             SegmentVariable::Line { speed },
             n,
             rollout.solved[0],
             rollout,
         );
-        at.sail(
+        at.roll_out(
             SegmentVariable::Arc { side, speed },
             n + 1,
             rollout.solved[1],
@@ -193,11 +200,11 @@ impl Structure {
         rollout.room = Some(stretch.to - along);
         let normal = to_port(l.direction);
         let end = at.pose.position;
-        let across = normal.dot(&rollout.rigid[n].ahead);
-        let curvature = rollout.rigid[n + 1].curvature;
+        let across = normal.dot(&rollout.rigid_motions[n].ahead);
+        let curvature = rollout.rigid_motions[n + 1].curvature;
         for i in 0..n {
-            let r = &rollout.rigid[i];
-            rollout.solved_rates[0][i] = -normal.dot(&r.moves(end)) / across;
+            let r = &rollout.rigid_motions[i];
+            rollout.solved_rates[0][i] = -normal.dot(&r.velocity_of(end)) / across;
             rollout.solved_rates[1][i] = -r.curvature / curvature;
         }
         Some(())
@@ -214,32 +221,35 @@ impl Structure {
     ) -> Option<()> {
         let radius = at.radius;
         let goal = problem.desired.end();
-        let chase = Chase::new(&at.pose, at.time, speed, radius, side);
-        let (turn, line) = chase.way_to(goal)?;
+        let interceptor = Interceptor::new(&at.pose, at.time, speed, radius, side);
+        let (turn, line) = interceptor.path_to(goal)?;
         if !(turn < 2.5) {
             return None;
         }
         rollout.solved = [turn * radius, line];
         let n = self.variables.len();
-        at.sail(
+        at.roll_out(
             SegmentVariable::Arc { side, speed },
             n,
             rollout.solved[0],
             rollout,
         );
-        at.sail(
+        at.roll_out(
             SegmentVariable::Line { speed },
             n + 1,
             rollout.solved[1],
             rollout,
         );
-        let (by_arc, by_line) = (rollout.rigid[n].moves(goal), rollout.rigid[n + 1].ahead);
+        let (by_arc, by_line) = (
+            rollout.rigid_motions[n].velocity_of(goal),
+            rollout.rigid_motions[n + 1].ahead,
+        );
         let determinant = cross(by_arc, by_line);
         if determinant.abs() < 1e-9 {
             return None;
         }
         for i in 0..n {
-            let moved = rollout.rigid[i].moves(goal);
+            let moved = rollout.rigid_motions[i].velocity_of(goal);
             rollout.solved_rates[0][i] = -cross(moved, by_line) / determinant;
             rollout.solved_rates[1][i] = -cross(by_arc, moved) / determinant;
         }
@@ -288,7 +298,7 @@ impl Cursor {
             rollout.legs.push(Leg {
                 segment,
                 ahead,
-                owner: Owner::SegmentVariable { index, from, to },
+                owner: SegmentOrigin::SegmentVariable { index, from, to },
             });
             self.pass(&segment, ahead);
             from = to;
@@ -304,14 +314,14 @@ impl Cursor {
             rollout.legs.push(Leg {
                 segment,
                 ahead: self.ahead,
-                owner: Owner::SegmentVariable {
+                owner: SegmentOrigin::SegmentVariable {
                     index,
                     from: 0.0,
                     to: 1.0,
                 },
             });
         }
-        rollout.rigid.push(Rigid {
+        rollout.rigid_motions.push(RigidMotion {
             end: self.pose.position,
             ahead: self.ahead,
             curvature: 0.0,
@@ -319,7 +329,7 @@ impl Cursor {
         });
     }
 
-    fn sail(
+    fn roll_out(
         &mut self,
         variable: SegmentVariable,
         index: usize,
@@ -341,7 +351,7 @@ impl Cursor {
         rollout.legs.push(Leg {
             segment,
             ahead: self.ahead,
-            owner: Owner::SegmentVariable {
+            owner: SegmentOrigin::SegmentVariable {
                 index,
                 from: 0.0,
                 to: 1.0,
@@ -356,7 +366,7 @@ impl Cursor {
             self.pose = Pose::new(position, self.pose.heading + curvature * length);
             (self.ahead, self.time) = (ahead, segment.end_time());
         }
-        rollout.rigid.push(Rigid {
+        rollout.rigid_motions.push(RigidMotion {
             end: self.pose.position,
             ahead: self.ahead,
             curvature,

@@ -1,25 +1,18 @@
 //! Trial point of the refinement: one rolled-out manoeuvre with its cost and closest approaches.
 //! This suffices to accept or reject a step; derivatives are computed for accepted ones only.
 
+use crate::numerics::{GAUSS_2, GAUSS_3, GAUSS_4};
 use crate::planner::Problem;
-use crate::planner::cost::{GAUSS_2, GAUSS_4};
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::Proxy;
 use crate::planner::space_time::refinement::approach::{Approach, NEAR_M, add_approaches};
-use crate::planner::space_time::refinement::model::MARGIN_M;
+use crate::planner::space_time::refinement::model::REFINEMENT_MARGIN_M;
 use crate::planner::space_time::refinement::quadratic::Row;
 use crate::planner::space_time::refinement::return_segments::ReturnSegments;
-use crate::planner::space_time::refinement::rollout::{Owner, Place, Rollout};
+use crate::planner::space_time::refinement::rollout::{Place, Rollout, SegmentOrigin};
 use crate::planner::space_time::refinement::structure::{Ending, Structure};
 use crate::planner::space_time::route::Route;
 use crate::trajectory::Nearest;
-
-/// Nodes and weights of the 3-point Gauss-Legendre rule on [0, 1], for short arcs.
-const GAUSS_3: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
-    (0.5, 0.444_444_444_444_444_4),
-    (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
-];
 
 /// Data that stay fixed for one problem.
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +67,7 @@ pub(crate) struct WeightedPoint {
 impl Context<'_> {
     /// Rolls out and computes the cost; `None` when the manoeuvre's ending does not fit.
     pub(crate) fn trial(&self, structure: &Structure, lengths: &Row) -> Option<Trial> {
-        let rollout = structure.sail(self.problem, self.route, lengths)?;
+        let rollout = structure.roll_out(self.problem, self.route, lengths)?;
         let mut points = Vec::with_capacity(GAUSS_4.len() * rollout.return_segments);
         for leg in 0..rollout.return_segments {
             self.add_points(&rollout, leg, &mut points);
@@ -85,7 +78,7 @@ impl Context<'_> {
             .then(|| self.return_segments(rollout.joined.0, rollout.joined.1));
         cost += return_segments.as_ref().map_or(0.0, |t| t.cost);
         let sails = rollout.legs.iter().map(|l| &l.segment);
-        let land = land::near(self.problem.coast, sails, NEAR_M);
+        let land = land::near(self.problem.land_obstacle, sails, NEAR_M);
         let middles = rollout.middles();
         let mut approaches = Vec::new();
         let near_land = land.into_iter().map(|b| &self.blocks[b]);
@@ -99,7 +92,7 @@ impl Context<'_> {
         Some(Trial {
             rollout,
             cost,
-            violation: (MARGIN_M - least_slack).max(0.0),
+            violation: (REFINEMENT_MARGIN_M - least_slack).max(0.0),
             least_slack,
             approaches,
             return_segments,
@@ -110,7 +103,7 @@ impl Context<'_> {
 
     /// Quadrature points of a segment.
     fn add_points(&self, rollout: &Rollout, leg: usize, points: &mut Vec<Point>) {
-        let Owner::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
+        let SegmentOrigin::SegmentVariable { index, from, to } = rollout.legs[leg].owner else {
             return;
         };
         let segment = rollout.legs[leg].segment;

@@ -8,7 +8,7 @@ use crate::colregs::{
 use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::selection::initial_guess::SpeedTable;
+use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -23,17 +23,17 @@ const PASSED_S: f64 = 2.0;
 const NO_RELATIVE_SPEED: f64 = 1e-9;
 
 /// Speed at or below which a speed reduction is readily apparent, m/s.
-pub(crate) fn slow(problem: &Problem) -> f64 {
-    APPARENT_SPEED * SpeedTable::of(problem).normal * (1.0 + 1e-9)
+pub(crate) fn apparent_slow_speed(problem: &Problem) -> f64 {
+    APPARENT_SPEED * ManoeuvreSpeeds::of(problem).normal * (1.0 + 1e-9)
 }
 
 /// Length of the apparent speed reduction at the end of a motion along the route, metres.
-pub(crate) fn visibly_slow(problem: &Problem, motion: &[Segment]) -> f64 {
+pub(crate) fn apparent_slow_distance(problem: &Problem, motion: &[Segment]) -> f64 {
     if problem.duty().is_none() {
         return 0.0;
     }
     let last = motion.iter().rev();
-    last.take_while(|s| s.speed <= slow(problem))
+    last.take_while(|s| s.speed <= apparent_slow_speed(problem))
         .map(Segment::length)
         .sum()
 }
@@ -122,7 +122,7 @@ struct Departure {
 
 impl Departure {
     fn of(context: &Context, motion: &[Segment]) -> Self {
-        let slow = slow(context.problem);
+        let slow = apparent_slow_speed(context.problem);
         let (mut slow_for, mut slowed) = (0.0, false);
         let mut sees = |s: &Segment| {
             // negated on purpose: a NaN is fast
@@ -209,7 +209,7 @@ impl Nearest {
             time: 0.0,
             drifts_to_port: false,
         };
-        let mut look = |s: &Segment, time: f64| {
+        let mut examine = |s: &Segment, time: f64| {
             let target = ship.pose.position + ship.velocity() * time;
             let offset = s.pose_at(time).position - target;
             let relative = s.velocity_at(time) - ship.velocity();
@@ -223,17 +223,17 @@ impl Nearest {
             (offset, relative)
         };
         for s in motion {
-            let (offset, relative) = look(s, s.start_time);
+            let (offset, relative) = examine(s, s.start_time);
             if s.is_arc() {
                 for k in 1..ARC_SAMPLES {
                     let share = f64::from(k) / f64::from(ARC_SAMPLES);
-                    look(s, s.start_time + s.duration * share);
+                    examine(s, s.start_time + s.duration * share);
                 }
             } else if relative.norm() > NO_RELATIVE_SPEED {
                 let ahead = -offset.dot(&relative) / relative.norm_squared();
-                look(s, s.start_time + ahead.clamp(0.0, s.duration));
+                examine(s, s.start_time + ahead.clamp(0.0, s.duration));
             }
-            look(s, s.end_time());
+            examine(s, s.end_time());
         }
         nearest
     }

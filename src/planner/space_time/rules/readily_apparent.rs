@@ -7,7 +7,7 @@ use crate::planner::Problem;
 use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::quadratic::Row;
 use crate::planner::space_time::refinement::structure::SegmentVariable;
-use crate::planner::space_time::rules::compliance::slow;
+use crate::planner::space_time::rules::compliance::apparent_slow_speed;
 
 /// Relative excess of its length over the least one, to cover rounding.
 const SPARE: f64 = 1e-7;
@@ -34,7 +34,7 @@ impl Apparent {
     /// speed reduction precedes it. `None` where the turn is to the wrong side, or there is none. A
     /// turn consists of consecutive arcs to one side at several speeds; the longest of them keeps
     /// its length.
-    pub(crate) fn in_seed(guess: &mut InitialGuess, problem: &Problem) -> Option<Self> {
+    pub(crate) fn of_guess(guess: &mut InitialGuess, problem: &Problem) -> Option<Self> {
         let duty = problem.duty();
         let variables = &guess.structure.variables;
         let turns = |i: &usize| side_of(&variables[*i]).is_some();
@@ -49,7 +49,9 @@ impl Apparent {
         let begin = (0..first).rev().take_while(same).last().unwrap_or(first);
         let empty = (0..begin).filter(turns).collect();
         let slows = |i: &usize| match variables[*i] {
-            SegmentVariable::Run { speed } if duty.may_slow && speed <= slow(problem) => {
+            SegmentVariable::Run { speed }
+                if duty.may_slow && speed <= apparent_slow_speed(problem) =>
+            {
                 guess.lengths[*i] >= speed * APPARENT_TIME * (1.0 - SPARE)
             }
             _ => false,

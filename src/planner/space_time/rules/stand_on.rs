@@ -13,38 +13,34 @@ use crate::planner::cost::space_time_error;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::departure::until;
 use crate::planner::space_time::graph::return_to_line::return_to_line;
-use crate::planner::space_time::proxy::{TOUCH_M, first_met};
+use crate::planner::space_time::proxy::first_met;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::planner::space_time::rules::compliance::{complies, slow};
+use crate::planner::space_time::rules::compliance::{apparent_slow_speed, complies};
+use crate::planner::space_time::settings::{ESCAPE_HOLDS_S, ESCAPE_RETURN_ANGLES};
 use crate::planner::{Escape, NoPlan, Outcome, Plan, Planned, Problem};
+use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 
 /// Turns of an escape, as multiples of the least readily apparent turn.
 const TURNS: [f64; 6] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0];
 
-/// Seconds for which the course, or the reduced speed, of an escape is held.
-const HOLDS_S: [f64; 7] = [10.0, 20.0, 40.0, 60.0, 90.0, 140.0, 220.0];
-
-/// Angles between a return line and the route, radians.
-const RETURN_ANGLES: [f64; 3] = [0.3, 0.6, 1.0];
-
 /// Sampled instants before the first contact, latest first, and bisection steps after that.
-const SCAN: usize = 40;
+const SAMPLES: usize = 40;
 const HALVINGS: usize = 7;
 
 /// Sampled instants for an escape that need not be the latest.
-const FEW: usize = 10;
+const FEW_SAMPLES: usize = 10;
 
 /// Motion that holds and then escapes.
 #[derive(Debug, Clone)]
-pub(crate) struct Held {
+pub(crate) struct StandOnPlan {
     pub motion: Vec<Segment>,
     /// Cost, m².
     pub cost: f64,
     pub escape: Escape,
 }
 
-impl Held {
+impl StandOnPlan {
     pub(crate) fn planned(self, problem: &Problem) -> Planned {
         let plan = Plan::measured(problem, self.motion, None);
         let outcome = plan.map_or(Outcome::Infeasible(NoPlan::NoRoute), Outcome::Solved);
@@ -62,14 +58,14 @@ pub(crate) fn hold(
     nominal_motion: &[Segment],
     contact: f64,
     clock: Clock,
-) -> Option<Held> {
+) -> Option<StandOnPlan> {
     let search = Escapes {
         context,
         nominal_motion,
         sides: &[Side::Starboard],
     };
-    let step = contact / SCAN as f64;
-    let scanned = (0..=SCAN).rev().map(|k| step * k as f64);
+    let step = contact / SAMPLES as f64;
+    let scanned = (0..=SAMPLES).rev().map(|k| step * k as f64);
     let mut latest = scanned
         .take_while(|_| !clock.is_up())
         .find(|t| search.from(*t).next().is_some())?;
@@ -101,8 +97,8 @@ pub(crate) fn cheapest(
         nominal_motion,
         sides: context.problem.duty().sides(),
     };
-    let step = contact / FEW as f64;
-    let times = (0..=FEW).map(|k| step * k as f64);
+    let step = contact / FEW_SAMPLES as f64;
+    let times = (0..=FEW_SAMPLES).map(|k| step * k as f64);
     let found = times
         .take_while(|_| !clock.is_up())
         .filter_map(|t| search.from(t).min_by(|a, b| a.cost.total_cmp(&b.cost)));
@@ -130,7 +126,7 @@ impl<'s> Escapes<'s, '_> {
     }
 
     /// Escapes from a time on that are clear until their arrival.
-    fn from(&self, time: f64) -> impl Iterator<Item = Held> + '_ {
+    fn from(&self, time: f64) -> impl Iterator<Item = StandOnPlan> + '_ {
         let start = std::rc::Rc::new(Start {
             before: until(self.nominal_motion, time),
             time,
@@ -150,12 +146,12 @@ impl<'s> Escapes<'s, '_> {
             .flat_map(move |turn| self.sides.iter().map(move |side| (*side, turn)))
             .flat_map(move |(side, (turn, speed))| self.by_turn(&start, side, turn, speed));
         let slower = speeds()
-            .filter(|u| *u <= slow(self.problem()))
+            .filter(|u| *u <= apparent_slow_speed(self.problem()))
             .flat_map(move |speed| self.by_speed(&again, speed));
         turning.chain(slower)
     }
 
-    fn by_turn(&self, start: &Start, side: Side, turn: f64, speed: f64) -> Vec<Held> {
+    fn by_turn(&self, start: &Start, side: Side, turn: f64, speed: f64) -> Vec<StandOnPlan> {
         let problem = self.problem();
         let radius = problem.own.turning_radius;
         let pose = start.before.last().map_or(problem.own.pose, Segment::end);
@@ -164,7 +160,7 @@ impl<'s> Escapes<'s, '_> {
         out.arc(turn * radius);
         let mut found = Vec::new();
         let mut held = 0.0;
-        for hold in HOLDS_S {
+        for hold in ESCAPE_HOLDS_S {
             out.line(speed * (hold - held));
             held = hold;
             if !self.is_clear(&out.segments) {
@@ -176,13 +172,13 @@ impl<'s> Escapes<'s, '_> {
     }
 
     /// Returns onto the legs ahead, at the greatest speed.
-    fn returns(&self, start: &Start, out: &Chain, turn: f64) -> Vec<Held> {
+    fn returns(&self, start: &Start, out: &Chain, turn: f64) -> Vec<StandOnPlan> {
         let (problem, route) = (self.problem(), self.context.route);
         let (desired, own) = (problem.desired, problem.own);
         let near = desired.nearest(out.pose.position, out.time, 0.0).leg;
         let legs = near..desired.legs().len().min(near + 2);
-        let ways = legs.flat_map(|leg| RETURN_ANGLES.map(|angle| (leg, angle)));
-        let held = ways.filter_map(|(leg, angle)| {
+        let returns = legs.flat_map(|leg| ESCAPE_RETURN_ANGLES.map(|angle| (leg, angle)));
+        let held = returns.filter_map(|(leg, angle)| {
             let stretch = route.stretch(leg, desired)?;
             let l = &desired.legs()[leg];
             let heading = heading_of(l.direction);
@@ -205,11 +201,11 @@ impl<'s> Escapes<'s, '_> {
         held.collect()
     }
 
-    fn by_speed(&self, start: &Start, speed: f64) -> Vec<Held> {
+    fn by_speed(&self, start: &Start, speed: f64) -> Vec<StandOnPlan> {
         let route = self.context.route;
         let along: f64 = start.before.iter().map(Segment::length).sum();
-        let spells = HOLDS_S.into_iter().filter(|s| *s >= APPARENT_TIME);
-        let held = spells.filter_map(|spell| {
+        let durations = ESCAPE_HOLDS_S.into_iter().filter(|s| *s >= APPARENT_TIME);
+        let held = durations.filter_map(|spell| {
             let mut escape = Vec::new();
             let at = route.run(along, start.time, speed * spell, speed, &mut escape);
             let time = escape.last().map_or(start.time, Segment::end_time);
@@ -220,7 +216,13 @@ impl<'s> Escapes<'s, '_> {
     }
 
     /// The complete motion, where it is clear, in time and complies with the rules.
-    fn held(&self, start: &Start, escape: Vec<Segment>, turn: f64, speed: f64) -> Option<Held> {
+    fn held(
+        &self,
+        start: &Start,
+        escape: Vec<Segment>,
+        turn: f64,
+        speed: f64,
+    ) -> Option<StandOnPlan> {
         let problem = self.problem();
         let in_time = escape
             .last()
@@ -236,7 +238,7 @@ impl<'s> Escapes<'s, '_> {
         let errors = motion
             .iter()
             .map(|s| space_time_error(problem.desired, s, problem.time_weight));
-        Some(Held {
+        Some(StandOnPlan {
             cost: errors.sum(),
             escape: Escape {
                 latest: start.time,
@@ -251,6 +253,6 @@ impl<'s> Escapes<'s, '_> {
         first_met(self.context.proxies, motion).is_none()
             && !motion
                 .iter()
-                .any(|s| self.context.problem.coast.meets(s, TOUCH_M))
+                .any(|s| self.context.problem.land_obstacle.meets(s, TOUCH_M))
     }
 }

@@ -12,7 +12,7 @@ pub(crate) struct SearchBudget {
     pub manoeuvres: usize,
     /// `(round, survivors)`: from that round on, only this many refinements continue, those of the
     /// least expected cost. The best one usually shows early.
-    pub places: &'static [(usize, usize)],
+    pub survivors: &'static [(usize, usize)],
     /// Largest number of racing rounds.
     pub steps: usize,
     /// Largest number of racing rounds once a manoeuvre is clear. The best one then lacks segment
@@ -21,47 +21,47 @@ pub(crate) struct SearchBudget {
     /// Largest number of manoeuvres that get segment insertions.
     pub leaders: usize,
     /// True where the best of them may get a second insertion.
-    pub twice: bool,
+    pub insert_twice: bool,
 }
 
 impl SearchBudget {
     /// Budget for one target: finds the graph's optimum and tries all predefined manoeuvres.
-    pub(crate) const ALONE: Self = Self {
+    pub(crate) const ONE_TARGET: Self = Self {
         stages: &[(2_000, 1.0)],
         manoeuvres: usize::MAX,
-        places: &[(0, 12), (1, 6), (2, 4), (4, 3), (6, 2)],
+        survivors: &[(0, 12), (1, 6), (2, 4), (4, 3), (6, 2)],
         steps: MAX_STEPS,
         rounds: 8,
         leaders: 2,
-        twice: true,
+        insert_twice: true,
     };
 
     /// Budget for several targets. A search takes longer, and predefined manoeuvres around one
     /// conflict are less often clear of all. A graph plan that is not optimal is usually as good an
     /// initial guess. The first stage is short; the later ones weight the heuristic less.
-    pub(crate) const AMONG_SEVERAL: Self = Self {
+    pub(crate) const SEVERAL_TARGETS: Self = Self {
         stages: &[(20, 1.0), (200, 4.0), (1_300, 2.5)],
         manoeuvres: 2,
-        places: &[(0, 6), (1, 3), (2, 2), (6, 1)],
+        survivors: &[(0, 6), (1, 3), (2, 2), (6, 1)],
         steps: MAX_STEPS,
         rounds: 5,
         leaders: 1,
-        twice: false,
+        insert_twice: false,
     };
 
     /// Budget of a warm start. A manoeuvre that is clear of other sets is clear of these soon or
     /// never.
-    pub(crate) const CONTINUED: Self = Self {
+    pub(crate) const WARM_START: Self = Self {
         steps: 16,
-        ..Self::AMONG_SEVERAL
+        ..Self::SEVERAL_TARGETS
     };
 
     /// Budget for the given number of targets.
     pub(crate) const fn of(targets: usize) -> &'static Self {
         if targets > 1 {
-            &Self::AMONG_SEVERAL
+            &Self::SEVERAL_TARGETS
         } else {
-            &Self::ALONE
+            &Self::ONE_TARGET
         }
     }
 }

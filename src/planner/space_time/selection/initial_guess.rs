@@ -9,18 +9,19 @@ use crate::planner::space_time::refinement::InitialGuess;
 use crate::planner::space_time::refinement::quadratic::{MAX_VARIABLES, Row};
 use crate::planner::space_time::refinement::structure::{Ending, SegmentVariable, Structure};
 use crate::planner::space_time::route::Route;
-use crate::planner::space_time::rules::compliance::{slow, visibly_slow};
+use crate::planner::space_time::rules::compliance::{apparent_slow_distance, apparent_slow_speed};
+use crate::planner::space_time::settings::MANOEUVRE_RETURN_ANGLES;
 use crate::trajectory::Segment;
 
 /// Speeds of the manoeuvres: least and greatest speed, and the desired one.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SpeedTable {
+pub(crate) struct ManoeuvreSpeeds {
     pub slow: f64,
     pub normal: f64,
     pub fast: f64,
 }
 
-impl SpeedTable {
+impl ManoeuvreSpeeds {
     /// Least and greatest moving speed, and the one nearest to the desired speed.
     pub(crate) fn of(problem: &Problem) -> Self {
         let moving: Vec<f64> = problem
@@ -107,17 +108,17 @@ impl Conflict {
                 continue;
             };
             conflict.to = time;
-            let behind = proxy.way_out(pose.position, time, -pose.ahead());
+            let behind = proxy.exit_distance(pose.position, time, -pose.ahead());
             if behind > conflict.astern.0 {
                 conflict.astern = (behind, time);
             }
-            let before = proxy.way_out(pose.position, time, pose.ahead());
+            let before = proxy.exit_distance(pose.position, time, pose.ahead());
             if before > conflict.ahead.0 {
                 conflict.ahead = (before, time);
             }
             for (side, offset) in Side::BOTH.into_iter().zip(&mut conflict.offsets) {
                 let beam = to_port(pose.ahead()) * side.turn_sign();
-                *offset = offset.max(proxy.way_out(pose.position, time, beam));
+                *offset = offset.max(proxy.exit_distance(pose.position, time, beam));
             }
         }
         conflict.through = nominal_motion
@@ -127,9 +128,6 @@ impl Conflict {
         Some(conflict)
     }
 }
-
-/// Return angles of predefined manoeuvres, radians; the smallest that fits is used.
-const RETURN_ANGLES: [f64; 4] = [0.3, 0.5, 0.8, 1.1];
 
 /// Turn of a waiting manoeuvre, radians.
 const WAITING_TURN: f64 = 0.6;
@@ -144,7 +142,7 @@ const OVERSHOOT_RETURN: f64 = 0.08;
 
 /// Manoeuvre that passes ahead: largest ratio of the fast time to the available time; outbound turn
 /// and return turn, radians; lines, metres.
-const MOST_RUSHING: f64 = 1.6;
+const MAX_FAST_RATIO: f64 = 1.6;
 const AHEAD_TURN: f64 = 0.5;
 const AHEAD_RETURN: f64 = 0.3;
 const AHEAD_OUT_M: f64 = 40.0;
@@ -155,7 +153,7 @@ const CONFLICT_SAMPLES: usize = 24;
 /// Predefined evasive manoeuvre: turn, a line out to the offset that clears the set, turn back, a
 /// line until the set is passed, return.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Canonical {
+pub(crate) struct EvasiveManoeuvre {
     /// Turn, radians.
     pub turn: f64,
     /// Fraction of the outbound part that precedes the contact.
@@ -165,17 +163,17 @@ pub(crate) struct Canonical {
     /// True where the outbound part uses the least speed, not the greatest.
     pub slow: bool,
     /// Fraction of the time before it that is sailed at the greatest speed.
-    pub rush: f64,
+    pub fast_share: f64,
 }
 
 /// Initial guess under construction.
 #[derive(Debug, Default)]
-pub(crate) struct Draft {
+pub(crate) struct InitialGuessBuilder {
     variables: Vec<SegmentVariable>,
     lengths: Vec<f64>,
 }
 
-impl Draft {
+impl InitialGuessBuilder {
     pub(crate) fn push(&mut self, variable: SegmentVariable, length: f64) {
         self.variables.push(variable);
         self.lengths.push(length);
@@ -199,28 +197,18 @@ impl Draft {
         }
     }
 
-    pub(crate) fn runs(&mut self, speed_table: &SpeedTable, normal: f64, fast: f64, slow: f64) {
+    pub(crate) fn runs(&mut self, speeds: &ManoeuvreSpeeds, normal: f64, fast: f64, slow: f64) {
         self.push(
             SegmentVariable::Run {
-                speed: speed_table.normal,
+                speed: speeds.normal,
             },
             normal,
         );
-        self.push(
-            SegmentVariable::Run {
-                speed: speed_table.fast,
-            },
-            fast,
-        );
-        self.push(
-            SegmentVariable::Run {
-                speed: speed_table.slow,
-            },
-            slow,
-        );
+        self.push(SegmentVariable::Run { speed: speeds.fast }, fast);
+        self.push(SegmentVariable::Run { speed: speeds.slow }, slow);
     }
 
-    pub(crate) fn guess(self, ending: Ending) -> Option<InitialGuess> {
+    pub(crate) fn build(self, ending: Ending) -> Option<InitialGuess> {
         if self.variables.len() + 2 > MAX_VARIABLES {
             return None;
         }
@@ -236,7 +224,7 @@ impl Draft {
     }
 }
 
-impl Canonical {
+impl EvasiveManoeuvre {
     /// Initial guess on one side of the route.
     pub(crate) fn guess(
         &self,
@@ -246,9 +234,9 @@ impl Canonical {
         conflict: &Conflict,
         leg: usize,
     ) -> Option<InitialGuess> {
-        let speed_table = SpeedTable::of(problem);
+        let speeds = ManoeuvreSpeeds::of(problem);
         let radius = problem.own.turning_radius;
-        let (slow, fast) = (speed_table.slow, speed_table.fast);
+        let (slow, fast) = (speeds.slow, speeds.fast);
         let offset = (conflict.offset(side) * self.reach).min(2.0 * route.length());
         // two arcs alone reach an offset of twice the versine
         let needed = (1.0 - (offset / (2.0 * radius))).clamp(-1.0, 1.0).acos();
@@ -258,9 +246,9 @@ impl Canonical {
             .max(problem.duty().least_turn());
         let out = ((offset - 2.0 * radius * (1.0 - turn.cos())) / turn.sin()).max(0.0);
         let arc = turn * radius;
-        let way_out = (2.0 * arc + out) / if self.slow { speed_table.normal } else { fast };
-        let departure = (conflict.from - self.lead * way_out).max(0.0);
-        let lead = (departure * speed_table.normal).min(route.length());
+        let exit_distance = (2.0 * arc + out) / if self.slow { speeds.normal } else { fast };
+        let departure = (conflict.from - self.lead * exit_distance).max(0.0);
+        let lead = (departure * speeds.normal).min(route.length());
         // progress along the route outbound, and on the return at the smallest angle that fits
         let made_good = lead + 2.0 * radius * turn.sin() + out * turn.cos();
         let room = route.length() - made_good;
@@ -268,41 +256,43 @@ impl Canonical {
             let line = (offset - 2.0 * radius * (1.0 - angle.cos())).max(0.0);
             2.0 * radius * angle.sin() + line / angle.tan()
         };
-        let angle = RETURN_ANGLES.into_iter().find(|a| way_back(*a) < room);
-        let along = ((conflict.to - departure - way_out) * fast).max(0.0);
+        let angle = MANOEUVRE_RETURN_ANGLES
+            .into_iter()
+            .find(|a| way_back(*a) < room);
+        let along = ((conflict.to - departure - exit_distance) * fast).max(0.0);
         let along = along
             .min(0.98 * (room - angle.map_or(0.5 * room, way_back)))
             .max(0.0);
-        let mut draft = Draft::default();
-        draft.runs(
-            &speed_table,
-            (1.0 - self.rush) * lead,
-            self.rush * departure * fast,
+        let mut builder = InitialGuessBuilder::default();
+        builder.runs(
+            &speeds,
+            (1.0 - self.fast_share) * lead,
+            self.fast_share * departure * fast,
             0.0,
         );
         let (fast_arc, slow_arc) = if self.slow { (0.0, arc) } else { (arc, 0.0) };
         let (fast_line, slow_line) = if self.slow { (0.0, out) } else { (out, 0.0) };
         let back = side.opposite();
-        draft.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
-        draft.line(&[(slow, slow_line), (fast, fast_line)]);
-        draft.turn(back, &[(fast, arc)]);
-        draft.line(&[(fast, 0.5 * along)]);
-        draft.turn(back, &[(fast, 0.0)]);
-        draft.line(&[(fast, 0.5 * along)]);
+        builder.turn(side, &[(fast, fast_arc), (slow, slow_arc)]);
+        builder.line(&[(slow, slow_line), (fast, fast_line)]);
+        builder.turn(back, &[(fast, arc)]);
+        builder.line(&[(fast, 0.5 * along)]);
+        builder.turn(back, &[(fast, 0.0)]);
+        builder.line(&[(fast, 0.5 * along)]);
         let Some(angle) = angle else {
-            return draft.guess(Ending::Goal {
+            return builder.build(Ending::Goal {
                 side: back,
                 speed: fast,
             });
         };
-        draft.push(
+        builder.push(
             SegmentVariable::Arc {
                 side: back,
                 speed: fast,
             },
             angle.min(needed.max(0.1)) * radius,
         );
-        draft.guess(Ending::Return { leg, speed: fast })
+        builder.build(Ending::Return { leg, speed: fast })
     }
 }
 
@@ -316,8 +306,8 @@ pub(crate) fn waiting(
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
-    let (slow, normal, fast) = (speed_table.slow, speed_table.normal, speed_table.fast);
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
     let (lag, due) = conflict.astern;
     let needed = lag / (normal - slow * WAITING_TURN.cos());
     let begin = (due - needed).max(0.0);
@@ -328,29 +318,29 @@ pub(crate) fn waiting(
         return None;
     }
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(&speed_table, begin * normal, 0.0, 0.0);
-    draft.turn(side, &[(fast, 0.0), (slow, arc)]);
-    draft.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
-    draft.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
-    draft.line(&[(slow, 0.4 * lines)]);
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * normal, 0.0, 0.0);
+    builder.turn(side, &[(fast, 0.0), (slow, arc)]);
+    builder.line(&[(slow, 0.6 * lines), (fast, 0.0)]);
+    builder.turn(back, &[(slow, 2.0 * arc), (fast, 0.0)]);
+    builder.line(&[(slow, 0.4 * lines)]);
     if across {
         let (sine, cosine) = WAITING_TURN.sin_cos();
         let offset = problem.own.turning_radius * (1.0 - cosine) + 0.2 * lines * sine;
-        draft.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
-        draft.turn(back, &[(fast, 0.0)]);
-        draft.turn(
+        builder.line(&[(fast, (offset + OVERSHOOT_M) / sine)]);
+        builder.turn(back, &[(fast, 0.0)]);
+        builder.turn(
             side,
             &[(fast, arc + OVERSHOOT_RETURN * problem.own.turning_radius)],
         );
-        draft.line(&[(fast, 0.0)]);
-        return draft.guess(Ending::Return { leg, speed: fast });
+        builder.line(&[(fast, 0.0)]);
+        return builder.build(Ending::Return { leg, speed: fast });
     }
-    draft.line(&[(fast, 0.0)]);
-    draft.turn(back, &[(fast, 0.0)]);
-    draft.line(&[(fast, 0.0)]);
-    draft.turn(back, &[(fast, 0.0)]);
-    draft.guess(Ending::Return { leg, speed: fast })
+    builder.line(&[(fast, 0.0)]);
+    builder.turn(back, &[(fast, 0.0)]);
+    builder.line(&[(fast, 0.0)]);
+    builder.turn(back, &[(fast, 0.0)]);
+    builder.build(Ending::Return { leg, speed: fast })
 }
 
 /// Manoeuvre that slows down on the route until the target has passed, then moves slightly to the
@@ -361,32 +351,30 @@ pub(crate) fn slowing(
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
+    let speeds = ManoeuvreSpeeds::of(problem);
     let (lag, due) = conflict.astern;
-    let spell = (lag / (speed_table.normal - speed_table.slow)).max(APPARENT_TIME);
-    let begin = (due - spell).max(0.0);
+    let duration = (lag / (speeds.normal - speeds.slow)).max(APPARENT_TIME);
+    let begin = (due - duration).max(0.0);
     // negated on purpose: a NaN gives no initial guess
-    if !(problem.duty().may_slow && speed_table.slow <= slow(problem) && spell < 2.0 * due) {
+    if !(problem.duty().may_slow
+        && speeds.slow <= apparent_slow_speed(problem)
+        && duration < 2.0 * due)
+    {
         return None;
     }
     let radius = problem.own.turning_radius;
     let arc = SLOWING_TURN * radius;
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(
-        &speed_table,
-        begin * speed_table.normal,
-        0.0,
-        spell * speed_table.slow,
-    );
-    draft.turn(side, &[(speed_table.slow, arc), (speed_table.fast, 0.0)]);
-    draft.line(&[(speed_table.slow, 0.0), (speed_table.fast, SLOWING_OUT_M)]);
-    draft.turn(back, &[(speed_table.fast, arc)]);
-    draft.line(&[(speed_table.slow, 0.0), (speed_table.fast, 0.0)]);
-    draft.turn(back, &[(speed_table.fast, arc)]);
-    draft.guess(Ending::Return {
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * speeds.normal, 0.0, duration * speeds.slow);
+    builder.turn(side, &[(speeds.slow, arc), (speeds.fast, 0.0)]);
+    builder.line(&[(speeds.slow, 0.0), (speeds.fast, SLOWING_OUT_M)]);
+    builder.turn(back, &[(speeds.fast, arc)]);
+    builder.line(&[(speeds.slow, 0.0), (speeds.fast, 0.0)]);
+    builder.turn(back, &[(speeds.fast, arc)]);
+    builder.build(Ending::Return {
         leg,
-        speed: speed_table.fast,
+        speed: speeds.fast,
     })
 }
 
@@ -398,44 +386,44 @@ pub(crate) fn ahead(
     conflict: &Conflict,
     leg: usize,
 ) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
-    let (slow, normal, fast) = (speed_table.slow, speed_table.normal, speed_table.fast);
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (slow, normal, fast) = (speeds.slow, speeds.normal, speeds.fast);
     let (lead, due) = conflict.ahead;
     let needed = lead / (fast - normal);
     let begin = (due - needed).max(0.0);
     let turn = 0.5 * (conflict.from + due);
     // negated on purpose: a NaN gives no initial guess
-    if !(fast > normal && needed < MOST_RUSHING * due && turn > begin) {
+    if !(fast > normal && needed < MAX_FAST_RATIO * due && turn > begin) {
         return None;
     }
     let radius = problem.own.turning_radius;
     let arc = AHEAD_TURN * radius;
     let back = side.opposite();
-    let mut draft = Draft::default();
-    draft.runs(&speed_table, begin * normal, (turn - begin) * fast, 0.0);
-    draft.turn(side, &[(fast, arc)]);
-    draft.line(&[(fast, AHEAD_OUT_M)]);
-    draft.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
-    draft.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
-    draft.turn(side, &[(slow, 0.0), (fast, 0.0)]);
-    draft.line(&[(slow, 0.0), (fast, 0.0)]);
-    draft.guess(Ending::Return { leg, speed: normal })
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, begin * normal, (turn - begin) * fast, 0.0);
+    builder.turn(side, &[(fast, arc)]);
+    builder.line(&[(fast, AHEAD_OUT_M)]);
+    builder.turn(back, &[(fast, 0.0), (slow, arc + AHEAD_RETURN * radius)]);
+    builder.line(&[(slow, AHEAD_OUT_M), (normal, 0.0)]);
+    builder.turn(side, &[(slow, 0.0), (fast, 0.0)]);
+    builder.line(&[(slow, 0.0), (fast, 0.0)]);
+    builder.build(Ending::Return { leg, speed: normal })
 }
 
 /// Graph plan as an initial guess. It keeps the order of arcs and lines, adds the other speeds
-/// beside each, and an empty turn back where it has only one turn. `way` holds the states after the
+/// beside each, and an empty turn back where it has only one turn. `path` holds the states after the
 /// root.
-pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGuess> {
-    let speed_table = SpeedTable::of(problem);
-    let (last, before) = way.split_last()?;
+pub(crate) fn from_graph(problem: &Problem, path: &[&State]) -> Option<InitialGuess> {
+    let speeds = ManoeuvreSpeeds::of(problem);
+    let (last, before) = path.split_last()?;
     let (departure, vertices) = before.split_first()?;
     if vertices.is_empty() {
         return None;
     }
-    let mut draft = Draft::default();
+    let mut builder = InitialGuessBuilder::default();
     let along: f64 = departure.motion.iter().map(Segment::length).sum();
-    let slow = visibly_slow(problem, &departure.motion);
-    draft.runs(&speed_table, along - slow, 0.0, slow);
+    let slow = apparent_slow_distance(problem, &departure.motion);
+    builder.runs(&speeds, along - slow, 0.0, slow);
     let mut side = None;
     let mut turns = 0;
     for vertex in vertices {
@@ -445,15 +433,15 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
         side = turn.and_then(|s| Side::of_turn(s.turn_rate)).or(side);
         let side = side.unwrap_or(Side::Starboard);
         turns += usize::from(before != Some(side));
-        group(&mut draft, &speed_table, side, turn, line, vertices.len());
+        group(&mut builder, &speeds, side, turn, line, vertices.len());
         if vertices.len() == 1 {
-            draft.turn(side, &[(speed_table.fast, 0.0)]);
-            draft.line(&[(speed_table.fast, 0.0)]);
+            builder.turn(side, &[(speeds.fast, 0.0)]);
+            builder.line(&[(speeds.fast, 0.0)]);
         }
     }
     let back = side.unwrap_or(Side::Starboard).opposite();
     if turns < 2 && vertices.len() < 3 {
-        group(&mut draft, &speed_table, back, None, None, vertices.len());
+        group(&mut builder, &speeds, back, None, None, vertices.len());
     }
     match last.ending {
         Ending::Return { leg, .. } => {
@@ -462,33 +450,33 @@ pub(crate) fn from_graph(problem: &Problem, way: &[&State]) -> Option<InitialGue
                 .and_then(|s| Side::of_turn(s.turn_rate))
                 .unwrap_or(back);
             let length = first.map_or(0.0, Segment::length);
-            draft.push(
+            builder.push(
                 SegmentVariable::Arc {
                     side,
-                    speed: speed_table.fast,
+                    speed: speeds.fast,
                 },
                 length,
             );
-            draft.guess(Ending::Return {
+            builder.build(Ending::Return {
                 leg,
-                speed: speed_table.fast,
+                speed: speeds.fast,
             })
         }
-        Ending::Goal { side, speed } => draft.guess(Ending::Goal { side, speed }),
+        Ending::Goal { side, speed } => builder.build(Ending::Goal { side, speed }),
         Ending::Follow => None,
     }
 }
 
 /// Turn and line, with fewer speeds where there are many such groups.
 fn group(
-    draft: &mut Draft,
-    speed_table: &SpeedTable,
+    builder: &mut InitialGuessBuilder,
+    speeds: &ManoeuvreSpeeds,
     side: Side,
     turn: Option<&Segment>,
     line: Option<&Segment>,
     groups: usize,
 ) {
-    let SpeedTable { slow, normal, fast } = *speed_table;
+    let ManoeuvreSpeeds { slow, normal, fast } = *speeds;
     let own = turn.or(line).map_or(fast, |s| s.speed);
     let (turns, lines): (&[f64], &[f64]) = match groups {
         0..=3 => (&[slow, fast], &[slow, normal, fast]),
@@ -497,9 +485,9 @@ fn group(
         _ => (&[own], &[slow, fast]),
     };
     let turns = shared(turn, turns);
-    draft.turn(side, &turns);
+    builder.turn(side, &turns);
     let lines = shared(line, lines);
-    draft.line(&lines);
+    builder.line(&lines);
 }
 
 /// Speeds without repetition; the one nearest to the segment's speed gets its length.

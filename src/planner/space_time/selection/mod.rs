@@ -19,112 +19,112 @@ use crate::planner::space_time::refinement::{InitialGuess, Refinement};
 use crate::planner::space_time::rules::compliance::complies;
 use crate::planner::space_time::selection::budget::SearchBudget;
 use crate::planner::space_time::selection::initial_guess::{
-    Canonical, Conflict, ahead, from_graph, slowing, waiting,
+    Conflict, EvasiveManoeuvre, ahead, from_graph, slowing, waiting,
 };
 use crate::trajectory::Segment;
 
 /// Ahead of schedule first, then around the set: useful in every conflict.
-const RUSH: Canonical = Canonical {
+const FASTER_FIRST: EvasiveManoeuvre = EvasiveManoeuvre {
     turn: 0.5,
     lead: 0.3,
     reach: 0.9,
     slow: false,
-    rush: 0.5,
+    fast_share: 0.5,
 };
 
 /// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin
 /// of attraction. The best subset for 400 encounters of 152 combinations of angles, leads and
 /// offsets.
-const COMPACT: [Canonical; 4] = [
-    Canonical {
+const COMPACT: [EvasiveManoeuvre; 4] = [
+    EvasiveManoeuvre {
         turn: 1.4,
         lead: 0.6,
         reach: 0.6,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 1.0,
         lead: 1.0,
         reach: 0.9,
         slow: true,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 0.4,
         lead: 1.4,
         reach: 0.6,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    RUSH,
+    FASTER_FIRST,
 ];
 
 /// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
-const SLENDER: [Canonical; 5] = [
-    Canonical {
+const SLENDER: [EvasiveManoeuvre; 5] = [
+    EvasiveManoeuvre {
         turn: 0.2,
         lead: 0.3,
         reach: 0.6,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 0.2,
         lead: 1.0,
         reach: 0.9,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 0.7,
         lead: 0.3,
         reach: 0.6,
         slow: true,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    Canonical {
+    EvasiveManoeuvre {
         turn: 0.4,
         lead: 0.3,
         reach: 0.9,
         slow: false,
-        rush: 0.0,
+        fast_share: 0.0,
     },
-    RUSH,
+    FASTER_FIRST,
 ];
 
 /// Slenderness from which a conflict uses [`SLENDER`].
 const SLENDER_FROM: f64 = 2.5;
 
 /// Ratio of the offsets of the two sides above which the farther side gets one manoeuvre only.
-const FAR_SIDE: f64 = 1.8;
+const FAR_SIDE_RATIO: f64 = 1.8;
 
 /// Ratio of the offset astern to the lateral one below which waiting is tried as well.
-const WORTH_WAITING: f64 = 1.2;
+const WAITING_RATIO: f64 = 1.2;
 
 /// Ratio of the offset ahead to the lateral one below which passing ahead is tried as well.
-const WORTH_RUSHING: f64 = 1.2;
+const PASS_AHEAD_RATIO: f64 = 1.2;
 
 /// Largest number of conflicts with manoeuvres of their own, earliest first.
 const MAX_CONFLICTS: usize = 2;
 
 /// Relative cost difference up to which a manoeuvre still gets insertions, and below which two
 /// manoeuvres count as the same.
-const BEHIND: f64 = 0.05;
-const ALIKE: f64 = 1e-3;
+const LEADER_MARGIN: f64 = 0.05;
+const SAME_COST: f64 = 1e-3;
 
 /// Length above which lines are divided for the first and for the second insertion, metres.
 const UNCUT_M: [f64; 2] = [200.0, 80.0];
 
 /// Steps of a refinement after an insertion, and after the final pruning.
-const STEPS_ENRICHED: usize = 8;
-const STEPS_TIDY: usize = 6;
+const STEPS_AFTER_INSERTION: usize = 8;
+const STEPS_AFTER_PRUNING: usize = 6;
 
 /// Relative gain of an insertion that justifies another.
-const WORTH_ANOTHER: f64 = 0.01;
+const MIN_INSERTION_GAIN: f64 = 0.01;
 
 /// Relative cost that pruning may add.
-const TIDINESS: f64 = 2e-3;
+const PRUNING_COST: f64 = 2e-3;
 
 /// Number of rounds after which arcs are divided into fine chords.
 const FINE_FROM: usize = 6;
@@ -172,14 +172,14 @@ impl<'a> Selection<'a> {
     }
 
     /// Adds a manoeuvre to refine.
-    pub(crate) fn begin_from(&mut self, guess: InitialGuess) {
+    pub(crate) fn add_initial_guess(&mut self, guess: InitialGuess) {
         self.guesses.push(guess);
     }
 
     /// Adds a tested plan of the graph, given by the states after the root; false where it violates
     /// the rules.
-    pub(crate) fn offer(&mut self, cost: f64, way: &[&State]) -> bool {
-        let motion: Vec<Segment> = way.iter().flat_map(|s| s.motion.iter().copied()).collect();
+    pub(crate) fn add_graph_plan(&mut self, cost: f64, path: &[&State]) -> bool {
+        let motion: Vec<Segment> = path.iter().flat_map(|s| s.motion.iter().copied()).collect();
         if !complies(&self.context, self.nominal_motion, &motion) {
             return false;
         }
@@ -189,8 +189,8 @@ impl<'a> Selection<'a> {
             return true;
         }
         self.signatures.push(signature);
-        self.guesses.extend(from_graph(self.context.problem, way));
-        self.consider(motion);
+        self.guesses.extend(from_graph(self.context.problem, path));
+        self.add_candidate(motion);
         true
     }
 
@@ -227,7 +227,7 @@ impl<'a> Selection<'a> {
         let duty = problem.duty();
         let sides = duty.sides();
         for conflict in conflicts.iter().take(MAX_CONFLICTS) {
-            if conflict.astern.0 < WORTH_WAITING * conflict.nearest_offset() {
+            if conflict.astern.0 < WAITING_RATIO * conflict.nearest_offset() {
                 for across in [false, true] {
                     guesses.extend(
                         sides
@@ -240,7 +240,7 @@ impl<'a> Selection<'a> {
                 let slower = sides.iter();
                 guesses.extend(slower.filter_map(|side| slowing(problem, *side, conflict, leg)));
             }
-            if duty.is_none() && conflict.ahead.0 < WORTH_RUSHING * conflict.nearest_offset() {
+            if duty.is_none() && conflict.ahead.0 < PASS_AHEAD_RATIO * conflict.nearest_offset() {
                 let both = Side::BOTH.into_iter();
                 guesses.extend(both.filter_map(|side| ahead(problem, side, conflict, leg)));
             }
@@ -248,7 +248,7 @@ impl<'a> Selection<'a> {
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
             for &side in sides {
-                let far = conflict.offset(side) > FAR_SIDE * conflict.offset(side.opposite());
+                let far = conflict.offset(side) > FAR_SIDE_RATIO * conflict.offset(side.opposite());
                 let tried = if far && sides.len() > 1 {
                     &manoeuvres[..1]
                 } else {
@@ -273,12 +273,12 @@ impl<'a> Selection<'a> {
             if decided || round > FINE_FROM && running.iter().all(Refinement::is_finished) {
                 break;
             }
-            race(&mut running, round, self.search_budget.places);
+            race(&mut running, round, self.search_budget.survivors);
             if round == FINE_FROM {
                 context.chord = FINE_CHORD_RAD;
-                for refinement in running.iter_mut().filter(|r| !r.is_overtaken()) {
+                for refinement in running.iter_mut().filter(|r| !r.is_stopped()) {
                     if !clock.is_up() {
-                        refinement.look_again(&context);
+                        refinement.reevaluate(&context);
                     }
                 }
             }
@@ -292,24 +292,24 @@ impl<'a> Selection<'a> {
         }
         for refinement in running.iter_mut().filter(|r| !r.is_finished()) {
             if !clock.is_up() {
-                refinement.settle(&context);
+                refinement.finish(&context);
             }
         }
-        let tidy = self.polish(&mut running, clock);
+        let tidy = self.insert_and_prune(&mut running, clock);
         self.collect(tidy.iter().chain(ranked(&running)));
         clock.is_up()
     }
 
     /// Inserts segments into the best manoeuvres, refines them, and repeats this for the best of
     /// them. In the end prunes short segments where that costs almost nothing.
-    fn polish(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
+    fn insert_and_prune(&self, running: &mut Vec<Refinement>, clock: Clock) -> Option<Refinement> {
         let leaders = leaders(running, self.search_budget.leaders);
         let mut least = leaders.first()?.1;
         let [first, then] = UNCUT_M;
         let mut best = None;
         let mut gained = 0.0;
         for (guess, rank) in leaders {
-            let again = self.richer(&guess, first, clock);
+            let again = self.with_insertions(&guess, first, clock);
             let after = again
                 .as_ref()
                 .map_or(f64::INFINITY, Refinement::rank)
@@ -321,26 +321,33 @@ impl<'a> Selection<'a> {
             }
             running.extend(again);
         }
-        if self.search_budget.twice && gained > WORTH_ANOTHER {
-            let again = best.as_ref().and_then(|s| self.richer(s, then, clock));
+        if self.search_budget.insert_twice && gained > MIN_INSERTION_GAIN {
+            let again = best
+                .as_ref()
+                .and_then(|s| self.with_insertions(s, then, clock));
             best = again.as_ref().and_then(Refinement::best).or(best);
             running.extend(again);
         }
         let least = best_of(running)?.rank();
         let guess = best.and_then(|s| pruned(&self.context, &s));
-        let tidy = guess.and_then(|s| self.refined(s, STEPS_TIDY, clock))?;
-        (tidy.rank() <= (1.0 + TIDINESS) * least).then_some(tidy)
+        let tidy = guess.and_then(|s| self.refined(s, STEPS_AFTER_PRUNING, clock))?;
+        (tidy.rank() <= (1.0 + PRUNING_COST) * least).then_some(tidy)
     }
 
     /// Manoeuvre with insertions, refined; `None` where nothing is inserted or the deadline was
     /// reached.
-    fn richer(&self, guess: &InitialGuess, uncut: f64, clock: Clock) -> Option<Refinement> {
+    fn with_insertions(
+        &self,
+        guess: &InitialGuess,
+        uncut: f64,
+        clock: Clock,
+    ) -> Option<Refinement> {
         if clock.is_up() {
             return None;
         }
         self.refined(
             with_insertions(&self.context, guess, uncut)?,
-            STEPS_ENRICHED,
+            STEPS_AFTER_INSERTION,
             clock,
         )
     }
@@ -354,7 +361,7 @@ impl<'a> Selection<'a> {
             }
             refinement.step(&self.context);
         }
-        refinement.settle(&self.context);
+        refinement.finish(&self.context);
         Some(refinement)
     }
 
@@ -364,7 +371,7 @@ impl<'a> Selection<'a> {
             let Some(motion) = refinement.best_motion(&self.context) else {
                 return;
             };
-            if self.consider(motion) {
+            if self.add_candidate(motion) {
                 return;
             }
         }
@@ -376,7 +383,7 @@ impl<'a> Selection<'a> {
     }
 
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
-    pub(crate) fn consider(&mut self, motion: Vec<Segment>) -> bool {
+    pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.context.problem;
         let cost: f64 = motion
             .iter()
@@ -389,7 +396,7 @@ impl<'a> Selection<'a> {
             && cost.is_finite()
             && complies(&self.context, self.nominal_motion, &motion)
             && first_met(self.context.proxies, &motion).is_none()
-            && !land::meets(problem.coast, &motion);
+            && !land::meets(problem.land_obstacle, &motion);
         if clear && self.best.as_ref().is_none_or(|b| cost < b.cost) {
             self.best = Some(Candidate { motion, cost });
         }
@@ -415,9 +422,9 @@ fn leaders(running: &[Refinement], most: usize) -> Vec<(InitialGuess, f64)> {
     for refinement in ranked(running) {
         let rank = refinement.rank();
         let least = found.first().map_or(rank, |f| f.1);
-        let alike = found.iter().any(|f| rank <= (1.0 + ALIKE) * f.1);
+        let alike = found.iter().any(|f| rank <= (1.0 + SAME_COST) * f.1);
         // negated on purpose: a NaN is too expensive
-        if found.len() == most || !(rank <= (1.0 + BEHIND) * least) {
+        if found.len() == most || !(rank <= (1.0 + LEADER_MARGIN) * least) {
             break;
         }
         if !alike {
@@ -437,11 +444,10 @@ fn ranked(running: &[Refinement]) -> impl Iterator<Item = &Refinement> {
 /// Racing: stops refinements that have fallen behind after some rounds, but never the first that is
 /// nearly clear. A missing metre costs at least the median price, because a refinement stuck deep
 /// inside a set has no price.
-fn race(running: &mut [Refinement], rounds: usize, places: &[(usize, usize)]) {
-    let places = places.iter().rev().find(|(from, _)| *from <= rounds);
-    let places = places.map_or(running.len(), |p| p.1);
-    let mut going: Vec<&mut Refinement> =
-        running.iter_mut().filter(|r| !r.is_overtaken()).collect();
+fn race(running: &mut [Refinement], rounds: usize, survivors: &[(usize, usize)]) {
+    let survivors = survivors.iter().rev().find(|(from, _)| *from <= rounds);
+    let survivors = survivors.map_or(running.len(), |p| p.1);
+    let mut going: Vec<&mut Refinement> = running.iter_mut().filter(|r| !r.is_stopped()).collect();
     if going.is_empty() {
         return;
     }
@@ -450,7 +456,7 @@ fn race(running: &mut [Refinement], rounds: usize, places: &[(usize, usize)]) {
     let usual = prices[(prices.len() - 1) / 2];
     going.sort_by(|a, b| a.expected_cost(usual).total_cmp(&b.expected_cost(usual)));
     let clear = going.iter().position(|r| r.is_nearly_clear());
-    for (place, refinement) in going.into_iter().enumerate().skip(places) {
+    for (place, refinement) in going.into_iter().enumerate().skip(survivors) {
         if Some(place) != clear {
             refinement.stop();
         }

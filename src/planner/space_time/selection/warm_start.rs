@@ -12,7 +12,7 @@ use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::selection::Selection;
 use crate::planner::space_time::selection::budget::SearchBudget;
-use crate::planner::space_time::selection::initial_guess::{Draft, SpeedTable};
+use crate::planner::space_time::selection::initial_guess::{InitialGuessBuilder, ManoeuvreSpeeds};
 use crate::planner::{NoPlan, Outcome, Planned, Problem};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
@@ -22,7 +22,7 @@ const ON_ROUTE_M: f64 = 1e-3;
 const ON_ROUTE_RAD: f64 = 1e-6;
 
 /// Number of segment variables besides turns and lines: the runs and the dependent ones.
-const BESIDE: usize = 5;
+const RUNS_AND_DEPENDENTS: usize = 5;
 
 /// Plans one problem by a warm start from a plan for other sets, whose order of turns it keeps
 /// (numerical continuation).
@@ -32,15 +32,19 @@ const BESIDE: usize = 5;
 /// very many turns give no initial guess, and then no plan.
 pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
     let clock = Clock::new(problem.deadline);
-    crate::planner::space_time::as_usual(problem, |problem, proxies, usual| match usual {
-        Some(usual) => refined(problem, proxies, &usual.motion(from.segments()), clock),
-        None => refined(problem, proxies, from.segments(), clock),
+    crate::planner::space_time::plan_normalised(problem, |problem, proxies, similarity| {
+        match similarity {
+            Some(similarity) => {
+                refined(problem, proxies, &similarity.motion(from.segments()), clock)
+            }
+            None => refined(problem, proxies, from.segments(), clock),
+        }
     })
 }
 
 fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Clock) -> Planned {
     let found = Route::new(problem, clock).and_then(|route| {
-        let guess = seed_of(problem, &route, motion)?;
+        let guess = initial_guess_from(problem, &route, motion)?;
         let mut nominal_motion = Vec::new();
         route.follow(0.0, 0.0, &mut nominal_motion);
         let blocks = land::proxies(problem);
@@ -51,8 +55,8 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
             blocks: &blocks,
             chord: FINE_CHORD_RAD,
         };
-        let mut selection = Selection::new(context, &nominal_motion, &SearchBudget::CONTINUED);
-        selection.begin_from(guess);
+        let mut selection = Selection::new(context, &nominal_motion, &SearchBudget::WARM_START);
+        selection.add_initial_guess(guess);
         let timed_out = selection.refine(&[], clock);
         Some((selection.plan(), timed_out))
     });
@@ -67,12 +71,16 @@ fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Cloc
 /// Initial guess from a motion that follows the route, leaves it, and returns to it or to its end.
 /// Its rollout is the motion again. Lines get the other speeds, with zero length, while there is
 /// room. `None` for any other motion.
-fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<InitialGuess> {
+fn initial_guess_from(
+    problem: &Problem,
+    route: &Route,
+    motion: &[Segment],
+) -> Option<InitialGuess> {
     let motion = merged(motion);
     if motion.iter().any(|s| s.speed <= 0.0) {
         return None;
     }
-    let speed_table = SpeedTable::of(problem);
+    let speeds = ManoeuvreSpeeds::of(problem);
     let mut run = [0.0; 3];
     let (mut left_at, mut first) = (0.0, 0);
     for s in &motion {
@@ -81,10 +89,7 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Initi
         if !(is_at(route, to, s.end()) && is_at(route, halfway, s.middle())) {
             break;
         }
-        run[nearest(
-            s.speed,
-            [speed_table.normal, speed_table.fast, speed_table.slow],
-        )] += s.length();
+        run[nearest(s.speed, [speeds.normal, speeds.fast, speeds.slow])] += s.length();
         (left_at, first) = (to, first + 1);
     }
     let (mut back_at, mut join) = (route.length(), motion.len());
@@ -119,9 +124,9 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Initi
         let speed = last.speed;
         (ends.then_some(free)?, Ending::Goal { side, speed })
     };
-    let mut room = MAX_VARIABLES.checked_sub(free.len() + BESIDE)?;
-    let mut draft = Draft::default();
-    draft.runs(&speed_table, run[0], run[1], run[2]);
+    let mut room = MAX_VARIABLES.checked_sub(free.len() + RUNS_AND_DEPENDENTS)?;
+    let mut builder = InitialGuessBuilder::default();
+    builder.runs(&speeds, run[0], run[1], run[2]);
     for lines in free.chunk_by(|a, b| !a.is_arc() && !b.is_arc()) {
         for s in lines {
             let speed = s.speed;
@@ -129,16 +134,16 @@ fn seed_of(problem: &Problem, route: &Route, motion: &[Segment]) -> Option<Initi
                 .map_or(SegmentVariable::Line { speed }, |side| {
                     SegmentVariable::Arc { side, speed }
                 });
-            draft.push(variable, s.length());
+            builder.push(variable, s.length());
         }
-        let others = [speed_table.slow, speed_table.normal, speed_table.fast].into_iter();
+        let others = [speeds.slow, speeds.normal, speeds.fast].into_iter();
         let others = others.filter(|u| lines.iter().all(|s| !s.is_arc() && s.speed != *u));
         for speed in others.take(room) {
-            draft.push(SegmentVariable::Line { speed }, 0.0);
+            builder.push(SegmentVariable::Line { speed }, 0.0);
             room -= 1;
         }
     }
-    draft.guess(ending)
+    builder.build(ending)
 }
 
 /// Motion without segments of zero length and with equal neighbours merged.
@@ -175,7 +180,7 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::obstacle::{Coast, Obstacle};
+    use crate::obstacle::{LandObstacle, Obstacle};
     use crate::pipeline;
     use crate::planner::SearchKind;
     use crate::planner::space_time::plan;
@@ -195,7 +200,7 @@ mod tests {
             let problem = Problem {
                 search: SearchKind::AStar,
                 deadline: Duration::from_secs(60),
-                ..pipeline::problem(&scenario, &obstacles, Coast::none())
+                ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
             };
             if let Some(found) = plan(&problem).outcome.plan() {
                 check(&problem, &found.trajectory, found.cost);
@@ -204,15 +209,15 @@ mod tests {
     }
 
     #[test]
-    fn the_slots_of_a_plan_sail_it_again() {
+    fn the_initial_guess_of_a_plan_rolls_out_to_it() {
         at_plans(|problem, trajectory, _| {
             let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
-            let Some(guess) = seed_of(problem, &route, trajectory.segments()) else {
+            let Some(guess) = initial_guess_from(problem, &route, trajectory.segments()) else {
                 // it only follows the route
                 assert!(!trajectory.segments().iter().any(Segment::is_arc));
                 return;
             };
-            let rollout = guess.structure.sail(problem, &route, &guess.lengths);
+            let rollout = guess.structure.roll_out(problem, &route, &guess.lengths);
             let Some(rollout) = rollout else {
                 // the return has the smallest angle, minus a rounding
                 let back = trajectory.segments().iter().rev().find(|s| s.is_arc());
@@ -236,7 +241,7 @@ mod tests {
     /// Warm starts for the same sets and for larger ones, checked independently of the planner's
     /// contact test.
     #[test]
-    fn what_is_drawn_out_of_a_plan_is_clear_and_for_its_own_sets_no_dearer() {
+    fn warm_starts_are_clear_and_for_the_same_sets_no_costlier() {
         let (drawn, larger) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
         at_plans(|problem, trajectory, cost| {
             if let Some(again) = warm_started(problem, trajectory).outcome.plan() {

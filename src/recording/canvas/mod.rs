@@ -1,0 +1,223 @@
+//! What all views of a recording share: the scenario with its sets, the times that are shown, the
+//! part of the sea that is shown, colours.
+
+mod motion;
+pub mod simplify;
+pub mod style;
+mod view_model;
+
+pub use motion::{Motion, desired_leg};
+pub use view_model::ViewModel;
+
+use rerun::{Color, TimeColumn};
+
+use super::TIMELINE;
+use crate::frame::Vector;
+use crate::obstacle::Obstacle;
+use crate::pipeline::TargetSets;
+use crate::scenario::{Compliance, Scenario};
+
+/// Least time between two rows of what moves, seconds.
+const CURSOR_STEP_S: f64 = 2.0;
+
+/// Most rows of what moves.
+const CURSOR_TIMES: f64 = 120.0;
+
+/// Most samples of one curve.
+const CURVE_SAMPLES: f64 = 400.0;
+
+/// A box in the plane, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    pub low: Vector,
+    pub high: Vector,
+}
+
+impl Bounds {
+    fn of(points: impl IntoIterator<Item = Vector>) -> Self {
+        let mut bounds = Self {
+            low: Vector::repeat(f64::INFINITY),
+            high: Vector::repeat(f64::NEG_INFINITY),
+        };
+        for p in points {
+            bounds.low = bounds.low.inf(&p);
+            bounds.high = bounds.high.sup(&p);
+        }
+        bounds
+    }
+
+    pub fn grown(self, by: f64) -> Self {
+        Self {
+            low: self.low.add_scalar(-by),
+            high: self.high.add_scalar(by),
+        }
+    }
+
+    pub fn contains(&self, p: &Vector) -> bool {
+        p.x > self.low.x && p.x < self.high.x && p.y > self.low.y && p.y < self.high.y
+    }
+
+    pub fn size(&self) -> Vector {
+        self.high - self.low
+    }
+
+    pub fn center(&self) -> Vector {
+        (self.low + self.high) / 2.0
+    }
+
+    /// The longer side.
+    pub fn extent(&self) -> f64 {
+        self.size().max()
+    }
+}
+
+/// What colours distinguish.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Palette {
+    /// Own ship is white.
+    Targets,
+    /// Targets are grey.
+    OwnShips,
+}
+
+/// A scenario and its sets, prepared for drawing whatever own ship does.
+#[derive(Debug)]
+pub struct Canvas<'a> {
+    pub scenario: &'a Scenario,
+    pub sets: &'a [TargetSets],
+    /// Seconds: nothing is shown after that.
+    pub end: f64,
+    /// Seconds: the times at which something moves.
+    pub cursor_times: Vec<f64>,
+    /// Seconds: the times at which curves are sampled.
+    pub samples: Vec<f64>,
+    /// The part of the sea that is shown.
+    pub bounds: Bounds,
+    /// Metres of height per second in the space-time volume.
+    pub metres_per_second: f64,
+    pub palette: Palette,
+}
+
+impl<'a> Canvas<'a> {
+    /// All of `motions` is within the bounds.
+    pub fn new(
+        scenario: &'a Scenario,
+        sets: &'a [TargetSets],
+        motions: &[Motion],
+        end: f64,
+        palette: Palette,
+    ) -> Self {
+        let cursor_step = (end / CURSOR_TIMES).ceil().max(CURSOR_STEP_S);
+        let cursor_times = steps(end, cursor_step);
+        let samples = steps(end, (end / CURVE_SAMPLES).ceil().max(1.0));
+        let bounds = bounds(scenario, motions, &cursor_times);
+        Self {
+            scenario,
+            sets,
+            end,
+            cursor_times,
+            samples,
+            bounds,
+            metres_per_second: one_digit(0.65 * bounds.extent() / end),
+            palette,
+        }
+    }
+
+    /// The colour of a target by its index.
+    pub fn target_color(&self, index: usize) -> Color {
+        match self.palette {
+            Palette::Targets => style::target(index),
+            Palette::OwnShips => style::grey_target(index),
+        }
+    }
+
+    /// The set with the ship domain, where it is shown beside the hard one.
+    pub fn shaped<'s>(&self, sets: &'s TargetSets) -> Option<&'s Obstacle> {
+        let is_used = self.scenario.compliance != Compliance::None;
+        (is_used && sets.shaped != sets.hard).then_some(&sets.shaped)
+    }
+
+    /// Largest error of a line that is drawn with fewer points, metres.
+    pub fn line_tolerance(&self) -> f64 {
+        simplify::TOLERANCE * self.bounds.extent()
+    }
+
+    /// The unit vector from the first waypoint to the last; own ship's first heading on a round
+    /// trip.
+    pub fn ahead(&self) -> Vector {
+        let desired = &self.scenario.desired;
+        let start = desired.legs()[0].start;
+        (desired.end() - start)
+            .try_normalize(0.0)
+            .unwrap_or_else(|| self.scenario.own_ship.pose.ahead())
+    }
+
+    /// The times of everything that moves.
+    pub fn cursor_column(&self) -> TimeColumn {
+        TimeColumn::new_duration_secs(TIMELINE, self.cursor_times.iter().copied())
+    }
+
+    /// The point of the space-time volume, metres.
+    pub fn lifted(&self, position: Vector, time: f64) -> [f32; 3] {
+        let [east, north] = flat(position);
+        [east, north, (time * self.metres_per_second) as f32]
+    }
+}
+
+/// The point of the chart, metres.
+pub fn flat(position: Vector) -> [f32; 2] {
+    [position.x as f32, position.y as f32]
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is not larger than `value`.
+pub fn round_down(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let lead = value / power;
+    let rounded = if lead >= 5.0 {
+        5.0
+    } else if lead >= 2.0 {
+        2.0
+    } else {
+        1.0
+    };
+    rounded * power
+}
+
+/// `value` with one digit.
+fn one_digit(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    (value / power).round() * power
+}
+
+/// 0, every `step`, and `end`.
+fn steps(end: f64, step: f64) -> Vec<f64> {
+    let count = (end / step).ceil() as usize;
+    let mut times: Vec<f64> = (0..count).map(|i| step * i as f64).collect();
+    times.push(end);
+    times
+}
+
+/// The desired trajectory, the motions, and every target while it is near one of them.
+fn bounds(scenario: &Scenario, motions: &[Motion], times: &[f64]) -> Bounds {
+    let desired = &scenario.desired;
+    let near = 0.6 * desired.length();
+    let mut points = desired.waypoints();
+    points.push(scenario.own_ship.pose.position);
+    for &time in times {
+        for motion in motions {
+            let own = motion.pose_at(time).position;
+            points.push(own);
+            let targets = scenario.targets.iter().map(|t| t.position_at(time));
+            points.extend(targets.filter(|p| (p - own).norm() < near));
+        }
+    }
+    let bounds = Bounds::of(points);
+    let bounds = bounds.grown(0.06 * bounds.extent());
+    // a straight run is a line: leave sea on both sides of it
+    let short = 0.45 * bounds.extent();
+    let missing = bounds.size().map(|side| (short - side).max(0.0) / 2.0);
+    Bounds {
+        low: bounds.low - missing,
+        high: bounds.high + missing,
+    }
+}

@@ -1,0 +1,208 @@
+//! The graph that was searched, on the chart and in the volume, with the reasons for blocked edges.
+
+use std::cell::OnceCell;
+
+use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D, RecordingStreamResult};
+
+use super::chart::polyline;
+use crate::frame::Vector;
+use crate::obstacle::{LandObstacle, SpaceTimeObstacle};
+use crate::pipeline::{self, Run};
+use crate::planner::{EdgeVerdict, ExploredEdge};
+use crate::recording::canvas::{Canvas, flat, style};
+use crate::recording::write::Recorder;
+use crate::tolerance;
+use crate::trajectory::Segment;
+
+/// Entity of the edges that are clear of every set.
+const FREE: &str = "free";
+/// Entity of the edges that meet one.
+pub const BLOCKED: &str = "blocked";
+
+/// Most points of all edges of a plan. A point takes 24 bytes in both views together.
+pub const POINT_BUDGET: usize = 2400;
+
+/// How much of the graph is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Drawn {
+    /// Edges in the recording.
+    pub edges: usize,
+    /// Edges that the search tested, without those that take no time.
+    pub tested: usize,
+}
+
+/// Tested edges of one verdict: their polylines through `(position, time)`.
+struct Kind {
+    name: &'static str,
+    color: Color,
+    strips: Vec<Vec<(Vector, f64)>>,
+    /// One per strip, or empty.
+    reasons: Vec<String>,
+}
+
+/// Logs tested edges, in the order in which they were made, until `budget` points are used.
+///
+/// They lie below `folders`, on the chart and in the volume. Blocked edges carry the reason as a
+/// label, which is shown where one is pointed at. Returns how many edges were drawn.
+pub fn log_explored(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    run: &Run,
+    folders: [EntityPath; 2],
+    budget: usize,
+) -> RecordingStreamResult<Drawn> {
+    let kind = |name, color| Kind {
+        name,
+        color,
+        strips: Vec::new(),
+        reasons: Vec::new(),
+    };
+    let mut kinds = [
+        kind(FREE, style::graph_free()),
+        kind(BLOCKED, style::graph_blocked()),
+    ];
+    let judge = Judge::new(run);
+    let mut drawn = Drawn {
+        edges: 0,
+        tested: 0,
+    };
+    let mut points = 0;
+    for edge in run.planned.explored.edge_weights() {
+        let (kind, obstacle) = match edge.verdict {
+            EdgeVerdict::Free => (&mut kinds[0], None),
+            EdgeVerdict::Blocked { obstacle } => (&mut kinds[1], Some(obstacle)),
+            EdgeVerdict::Untested => continue,
+        };
+        let strip = edge_line(edge);
+        // an edge that takes no time is a point
+        if strip.is_empty() {
+            continue;
+        }
+        drawn.tested += 1;
+        points += strip.len();
+        if points <= budget {
+            drawn.edges += 1;
+            kind.strips.push(strip);
+            let reason = obstacle.map(|o| judge.reason(&edge.segments, o));
+            kind.reasons.extend(reason);
+        }
+    }
+    for kind in kinds {
+        log_kind(rec, canvas, kind, &folders)?;
+    }
+    Ok(drawn)
+}
+
+/// Finds why an edge was blocked.
+struct Judge<'a> {
+    run: &'a Run,
+    /// Made for the first edge that runs aground.
+    land_obstacle: OnceCell<LandObstacle>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(run: &'a Run) -> Self {
+        Self {
+            run,
+            land_obstacle: OnceCell::new(),
+        }
+    }
+
+    /// What an edge meets, when first, and the limit that it breaks. `obstacle` is an index of
+    /// [`Run::obstacles`], or behind the last for land.
+    fn reason(&self, edge: &[Segment], obstacle: usize) -> String {
+        let Some(set) = self.run.obstacles.get(obstacle) else {
+            let land_obstacle = self
+                .land_obstacle
+                .get_or_init(|| pipeline::land_obstacle(&self.run.scenario, &self.run.land));
+            let depth = tolerance::GRAZE_M;
+            let met = edge
+                .iter()
+                .find_map(|s| land_obstacle.first_contact(s, depth));
+            return reason("land", met, "nearer than the hull and the margin allow");
+        };
+        let enters = |set: &dyn Fn(&Segment) -> Option<f64>| edge.iter().find_map(set);
+        // an edge that only just meets the set is found without the depth
+        let met = enters(&|s| set.first_contact(s, tolerance::DEPTH_M))
+            .or_else(|| enters(&|s| set.first_contact(s, 0.0)));
+        reason(set.name(), met, &self.limit(edge, obstacle))
+    }
+
+    /// The limit of a target that an edge breaks.
+    fn limit(&self, edge: &[Segment], obstacle: usize) -> String {
+        let run = self.run;
+        let sets = &run.sets[obstacle];
+        let is_hard = |s: &Segment| sets.hard.first_contact(s, tolerance::DEPTH_M).is_some();
+        let ship = run.scenario.targets[obstacle].ship();
+        let limit = if run.whole[obstacle] != sets.hard && !edge.iter().any(is_hard) {
+            let role = sets.encounter.role;
+            let rule = role.rule().map_or(String::new(), |n| format!(", Rule {n}"));
+            format!("its ship domain ({}{rule})", role.name())
+        } else if ship.is_some() {
+            let margin = run.scenario.own_ship.safety_margin;
+            format!("hulls and a margin of {margin} m")
+        } else {
+            "the set that is given".to_owned()
+        };
+        match run.scenario.max_risk {
+            risk if risk > 0.0 => format!("{limit}, at more than the accepted risk {risk}"),
+            _ => limit,
+        }
+    }
+}
+
+fn reason(what: &str, met: Option<f64>, limit: &str) -> String {
+    match met {
+        Some(time) => format!("{what} at {time:.0} s: {limit}"),
+        None => format!("{what}: {limit}"),
+    }
+}
+
+/// The line of an edge, its arcs coarser than those of the plan.
+fn edge_line(edge: &ExploredEdge) -> Vec<(Vector, f64)> {
+    let mut line: Vec<(Vector, f64)> = Vec::new();
+    for segment in edge.segments.iter().filter(|s| s.duration > 0.0) {
+        let fine = polyline(segment);
+        let last = fine.len() - 1;
+        let kept = fine
+            .into_iter()
+            .enumerate()
+            .filter(|&(i, _)| i == last || i.is_multiple_of(4))
+            .map(|(_, point)| point);
+        let joint = usize::from(!line.is_empty());
+        line.extend(kept.skip(joint));
+    }
+    line
+}
+
+fn log_kind(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    kind: Kind,
+    folders: &[EntityPath; 2],
+) -> RecordingStreamResult<()> {
+    if kind.strips.is_empty() {
+        return Ok(());
+    }
+    let [on, over] = folders.each_ref().map(|f| f.join(&kind.name.into()));
+    let on_chart = kind.strips.iter().map(|s| s.iter().map(|&(p, _)| flat(p)));
+    let on_chart = LineStrips2D::new(on_chart)
+        .with_colors([kind.color])
+        .with_radii([style::points(0.5)])
+        // below everything but the grid
+        .with_draw_order(5.0);
+    let on_chart = if kind.reasons.is_empty() {
+        on_chart
+    } else {
+        on_chart.with_labels(kind.reasons).with_show_labels(false)
+    };
+    rec.log_static(on, &on_chart)?;
+    let in_volume = kind
+        .strips
+        .iter()
+        .map(|s| s.iter().map(|&(p, t)| canvas.lifted(p, t)));
+    let in_volume = LineStrips3D::new(in_volume)
+        .with_colors([kind.color])
+        .with_radii([style::points(0.4)]);
+    rec.log_static(over, &in_volume)
+}

@@ -1,0 +1,14 @@
+//! The views of a recording: each file logs the entities of one of them.
+
+mod body;
+pub mod chart;
+pub mod curves;
+pub mod explored;
+pub mod forces;
+pub mod land;
+pub mod path_time;
+pub mod rules;
+pub mod ships;
+pub mod space_time;
+pub mod summary;
+pub mod velocities;

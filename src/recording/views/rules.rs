@@ -1,0 +1,347 @@
+//! Own ship's roles over time, the rules that it breaks, and how long it stands on.
+
+use rerun::{
+    AsComponents, Color, Points2D, Points3D, RecordingStreamResult, StateChange,
+    StateConfiguration, TimeColumn,
+};
+
+use super::chart::Lines;
+use crate::colregs::compliance::{ComplianceReport, Measure, MonitorResult, Verdict};
+use crate::frame::{Side, Vector, clockwise_deg, deg_from_radians, knots_from_mps};
+use crate::planner::Escape;
+use crate::recording::canvas::style::{self, SpeedClass};
+use crate::recording::canvas::{ViewModel, flat};
+use crate::recording::write::Recorder;
+use crate::recording::{MAP, TIMELINE, VOLUME, path};
+
+/// Entity of the lanes. It has a row where one changes, with a text per lane, empty where nothing
+/// holds.
+pub const ROLES: &str = "rules/roles";
+
+/// Strength of a colour behind white letters.
+const LANE: f32 = 0.55;
+
+/// One lane of the view: states from a time on, in order of time; an empty text ends one.
+struct Lane {
+    states: Vec<(f64, String)>,
+    /// One per state.
+    colors: Vec<Color>,
+}
+
+impl Lane {
+    fn new() -> Self {
+        Self {
+            states: Vec::new(),
+            colors: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, time: f64, text: String, color: Color) {
+        self.states.push((time, text));
+        self.colors.push(style::toward_background(color, LANE));
+    }
+
+    fn end(&mut self, time: f64) {
+        self.add(time, String::new(), style::background());
+    }
+
+    /// The text at a time; the last where several begin at once.
+    fn at(&self, time: f64) -> &str {
+        let begun = self.states.partition_point(|(from, _)| *from <= time);
+        self.states[..begun].last().map_or("", |(_, text)| text)
+    }
+}
+
+/// A rule that is broken, or a monitor that is violated.
+struct Broken {
+    time: f64,
+    /// Its short name.
+    rule: String,
+    what: String,
+}
+
+fn broken(conduct: &ComplianceReport) -> Vec<Broken> {
+    let breaches = conduct.violations.iter().map(|breach| Broken {
+        time: breach.time,
+        rule: breach.rule.to_owned(),
+        what: format!("{} at {:.0} s: {}", breach.rule, breach.time, breach.what),
+    });
+    let is_violated = |f: &&MonitorResult| f.verdict == Verdict::Violated;
+    let monitors = conduct.monitors.iter().filter(is_violated).map(|finding| {
+        let time = finding.time.unwrap_or(0.0);
+        // 0.0 - x is never a negative zero
+        let short = 0.0 - finding.robustness.unwrap_or(0.0);
+        let short = match finding.measure {
+            Measure::Distance => format!("{short:.1} m"),
+            Measure::Angle => format!("{:.0}°", deg_from_radians(short)),
+            Measure::Time => format!("{short:.0} s"),
+        };
+        let rule = format!("monitor {}", finding.monitor);
+        Broken {
+            time,
+            what: format!("{rule} at {time:.0} s, by {short}"),
+            rule,
+        }
+    });
+    let mut all: Vec<Broken> = breaches.chain(monitors).collect();
+    all.sort_by(|a, b| a.time.total_cmp(&b.time));
+    all
+}
+
+/// The targets toward which own ship has a role or breaks a rule, with their index and name.
+fn judged<'a>(
+    model: &'a ViewModel,
+) -> impl Iterator<Item = (usize, &'a str, &'a ComplianceReport)> {
+    let both = model.scenario.targets.iter().zip(&model.conduct);
+    both.enumerate().filter_map(|(index, (target, conduct))| {
+        let conduct = conduct.as_ref()?;
+        let silent = conduct.roles.is_empty() && broken(conduct).is_empty();
+        (!silent).then_some((index, target.name.as_str(), conduct))
+    })
+}
+
+fn lanes(model: &ViewModel) -> Vec<Lane> {
+    let end = model.motion.end().min(model.end);
+    let mut lanes = Vec::new();
+    if let Some(escape) = model.run.planned.escape {
+        let mut lane = Lane::new();
+        let held = "own ship holds course and speed".to_owned();
+        lane.add(0.0, held, SpeedClass::Slow.color());
+        let away = format!("own ship escapes: {}", manoeuvre(&escape));
+        lane.add(escape.latest, away, SpeedClass::Fast.color());
+        lane.end(end);
+        lanes.push(lane);
+    }
+    for (index, name, conduct) in judged(model) {
+        let mut roles = Lane::new();
+        for state in &conduct.roles {
+            let text = format!("{name}: {}", state.role.name());
+            roles.add(state.from, text, style::target(index));
+            roles.end(state.until);
+        }
+        lanes.extend((!conduct.roles.is_empty()).then_some(roles));
+        let mut rules: Vec<String> = Vec::new();
+        let mut breaks = Lane::new();
+        for each in broken(conduct) {
+            if !rules.contains(&each.rule) {
+                rules.push(each.rule);
+            }
+            let text = format!("{name}: breaks {}", rules.join(", "));
+            breaks.add(each.time, text, style::alarm());
+        }
+        if !rules.is_empty() {
+            breaks.end(end);
+            lanes.push(breaks);
+        }
+    }
+    lanes
+}
+
+/// The number of lanes of the view.
+pub fn height(model: &ViewModel) -> usize {
+    lanes(model).len()
+}
+
+/// Logs the lanes, and the marks on the chart and in the volume; nothing where no rule applies.
+pub fn log_rules(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let lanes = lanes(model);
+    if lanes.is_empty() {
+        return Ok(());
+    }
+    // the lanes begin with the run
+    let mut times = vec![0.0];
+    times.extend(lanes.iter().flat_map(|l| l.states.iter().map(|(t, _)| *t)));
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let known = lanes
+        .iter()
+        .flat_map(|lane| lane.states.iter().zip(&lane.colors))
+        .filter(|((_, text), _)| !text.is_empty());
+    let (values, colors): (Vec<&str>, Vec<Color>) = known
+        .map(|((_, text), color)| (text.as_str(), *color))
+        .unzip();
+    let style = StateConfiguration::update_fields()
+        .with_values(values)
+        .with_colors(colors);
+    let states = times
+        .iter()
+        .flat_map(|time| lanes.iter().map(|lane| lane.at(*time)));
+    let columns = StateChange::update_fields()
+        .with_state(states)
+        .columns(vec![lanes.len(); times.len()])?;
+    let times = TimeColumn::new_duration_secs(TIMELINE, times);
+    rec.log_moving(path(&[ROLES]), times, &style, columns)?;
+    log_marks(rec, model)
+}
+
+/// Distance between the names of two marks, as a fraction of the bounds.
+const ABOVE: f64 = 1.0 / 22.0;
+
+/// Logs where own ship breaks a rule, and where it stops standing on.
+fn log_marks(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let several = judged(model).count() > 1;
+    let mut marks: Vec<(f64, String, Color)> = Vec::new();
+    for (_, name, conduct) in judged(model) {
+        for each in conduct.violations.iter() {
+            let toward = if several {
+                format!(", toward {name}")
+            } else {
+                String::new()
+            };
+            let text = format!("{} at {:.0} s{toward}", each.rule, each.time);
+            marks.push((each.time, text, style::alarm()));
+        }
+    }
+    if let Some(escape) = model.run.planned.escape {
+        let text = format!("holds until {:.0} s", escape.latest);
+        marks.push((escape.latest, text, SpeedClass::Fast.color()));
+    }
+    if marks.is_empty() {
+        return Ok(());
+    }
+    marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // several at one time are one mark
+    marks.dedup_by(|later, earlier| {
+        let one = later.0 == earlier.0;
+        if one {
+            earlier.1 = format!("{}\n{}", earlier.1, later.1);
+        }
+        one
+    });
+    let place = |time: f64| model.motion.pose_at(time).position;
+    let colors: Vec<Color> = marks.iter().map(|m| m.2).collect();
+    let labels: Vec<&str> = marks.iter().map(|m| m.1.as_str()).collect();
+    // names of ships and of time marks are near the track: these are off it, one above another
+    let off = ABOVE * model.bounds.extent();
+    let above = |(k, m): (usize, &(f64, String, Color))| {
+        place(m.0) + Vector::new(0.0, off * (2.0 + k as f64))
+    };
+    let mut leaders = Lines::default();
+    for (k, mark) in marks.iter().enumerate() {
+        let ends = [place(mark.0), above((k, mark))];
+        leaders.add(ends.map(flat).to_vec(), mark.2, style::points(0.5));
+    }
+    let leaders = leaders.archetype();
+    let spots = marks.iter().map(|m| flat(place(m.0)));
+    let names = marks.iter().enumerate().map(|mark| flat(above(mark)));
+    // the first points have the labels, the marks themselves have none
+    let radii = names.clone().map(|_| style::points(0.0));
+    let radii = radii.chain(spots.clone().map(|_| style::points(4.5)));
+    let on_chart = Points2D::new(names.chain(spots))
+        .with_colors([&colors[..], &colors[..]].concat())
+        .with_radii(radii)
+        .with_labels(labels.iter().copied().chain(labels.iter().map(|_| "")))
+        .with_show_labels(true)
+        .with_draw_order(40.0);
+    let parts: [&dyn AsComponents; 2] = [&leaders, &on_chart];
+    rec.log_static(path(&[MAP, "rules"]), &parts)?;
+    let in_volume = Points3D::new(marks.iter().map(|m| model.lifted(place(m.0), m.0)))
+        .with_colors(colors)
+        .with_radii([style::points(4.5)])
+        .with_labels(labels)
+        .with_show_labels(false);
+    rec.log_static(path(&[VOLUME, "rules"]), &in_volume)
+}
+
+fn manoeuvre(escape: &Escape) -> String {
+    let speed = knots_from_mps(escape.speed);
+    match Side::of_turn(escape.turn) {
+        Some(side) => format!(
+            "{:.0}° to {side} at {speed:.1} kn",
+            clockwise_deg(escape.turn).abs()
+        ),
+        None => format!("{speed:.1} kn"),
+    }
+}
+
+/// Roles, scores and broken rules as a table, and until when own ship stands on; empty where no
+/// rule applies.
+pub fn text(model: &ViewModel) -> String {
+    let mut parts = Vec::new();
+    if let Some(escape) = model.run.planned.escape {
+        parts.push(format!(
+            "**Own ship stands on:** it holds course and speed until {:.1} s, the latest time from \
+             which an escape is known to be clear, and escapes then: {}.",
+            escape.latest,
+            manoeuvre(&escape)
+        ));
+    }
+    let rows: Vec<String> = judged(model)
+        .map(|(_, name, conduct)| {
+            let roles = conduct
+                .roles
+                .iter()
+                .map(|s| format!("{} {:.0} to {:.0} s", s.role.name(), s.from, s.until));
+            let scores = conduct.scores.by_name().into_iter();
+            let scores =
+                scores.map(|(rule, score)| format!("{} {score:.2}", rule.replace('_', " ")));
+            let broken = broken(conduct);
+            let broken: Vec<&str> = broken.iter().map(|b| b.what.as_str()).collect();
+            let broken = if broken.is_empty() {
+                "nothing".to_owned()
+            } else {
+                format!("**{}**", broken.join("; "))
+            };
+            let [roles, scores] =
+                [roles.collect::<Vec<_>>(), scores.collect()].map(|l| l.join(", "));
+            format!("| {name} | {roles} | {scores} | {broken} |")
+        })
+        .collect();
+    if !rows.is_empty() {
+        parts.push(format!(
+            "| rules: toward | own ship is | scores | breaks |\n|---|---|---|---|\n{}",
+            rows.join("\n")
+        ));
+    }
+    parts.join("\n\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline;
+    use crate::scenario::{Compliance, Scenario};
+
+    fn stand_on(compliance: Compliance) -> pipeline::Run {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let file = file.join("scenarios/colregs/stand-on.toml");
+        let mut scenario = Scenario::read(&file).expect("valid");
+        scenario.compliance = compliance;
+        pipeline::run(scenario)
+    }
+
+    #[test]
+    fn a_rule_is_broken_from_its_moment_on() {
+        let run = stand_on(Compliance::Shape);
+        let model = ViewModel::new(&run);
+        let conduct = model.conduct[0].as_ref().expect("a ship");
+        let breach = conduct.violations.iter().find(|b| b.rule == "17(c)");
+        let breach = breach.expect("a turn to port");
+        let [roles, broken] = &lanes(&model)[..] else {
+            panic!("two lanes");
+        };
+        assert_eq!(roles.at(conduct.roles[0].from), "target: stand-on");
+        assert_eq!(roles.at(model.motion.end()), "");
+        assert!(!broken.at(breach.time - 1e-6).contains("17(c)"));
+        assert!(broken.at(breach.time).contains("17(c)"));
+        assert_eq!(broken.at(model.motion.end()), "");
+        let text = super::text(&model);
+        let expected = format!("17(c) at {:.0} s: ", breach.time);
+        assert!(
+            text.contains(&expected) && text.contains("rule 17"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_hold_ends_at_its_latest_time() {
+        let run = stand_on(Compliance::Rules);
+        let model = ViewModel::new(&run);
+        let latest = run.planned.escape.expect("stands on").latest;
+        let own = &lanes(&model)[0];
+        assert_eq!(own.at(0.0), "own ship holds course and speed");
+        assert_eq!(own.at(latest - 1e-6), own.at(0.0));
+        assert!(own.at(latest).starts_with("own ship escapes: "));
+        assert!(text(&model).contains("**Own ship stands on:**"));
+    }
+}

@@ -1,0 +1,257 @@
+//! What moves on the chart: ships and the sections of their sets.
+
+use rerun::{
+    AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, Radius,
+    RecordingStreamResult, TimeColumn, Transform3D,
+};
+
+use super::chart::{Lines, Strip};
+use crate::frame::{Pose, Vector};
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::recording::canvas::{Canvas, Motion, ViewModel, flat, round_down, style};
+use crate::recording::write::Recorder;
+use crate::recording::{MAP, TIMELINE, TRAILS, path};
+use crate::target::Target;
+
+/// Line width of hard sets.
+pub const HARD_RADIUS: Radius = Radius(rerun::datatypes::Float32(-1.6));
+/// Line width of sets with a ship domain, thinner than that of the hard ones.
+pub const SHAPED_RADIUS: Radius = Radius(rerun::datatypes::Float32(-0.7));
+
+/// Colour of the outline of a set with a ship domain.
+pub fn shaped_color(canvas: &Canvas, index: usize) -> Color {
+    style::toward_background(canvas.target_color(index), 0.75)
+}
+
+/// Own ship on one of the motions that are shown.
+#[derive(Debug, Clone)]
+pub struct OwnShip<'a> {
+    pub motion: Motion<'a>,
+    /// Shown beside it on the chart, or, where there is no room, when it is pointed at.
+    pub name: String,
+    pub color: Color,
+}
+
+/// On which side of a northward or southward track a name stands.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    West,
+    East,
+}
+
+/// Logs everything that moves on the chart.
+pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    log_others(rec, model)?;
+    let name = if model.motion.is_planned() {
+        "Own ship"
+    } else {
+        "Own ship (no plan)"
+    };
+    let own = OwnShip {
+        motion: model.motion,
+        name: name.to_owned(),
+        color: style::own_ship(),
+    };
+    log_own_ship(rec, model, path(&[MAP, "own_ship"]), &own, true)?;
+    log_trails(rec, model, &[own])
+}
+
+/// Logs the targets and their sets.
+pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    for (index, sets) in canvas.sets.iter().enumerate() {
+        let name = sets.hard.name();
+        if let Some(shaped) = canvas.shaped(sets) {
+            let style = set_style(shaped_color(canvas, index), SHAPED_RADIUS);
+            let entity = path(&[MAP, "shaped_sets", name]);
+            log_sections(rec, canvas, entity, shaped, &style)?;
+        }
+        let style = set_style(canvas.target_color(index), HARD_RADIUS);
+        let entity = path(&[MAP, "hard_sets", name]);
+        log_sections(rec, canvas, entity, &sets.hard, &style)?;
+    }
+    for (index, target) in canvas.scenario.targets.iter().enumerate() {
+        log_target(rec, canvas, index, target)?;
+    }
+    Ok(())
+}
+
+/// The style of the outline of a set.
+pub fn set_style(color: Color, radius: Radius) -> LineStrips2D {
+    LineStrips2D::update_fields()
+        .with_colors([color])
+        .with_radii([radius])
+}
+
+/// Logs the outline of the section at every cursor time.
+pub fn log_sections(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    entity: EntityPath,
+    set: &Obstacle,
+    style: &LineStrips2D,
+) -> RecordingStreamResult<()> {
+    let outlines = canvas
+        .cursor_times
+        .iter()
+        .map(|&t| outline(&set.outer_section(t)));
+    let columns = LineStrips2D::update_fields()
+        .with_strips(outlines)
+        .columns_of_unit_batches()?;
+    rec.log_moving(entity, canvas.cursor_column(), style, columns)
+}
+
+/// The closed boundary of a polygon.
+pub fn outline(polygon: &ConvexPolygon) -> Strip {
+    let mut strip: Strip = polygon.vertices().iter().copied().map(flat).collect();
+    strip.extend(strip.first().copied());
+    strip
+}
+
+/// Logs a target. Its hull and speed vector do not turn: they are drawn turned and only move.
+fn log_target(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    index: usize,
+    target: &Target,
+) -> RecordingStreamResult<()> {
+    let entity = path(&[MAP, "targets", &target.name]);
+    let color = canvas.target_color(index);
+    let mut lines = Lines::default();
+    if let Some(ship) = target.ship() {
+        let here = Pose::new(Vector::zeros(), ship.pose.heading);
+        lines.add(
+            outline(&ship.hull.polygon(&here)),
+            color,
+            style::points(1.0),
+        );
+        let tip = ship.velocity() * vector_seconds(canvas);
+        lines.add(vec![[0.0, 0.0], flat(tip)], color, style::points(0.8));
+    }
+    let lines = lines.archetype();
+    let way = target.position_at(canvas.end) - target.position_at(0.0);
+    let name = label(canvas, color, &target.name, way, Side::East);
+    let parts: [&dyn AsComponents; 2] = [&lines, &name];
+    let places = canvas.cursor_times.iter().map(|&t| target.position_at(t));
+    log_places(rec, canvas, entity, &parts, places)
+}
+
+/// Logs own ship's place and name, and below them its hull and speed vector. The name is always
+/// shown where `named`.
+pub fn log_own_ship(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    entity: EntityPath,
+    own: &OwnShip,
+    named: bool,
+) -> RecordingStreamResult<()> {
+    let name = label(canvas, own.color, &own.name, canvas.ahead(), Side::West);
+    let name = name.with_show_labels(named);
+    let places = canvas
+        .cursor_times
+        .iter()
+        .map(|&t| own.motion.pose_at(t).position);
+    log_places(rec, canvas, entity.clone(), &name, places)?;
+    log_own_hull(rec, canvas, entity.join(&EntityPath::from("hull")), own)
+}
+
+fn log_places(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    entity: EntityPath,
+    style: &dyn AsComponents,
+    places: impl Iterator<Item = Vector>,
+) -> RecordingStreamResult<()> {
+    let raised = places.map(|p| [p.x as f32, p.y as f32, 0.0]);
+    let columns = Transform3D::update_fields()
+        .with_many_translation(raised)
+        .columns_of_unit_batches()?;
+    rec.log_moving(entity, canvas.cursor_column(), style, columns)
+}
+
+/// Logs a dot per ship and cursor time; the layout shows those up to the cursor. The last one marks
+/// the ship at any zoom.
+pub fn log_trails(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    own: &[OwnShip],
+) -> RecordingStreamResult<()> {
+    let targets = &canvas.scenario.targets;
+    let entity = path(&[TRAILS]);
+    let others = (0..targets.len()).map(|index| canvas.target_color(index));
+    let colors = own.iter().map(|o| o.color).chain(others);
+    let style = Points2D::update_fields()
+        .with_colors(colors)
+        .with_radii([style::points(2.4)]);
+    let mut dots = Vec::new();
+    for &time in &canvas.cursor_times {
+        let own = own.iter().map(|o| o.motion.pose_at(time).position);
+        let all = own.chain(targets.iter().map(|t| t.position_at(time)));
+        dots.extend(all.map(flat));
+    }
+    let lengths = vec![own.len() + targets.len(); canvas.cursor_times.len()];
+    let columns = Points2D::update_fields()
+        .with_positions(dots)
+        .columns(lengths)?;
+    rec.log_moving(entity, canvas.cursor_column(), &style, columns)
+}
+
+/// Logs own ship's hull and speed vector, which turn with it.
+fn log_own_hull(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    entity: EntityPath,
+    own: &OwnShip,
+) -> RecordingStreamResult<()> {
+    let style = LineStrips2D::update_fields()
+        .with_colors([own.color])
+        .with_radii([style::points(1.2), style::points(0.8)]);
+    let mut times = own.motion.speed_changes();
+    times.extend(&canvas.cursor_times);
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let hull = canvas.scenario.own_ship.hull;
+    let hull = outline(&hull.polygon(&Pose::new(Vector::zeros(), 0.0)));
+    let strips = times.iter().flat_map(|&t| {
+        let tip = (own.motion.speed_at(t) * vector_seconds(canvas)) as f32;
+        [hull.clone(), vec![[0.0, 0.0], [tip, 0.0]]]
+    });
+    let drawn = LineStrips2D::update_fields()
+        .with_strips(strips)
+        .columns(vec![2; times.len()])?;
+    let turns = times
+        .iter()
+        .map(|&t| rotation(own.motion.pose_at(t).heading));
+    let turns = Transform3D::update_fields()
+        .with_many_quaternion(turns)
+        .columns_of_unit_batches()?;
+    let times = TimeColumn::new_duration_secs(TIMELINE, times.iter().copied());
+    rec.log_moving(entity, times, &style, drawn.chain(turns))
+}
+
+/// How far ahead a speed vector reaches, seconds.
+pub fn vector_seconds(canvas: &Canvas) -> f64 {
+    round_down(canvas.end / 6.0)
+}
+
+/// A name beside the track of a ship: north of one to the east or west, as time marks have theirs
+/// south of it; else to one side, farther off, as names are wide.
+fn label(canvas: &Canvas, color: Color, name: &str, way: Vector, side: Side) -> Points2D {
+    let extent = canvas.bounds.extent();
+    let off = match side {
+        _ if way.x.abs() >= way.y.abs() => Vector::new(0.0, extent / 22.0),
+        Side::West => Vector::new(-extent / 9.0, 0.0),
+        Side::East => Vector::new(extent / 9.0, 0.0),
+    };
+    Points2D::new([flat(off)])
+        .with_colors([color])
+        .with_radii([style::points(0.0)])
+        .with_labels([name])
+        .with_show_labels(true)
+}
+
+/// About the vertical, counter-clockwise seen from above.
+fn rotation(heading: f64) -> Quaternion {
+    let (sin, cos) = (heading / 2.0).sin_cos();
+    Quaternion::from_xyzw([0.0, 0.0, sin as f32, cos as f32])
+}

@@ -1,0 +1,251 @@
+//! The space-time volume: east, north and, upward, time.
+
+use rerun::{
+    AsComponents, Color, LineStrips3D, Points3D, Radius, RecordingStreamResult, Transform3D,
+    ViewCoordinates,
+};
+
+use super::body::{mesh, prisms};
+use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
+use super::ships::OwnShip;
+use crate::frame::{Vector, to_port};
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::recording::canvas::{Bounds, Canvas, ViewModel, style};
+use crate::recording::write::Recorder;
+use crate::recording::{VOLUME, path};
+
+/// Strength of the shadow of a plan on the sea, of 1.
+const SHADOW: f32 = 0.35;
+
+/// Opacity of the body of a set with a ship domain, of 255.
+pub const SHAPED_ALPHA: u8 = 16;
+/// Opacity of the body of a hard set, of 255.
+const HARD_ALPHA: u8 = 36;
+
+/// Lines in space-time, each with its style.
+#[derive(Debug, Default)]
+struct Lines {
+    strips: Vec<Vec<[f32; 3]>>,
+    colors: Vec<Color>,
+    radii: Vec<Radius>,
+}
+
+impl Lines {
+    fn add(&mut self, strip: Vec<[f32; 3]>, color: Color, radius: f32) {
+        self.strips.push(strip);
+        self.colors.push(color);
+        self.radii.push(style::points(radius));
+    }
+
+    fn archetype(self) -> LineStrips3D {
+        LineStrips3D::new(self.strips)
+            .with_colors(self.colors)
+            .with_radii(self.radii)
+    }
+}
+
+/// Logs the whole volume.
+pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    log_waters(rec, model)?;
+    log_planned(rec, model)?;
+    let own = OwnShip {
+        motion: model.motion,
+        name: "Own ship".to_owned(),
+        color: style::own_ship(),
+    };
+    log_now(rec, model, &[own])
+}
+
+/// Logs what does not depend on own ship: the axes, the sets, the desired motion, the targets.
+pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    rec.log_static(VOLUME, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
+    log_axes(rec, canvas)?;
+    for (index, sets) in canvas.sets.iter().enumerate() {
+        let name = sets.hard.name();
+        if let Some(shaped) = canvas.shaped(sets) {
+            let entity = path(&[VOLUME, "shaped_sets", name]);
+            let style = (canvas.target_color(index), SHAPED_ALPHA);
+            log_body(rec, canvas, entity, shaped, style)?;
+        }
+        let entity = path(&[VOLUME, "hard_sets", name]);
+        let style = (canvas.target_color(index), HARD_ALPHA);
+        log_body(rec, canvas, entity, &sets.hard, style)?;
+    }
+    log_expected(rec, canvas)
+}
+
+/// Logs the sea at t = 0 as a grid, and the time axis with its ticks.
+fn log_axes(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = canvas.bounds;
+    let spacing = grid_spacing(canvas);
+    let mut lines = Lines::default();
+    let ground = |east: f64, north: f64| canvas.lifted(Vector::new(east, north), 0.0);
+    for east in multiples(low.x, high.x, spacing) {
+        lines.add(
+            vec![ground(east, low.y), ground(east, high.y)],
+            style::grid(),
+            0.5,
+        );
+    }
+    for north in multiples(low.y, high.y, spacing) {
+        lines.add(
+            vec![ground(low.x, north), ground(high.x, north)],
+            style::grid(),
+            0.5,
+        );
+    }
+    let text = style::chart_text();
+    let axis = axis_corner(canvas);
+    let axis_line = [0.0, canvas.end].map(|t| canvas.lifted(axis, t));
+    lines.add(axis_line.to_vec(), text, 1.0);
+    let mut places = Vec::new();
+    let mut labels = Vec::new();
+    for time in multiples(0.0, canvas.end, 2.0 * mark_step(canvas)) {
+        places.push(canvas.lifted(axis, time));
+        labels.push(if time == 0.0 {
+            "t = 0 s".to_owned()
+        } else {
+            format!("{time:.0} s")
+        });
+    }
+    let middle = canvas.bounds.center();
+    for (place, name) in [
+        (Vector::new(high.x, middle.y), "E"),
+        (Vector::new(middle.x, high.y), "N"),
+    ] {
+        places.push(canvas.lifted(place, 0.0));
+        labels.push(name.to_owned());
+    }
+    let ticks = Points3D::new(places)
+        .with_colors([text])
+        .with_radii([style::points(2.0)])
+        .with_labels(labels)
+        .with_show_labels(true);
+    let lines = lines.archetype();
+    let parts: [&dyn AsComponents; 2] = [&lines, &ticks];
+    rec.log_static(path(&[VOLUME, "axes"]), &parts)
+}
+
+/// Where the time axis is: on the far side as seen by the eye, at the end where own ship starts.
+fn axis_corner(canvas: &Canvas) -> Vector {
+    let Bounds { low, high } = canvas.bounds;
+    let ahead = canvas.ahead();
+    let beside = to_port(ahead) - ahead;
+    let corner = |along: f64, low: f64, high: f64| if along < 0.0 { low } else { high };
+    Vector::new(
+        corner(beside.x, low.x, high.x),
+        corner(beside.y, low.y, high.y),
+    )
+}
+
+/// Logs the translucent body of a set, and some of its sections.
+pub fn log_body(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    entity: rerun::EntityPath,
+    set: &Obstacle,
+    (color, alpha): (Color, u8),
+) -> RecordingStreamResult<()> {
+    let prisms = prisms(canvas, set);
+    let body = mesh(canvas, &prisms).with_albedo_factor(style::translucent(color, alpha).0);
+    let strength = 0.3 + f32::from(alpha) / 100.0;
+    let faint = style::toward_background(color, strength);
+    let mut lines = Lines::default();
+    for time in [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| f * canvas.end) {
+        if let Some(prism) = prisms.iter().find(|s| s.contains(time)) {
+            lines.add(prism.ring(canvas, time), faint, 0.6);
+        }
+    }
+    let lines = lines.archetype();
+    let parts: [&dyn AsComponents; 2] = [&body, &lines];
+    rec.log_static(entity, &parts)
+}
+
+/// Logs the plan, and its shadow on the sea.
+fn log_planned(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    if !model.motion.is_planned() {
+        return Ok(());
+    }
+    let mut lines = Lines::default();
+    let shadow = style::toward_background(style::own_ship(), SHADOW);
+    for (pace, points) in planned_strips(model) {
+        let risen = points.iter().map(|&(p, t)| model.lifted(p, t)).collect();
+        lines.add(risen, pace.color(), 2.0);
+        let fallen = points.iter().map(|&(p, _)| model.lifted(p, 0.0)).collect();
+        lines.add(fallen, shadow, 0.8);
+    }
+    rec.log_static(path(&[VOLUME, "planned"]), &lines.archetype())
+}
+
+/// Logs the desired motion and the expected ones of the targets.
+fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()> {
+    let desired = &canvas.scenario.desired;
+    let mut lines = Lines::default();
+    let mut strip: Vec<_> = desired
+        .legs()
+        .iter()
+        .map(|l| canvas.lifted(l.start, l.start_time))
+        .collect();
+    strip.push(canvas.lifted(desired.end(), desired.duration()));
+    lines.add(strip, style::desired(), 0.9);
+    rec.log_static(path(&[VOLUME, "desired"]), &lines.archetype())?;
+    if canvas.scenario.targets.is_empty() {
+        return Ok(());
+    }
+    let mut lines = Lines::default();
+    for (index, target) in canvas.scenario.targets.iter().enumerate() {
+        let mut times = vec![0.0];
+        times.extend(target.changes().into_iter().filter(|&t| t < canvas.end));
+        times.push(canvas.end);
+        let places = times.iter();
+        let strip = places.map(|&t| canvas.lifted(target.position_at(t), t));
+        lines.add(strip.collect(), canvas.target_color(index), 1.0);
+    }
+    rec.log_static(path(&[VOLUME, "targets"]), &lines.archetype())
+}
+
+/// Logs the plane of the cursor, and the ships in it.
+pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[OwnShip]) -> RecordingStreamResult<()> {
+    let Bounds { low, high } = canvas.bounds;
+    let frame = [
+        [low.x, low.y],
+        [high.x, low.y],
+        [high.x, high.y],
+        [low.x, high.y],
+        [low.x, low.y],
+    ]
+    .map(|[east, north]| canvas.lifted(Vector::new(east, north), 0.0));
+    let frame = LineStrips3D::new([frame])
+        .with_colors([style::toward_background(style::own_ship(), 0.5)])
+        .with_radii([style::points(0.6)]);
+    let targets = &canvas.scenario.targets;
+    let others = (0..targets.len()).map(|index| canvas.target_color(index));
+    let colors = own.iter().map(|o| o.color).chain(others);
+    let others = targets.iter().map(|t| t.name.as_str());
+    let names = own.iter().map(|o| o.name.as_str()).chain(others);
+    let ships = Points3D::update_fields()
+        .with_colors(colors)
+        .with_radii([style::points(5.0)])
+        .with_labels(names)
+        // names of several own ships would overlap: they are shown when one is pointed at
+        .with_show_labels(own.len() <= 1);
+    let entity = path(&[VOLUME, "now"]);
+    let style: [&dyn AsComponents; 2] = [&frame, &ships];
+
+    let plane = |time: f64| canvas.lifted(Vector::zeros(), time);
+    let rises = Transform3D::update_fields()
+        .with_many_translation(canvas.cursor_times.iter().map(|&t| plane(t)))
+        .columns_of_unit_batches()?;
+    let mut places = Vec::new();
+    for &time in &canvas.cursor_times {
+        let own = own.iter().map(|o| o.motion.pose_at(time).position);
+        let all = own.chain(targets.iter().map(|t| t.position_at(time)));
+        places.extend(all.map(|p| canvas.lifted(p, 0.0)));
+    }
+    let lengths = vec![own.len() + targets.len(); canvas.cursor_times.len()];
+    let moves = Points3D::update_fields()
+        .with_positions(places)
+        .columns(lengths)?;
+    let columns = rises.chain(moves);
+    rec.log_moving(entity, canvas.cursor_column(), &style, columns)
+}

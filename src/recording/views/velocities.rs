@@ -1,0 +1,126 @@
+//! The plane of velocities at the cursor: own ship's velocity, velocity obstacles of the hard sets.
+
+use rerun::{AsComponents, LineStrips2D, Points2D, RecordingStreamResult, Transform3D};
+
+use super::chart::{Lines, Strip};
+use super::ships::{HARD_RADIUS, outline};
+use crate::frame::{Vector, direction};
+use crate::geometry::ConvexPolygon;
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
+use crate::recording::canvas::{ViewModel, flat, style};
+use crate::recording::write::Recorder;
+use crate::recording::{PLANE, path};
+
+/// Longest time ahead that is looked at, seconds.
+const LOOK_AHEAD_S: f64 = 300.0;
+
+/// Radians between two points of a circle: 72 of them.
+const CIRCLE_STEP: f64 = std::f64::consts::PI / 36.0;
+
+/// Largest error of the outline of an ellipsoid's velocity obstacle, as a fraction of the view.
+const TOLERANCE: f64 = 3e-3;
+
+/// Half width of the view, m/s: 1.5 times own ship's greatest speed.
+pub fn limit(model: &ViewModel) -> f64 {
+    1.5 * model.scenario.own_ship.max_speed()
+}
+
+/// Logs the whole view.
+pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    // north up, as on the chart
+    let turned = Transform3D::from_scale([1.0, -1.0, 1.0]);
+    rec.log_static(PLANE, &turned)?;
+    log_axes(rec, model)?;
+    for (index, sets) in model.sets.iter().enumerate() {
+        let entity = path(&[PLANE, "obstacles", sets.hard.name()]);
+        let style = LineStrips2D::update_fields()
+            .with_colors([style::target(index)])
+            .with_radii([HARD_RADIUS]);
+        let outlines = model
+            .cursor_times
+            .iter()
+            .map(|&t| region_outline(model, &sets.hard, t));
+        let columns = LineStrips2D::update_fields()
+            .with_strips(outlines)
+            .columns_of_unit_batches()?;
+        rec.log_moving(entity, model.cursor_column(), &style, columns)?;
+    }
+    let entity = path(&[PLANE, "own_ship"]);
+    let style = Points2D::update_fields()
+        .with_colors([style::own_ship()])
+        .with_radii([style::points(4.0)])
+        .with_labels(["Own ship"])
+        .with_show_labels(true);
+    let own = model.cursor_times.iter().map(|&t| {
+        let pose = model.motion.pose_at(t);
+        [flat(pose.ahead() * model.motion.speed_at(t))]
+    });
+    let places: Vec<[f32; 2]> = own.flatten().collect();
+    let columns = Points2D::update_fields()
+        .with_positions(places)
+        .columns_of_unit_batches()?;
+    rec.log_moving(entity, model.cursor_column(), &style, columns)
+}
+
+/// Logs the axes, and a circle for each of own ship's speeds.
+fn log_axes(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
+    let limit = limit(model);
+    let mut lines = Lines::default();
+    for axis in [Vector::new(limit, 0.0), Vector::new(0.0, limit)] {
+        lines.add(
+            vec![flat(-axis), flat(axis)],
+            style::grid(),
+            style::points(0.5),
+        );
+    }
+    for &speed in &model.scenario.own_ship.speeds {
+        let circle = (0..=72).map(|k| flat(direction(f64::from(k) * CIRCLE_STEP) * speed));
+        lines.add(circle.collect(), style::grid(), style::points(0.8));
+    }
+    let names = Points2D::new([flat(Vector::new(limit, 0.0)), flat(Vector::new(0.0, limit))])
+        .with_colors([style::chart_text()])
+        .with_radii([style::points(0.0)])
+        .with_labels(["E", "N"])
+        .with_show_labels(true);
+    let lines = lines.archetype();
+    let parts: [&dyn AsComponents; 2] = [&lines, &names];
+    rec.log_static(path(&[PLANE, "axes"]), &parts)
+}
+
+/// The closed edge of the velocity obstacle at a time and at own ship's position then, clipped to
+/// the view.
+///
+/// It is exact for a polytope and an outer bound within [`TOLERANCE`] for an ellipsoid. For slabs
+/// it is that of the hull of all later velocities.
+fn region_outline(model: &ViewModel, set: &Obstacle, time: f64) -> Strip {
+    let own = model.motion.pose_at(time).position;
+    let ahead = LOOK_AHEAD_S.min((model.end - time).max(1.0));
+    let limit = limit(model);
+    let region = match set {
+        Obstacle::Polytope(o) => {
+            from(set, time, o.velocity().clone()).velocity_obstacle(own, ahead)
+        }
+        // it grows from any of its sections as from its first
+        Obstacle::Ellipsoid(o) => EllipsoidObstacle::new("", o.outer_section(time), *o.velocity())
+            .velocity_obstacle(own, ahead)
+            .outer_half_planes(limit, TOLERANCE * limit),
+        Obstacle::Slabs(o) => {
+            let to_come = o.velocity_sets().iter().filter(|s| s.until > time);
+            let velocities = hull(to_come.flat_map(|s| s.velocities.vertices().iter().copied()));
+            from(set, time, velocities).velocity_obstacle(own, ahead)
+        }
+    };
+    region
+        .clipped(limit)
+        .map_or_else(Vec::new, |region| outline(&region))
+}
+
+/// The set that starts from the section at `time`, with the velocities from then on.
+fn from(set: &Obstacle, time: f64, velocities: ConvexPolygon) -> PolytopeObstacle {
+    PolytopeObstacle::new("", set.outer_section(time), velocities)
+}
+
+fn hull(points: impl Iterator<Item = Vector>) -> ConvexPolygon {
+    let points: Vec<Vector> = points.collect();
+    ConvexPolygon::hull(&points).unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()))
+}

@@ -1,0 +1,163 @@
+//! Writes a run or a comparison as one file.
+
+mod comparison;
+mod encoding;
+mod recorder;
+
+pub use comparison::{Compared, write_comparison};
+pub use recorder::Recorder;
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use rerun::components::MediaType;
+use rerun::{EntityPath, RecordingInfo, RecordingStreamResult, TextDocument};
+
+use super::canvas::ViewModel;
+use super::views::curves::Curves;
+use super::views::{
+    chart, curves, explored, forces, land, path_time, rules, ships, space_time, summary, velocities,
+};
+use super::{DOCUMENT, EXPLORED, VOLUME, layout, path};
+use crate::output::{folder_of, write_whole};
+use crate::pipeline::Run;
+
+/// Why there is no recording.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The run could not be turned into a recording.
+    #[error("cannot encode the recording {}: {source}", path.display())]
+    Encode {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What Rerun reports.
+        source: Failure,
+    },
+    /// The file could not be written; nothing was left of it.
+    #[error("cannot write the recording {}: {source}", path.display())]
+    Write {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What the system reports.
+        source: std::io::Error,
+    },
+}
+
+/// An error of Rerun.
+pub(super) type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Writes `run` as a recording with its layout to `path`, in full or not at all.
+///
+/// The bytes go to a temporary name in the same folder first, which is then renamed. Missing parent
+/// folders are made, an older file is replaced. `document`, the text of the plan document, is kept
+/// in the recording: [`super::Recorded::document`] gives it back.
+///
+/// # Examples
+///
+/// ```
+/// use searoom::recording::{Recorded, write};
+/// use searoom::{pipeline, scenario::Scenario};
+///
+/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
+/// # let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("head-on.rrd");
+/// write(&pipeline::run(scenario), Some("{}"), &file)?;
+/// let recorded = Recorded::read(&file)?;
+/// assert_eq!(recorded.document(), Some("{}"));
+/// assert!(recorded.table("curves/speed_kn").is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write(run: &Run, document: Option<&str>, path: &Path) -> Result<(), RecordingError> {
+    let document = document.map(|text| (DOCUMENT, text));
+    put(path, &run.scenario.title, document, || {
+        log_run(&ViewModel::new(run))
+    })
+}
+
+/// The two stores of a file.
+struct Stores {
+    recording: Recorder,
+    layout: Recorder,
+}
+
+/// Encodes what `log` logs, with a document at its entity, and writes the file.
+fn put(
+    path: &Path,
+    title: &str,
+    document: Option<(&str, &str)>,
+    log: impl FnOnce() -> RecordingStreamResult<Stores>,
+) -> Result<(), RecordingError> {
+    let bytes = bytes(title, document, log).map_err(|source| RecordingError::Encode {
+        path: path.to_owned(),
+        source,
+    })?;
+    let written = std::fs::create_dir_all(folder_of(path)).and_then(|()| write_whole(path, &bytes));
+    written.map_err(|source| RecordingError::Write {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn bytes(
+    title: &str,
+    document: Option<(&str, &str)>,
+    log: impl FnOnce() -> RecordingStreamResult<Stores>,
+) -> Result<Vec<u8>, Failure> {
+    let Stores { recording, layout } = log()?;
+    let mut whole = Recorder::of_section(0);
+    let name = RecordingInfo::update_fields().with_name(title);
+    whole.log_static(EntityPath::properties(), &name)?;
+    if let Some((entity, document)) = document {
+        let document = TextDocument::new(document).with_media_type(MediaType::from(JSON));
+        whole.log_static(entity, &document)?;
+    }
+    whole.append(recording);
+    encoding::encode(whole, layout)
+}
+
+const JSON: &str = "application/json";
+
+/// A part of the views of a run.
+type Section = fn(&mut Recorder, &ViewModel, &Curves) -> RecordingStreamResult<()>;
+
+/// The sections, which are logged in parallel, the longest first.
+const SECTIONS: [Section; 6] = [
+    |rec, model, _| ships::log_ships(rec, model),
+    |rec, model, _| velocities::log_velocities(rec, model),
+    |rec, model, _| {
+        land::log_land(rec, model)?;
+        chart::log_chart(rec, model)?;
+        space_time::log_volume(rec, model)
+    },
+    |rec, model, curves| {
+        curves::log_curves(rec, model, curves)?;
+        forces::log_forces(rec, model)
+    },
+    |rec, model, _| {
+        let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
+        let budget = explored::POINT_BUDGET;
+        let drawn = explored::log_explored(rec, model, model.run, folders, budget)?;
+        summary::log_summary(rec, model, drawn)
+    },
+    |rec, model, _| {
+        path_time::log_path_time(rec, model)?;
+        rules::log_rules(rec, model)
+    },
+];
+
+fn log_run(model: &ViewModel) -> RecordingStreamResult<Stores> {
+    let curves = Curves::of(model);
+    let logged = |(index, log): (usize, &Section)| {
+        let mut rec = Recorder::of_section(index + 1);
+        log(&mut rec, model, &curves)?;
+        Ok(rec)
+    };
+    let sections = SECTIONS.par_iter().enumerate().map(logged);
+    let sections: RecordingStreamResult<Vec<Recorder>> = sections.collect();
+    let mut recording = Recorder::of_section(0);
+    for section in sections? {
+        recording.append(section);
+    }
+    let layout = layout::of_run(model, &curves)?;
+    Ok(Stores { recording, layout })
+}

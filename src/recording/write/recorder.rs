@@ -1,0 +1,83 @@
+//! Collects the chunks of a store, in the order in which they are logged.
+
+use rerun::external::re_log_types::external::re_tuid::Tuid;
+use rerun::log::{Chunk, ChunkId};
+use rerun::{
+    AsComponents, EntityPath, RecordingStreamResult, SerializedComponentColumn, TimeColumn,
+};
+
+/// Chunks of one store. Rerun's `RecordingStream` has a thread, a clock, random names, and
+/// environment variables that redirect it; this has none, so that the same run makes the same
+/// recording.
+#[derive(Debug)]
+pub struct Recorder {
+    /// High half of the chunk ids: sections of a store are logged in parallel.
+    section: u64,
+    chunks: Vec<Chunk>,
+}
+
+impl Recorder {
+    /// Creates one of the sections of a store, numbered in their order.
+    pub fn of_section(section: usize) -> Self {
+        Self {
+            section: section as u64 + 1,
+            chunks: Vec::new(),
+        }
+    }
+
+    /// Logs what holds at all times.
+    pub fn log_static(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        parts: &(impl AsComponents + ?Sized),
+    ) -> RecordingStreamResult<()> {
+        let columns = parts.as_serialized_batches().into_iter();
+        self.send_columns(entity, None, columns.map(SerializedComponentColumn::from))
+    }
+
+    /// Logs `style`, which holds at all times, and `columns` with a row per time.
+    pub fn log_moving(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        times: TimeColumn,
+        style: &(impl AsComponents + ?Sized),
+        columns: impl IntoIterator<Item = SerializedComponentColumn>,
+    ) -> RecordingStreamResult<()> {
+        let entity = entity.into();
+        self.log_static(entity.clone(), style)?;
+        self.send_columns(entity, Some(times), columns)
+    }
+
+    /// Logs columns with a row per time, or with the one row that holds at all times.
+    pub fn send_columns(
+        &mut self,
+        entity: impl Into<EntityPath>,
+        times: Option<TimeColumn>,
+        columns: impl IntoIterator<Item = SerializedComponentColumn>,
+    ) -> RecordingStreamResult<()> {
+        if times.as_ref().is_some_and(|times| times.num_rows() == 0) {
+            return Ok(());
+        }
+        let times = times.map(|column| (*column.timeline().name(), column));
+        let columns = columns.into_iter().map(|c| (c.descriptor, c.list_array));
+        // the ids of the rows follow from that of the chunk
+        let number = (self.section << 32) + self.chunks.len() as u64;
+        self.chunks.push(Chunk::from_auto_row_ids(
+            ChunkId::from_tuid(Tuid::from_nanos_and_inc(number, 0)),
+            entity.into(),
+            times.into_iter().collect(),
+            columns.collect(),
+        )?);
+        Ok(())
+    }
+
+    /// Appends a later section.
+    pub fn append(&mut self, later: Self) {
+        self.chunks.extend(later.chunks);
+    }
+
+    /// The chunks, in their order.
+    pub fn into_chunks(self) -> Vec<Chunk> {
+        self.chunks
+    }
+}
