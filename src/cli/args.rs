@@ -370,25 +370,15 @@ fn word<T: Copy>(words: &[(&str, T)], found: &str) -> Result<T, String> {
 }
 
 fn planner(found: &str) -> Result<PlannerKind, String> {
-    let all = [
-        PlannerKind::SpaceTime,
-        PlannerKind::PathTime,
-        PlannerKind::OptimalControl,
-    ];
-    word(&all.map(|kind| (kind.word(), kind)), found)
+    word(&PlannerKind::WORDS, found)
 }
 
 fn search(found: &str) -> Result<SearchKind, String> {
-    let words = [
-        ("a-star", SearchKind::AStar),
-        ("dijkstra", SearchKind::Dijkstra),
-    ];
-    word(&words, found)
+    word(&SearchKind::WORDS, found)
 }
 
 fn compliance(found: &str) -> Result<Compliance, String> {
-    let all = [Compliance::None, Compliance::Shape, Compliance::Rules];
-    word(&all.map(|kind| (kind.word(), kind)), found)
+    word(&Compliance::WORDS, found)
 }
 
 /// Published thresholds by name, before a file of that name; `./NAME` is the file.

@@ -20,7 +20,7 @@ use crate::frame::{
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run, Verdict};
-use crate::planner::{Objective, Plan, PlannerKind, SearchKind};
+use crate::planner::{Objective, Plan, PlannerKind};
 use crate::scenario::Scenario;
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
@@ -100,7 +100,7 @@ impl PlanDocument {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
             planner: scenario.planner.word().to_owned(),
-            search: search(scenario.search).to_owned(),
+            search: scenario.search.word().to_owned(),
             compliance: scenario.compliance.word().to_owned(),
             thresholds: scenario.judged_by().name.to_string(),
             objective: objective(scenario).to_owned(),
@@ -156,13 +156,6 @@ pub(super) fn objective(scenario: &Scenario) -> &'static str {
     match scenario.planner {
         PlannerKind::OptimalControl => "stage-cost",
         PlannerKind::SpaceTime | PlannerKind::PathTime => scenario.objective.word(),
-    }
-}
-
-fn search(kind: SearchKind) -> &'static str {
-    match kind {
-        SearchKind::AStar => "a-star",
-        SearchKind::Dijkstra => "dijkstra",
     }
 }
 

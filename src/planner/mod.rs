@@ -43,14 +43,33 @@ pub enum PlannerKind {
 }
 
 impl PlannerKind {
+    /// Each planner and its name in files and on the command line.
+    pub const WORDS: [(&'static str, Self); 3] = [
+        ("space-time", Self::SpaceTime),
+        ("path-time", Self::PathTime),
+        ("optimal-control", Self::OptimalControl),
+    ];
+
     /// Name in files and on the command line.
     pub fn word(self) -> &'static str {
-        match self {
-            Self::SpaceTime => "space-time",
-            Self::PathTime => "path-time",
-            Self::OptimalControl => "optimal-control",
-        }
+        word_of(&Self::WORDS, self)
     }
+}
+
+impl SearchKind {
+    /// Each search and its name in files and on the command line.
+    pub const WORDS: [(&'static str, Self); 2] =
+        [("a-star", Self::AStar), ("dijkstra", Self::Dijkstra)];
+
+    /// Name in files and on the command line.
+    pub fn word(self) -> &'static str {
+        word_of(&Self::WORDS, self)
+    }
+}
+
+fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
+    let known = words.iter().find(|(_, other)| *other == value);
+    known.map_or("", |(word, _)| word)
 }
 
 /// Quantity that a planner minimises.

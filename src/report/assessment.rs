@@ -158,7 +158,7 @@ fn sections(assessment: &AssessmentDocument) -> String {
             vec![name, number(time), west, east, south, north, made_of]
         })
     });
-    format!("Extent of the sections\n{}", table(&header, 1..6, rows))
+    format!("Sections and their extents\n{}", table(&header, 1..6, rows))
 }
 
 /// Time, intervals east and north, and kind of a section.

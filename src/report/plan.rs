@@ -172,31 +172,25 @@ pub(super) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
 /// The relaxation as a sentence, and the name of its line.
 fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static str, String) {
     let RelaxationDocument { target, amount, .. } = relaxation;
-    match relaxation.kind.as_str() {
-        "domain" => (
-            "relaxed",
-            format!("the domain of '{target}' is reduced by {amount:.1} m"),
-        ),
+    let text = match relaxation.kind.as_str() {
+        "domain" => format!("the domain of '{target}', which is reduced by {amount:.1} m"),
         "risk" => {
             let until = relaxation.until_s.map_or(String::new(), |time| {
                 format!("; the plan is clear of it only from {time:.1} s on")
             });
             let text = format!("the set of '{target}', at a risk of up to {amount:.3}{until}");
-            ("enters", text)
+            return ("enters", text);
         }
-        "arrival" => (
-            "relaxed",
-            format!(
-                "the plan does not arrive: {amount:.0} m are left at the horizon, '{target}' is in the way"
-            ),
-        ),
+        "arrival" => {
+            format!("the arrival: {amount:.0} m are left at the horizon, '{target}' is in the way")
+        }
         _ => {
             let role = plan.encounters.iter().find(|e| e.target == *target);
             let role = role.map_or("unknown", |e| &e.role);
-            let text = format!("no plan complies with the rules as {role} to '{target}'");
-            ("relaxed", text)
+            format!("the rules: no plan complies with them as {role} to '{target}'")
         }
-    }
+    };
+    ("relaxes", text)
 }
 
 /// Until when own ship holds course and speed, and what follows.

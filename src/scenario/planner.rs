@@ -22,22 +22,9 @@ pub(super) struct PlannerSettings {
 pub(super) fn planner(mut table: Table, length: f64) -> PlannerSettings {
     let fields = PlannerSettings {
         control: control_settings(&mut table, length),
-        kind: table.choice(
-            "kind",
-            &[
-                ("space-time", PlannerKind::SpaceTime),
-                ("path-time", PlannerKind::PathTime),
-                ("optimal-control", PlannerKind::OptimalControl),
-            ],
-        ),
+        kind: table.choice("kind", &PlannerKind::WORDS),
         objective: objective(&mut table),
-        search: table.choice(
-            "search",
-            &[
-                ("a-star", SearchKind::AStar),
-                ("dijkstra", SearchKind::Dijkstra),
-            ],
-        ),
+        search: table.choice("search", &SearchKind::WORDS),
         compliance: table.choice("compliance", &Compliance::WORDS),
         time_weight: table.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
         max_risk: table.number("max_risk", limits::RISK),

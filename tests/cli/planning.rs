@@ -186,7 +186,7 @@ fn files_that_are_none_are_named() {
     let bytes = write(folder.path(), "bytes.toml", [0x74, 0xff, 0x00]);
     searoom(&["check", &bytes])
         .code(2)
-        .stderr(contains("found bytes that are no text at byte 1"));
+        .stderr(contains("found bytes that are not text at byte 1"));
     searoom(&["plan"]).code(2).stderr(contains("Usage"));
     searoom(&["suite", "--json", "--figure", "x.svg"])
         .code(2)
