@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use rerun::external::re_log_types::StoreId;
 use rerun::{ChunkStore, ChunkStoreConfig};
 
 use super::canvas::ViewModel;
@@ -452,8 +453,10 @@ fn the_same_run_has_the_same_name_and_another_has_another() {
     };
     let names = |bytes: &[u8]| -> BTreeSet<String> {
         let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::DEFAULT, &mut &bytes[..]);
-        let names = stores.expect("reads").into_keys();
-        names.map(|id| format!("{id:?}")).collect()
+        let ids = stores.expect("reads").into_keys();
+        ids.filter(StoreId::is_recording)
+            .map(|id| format!("{id:?}"))
+            .collect()
     };
     let document = Some("{\"plan_s\": 0.25}");
     let first = written(&run(), document);

@@ -13,9 +13,12 @@ use crate::recording::checksum::{checksum, opening, seal, unsealed};
 pub fn encode(recording: Recorder, layout: Recorder) -> Result<Vec<u8>, Failure> {
     let (recording, layout) = (recording.into_chunks(), layout.into_chunks());
     // viewers merge recordings of one name, so the name depends on the contents
-    let draft = StoreId::new(StoreKind::Recording, APPLICATION, "draft");
-    let draft = Encoder::encode(messages(&draft, &recording))?;
-    let name = format!("{:016x}", checksum(&[&draft]));
+    let draft_id = StoreId::new(StoreKind::Recording, APPLICATION, "draft");
+    let mut draft = Encoder::local()?;
+    // the footer has no fixed order
+    draft.do_not_emit_footer();
+    draft.extend(messages(&draft_id, &recording))?;
+    let name = format!("{:016x}", checksum(&[&draft.into_inner()?]));
     let layout_id = StoreId::new(StoreKind::Blueprint, APPLICATION, format!("layout_{name}"));
     let recording_id = StoreId::new(StoreKind::Recording, APPLICATION, name);
 
