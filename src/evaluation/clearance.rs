@@ -5,6 +5,7 @@ use super::piece::Piece;
 use super::space_time_set::{Face, MovingSet};
 use crate::frame::{Pose, Vector, to_port};
 use crate::geometry::{Between, shortest_between};
+use crate::tolerance;
 use crate::trajectory::Bounds;
 use crate::vessel::Hull;
 
@@ -179,11 +180,12 @@ impl Body {
             |n: Vector| farthest(n, set.vertices.iter().map(|v| v.at(time) - pose.position));
         let on_hull = |n: Vector| farthest(n, corners.iter().map(|c| c.position - pose.position));
         match shortest_between(on_set, on_hull, across) {
-            // a supporting line proves a gap: a shorter way across it is wrong
+            // A supporting line proves the gap `best.value`. A distance that is shorter by more
+            // than rounding is wrong.
             Some(Between {
                 shortest,
                 resolution,
-            }) if shortest.norm() >= best.value - resolution => {
+            }) if shortest.norm() >= best.value - resolution.max(tolerance::TOUCH_M) => {
                 best.value = best.value.max(shortest.norm());
                 if let Some(normal) = shortest.try_normalize(0.0) {
                     best.lower = best.lower.max(beyond(&set.face(normal)).lower);
