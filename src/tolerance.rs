@@ -80,6 +80,10 @@ pub const FACE_M: f64 = 1e-12;
 /// Dimensionless. Accuracy of a largest risk found by bisection.
 pub const RISK: f64 = 1e-12;
 
+/// Relative. An instant this near to the end of a leg of the desired trajectory is at its end:
+/// horizon and end are sums of different numbers.
+pub const LEG_END: f64 = 1e-12;
+
 /// Seconds. End of searches without a horizon, 31 years.
 pub const FOREVER_S: f64 = 1e9;
 

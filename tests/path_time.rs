@@ -131,6 +131,15 @@ fn own(path: &Path, speed: f64) -> OwnShip {
 }
 
 fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
+    plan_within(drawn, search, objective, Duration::from_secs(60))
+}
+
+fn plan_within(
+    drawn: &Drawn,
+    search: SearchKind,
+    objective: Objective,
+    deadline: Duration,
+) -> Planned {
     let own = own(&drawn.path, drawn.speed);
     let legs = vec![drawn.speed * 0.8; drawn.path.points.len() - 1];
     let desired = DesiredTrajectory::new(&drawn.path.points, &legs).expect("valid");
@@ -144,10 +153,43 @@ fn plan(drawn: &Drawn, search: SearchKind, objective: Objective) -> Planned {
         horizon: drawn.horizon,
         time_weight: 25.0,
         search,
-        deadline: Duration::from_secs(60),
+        deadline,
         first_turn: None,
         encountered: &[],
     })
+}
+
+/// Two hundred sets cross a path of five legs. Without time, only a few lines are tested and reported.
+#[test]
+fn out_of_time_the_search_looks_at_few_lines() {
+    let points: Vec<Vector> = (0..6)
+        .map(|k| Vector::new(400.0 * f64::from(k), 0.0))
+        .collect();
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let crossing = |k: u32, rng: &mut ChaCha8Rng| {
+        let (time, side) = (2.0 * f64::from(k) + 20.0, rng.random_range(1.0..3.0));
+        let at = Vector::new(rng.random_range(0.0..2000.0), -side * time);
+        let velocity = ConvexPolygon::point(Vector::new(0.0, side));
+        PolytopeObstacle::new(k.to_string(), set(rng, at, 8.0), velocity).into()
+    };
+    let drawn = Drawn {
+        path: Path { points },
+        obstacles: (0..200).map(|k| crossing(k, &mut rng)).collect(),
+        speed: 6.0,
+        horizon: 900.0,
+    };
+    let planned = plan_within(
+        &drawn,
+        SearchKind::AStar,
+        Objective::SpaceTimeError,
+        Duration::ZERO,
+    );
+    assert!(matches!(planned.outcome, Outcome::Deadline(None)));
+    let Planned {
+        stats, explored, ..
+    } = planned;
+    assert!(stats.generated < 5_000, "{stats:?}");
+    assert!(explored.node_count() <= 100, "{}", explored.node_count());
 }
 
 /// Straight, along the path in order, not too fast, clear of every set.

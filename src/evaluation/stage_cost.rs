@@ -2,6 +2,7 @@
 
 use super::steered::{Steering, force, state};
 use crate::frame::{heading_of, wrap};
+use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{ForceVector, StateVector};
 
@@ -26,13 +27,10 @@ pub(crate) fn stage_costs(
     desired: &DesiredTrajectory,
     weights: &StageWeights,
 ) -> [f64; 3] {
-    let rounding = CORNER * (1.0 + desired.duration());
+    let rounding = tolerance::LEG_END * (1.0 + desired.duration());
     [[0.0, 0.0], [rounding, rounding], [rounding, -rounding]]
         .map(|late| summed(steering, desired, weights, late))
 }
-
-/// Relative. How near the end of a leg an instant is at it.
-const CORNER: f64 = 1e-12;
 
 /// `late`: seconds by which legs end later than they say, for what ends and less for what begins at an instant, and for what is halfway.
 fn summed(

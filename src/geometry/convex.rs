@@ -192,13 +192,15 @@ impl ConvexPolygon {
     /// The farthest vertices in directions sorted counter-clockwise with gaps of at most half a
     /// turn. O(vertices + directions).
     ///
-    /// The farthest vertices are sorted likewise, so each search starts at the last result.
+    /// The farthest vertices are sorted likewise, so each search starts at the last result. It passes
+    /// edges so short that rounding hides them.
     pub(crate) fn extremes<'a>(
         &'a self,
         directions: &'a [Vector],
     ) -> impl Iterator<Item = Vector> + 'a {
         let vertices = &self.vertices;
         let count = vertices.len();
+        let rounding = 8.0 * f64::EPSILON * extent(vertices);
         let mut at = 0;
         if let Some(along) = directions.first() {
             for (index, p) in vertices.iter().enumerate() {
@@ -208,12 +210,14 @@ impl ConvexPolygon {
             }
         }
         directions.iter().map(move |along| {
-            for _ in 0..count {
-                let next = (at + 1) % count;
-                if !(along.dot(&vertices[next]) > along.dot(&vertices[at])) {
+            let (from, mut most) = (at, along.dot(&vertices[at]));
+            for next in (1..count).map(|step| (from + step) % count) {
+                let reach = along.dot(&vertices[next]);
+                if reach > most {
+                    (at, most) = (next, reach);
+                } else if reach < most - rounding {
                     break;
                 }
-                at = next;
             }
             vertices[at]
         })

@@ -297,6 +297,9 @@ impl Relaxer<'_> {
             return timed_out.then_some(best);
         }
         while high - low > RISK_STEP {
+            if self.time_left().is_zero() {
+                return Some(out_of_time(best));
+            }
             let risk = 0.5 * (low + high);
             let tried = self.warm_started(&best, risk).unwrap_or_else(|| at(risk));
             match tried.planned.outcome {
@@ -427,7 +430,10 @@ impl Relaxer<'_> {
         };
         problem.encountered = &encounters;
         let mut control = None;
+        let is_late = level != RelaxationLevel::Compliant && self.time_left().is_zero();
         let planned = match (self.scenario.planner, self.scenario.objective) {
+            // along paths the planner looks at a few lines all the same
+            (PlannerKind::SpaceTime, _) if is_late => Planned::of(Outcome::Deadline(None)),
             (PlannerKind::SpaceTime, _) => space_time::plan(&problem),
             (PlannerKind::PathTime, _) if level == RelaxationLevel::Waiting => {
                 path_time::stay_clear(&problem, risk)

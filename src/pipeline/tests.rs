@@ -402,6 +402,32 @@ fn out_of_time_there_is_still_an_answer() {
     ));
 }
 
+/// A set that grows over the path is passed at a risk. How little is not looked for when the time is up.
+#[test]
+fn out_of_time_no_more_risks_are_weighed() {
+    let text = r#"
+        title = "beside"
+        horizon_s = 100.0
+        own_ship = { position = { east_m = 0.0, north_m = 0.0 }, course_deg = 90.0, speed_mps = 5.0, length_m = 10.0,
+            beam_m = 3.0, turning_radius_m = 50.0, safety_margin_m = 0.0 }
+        mission = { waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 300.0, north_m = 0.0 }] }
+        planner = { kind = "path-time", objective = "length-risk", risk_weight_m = 100.0, max_risk = 0.9 }
+        [[targets]]
+        name = "growing"
+        initial_set = { vertices_m = [[140.0, 20.0], [160.0, 20.0], [160.0, 40.0], [140.0, 40.0]] }
+        velocity_set = { vertices_mps = [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]] }
+    "#;
+    let answer = |deadline: f64| {
+        let parsed = Scenario::parse(text).expect("a scenario");
+        run(Scenario { deadline, ..parsed }).planned.outcome
+    };
+    let (Outcome::Solved(best), Outcome::Deadline(Some(quick))) = (answer(60.0), answer(0.0))
+    else {
+        panic!("a plan in time, and one out of time");
+    };
+    assert!(best.cost < quick.cost, "{} {}", best.cost, quick.cost);
+}
+
 /// Three ships leave no way near the path: a wide detour is found, clear of every hard set.
 #[test]
 fn a_wide_detour_is_found_where_no_plan_stays_near_the_path() {

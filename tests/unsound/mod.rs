@@ -381,6 +381,7 @@ fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
         "hold-with-a-rounding",
         "arrived-inside",
         "horizon-at-a-turn",
+        "leg-ends-at-the-horizon",
     ] {
         let scenario = Scenario::parse(&fault(&format!("{name}.toml"))).expect(name);
         let found = checked(&document(scenario));

@@ -131,3 +131,30 @@ fn outer_square(half: f64) -> ConvexPolygon {
     ])
     .expect("finite")
 }
+
+/// Along an edge of 27 m, seen a hair from its normal, lies one of 17 nm, whose ends rounding makes equally far.
+#[test]
+fn the_farthest_vertex_is_beyond_an_edge_that_rounding_hides() {
+    let vertices = [
+        [787.5535138140174, 241.70459506877978],
+        [738.0204339067957, 376.43862576072485],
+        [698.1107690765017, 273.683442328529],
+        [713.5866593715593, 252.93292045669017],
+        [713.586659385903, 252.932920448145],
+        [736.8442228494081, 239.0773454672708],
+    ];
+    let polygon = ConvexPolygon::from_ccw(vertices.map(|[x, y]| Vector::new(x, y)).to_vec());
+    assert_eq!(polygon.vertices().len(), 6);
+    let angles = [
+        -165.0,
+        -120.8,
+        -120.784_151_106_425_23_f64,
+        -90.0,
+        0.0,
+        90.0,
+    ];
+    let directions = angles.map(|angle| crate::frame::direction(angle.to_radians()));
+    for (found, n) in polygon.supports(&directions).iter().zip(&directions) {
+        assert_eq!(*found, polygon.support(*n), "{n}");
+    }
+}

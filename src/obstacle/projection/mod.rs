@@ -2,6 +2,7 @@
 //! 6.
 
 use crate::frame::Vector;
+use crate::geometry::SignedDistance;
 use crate::obstacle::{EllipsoidObstacle, HalfSpace, PolytopeObstacle, SpaceTimeObstacle};
 
 /// Metres. Largest distance of the polygon around an ellipsoid from the ellipse at any time.
@@ -193,20 +194,18 @@ pub fn outer_faces_along(
 ) -> Vec<HalfSpace> {
     let mut faces: Vec<HalfSpace> = Vec::new();
     for track in tracks {
+        let seen = faces.iter().map(|f| PathTimeFace::new(f, 0.0, track));
+        let mut polygon = Clipped::new(seen, track.length, [0.0, horizon]);
         for _ in 0..MAX_CUTS {
-            let seen = faces.iter().map(|f| PathTimeFace::new(f, 0.0, track));
-            let Some(polygon) = Clipped::new(seen, track.length, [0.0, horizon]) else {
+            let Some(polygon) = &mut polygon else {
                 break;
             };
-            let farthest = polygon
-                .sides
-                .iter()
-                .map(|side| side.corner)
-                .map(|c| {
-                    let place = track.at(c.distance);
-                    (obstacle.signed_distance(place, c.time), c.time)
-                })
-                .max_by(|a, b| a.0.distance.total_cmp(&b.0.distance));
+            let measured = polygon.sides.iter_mut().map(|side| {
+                let at = side.corner;
+                let distance = || obstacle.signed_distance(track.at(at.distance), at.time);
+                (*side.outside.get_or_insert_with(distance), at.time)
+            });
+            let farthest = measured.max_by(|a, b| a.0.distance.total_cmp(&b.0.distance));
             let Some((outside, time)) = farthest else {
                 break;
             };
@@ -215,11 +214,15 @@ pub fn outer_faces_along(
                 break;
             }
             let support = obstacle.support(outside.normal, time);
-            faces.push(HalfSpace {
+            let face = HalfSpace {
                 normal: outside.normal,
                 velocity_support: support.rate,
                 initial_support: support.value - support.rate * time,
-            });
+            };
+            faces.push(face);
+            if !polygon.cut(PathTimeFace::new(&face, 0.0, track)) {
+                break;
+            }
         }
     }
     faces
@@ -230,6 +233,8 @@ pub fn outer_faces_along(
 struct Side {
     corner: PathTime,
     face: Option<usize>,
+    /// How far the corner is outside of what is enclosed, once that is measured.
+    outside: Option<SignedDistance>,
 }
 
 /// A rectangle cut by faces.
@@ -241,54 +246,59 @@ struct Clipped {
 impl Clipped {
     /// `None` where nothing is left.
     fn new(
-        faces: impl Iterator<Item = PathTimeFace>,
+        mut faces: impl Iterator<Item = PathTimeFace>,
         length: f64,
         times: [f64; 2],
     ) -> Option<Self> {
         let side = |distance, time| Side {
             corner: PathTime { distance, time },
             face: None,
+            outside: None,
         };
         let [from, until] = times;
-        let mut sides = vec![
-            side(0.0, from),
-            side(length, from),
-            side(length, until),
-            side(0.0, until),
-        ];
-        let mut all = Vec::with_capacity(faces.size_hint().0);
+        let mut clipped = Self {
+            sides: vec![
+                side(0.0, from),
+                side(length, from),
+                side(length, until),
+                side(0.0, until),
+            ],
+            faces: Vec::with_capacity(faces.size_hint().0),
+        };
+        faces.all(|face| clipped.cut(face)).then_some(clipped)
+    }
+
+    /// Cuts off what is beyond a face, in O(corners). False where nothing is left.
+    fn cut(&mut self, face: PathTimeFace) -> bool {
+        let index = self.faces.len();
+        self.faces.push(face);
+        let sides = &self.sides;
+        let beyond = |side: &Side| face.slack(side.corner);
+        if sides.iter().all(|s| beyond(s) <= 0.0) {
+            return true;
+        }
         let mut kept = Vec::with_capacity(sides.len() + 1);
-        for (index, face) in faces.enumerate() {
-            all.push(face);
-            let beyond = |side: &Side| face.slack(side.corner);
-            if sides.iter().all(|s| beyond(s) <= 0.0) {
-                continue;
+        for (i, a) in sides.iter().enumerate() {
+            let b = &sides[(i + 1) % sides.len()];
+            let (fa, fb) = (beyond(a), beyond(b));
+            if fa <= 0.0 {
+                kept.push(*a);
             }
-            kept.clear();
-            for (i, a) in sides.iter().enumerate() {
-                let b = &sides[(i + 1) % sides.len()];
-                let (fa, fb) = (beyond(a), beyond(b));
-                if fa <= 0.0 {
-                    kept.push(*a);
-                }
-                if (fa <= 0.0) != (fb <= 0.0) {
-                    let share = fa / (fa - fb);
-                    let (p, q) = (a.corner, b.corner);
-                    kept.push(Side {
-                        corner: PathTime {
-                            distance: p.distance + (q.distance - p.distance) * share,
-                            time: p.time + (q.time - p.time) * share,
-                        },
-                        face: if fa <= 0.0 { Some(index) } else { a.face },
-                    });
-                }
-            }
-            std::mem::swap(&mut sides, &mut kept);
-            if sides.is_empty() {
-                return None;
+            if (fa <= 0.0) != (fb <= 0.0) {
+                let share = fa / (fa - fb);
+                let (p, q) = (a.corner, b.corner);
+                kept.push(Side {
+                    corner: PathTime {
+                        distance: p.distance + (q.distance - p.distance) * share,
+                        time: p.time + (q.time - p.time) * share,
+                    },
+                    face: if fa <= 0.0 { Some(index) } else { a.face },
+                    outside: None,
+                });
             }
         }
-        Some(Self { sides, faces: all })
+        self.sides = kept;
+        !self.sides.is_empty()
     }
 }
 

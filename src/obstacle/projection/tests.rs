@@ -197,3 +197,40 @@ fn a_later_start_sees_what_is_there_later() {
     }
     assert!(met > 500 && clear > 500, "{met} {clear}");
 }
+
+/// Each plane is found by the distances of the two corners that the one before it made.
+#[test]
+fn planes_around_an_ellipsoid_take_a_few_distances_each() {
+    use crate::geometry::Ellipse;
+    let around = |center: Vector, size: f64| {
+        let axes = [Vector::new(size, 0.0), Vector::new(0.0, 0.3 * size)];
+        Ellipse::from_axes(center, axes)
+    };
+    let o = EllipsoidObstacle::new(
+        "storm",
+        around(Vector::new(2e4, 1e3), 8e3),
+        around(Vector::new(-5.0, 0.0), 3.0),
+    );
+    let track = Track {
+        start: Vector::zeros(),
+        direction: Vector::new(1.0, 0.0),
+        length: 4e4,
+    };
+    let quickest = |work: &dyn Fn() -> usize| {
+        let once = || {
+            let begun = std::time::Instant::now();
+            let made = work();
+            (begun.elapsed(), made)
+        };
+        (0..7).map(|_| once()).min().expect("some")
+    };
+    let (all, made) = quickest(&|| outer_faces_along(&o, &[track], 1e4).len());
+    let (distances, _) = quickest(&|| {
+        let places = (0..made).map(|k| Vector::new(2e3 * k as f64, 500.0));
+        places
+            .filter(|p| o.signed_distance(*p, 700.0).distance > 0.0)
+            .count()
+    });
+    assert!(made > 60, "{made}");
+    assert!(all < 25 * distances, "{all:?} {distances:?}, {made}");
+}

@@ -1,6 +1,7 @@
 //! Reference of the stage cost: the desired trajectory as a state over time.
 
 use crate::frame::heading_of;
+use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::StateVector;
 
@@ -17,9 +18,10 @@ pub enum Side {
 /// yaw rate. After its end, at rest there.
 pub fn reference(desired: &DesiredTrajectory, time: f64, side: Side) -> StateVector {
     let legs = desired.legs();
+    let rounding = tolerance::LEG_END * (1.0 + desired.duration());
     let index = match side {
-        Side::Before => legs.partition_point(|leg| leg.end_time() < time),
-        Side::After => legs.partition_point(|leg| leg.end_time() <= time),
+        Side::Before => legs.partition_point(|leg| leg.end_time() + rounding < time),
+        Side::After => legs.partition_point(|leg| leg.end_time() - rounding <= time),
     };
     let over = index == legs.len();
     let leg = &legs[index.min(legs.len() - 1)];
@@ -53,6 +55,10 @@ mod tests {
         assert!((at(10.0, Side::After)[2] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
         assert_eq!(at(13.0, Side::Before)[3], 2.0);
         assert_eq!(at(13.0, Side::After)[3], 0.0);
+        // a horizon is at the end but for rounding
+        let end = desired.duration();
+        assert_eq!(at(end.next_up(), Side::Before)[3], 2.0);
+        assert_eq!(at(end.next_down(), Side::After)[3], 0.0);
         let late = at(99.0, Side::Before);
         assert_eq!((late[0], late[1], late[3]), (10.0, 6.0, 0.0));
     }

@@ -7,11 +7,15 @@ use super::nodes::{Known, Mark, Node, Place};
 use super::scene::{Aim, Scene};
 use crate::obstacle::PathTime;
 use crate::planner::SearchKind;
+use crate::planner::clock::Clock;
 use crate::search::Space;
 use crate::tolerance;
 
 /// Relative. A line may be this much faster than the greatest speed: rounding of its ends.
 const FASTER: f64 = 1e-11;
+
+/// Lines that are looked at even when the clock is up.
+const FEW_LINES: usize = 1_000;
 
 /// A node and the line that leads to it.
 #[derive(Debug, Clone)]
@@ -43,6 +47,9 @@ pub(crate) struct Graph<'a> {
     at: Vec<Vec<usize>>,
     /// Per point when it was reached.
     reached: Vec<Vec<f64>>,
+    /// Lines that were looked at.
+    lines: usize,
+    clock: Clock,
 }
 
 impl<'a> Graph<'a> {
@@ -52,6 +59,7 @@ impl<'a> Graph<'a> {
         measure: Measure<'a>,
         search: SearchKind,
         root: Node,
+        clock: Clock,
     ) -> Self {
         let mut nodes = vec![root];
         let mut number = |list: Vec<Node>| -> Vec<usize> {
@@ -71,6 +79,8 @@ impl<'a> Graph<'a> {
             on,
             at,
             reached: vec![Vec::new(); scene.network.points()],
+            lines: 0,
+            clock,
         }
     }
 
@@ -100,6 +110,7 @@ impl<'a> Graph<'a> {
         };
         let mut candidates = ahead(&self.on[leg]);
         candidates.extend(ahead(&self.at[end]));
+        self.lines += candidates.len();
         for to in candidates {
             if self.settled[to] {
                 continue;
@@ -276,6 +287,10 @@ impl Space for Graph<'_> {
                 }
             }
         }
+    }
+
+    fn is_out_of_time(&self) -> bool {
+        self.lines >= FEW_LINES && self.clock.is_up()
     }
 
     fn bound(&mut self, state: &State) -> f64 {

@@ -35,12 +35,8 @@ pub fn least_harm(problem: &Problem) -> Option<Planned> {
     let started = Instant::now();
     let network = PathNetwork::new(&problem.desired.waypoints(), problem.alternatives).ok()?;
     let out_of_time = || started.elapsed() >= problem.deadline;
-    let levels = if out_of_time() {
-        &LEVELS[..1]
-    } else {
-        &LEVELS[..]
-    };
-    let scenes: Vec<Scene> = (levels.iter())
+    let scenes: Vec<Scene> = (LEVELS.iter())
+        .take_while(|risk| **risk == LEVELS[0] || !out_of_time())
         .map(|risk| {
             let sets = problem.obstacles.iter().map(|set| set.at_risk(*risk));
             let obstacles: Vec<Obstacle> = sets.collect();

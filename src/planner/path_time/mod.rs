@@ -23,10 +23,9 @@ pub use diagram::{DiagramCorner, DiagramLeg, DiagramObstacle, PathTimeDiagram};
 pub use harm::least_harm;
 pub use weighing::plan_weighing_risk;
 
-use std::time::Instant;
-
 use petgraph::graph::NodeIndex;
 
+use super::clock::Clock;
 use super::{
     EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NoPlan, NodeKind, Objective, Outcome,
     Plan, Planned, Problem, SearchStats,
@@ -43,8 +42,11 @@ use nodes::{Known, Mark, Node, Place};
 use profile::Profile;
 use scene::{Aim, Scene};
 
-/// Expansions between two looks at the clock.
+/// Expansions between two looks at whether the search takes long.
 const SLICE: usize = 50;
+
+/// Nodes that are told of a search even when the clock is up.
+const FEW: usize = 100;
 
 /// Expansions after which a search takes long, and lines after which it is given up.
 const HARD: usize = 2_000;
@@ -116,7 +118,7 @@ fn search_for(
     begun: &Profile,
     risk: f64,
 ) -> Planned {
-    let started = Instant::now();
+    let clock = Clock::new(problem.deadline);
     let asked = Problem {
         objective,
         ..problem.clone()
@@ -140,7 +142,7 @@ fn search_for(
     }
     known.share(scene);
     let waits_are_free = measure.waits_are_free();
-    let mut graph = Graph::new(scene, known, measure, problem.search, root);
+    let mut graph = Graph::new(scene, known, measure, problem.search, root, clock);
     let mut search = Search::new(graph.root());
     let mut timed_out = false;
     let mut quick: Option<Planned> = None;
@@ -151,9 +153,8 @@ fn search_for(
             ..
         } = search.counts();
         if objective == Objective::SpaceTimeError && quick.is_none() && expanded >= HARD {
-            let left = problem.deadline.saturating_sub(started.elapsed());
             let left = Problem {
-                deadline: left,
+                deadline: clock.left(),
                 ..problem.clone()
             };
             let found = search_for(Objective::Time, &left, scene, begun, risk);
@@ -165,12 +166,12 @@ fn search_for(
         match search.next_goal(&mut graph, expanded + SLICE) {
             Stop::Goal(goal) => break Some(goal),
             Stop::Exhausted => break None,
-            Stop::Budget if started.elapsed() >= problem.deadline => {
+            Stop::Time => {
                 timed_out = true;
                 break None;
             }
             Stop::Budget if quick.is_some() && generated >= MOST_LINES => break None,
-            Stop::Budget | Stop::Time => {}
+            Stop::Budget => {}
         }
     };
     if let (None, Some(quick)) = (goal, quick) {
@@ -232,7 +233,7 @@ fn search_for(
     Planned {
         outcome,
         stats,
-        explored: explored(&graph, search),
+        explored: explored(&graph, search, clock),
         path_time: Some(Box::new(drawn.diagram(scene, problem.own.pose))),
         escape: None,
     }
@@ -403,14 +404,17 @@ fn lines(scene: &Scene, graph: &Graph, state: &State, heading: f64) -> Vec<Segme
         .collect()
 }
 
-/// The nodes and the lines that were tested.
-fn explored(graph: &Graph, search: Search<State>) -> ExploredGraph {
+/// The nodes and the lines that were tested; of more than a few, what there is time for.
+fn explored(graph: &Graph, search: Search<State>, clock: Clock) -> ExploredGraph {
     let scene = graph.scene;
     let nodes = search.into_nodes();
     let mut made = ExploredGraph::with_capacity(64, 64);
     let mut index_of: Vec<Option<NodeIndex>> = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         let state = &node.state;
+        if made.node_count() >= FEW && clock.is_up() {
+            break;
+        }
         if index > 0 && !state.tested.get() {
             continue;
         }

@@ -1,10 +1,9 @@
 //! Length against risk: how much risk is a shorter way worth?
 
-use std::time::Instant;
-
 use super::plan;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::planner::{Objective, Planned, Problem};
+use crate::planner::clock::Clock;
+use crate::planner::{Objective, Outcome, Planned, Problem};
 
 /// Dimensionless. The least risk that a way takes is found to this.
 const RISK_STEP: f64 = 1e-4;
@@ -28,7 +27,7 @@ impl Level {
 /// takes few lengths: between two risks of different lengths the step is closed in on by halves, to 1e-4. Where
 /// no way exists at `max_risk`, the answer is that of `max_risk`.
 pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Planned {
-    let started = Instant::now();
+    let clock = Clock::new(problem.deadline);
     let at = |risk: f64| {
         let level_sets: Vec<Obstacle> = if risk > 0.0 {
             problem.obstacles.iter().map(|o| o.at_risk(risk)).collect()
@@ -38,7 +37,7 @@ pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Plan
         let planned = plan(&Problem {
             objective: Objective::Length,
             obstacles: &level_sets,
-            deadline: problem.deadline.saturating_sub(started.elapsed()),
+            deadline: clock.left(),
             ..problem.clone()
         });
         let length = planned.outcome.plan().map(|plan| plan.trajectory.length());
@@ -50,6 +49,7 @@ pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Plan
     };
     let mut best = at(0.0);
     let mut steps: Vec<(f64, Option<f64>, f64, f64)> = Vec::new();
+    let mut timed_out = false;
     if max_risk > 0.0 {
         let greatest = at(max_risk);
         if let Some(length) = greatest.length {
@@ -64,6 +64,10 @@ pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Plan
         let shortens = before.is_none_or(|before| before > after + 1e-6);
         if !shortens || high - low <= RISK_STEP || after + weight * low >= best.cost(weight) {
             continue;
+        }
+        if clock.is_up() {
+            timed_out = true;
+            break;
         }
         let middle = at(0.5 * (low + high));
         let risk = middle.risk;
@@ -80,6 +84,9 @@ pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Plan
     if let Some(plan) = planned.outcome.plan_mut() {
         plan.cost = cost;
         plan.graph_cost = Some(cost);
+    }
+    if timed_out {
+        planned.outcome = Outcome::Deadline(planned.outcome.into_plan());
     }
     planned
 }

@@ -6,6 +6,7 @@
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::planner::Problem;
+use crate::planner::clock::Clock;
 use crate::planner::space_time::proxy::Proxy;
 
 /// Cells along either axis.
@@ -31,8 +32,9 @@ pub(crate) struct CostToGoGrid {
 
 impl CostToGoGrid {
     /// Backward recursion from the horizon over all positions that lie on some path within the
-    /// horizon. O(cells x instants x (moves + legs)); about ten milliseconds.
-    pub(crate) fn of(problem: &Problem, proxies: &[Proxy]) -> Option<Self> {
+    /// horizon. O(cells x instants x (moves + legs)); about ten milliseconds. `None` where
+    /// the time is up before.
+    pub(crate) fn of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Option<Self> {
         let (start, end) = (problem.own.pose.position, problem.desired.end());
         let top = problem.own.max_speed();
         let half = 0.5 * top * problem.horizon;
@@ -68,6 +70,9 @@ impl CostToGoGrid {
         let per_second = 1.0 / problem.desired.duration();
         let mut later = [f32::INFINITY; CELLS];
         for layer in (0..layers).rev() {
+            if clock.is_up() {
+                return None;
+            }
             let time = step * layer as f64;
             let mut blocked = ashore.clone();
             for proxy in proxies {
@@ -133,11 +138,12 @@ impl CostToGoGrid {
             low..(high + 1.0).clamp(0.0, CELLS as f64) as usize
         };
         for row in range(Vector::new(0.0, 1.0), self.corner.y) {
-            for column in range(Vector::new(1.0, 0.0), self.corner.x) {
-                let k = row * CELLS + column;
-                if !blocked[k] && section.contains(self.middle(k)) {
-                    blocked[k] = true;
-                }
+            let mut within = range(Vector::new(1.0, 0.0), self.corner.x);
+            let inside = |column: &usize| section.contains(self.middle(row * CELLS + column));
+            // a convex set is one run of cells in a row
+            if let Some(first) = within.find(inside) {
+                let last = within.rfind(inside).unwrap_or(first);
+                blocked[row * CELLS + first..=row * CELLS + last].fill(true);
             }
         }
     }
@@ -160,5 +166,51 @@ impl CostToGoGrid {
             }
         }
         f64::from(least)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Pose;
+    use crate::obstacle::LandObstacle;
+    use crate::planner::{Objective, SearchKind};
+    use crate::trajectory::DesiredTrajectory;
+    use crate::vessel::{Hull, OwnShip};
+    use std::time::Duration;
+
+    #[test]
+    fn the_grid_is_made_while_there_is_time() {
+        let points = [Vector::zeros(), Vector::new(1000.0, 0.0)];
+        let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
+        let own = OwnShip {
+            pose: Pose::new(Vector::zeros(), 0.0),
+            speed: 5.0,
+            hull: Hull {
+                length: 30.0,
+                beam: 8.0,
+            },
+            turning_radius: 100.0,
+            speeds: vec![5.0],
+            safety_margin: 0.0,
+        };
+        let problem = Problem {
+            own: &own,
+            desired: &desired,
+            alternatives: &[],
+            objective: Objective::SpaceTimeError,
+            obstacles: &[],
+            land_obstacle: LandObstacle::none(),
+            horizon: 400.0,
+            time_weight: 25.0,
+            search: SearchKind::AStar,
+            deadline: Duration::ZERO,
+            first_turn: None,
+            encountered: &[],
+        };
+        let within = |time| CostToGoGrid::of(&problem, &[], Clock::new(time));
+        assert!(within(Duration::ZERO).is_none());
+        let grid = within(Duration::from_secs(60)).expect("a grid");
+        assert!(grid.from(Vector::zeros(), 0.0).is_finite());
     }
 }

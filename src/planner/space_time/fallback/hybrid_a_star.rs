@@ -122,7 +122,7 @@ pub(crate) fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     let pieces = pieces(problem.obstacles, problem.horizon);
     let proxies = within_reach(problem, &pieces);
-    let grid = CostToGoGrid::of(problem, &proxies)?;
+    let grid = CostToGoGrid::of(problem, &proxies, clock)?;
     RESOLUTIONS.into_iter().find_map(|resolution| {
         let mut search = HybridAStar {
             problem,
