@@ -1,4 +1,5 @@
-//! Membership and first contact with one space-time body. Every bench asserts the answer, then times it.
+//! Membership and first contact with one space-time body. Every bench asserts the answer, then
+//! times it.
 
 use std::hint::black_box;
 

@@ -1,4 +1,5 @@
-//! Land: reading a map, asking it, planning round it. Every bench asserts the answer, then times it.
+//! Land: reading a map, asking it, planning round it. Every bench asserts the answer, then times
+//! it.
 
 use std::hint::black_box;
 use std::path::PathBuf;

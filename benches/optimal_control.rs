@@ -4,7 +4,8 @@
 //! cargo bench --no-default-features --bench optimal_control
 //! ```
 //!
-//! Asserts what it times. The random scenes run once; `scenes` in the name of a filter runs them alone.
+//! Asserts what it times. The random scenes run once; `scenes` in the name of a filter runs them
+//! alone.
 
 #[path = "../tests/optimal_control_scenes/mod.rs"]
 mod scenes;

@@ -128,7 +128,8 @@ fn print_times(name: &str, times: &[f64]) {
     );
 }
 
-/// Not one scene many times but many scenes, printed: what a scene takes varies more than the clock.
+/// Not one scene many times but many scenes, printed: what a scene takes varies more than the
+/// clock.
 fn random_scenes(_: &mut Criterion) {
     let mut all = Vec::new();
     for kind in EncounterKind::ALL {
@@ -146,8 +147,9 @@ fn random_scenes(_: &mut Criterion) {
     }
 }
 
-/// Each vessel under way in New York harbour among all others: all relaxation levels, without sets and verdict. With the same traffic again
-/// nine times, beyond anybody's reach, the plans are the same.
+/// Each vessel under way in New York harbour among all others: all relaxation levels, without sets
+/// and verdict. With the same traffic again nine times, beyond anybody's reach, the plans are the
+/// same.
 fn new_york_harbour(_: &mut Criterion) {
     let scenes = new_york::scenes().expect("the data");
     let planned = |scenes: &[Scenario]| {

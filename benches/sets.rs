@@ -1,5 +1,5 @@
-//! Membership, risk, contact and closest approach of one obstacle, and how they grow with its vertices. Every
-//! bench asserts the answer, then times it.
+//! Membership, risk, contact and closest approach of one obstacle, and how they grow with its
+//! vertices. Every bench asserts the answer, then times it.
 
 use std::hint::black_box;
 
@@ -21,7 +21,8 @@ fn polygon(vertices: usize, radius: f64, center: Vector, phase: f64) -> ConvexPo
     ConvexPolygon::hull(&points).expect("finite")
 }
 
-/// `n + n` vertices: 20 m about the origin, moving east at 1 m/s with half a metre a second to spare.
+/// `n + n` vertices: 20 m about the origin, moving east at 1 m/s with half a metre a second to
+/// spare.
 fn polytope(n: usize) -> PolytopeObstacle {
     PolytopeObstacle::new(
         "polytope",
@@ -195,7 +196,8 @@ fn velocity_obstacle(criterion: &mut Criterion) {
     }
 }
 
-/// As a region: its sides when it is made, its support in any direction, membership, and the half-planes of a picture.
+/// As a region: its sides when it is made, its support in any direction, membership, and the
+/// half-planes of a picture.
 fn ellipsoid_velocity_obstacle(criterion: &mut Criterion) {
     let (x, v) = (Vector::new(-100.0, 300.0), Vector::new(2.2, -4.5));
     let o = ellipsoid();

@@ -1,5 +1,5 @@
-//! Figure 4 of the paper: dCPA over own velocities from (50, 50) m, and the velocity obstacle in white, for the polytope
-//! and the ellipsoid.
+//! Figure 4 of the paper: dCPA over own velocities from (50, 50) m, and the velocity obstacle in
+//! white, for the polytope and the ellipsoid.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure4 [FILE.svg|FILE.png]

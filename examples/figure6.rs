@@ -1,5 +1,5 @@
-//! Figure 6 of the paper: three ships that are known to different degrees, and the profiles of least time at three
-//! greatest speeds.
+//! Figure 6 of the paper: three ships that are known to different degrees, and the profiles of
+//! least time at three greatest speeds.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure6 [FILE.svg|FILE.png]

@@ -1,11 +1,13 @@
-//! Random scenes of every kind through the whole of the program: text, scenario, plan, document, verification.
+//! Random scenes of every kind through the whole of the program: text, scenario, plan, document,
+//! verification.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example fuzz -- --scenes 10000 --seed 1 [--planner KIND] [--keep DIR]
 //! ```
 //!
-//! Counts what must not happen, and ends with status 1 if something did, lateness aside. Scenes with a fault are written to DIR as scenario files;
-//! `--scenes 1 --seed N` runs one of them again. Scenes that the program refuses are drawn too, and not counted as scenes.
+//! Counts what must not happen, and ends with status 1 if something did, lateness aside. Scenes
+//! with a fault are written to DIR as scenario files; `--scenes 1 --seed N` runs one of them again.
+//! Scenes that the program refuses are drawn too, and not counted as scenes.
 
 #[path = "../tests/wild/mod.rs"]
 mod wild;

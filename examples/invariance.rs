@@ -1,5 +1,5 @@
-//! Whether plans depend on where a scene lies, which way, and how large it is, and whether larger sets ever make a plan cheaper: two
-//! tables.
+//! Whether plans depend on where a scene lies, which way, and how large it is, and whether larger
+//! sets ever make a plan cheaper: two tables.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example invariance [SCENES]

@@ -1,5 +1,6 @@
-//! Receding-horizon control: CyberShip II sails among the ellipsoids of figure 9. Every two seconds the plan moves on by one
-//! interval and is solved again from the state that the ship has come to, which a current has set off.
+//! Receding-horizon control: CyberShip II sails among the ellipsoids of figure 9. Every two seconds
+//! the plan moves on by one interval and is solved again from the state that the ship has come to,
+//! which a current has set off.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example receding_horizon
@@ -79,7 +80,8 @@ fn main() -> Result<(), TrajectoryError> {
     Ok(())
 }
 
-/// Where the ship is after some seconds under constant forces, with the current (Runge–Kutta, fourth order).
+/// Where the ship is after some seconds under constant forces, with the current (Runge–Kutta,
+/// fourth order).
 fn sailed(from: &StateVector, force: &ForceVector, duration: f64) -> StateVector {
     let rates = |state: &StateVector| {
         let mut rates = CyberShip2::EXACT.rates(state, force);

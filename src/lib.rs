@@ -2,19 +2,19 @@
 //!
 //! # The problem
 //!
-//! Two convex sets describe a target. `O_0` contains every position where own ship's centre would be
-//! too near to the target at t = 0. `V` contains every velocity that the target may have. At time
-//! `t` own ship must be outside the Minkowski sum
+//! Two convex sets describe a target. `O_0` contains every position where own ship's centre would
+//! be too near to the target at t = 0. `V` contains every velocity that the target may have. At
+//! time `t` own ship must be outside the Minkowski sum
 //!
 //! ```text
 //! O_t = O_0 ⊕ t V
 //! ```
 //!
 //! `V` is convex, so `O_t` holds for every velocity that stays in `V`, constant or not. Own ship
-//! should follow the desired trajectory, which is at `x_d` at `t_d` and lasts `T_d` seconds. A plan is
-//! a motion `x(t)` of lines and of arcs with the turning radius, at speeds of a finite set, from the
-//! pose at t = 0 to the last waypoint at `T`. Alternatively it follows given paths at any speed up to
-//! the largest. Its cost is the space-time error
+//! should follow the desired trajectory, which is at `x_d` at `t_d` and lasts `T_d` seconds. A plan
+//! is a motion `x(t)` of lines and of arcs with the turning radius, at speeds of a finite set, from
+//! the pose at t = 0 to the last waypoint at `T`. Alternatively it follows given paths at any speed
+//! up to the largest. Its cost is the space-time error
 //!
 //! ```text
 //! J = 1/T_d ∫ min over σ of ( |x(t) - x_d(σ)|² + q (t - t_d(σ))² ) dt          m², t from 0 to T
@@ -30,14 +30,14 @@
 //! rejects a depth over 1e-6 m ([`tolerance::DEPTH_M`]). The planner returns the cheapest clear
 //! candidate that it found. It does not claim that no cheaper plan exists.
 //!
-//! The sets, the graph and the numbers of equations come from A. B. Martinsen and A. M. Lekkas, "Two
-//! Space-Time Obstacle Representations Based on Ellipsoids and Polytopes" (2022).
+//! The sets, the graph and the numbers of equations come from A. B. Martinsen and A. M. Lekkas,
+//! "Two Space-Time Obstacle Representations Based on Ellipsoids and Polytopes" (2022).
 //!
 //! # Conventions
 //!
 //! - Plane: east, north, metres. Headings in radians, counter-clockwise from east. Time in seconds
-//!   from the scenario's start, speeds in m/s. Courses (degrees clockwise from true north) and knots
-//!   exist in files and reports only; [`frame`] converts.
+//!   from the scenario's start, speeds in m/s. Courses (degrees clockwise from true north) and
+//!   knots exist in files and reports only; [`frame`] converts.
 //! - Port and starboard are [`frame::Side`], never a sign.
 //! - Names of approximations say which way they err: `outer_…` contains the exact set. Safety rests
 //!   on these.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// What a room may use of the crate; itself is always allowed. House, section 2.
+/// What a room may use of the crate; itself is always allowed.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("frame", &[]),
     ("tolerance", &[]),
@@ -314,7 +314,8 @@ fn module_of(path: &str) -> Vec<String> {
     module
 }
 
-/// Collects every identifier that is a path of its own or heads one, and every path below the crate.
+/// Collects every identifier that is a path of its own or heads one, and every path below the
+/// crate.
 fn read(tokens: TokenStream, module: &[String], names: &mut Vec<String>, used: &mut Vec<String>) {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let mut i = 0;

@@ -290,8 +290,8 @@ fn the_answers_are_those_of_the_obstacles() {
     }
 }
 
-/// Points, segments, needles and repeated vertices, from near and far: the answer is free, and nothing sampled before
-/// it is.
+/// Points, segments, needles and repeated vertices, from near and far: the answer is free, and
+/// nothing sampled before it is.
 #[test]
 fn degenerate_sets_are_left_too() {
     let mut rng = seeded(4);

@@ -221,7 +221,8 @@ fn one_mistake_is_one_fault_with_its_line() {
     assert!(situation.scenario(&sized).is_ok());
 }
 
-/// Entities that would expand to gigabytes, elements within elements, and more of them than are allowed.
+/// Entities that would expand to gigabytes, elements within elements, and more of them than are
+/// allowed.
 #[test]
 fn what_is_meant_to_eat_memory_is_refused() {
     let mut bomb =

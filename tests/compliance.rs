@@ -1,4 +1,5 @@
-//! What plans that keep to the rules achieve over random encounters, counted from the trajectories alone.
+//! What plans that keep to the rules achieve over random encounters, counted from the trajectories
+//! alone.
 //!
 //! The default is short. The full counts, 3,000 encounters of each kind, with their bounds:
 //!
@@ -36,17 +37,19 @@ const APPARENT_TIME: f64 = 30.0;
 /// Share of encounters in which own ship has to pass as the rules ask.
 const NEARLY_ALL: f64 = 0.99;
 
-/// Share of encounters in which a plan that complies is found at least. Measured: head-on all, give-way 96, stand-on 98.5 and
-/// overtaking 99 % of 750.
+/// Share of encounters in which a plan that complies is found at least. Measured: head-on all,
+/// give-way 96, stand-on 98.5 and overtaking 99 % of 750.
 const RARELY_GIVEN_UP: f64 = 0.94;
 
-/// Share of encounters in which the first judge finds no rule broken at least. Measured: 98.3 to 99.1 % of 3,000 of each kind.
+/// Share of encounters in which the first judge finds no rule broken at least. Measured: 98.3 to
+/// 99.1 % of 3,000 of each kind.
 const NONE_BROKEN: f64 = 0.96;
 
 /// m², of the median cost of each kind, half as much again as measured.
 const MEDIAN_COST: [f64; 4] = [7_000.0, 11_000.0, 80_000.0, 14_000.0];
 
-/// Seconds from the end of the hold to the closest approach, at least in all but a twentieth, and at most.
+/// Seconds from the end of the hold to the closest approach, at least in all but a twentieth, and
+/// at most.
 const TO_SPARE: [f64; 2] = [15.0, 90.0];
 
 /// The same for a stand-on ship that turns nowhere to port, whether there is another escape or not.
@@ -121,7 +124,8 @@ struct Seen {
     off_the_bow: bool,
     /// No first turn to port, and no course to port of the first before the other has passed.
     no_port: bool,
-    /// On the desired trajectory until the escape begins, which is to starboard or by less speed; none where nothing is to be escaped.
+    /// On the desired trajectory until the escape begins, which is to starboard or by less speed;
+    /// none where nothing is to be escaped.
     holds: bool,
     /// Seconds from the end of the hold to the undisturbed closest approach.
     to_spare: Option<f64>,
@@ -185,7 +189,8 @@ fn holds(run: &Run, plan: &Trajectory) -> bool {
     apparent && held.map(off).all(|off| off <= ON_TRACK)
 }
 
-/// Prints in how many of them something holds, with its lower bound, 95 %; the seeds where it does not.
+/// Prints in how many of them something holds, with its lower bound, 95 %; the seeds where it does
+/// not.
 fn print(what: &str, all: &[Seen], holds: impl Fn(&Seen) -> bool) -> Vec<usize> {
     let failing: Vec<usize> = (0..all.len()).filter(|i| !holds(&all[*i])).collect();
     let bound = 100.0 * (1.0 - failure_bound(failing.len(), all.len()));

@@ -1,4 +1,5 @@
-//! The velocity obstacle of ellipsoids as a region, against its definition: a dense search over time.
+//! The velocity obstacle of ellipsoids as a region, against its definition: a dense search over
+//! time.
 
 mod set_generators;
 
@@ -20,8 +21,9 @@ fn place(rng: &mut ChaCha8Rng, o: &EllipsoidObstacle, distance: f64) -> Vector {
     }
 }
 
-/// `n . v` of the farthest velocity that leads within the distance of the section of some time, by a search over times
-/// a tenth apart and then between them. The definition: it knows sections and nothing else.
+/// `n . v` of the farthest velocity that leads within the distance of the section of some time, by
+/// a search over times a tenth apart and then between them. The definition: it knows sections and
+/// nothing else.
 fn searched(o: &EllipsoidObstacle, x: Vector, horizon: f64, distance: f64, n: Vector) -> f64 {
     let of = |time: f64| (o.support(n, time).value + distance - n.dot(&x)) / time;
     let end = horizon.min(1e10);
@@ -139,7 +141,8 @@ fn the_region_holds_the_velocities_that_meet_and_no_others() {
     assert!(within > 300 && outside > 1000, "{within} {outside}");
 }
 
-/// Every corner of the picture is as near to the region as promised, and the region's boundary is within it.
+/// Every corner of the picture is as near to the region as promised, and the region's boundary is
+/// within it.
 #[test]
 fn the_half_planes_are_outside_by_no_more_than_was_asked() {
     let mut rng = seeded(303);
@@ -196,7 +199,8 @@ fn from_inside_or_from_nowhere_every_velocity_meets() {
     }
 }
 
-/// Of discs, the textbook's cone: sides of the two tangents, moved by the speed that the target may have beside her own.
+/// Of discs, the textbook's cone: sides of the two tangents, moved by the speed that the target may
+/// have beside her own.
 #[test]
 fn discs_have_the_cone_of_the_textbook() {
     use nalgebra::Matrix2;

@@ -1,5 +1,5 @@
-//! Random encounters, from the scenario to the verdict: every plan is re-checked, met by targets that do
-//! anything their sets allow, and measured against a dense search.
+//! Random encounters, from the scenario to the verdict: every plan is re-checked, met by targets
+//! that do anything their sets allow, and measured against a dense search.
 //!
 //! The default is short. The full counts, with the tables:
 //!
@@ -8,9 +8,9 @@
 //!     cargo test --release --no-default-features --test encounters -- --nocapture --test-threads 1
 //! ```
 //!
-//! Seeds are 0, 1, 2, … per kind; nothing is left out after the fact: draws that the generator replaced
-//! and encounters without a plan are counted. Every bound is relative to this generator and to targets
-//! whose velocity stays in their velocity set.
+//! Seeds are 0, 1, 2, … per kind; nothing is left out after the fact: draws that the generator
+//! replaced and encounters without a plan are counted. Every bound is relative to this generator
+//! and to targets whose velocity stays in their velocity set.
 
 mod dense_search;
 #[path = "../examples/shared/moved.rs"]
@@ -47,15 +47,16 @@ const TINY: f64 = 5.0;
 /// m²: a dearer way than this is not looked for where the planner has none.
 const WORTH_FINDING: f64 = 200_000.0;
 
-/// Share of plans whose side may be against the rules: shapes make the right side the cheaper one, they do
-/// not forbid the other.
+/// Share of plans whose side may be against the rules: shapes make the right side the cheaper one,
+/// they do not forbid the other.
 const RARELY: f64 = 0.03;
 
-/// The same for the first turn of a give-way ship. Measured: 5 of 75 to port, most of them for targets near
-/// the beam or abaft it; every one passes astern.
+/// The same for the first turn of a give-way ship. Measured: 5 of 75 to port, most of them for
+/// targets near the beam or abaft it; every one passes astern.
 const RARELY_GIVE_WAY: f64 = 0.15;
 
-/// The same where the rules ask for no side: neither is taken much more often. Measured: to port 37 and 41 of 75.
+/// The same where the rules ask for no side: neither is taken much more often. Measured: to port 37
+/// and 41 of 75.
 const EITHER_SIDE: f64 = 0.7;
 
 /// Share of encounters that may be without a plan. Measured: 0 of 1200.
@@ -137,8 +138,9 @@ fn planned(seed: u64, drawn: Drawn) -> Record {
 }
 
 /// Least distance of the hulls, metres, when the target starts anywhere in the disc of its position
-/// uncertainty and its velocity varies anyhow within its velocity set, its hull on the course it takes or at either end of
-/// its course spread. Steps are 0.1 s, longer only while the hulls cannot come nearer than the least so far.
+/// uncertainty and its velocity varies anyhow within its velocity set, its hull on the course it
+/// takes or at either end of its course spread. Steps are 0.1 s, longer only while the hulls cannot
+/// come nearer than the least so far.
 fn least_hull_distance(
     own: &OwnShip,
     plan: &Trajectory,
@@ -218,8 +220,8 @@ fn least_sampled(record: &Record) -> f64 {
     least
 }
 
-/// Plans that keep out of the hard sets alone pass as near as these let them: the margin is kept whatever course the other takes,
-/// her hull turned with it.
+/// Plans that keep out of the hard sets alone pass as near as these let them: the margin is kept
+/// whatever course the other takes, her hull turned with it.
 #[test]
 fn a_hull_that_turns_with_its_course_keeps_the_margin() {
     let (mut broken, mut near) = (Vec::new(), 0);
@@ -554,9 +556,9 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
     assert!(2 * cut_short <= all, "{cut_short} of {all} cut short");
 }
 
-/// The bound is admissible on real graphs: with it and without it the cheapest plan on the graph costs the
-/// same, and with it no more nodes are expanded.
-/// An encounter with every length times a factor and every speed as it is.
+/// The bound is admissible on real graphs: with it and without it the cheapest plan on the graph
+/// costs the same, and with it no more nodes are expanded. An encounter with every length times a
+/// factor and every speed as it is.
 fn larger(scenario: &Scenario, factor: f64) -> Planned {
     let own = &scenario.own_ship;
     let polygon = |set: &ConvexPolygon, factor: f64| {
@@ -596,8 +598,9 @@ fn larger(scenario: &Scenario, factor: f64) -> Planned {
     planned
 }
 
-/// Plans of small scenes are alike to the last digit where sizes are powers of two apart. Larger than planned, where what is brought back
-/// is held to a tenth of a micrometre, they are not: up to 5 % dearer or cheaper.
+/// Plans of small scenes are alike to the last digit where sizes are powers of two apart. Larger
+/// than planned, where what is brought back is held to a tenth of a micrometre, they are not: up to
+/// 5 % dearer or cheaper.
 #[test]
 fn plans_of_another_size_are_the_same_plans() {
     for kind in EncounterKind::ALL {
@@ -629,8 +632,9 @@ fn plans_of_another_size_are_the_same_plans() {
     }
 }
 
-/// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste: in the median, in
-/// nine of ten scenes, and ever, where weights allow 4. Measured: 1.05, 1.16 and 1.36.
+/// How many times the cheapest the graph's plan may cost among several targets, where the search
+/// makes haste: in the median, in nine of ten scenes, and ever, where weights allow 4. Measured:
+/// 1.05, 1.16 and 1.36.
 const HASTE: [f64; 3] = [1.1, 1.3, 1.7];
 
 /// The same cost with one target; among several, where the search is in haste, a little more.
@@ -688,7 +692,8 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
     assert!(within, "{found:?}, at most {HASTE:?}");
 }
 
-/// On the four scenarios together A* expands at most half as many nodes as Dijkstra, on each fewer, and finds the same cost.
+/// On the four scenarios together A* expands at most half as many nodes as Dijkstra, on each fewer,
+/// and finds the same cost.
 #[test]
 fn a_star_expands_half_of_dijkstra_on_the_four_scenarios() {
     let (mut expanded, mut blind) = (0, 0);
@@ -710,7 +715,8 @@ fn a_star_expands_half_of_dijkstra_on_the_four_scenarios() {
     assert!(2 * expanded <= blind, "{expanded} of {blind}");
 }
 
-/// Moved, turned, mirrored, larger, smaller, slower: the plan is the same. All 300 scenes: `cargo run --release --no-default-features
+/// Moved, turned, mirrored, larger, smaller, slower: the plan is the same. All 300 scenes: `cargo
+/// run --release --no-default-features
 /// --example invariance`.
 #[test]
 fn a_scene_elsewhere_another_way_or_of_another_size_has_the_same_plan() {
@@ -743,7 +749,8 @@ fn costs_of(files: [&str; 2]) -> [f64; 2] {
     })
 }
 
-/// Coordinates of millions of metres, and a scene moved by 1.6 km: corners of the path are no full circles.
+/// Coordinates of millions of metres, and a scene moved by 1.6 km: corners of the path are no full
+/// circles.
 #[test]
 fn the_same_scene_in_another_place_costs_the_same() {
     for files in [["utm-a", "utm-b"], ["dear-a", "dear-b"]] {
@@ -753,7 +760,8 @@ fn the_same_scene_in_another_place_costs_the_same() {
     }
 }
 
-/// Own ship a hair beside the path, before or behind its beginning, or turned a hair: nobody is there, and no circle is sailed.
+/// Own ship a hair beside the path, before or behind its beginning, or turned a hair: nobody is
+/// there, and no circle is sailed.
 #[test]
 fn a_hair_beside_the_path_is_on_it() {
     let file = std::path::Path::new("tests/faults/offset-circle.toml");

@@ -521,7 +521,8 @@ impl Declared {
         document.to_string()
     }
 
-    /// Pieces of the declared way: length and heading as a function of the way made on it, and the leg or the two legs.
+    /// Pieces of the declared way: length and heading as a function of the way made on it, and the
+    /// leg or the two legs.
     fn pieces(&self, rounded: bool) -> Vec<Piece> {
         let mut pieces = Vec::new();
         let mut begun = 0.0;
@@ -565,8 +566,9 @@ struct Piece {
 /// Seconds by which instants are looked at within a step, so that rounding is none.
 const INSIDE: f64 = 1e-4;
 
-/// Targets that follow their routes within the spread, fast and slow, straying to either side, on sharp corners and on arcs,
-/// stay in the declared set at every instant, with their velocity and with their place, and by as much as hulls and margin ask for.
+/// Targets that follow their routes within the spread, fast and slow, straying to either side, on
+/// sharp corners and on arcs, stay in the declared set at every instant, with their velocity and
+/// with their place, and by as much as hulls and margin ask for.
 #[test]
 fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
@@ -699,8 +701,9 @@ fn a_route_on_one_line_is_a_tracked_ship() {
     );
 }
 
-/// With half a metre per second and five degrees of every target unknown, Imazu's with 500 m between hulls of 100 × 20 m: every
-/// encounter has a verified plan, no target is left out, and no set is entered, not even at a risk.
+/// With half a metre per second and five degrees of every target unknown, Imazu's with 500 m
+/// between hulls of 100 × 20 m: every encounter has a verified plan, no target is left out, and no
+/// set is entered, not even at a risk.
 #[test]
 fn every_encounter_has_a_plan_clear_of_all_it_declares() {
     let mut planned = 0;

@@ -1,4 +1,5 @@
-//! Random traffic in the harbour of Trondheim: every plan keeps off land and targets, A* finds what Dijkstra finds.
+//! Random traffic in the harbour of Trondheim: every plan keeps off land and targets, A* finds what
+//! Dijkstra finds.
 //!
 //! `SEAROOM_HARBOUR` is the number of scenes (30 if not set).
 
@@ -53,7 +54,8 @@ struct Waters {
     legs: std::ops::Range<f64>,
 }
 
-/// A small ferry in the fjord and among the piers, and a boat along the quays, in the basins and in the river.
+/// A small ferry in the fjord and among the piers, and a boat along the quays, in the basins and in
+/// the river.
 const FJORD: Waters = Waters {
     name: "fjord",
     near: 250.0,
@@ -81,7 +83,8 @@ const QUAYS: Waters = Waters {
     legs: 120.0..350.0,
 };
 
-/// A path of two or three legs on water, not far from land, and targets that are near it at some time.
+/// A path of two or three legs on water, not far from land, and targets that are near it at some
+/// time.
 fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let land = Land {
@@ -242,7 +245,8 @@ fn an_island_in_the_way_is_sailed_round() {
     hold("across the island", &scenes);
 }
 
-/// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste.
+/// How many times the cheapest the graph's plan may cost among several targets, where the search
+/// makes haste.
 const HASTE: f64 = 1.5;
 
 /// The same graph without the bound.

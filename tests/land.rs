@@ -162,8 +162,8 @@ fn a_bad_map_is_named_with_its_file_its_feature_and_what_is_allowed() {
     );
 }
 
-/// Own hull lies free on both legs, and her bow would sweep to within a metre of an islet on the way from one course to the
-/// other.
+/// Own hull lies free on both legs, and her bow would sweep to within a metre of an islet on the
+/// way from one course to the other.
 #[test]
 fn a_turn_on_the_spot_beside_an_islet_is_refused_and_judged() {
     let folder = folder();
@@ -269,7 +269,8 @@ fn a_start_and_a_path_on_land_are_named_together() {
     );
 }
 
-/// The bends of the canal are tighter than own ship turns: no motion that follows its path is clear of land.
+/// The bends of the canal are tighter than own ship turns: no motion that follows its path is clear
+/// of land.
 #[test]
 fn a_path_that_cannot_be_sailed_clear_of_land_has_no_plan_rather_than_one_ashore() {
     let file = concat!(

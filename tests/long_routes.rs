@@ -7,7 +7,8 @@ use searoom::scenario::Scenario;
 /// Metres of a leg.
 const LEG: f64 = 500.0;
 
-/// A zigzag of `legs` legs at 5 m/s, and a ship across every fourth leg, when own ship is due there.
+/// A zigzag of `legs` legs at 5 m/s, and a ship across every fourth leg, when own ship is due
+/// there.
 fn scenario(legs: usize) -> Scenario {
     let mut points = vec![(0.0, 0.0)];
     for leg in 0..legs {

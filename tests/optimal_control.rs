@@ -144,7 +144,8 @@ fn every_way_to_spoil_a_plan_is_found() {
     assert_eq!(judged(&run, |n| n[0].pose.position.y += 1e-5)[0], "start");
     assert_eq!(judged(&run, |n| n[0].velocity.x += 1e-6)[0], "start");
     assert_eq!(judged(&run, |n| n.truncate(60))[0], "end");
-    // everything a little aside: the ship still moves like that, but starts elsewhere and meets a set
+    // everything a little aside: the ship still moves like that, but starts elsewhere and meets a
+    // set
     let aside = judged(&run, |n| {
         n.iter_mut().for_each(|n| n.pose.position.y -= 0.01)
     });
@@ -204,8 +205,8 @@ fn least_margin(motion: &Steered, keep_outs: &[KeepOut]) -> f64 {
     least
 }
 
-/// By how much the ship, from every node on with its forces, is off the next one: the most of any component, metres,
-/// radians, m/s and rad/s. Runge and Kutta's method with 500 steps.
+/// By how much the ship, from every node on with its forces, is off the next one: the most of any
+/// component, metres, radians, m/s and rad/s. Runge and Kutta's method with 500 steps.
 fn largest_defect(motion: &Steered) -> f64 {
     const STEPS: usize = 500;
     let ship = CyberShip2::EXACT;
@@ -238,7 +239,8 @@ fn largest_defect(motion: &Steered) -> f64 {
     largest
 }
 
-/// `SEAROOM_CONTROL` scenes with three ellipsoids and as many with six, every one aimed at own ship, through the whole planner.
+/// `SEAROOM_CONTROL` scenes with three ellipsoids and as many with six, every one aimed at own
+/// ship, through the whole planner.
 #[test]
 fn random_scenes_have_plans_that_are_the_ships_and_clear_between_the_nodes() {
     let desired = scenes::desired();
@@ -405,8 +407,8 @@ impl StageProblem<6, 3> for Drawn<'_> {
     }
 }
 
-/// CasADi with IPOPT on the same transcription ends at 7.844853 or, passing otherwise, at 7.808142; the margin of the rows
-/// costs a ten-thousandth.
+/// CasADi with IPOPT on the same transcription ends at 7.844853 or, passing otherwise, at 7.808142;
+/// the margin of the rows costs a ten-thousandth.
 #[test]
 fn another_solver_finds_the_same_optimum() {
     let desired = scenes::desired();
@@ -569,7 +571,8 @@ fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
             other => panic!("{settings:?}: {other:?}"),
         }
     }
-    // nothing costs anything, or less than nothing: whatever comes of it, no plan that costs what is no number
+    // nothing costs anything, or less than nothing: whatever comes of it, no plan that costs what
+    // is no number
     for weight in [0.0, -1.0, f64::NAN] {
         let settings = ControlSettings {
             state_weights: StateVector::repeat(weight),
@@ -592,7 +595,8 @@ fn a_budget_is_kept() {
     assert!(begun.elapsed() < Duration::from_secs(20));
 }
 
-/// A grid of 2,000 intervals takes some milliseconds for a step: the clock is read more often than the starts are made.
+/// A grid of 2,000 intervals takes some milliseconds for a step: the clock is read more often than
+/// the starts are made.
 #[test]
 fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
     let fine = FIGURE_9.replace("intervals = 50", "intervals = 2000");
@@ -750,8 +754,9 @@ velocity_set = { center_mps = [0.25, 0.17], shape_m2_per_s2 = [[0.016, 0.0], [0.
     }
 }
 
-/// By Froude's law a scene at another size is the same problem: lengths grow with the scale, times and speeds with its root, forces
-/// with its cube and moments with its fourth power, and the stage cost with the time.
+/// By Froude's law a scene at another size is the same problem: lengths grow with the scale, times
+/// and speeds with its root, forces with its cube and moments with its fourth power, and the stage
+/// cost with the time.
 #[test]
 fn a_scaled_scene_has_the_scaled_plan() {
     let scale = 30.0 / 1.255;
@@ -781,7 +786,8 @@ fn a_scaled_scene_has_the_scaled_plan() {
              beam_m = {}, turning_radius_m = {}, safety_margin_m = 0 }}\n\
              mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {}, north_m = {} }}], speed_mps = {} }}\n\
              [planner]\nkind = \"optimal-control\"\ndeadline_s = 300\n",
-            // before the desired trajectory ends, where rounding decides on which side of it an instant lies
+            // before the desired trajectory ends, where rounding decides on which side of it an
+            // instant lies
             97.0 * v,
             0.2 * v,
             1.255 * s,

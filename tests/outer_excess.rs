@@ -1,4 +1,5 @@
-//! By how much the outer ellipse is larger than the sum that it contains: the table in `docs/sets.md`.
+//! By how much the outer ellipse is larger than the sum that it contains: the table in
+//! `docs/sets.md`.
 //!
 //! `cargo test --no-default-features --test outer_excess -- --nocapture` prints it.
 

@@ -159,7 +159,8 @@ fn plan_within(
     })
 }
 
-/// Two hundred sets cross a path of five legs. Without time, only a few lines are tested and reported.
+/// Two hundred sets cross a path of five legs. Without time, only a few lines are tested and
+/// reported.
 #[test]
 fn out_of_time_the_search_looks_at_few_lines() {
     let points: Vec<Vector> = (0..6)
@@ -359,7 +360,8 @@ fn the_least_space_time_error_is_about_that_of_a_fine_grid() {
         "{} of {count} compared",
         ratios.len()
     );
-    // on one leg the graph has the best profile; over corners of the path the nearest leg changes and it may not
+    // on one leg the graph has the best profile; over corners of the path the nearest leg changes
+    // and it may not
     assert!(
         at(0.5) < 1.0 && at(0.95) < 1.001 && at(1.0) < 1.1,
         "{:?}",

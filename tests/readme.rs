@@ -45,7 +45,8 @@ fn searoom(args: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The words of each line without rules and without the times, which are before the last two facts of a row.
+/// The words of each line without rules and without the times, which are before the last two facts
+/// of a row.
 fn untimed(table: &str) -> Vec<Vec<&str>> {
     table
         .lines()

@@ -1,4 +1,5 @@
-//! Ellipsoids, velocity sets one after another, ships that turn and accepted risk, through the whole pipeline.
+//! Ellipsoids, velocity sets one after another, ships that turn and accepted risk, through the
+//! whole pipeline.
 
 use std::time::Duration;
 
@@ -68,7 +69,8 @@ fn whole_sets(run: &Run) -> Vec<&Obstacle> {
     run.whole.iter().collect()
 }
 
-/// Samples, so weaker than the judge, but by the obstacle's own answers: what is claimed along a plan.
+/// Samples, so weaker than the judge, but by the obstacle's own answers: what is claimed along a
+/// plan.
 fn assert_claims(name: &str, run: &Run) {
     let Some(plan) = run.planned.outcome.plan() else {
         return;
@@ -127,7 +129,8 @@ fn every_plan_is_clear_of_its_sets_and_takes_no_more_risk_than_it_may() {
     }
 }
 
-/// How many times the cheapest the graph's plan may cost among several targets, where the search makes haste.
+/// How many times the cheapest the graph's plan may cost among several targets, where the search
+/// makes haste.
 const HASTE: f64 = 1.5;
 
 /// The bound asks no more than the sets do, whatever they are made of.
@@ -177,8 +180,9 @@ fn a_star_finds_the_cost_of_dijkstra() {
     }
 }
 
-/// A slab obstacle whose velocities never change, cut in two, is the polytope: the way around it costs the same in nearly all scenes.
-/// In a few the refinement begins from other manoeuvres and ends in another basin.
+/// A slab obstacle whose velocities never change, cut in two, is the polytope: the way around it
+/// costs the same in nearly all scenes. In a few the refinement begins from other manoeuvres and
+/// ends in another basin.
 #[test]
 fn cutting_time_hardly_changes_what_a_plan_costs() {
     use searoom::obstacle::SlabObstacle;
@@ -222,7 +226,8 @@ fn cutting_time_hardly_changes_what_a_plan_costs() {
     assert!(middle < 0.01 && most < 0.15, "{changes:?}");
 }
 
-/// Each larger than the other on the way to certain safety: the whole set, and the level sets by risk.
+/// Each larger than the other on the way to certain safety: the whole set, and the level sets by
+/// risk.
 #[test]
 fn a_plan_that_may_take_more_risk_costs_no_more() {
     let scenario = random_encounter(EncounterKind::HeadOn, 1, Placement::Origin)

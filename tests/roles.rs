@@ -1,4 +1,5 @@
-//! The judgement of encounters against scenes drawn of a known kind, wherever they lie in the plane.
+//! The judgement of encounters against scenes drawn of a known kind, wherever they lie in the
+//! plane.
 
 use searoom::colregs::Role;
 use searoom::pipeline::{TargetSets, sets};

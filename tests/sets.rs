@@ -1,4 +1,5 @@
-//! What every obstacle has to answer, held against slow definitions: one suite over all implementors.
+//! What every obstacle has to answer, held against slow definitions: one suite over all
+//! implementors.
 
 mod set_generators;
 
@@ -30,7 +31,8 @@ fn event<O: SpaceTimeObstacle>(o: &O, rng: &mut ChaCha8Rng) -> (Vector, f64) {
     (n * within(a, b) + across * within(c, d), time)
 }
 
-/// Definition: the largest signed distance from a supporting line, by refinement about the best of many.
+/// Definition: the largest signed distance from a supporting line, by refinement about the best of
+/// many.
 fn searched_distance<O: SpaceTimeObstacle>(o: &O, x: Vector, t: f64) -> f64 {
     let at = |n: Vector| n.dot(&x) - o.support(n, t).value;
     let turned = |n: Vector, by: f64| searoom::frame::direction(heading_of(n) + by);
@@ -354,8 +356,8 @@ suite!(of_polytopes, polytope);
 suite!(of_ellipsoids, ellipsoid);
 suite!(of_slabs, slabs);
 
-/// Lines and arcs: within a contact the position is in the set, and just before and just after it is not; what lies between two
-/// contacts is outside too.
+/// Lines and arcs: within a contact the position is in the set, and just before and just after it
+/// is not; what lies between two contacts is outside too.
 #[test]
 fn a_contact_begins_and_ends_where_the_set_does() {
     let mut rng = seeded(505);
@@ -409,8 +411,8 @@ fn a_contact_begins_and_ends_where_the_set_does() {
     );
 }
 
-/// From a time on a set is what it was by a clock that starts then: a polygon exactly, an ellipse at first exactly and never
-/// less.
+/// From a time on a set is what it was by a clock that starts then: a polygon exactly, an ellipse
+/// at first exactly and never less.
 #[test]
 fn what_remains_of_a_set_goes_on_from_its_section() {
     let mut rng = seeded(506);

@@ -176,7 +176,8 @@ fn beside_the_end_of_a_needle_the_search_still_ends() {
     assert!(found.distance <= least + 1e-9, "{found:?} {least}");
 }
 
-/// Across a segment of velocities its spread is zero but for rounding, which must not steer the descent.
+/// Across a segment of velocities its spread is zero but for rounding, which must not steer the
+/// descent.
 #[test]
 fn the_largest_risk_over_a_segment_of_velocities() {
     let at = |x, y| Vector::new(x, y);
@@ -212,8 +213,8 @@ fn the_largest_risk_over_a_segment_of_velocities() {
     );
 }
 
-/// A long hull whose velocities lie along it: faces that alpha hardly moves stand beside one that it does not move.
-/// Against bisection over contacts.
+/// A long hull whose velocities lie along it: faces that alpha hardly moves stand beside one that
+/// it does not move. Against bisection over contacts.
 #[test]
 fn the_largest_risk_where_the_velocities_lie_along_a_face() {
     let mut rng = seeded(231);
@@ -729,7 +730,8 @@ fn degenerate_motion_of_degenerate_sets_is_answered() {
 fn an_arc_against_the_outer_ellipse_errs_early_by_a_hundredth_of_a_micrometre() {
     let circle = Ellipse::new(Vector::zeros(), Matrix2::identity() * 100.0).expect("a shape");
     let o = EllipsoidObstacle::new("x", circle, Ellipse::point(Vector::zeros()));
-    // a circle of 20 m about (30, 0) comes as near as 10 m to the origin: it touches, and a hair more does not
+    // a circle of 20 m about (30, 0) comes as near as 10 m to the origin: it touches, and a hair
+    // more does not
     for (shift, meets) in [(0.0, true), (-1e-7, true), (1e-7, false)] {
         let arc = Segment {
             start: searoom::frame::Pose::new(Vector::new(30.0 + shift, 20.0), std::f64::consts::PI),

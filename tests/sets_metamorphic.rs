@@ -1,5 +1,5 @@
-//! What must not change, or change in a known way, when the question does: translation, rotation, mirror, scale,
-//! current, time, order of vertices, larger sets.
+//! What must not change, or change in a known way, when the question does: translation, rotation,
+//! mirror, scale, current, time, order of vertices, larger sets.
 
 mod set_generators;
 
@@ -13,7 +13,8 @@ use searoom::target::VelocitySpell;
 use searoom::trajectory::Segment;
 use set_generators::{ellipsoid, points, polytope, seeded, segment, slabs, vector};
 
-/// `x' = L x + shift + current t'`, `t' = stretch t`, with `L` a rotation or a mirror times a scale.
+/// `x' = L x + shift + current t'`, `t' = stretch t`, with `L` a rotation or a mirror times a
+/// scale.
 #[derive(Debug, Clone, Copy)]
 struct Map {
     linear: Matrix2<f64>,

@@ -1,4 +1,5 @@
-//! Relations of the sets that no slow definition is needed for: nesting by alpha, ellipses around sums, Dubins paths.
+//! Relations of the sets that no slow definition is needed for: nesting by alpha, ellipses around
+//! sums, Dubins paths.
 
 mod set_generators;
 

@@ -1,4 +1,5 @@
-//! The check of plan documents: what the planners wrote passes, and whatever is altered in it is caught.
+//! The check of plan documents: what the planners wrote passes, and whatever is altered in it is
+//! caught.
 //!
 //! More wild scenes than the few that are always looked at:
 //!
@@ -65,7 +66,8 @@ fn inside() -> Value {
     document(scenario)
 }
 
-/// The end is taken: own ship stops before it at an accepted risk, and passes a ship that may cross early or late.
+/// The end is taken: own ship stops before it at an accepted risk, and passes a ship that may cross
+/// early or late.
 fn barred() -> Value {
     let text = r#"
         title = "barred"
@@ -86,8 +88,8 @@ fn barred() -> Value {
     document(Scenario::parse(text).expect("a scenario"))
 }
 
-/// One of every kind: space-time, with land, with slabs, with ellipses, at an accepted risk, path-time, forces, stand-on, from
-/// within a set.
+/// One of every kind: space-time, with land, with slabs, with ellipses, at an accepted risk,
+/// path-time, forces, stand-on, from within a set.
 fn documents() -> Vec<(&'static str, Value)> {
     let mut risky = scenario("colregs/give-way.toml");
     risky.max_risk = 0.4;
@@ -137,7 +139,8 @@ fn what_was_planned_passes() {
         assert!(found.verified(), "{name}: {:#?}", found.violations);
     }
 }
-/// Eleven days and a half at a plan's greatest length: samples are farther apart, few enough for a file, and no farther.
+/// Eleven days and a half at a plan's greatest length: samples are farther apart, few enough for a
+/// file, and no farther.
 #[test]
 fn a_plan_of_a_million_seconds_is_written_and_checked() {
     let text = r#"title = "long"
@@ -162,8 +165,8 @@ fn a_plan_of_a_million_seconds_is_written_and_checked() {
     );
 }
 
-/// Level sets that are millions of times smaller than the sets, and sets that hardly spread at all: risk is made of the last digits
-/// there, and the document may say no less than the check finds.
+/// Level sets that are millions of times smaller than the sets, and sets that hardly spread at all:
+/// risk is made of the last digits there, and the document may say no less than the check finds.
 #[test]
 fn plans_at_a_risk_pass_however_small_the_level_sets() {
     let plan = |max_risk: f64, target: &str| {
@@ -224,7 +227,8 @@ fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// What no proof rests on: how the plan was found, what it was weighed with, and what belongs to the map or the run.
+/// What no proof rests on: how the plan was found, what it was weighed with, and what belongs to
+/// the map or the run.
 fn is_said_only(pointer: &str) -> bool {
     [
         "/search_stats",
@@ -300,8 +304,8 @@ fn a_closest_approach_in_a_turn_on_the_spot_passes() {
 /// Numbers altered per document; all of them where `SEAROOM_MUTATIONS` is set.
 const ALTERED: usize = 120;
 
-/// The motion, its samples, its costs, its encounters, the mission: no number in these can be moved by a thousandth
-/// without being caught.
+/// The motion, its samples, its costs, its encounters, the mission: no number in these can be moved
+/// by a thousandth without being caught.
 #[test]
 fn every_number_of_the_motion_and_its_figures_is_held() {
     let all = std::env::var_os("SEAROOM_MUTATIONS").is_some();
@@ -315,7 +319,8 @@ fn every_number_of_the_motion_and_its_figures_is_held() {
                 && ["surge_n", "sway_n", "yaw_nm"]
                     .iter()
                     .any(|k| pointer.ends_with(k));
-            // the barge is touched for a while: any time of that while is one of the closest approach
+            // the barge is touched for a while: any time of that while is one of the closest
+            // approach
             let lasting = (name == "canal" && pointer == "/encounters/0/tcpa_s")
                 || pointer.ends_with("/undisturbed_tcpa_s");
             // by how much a shape was drawn back
@@ -1268,7 +1273,8 @@ fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
     assert!(told >= 3, "{told}");
 }
 
-/// What is said of a risk, told without a contradiction: that it was accepted, and that it has a time, is held by itself.
+/// What is said of a risk, told without a contradiction: that it was accepted, and that it has a
+/// time, is held by itself.
 #[test]
 fn a_risk_is_within_what_was_accepted_and_has_a_time() {
     let mut risky = documents().swap_remove(1).1;
@@ -1348,7 +1354,8 @@ fn give_up(document: &mut Value, kind: &str, target: &str, amount: f64) {
     list(document, "/relaxations").push(given_up);
 }
 
-/// What the words of a document say agrees with what is in it, and figures that no motion bears on are computed too.
+/// What the words of a document say agrees with what is in it, and figures that no motion bears on
+/// are computed too.
 #[test]
 fn every_claim_of_a_document_is_held() {
     let clear = document(scenario("colregs/head-on.toml"));
@@ -1564,7 +1571,8 @@ fn every_claim_of_a_document_is_held() {
     }
 }
 
-/// A ship at rest on the last waypoint lies neither to port nor to starboard of one that arrives there.
+/// A ship at rest on the last waypoint lies neither to port nor to starboard of one that arrives
+/// there.
 #[test]
 fn a_ship_on_the_last_waypoint_may_lie_on_either_side() {
     let rules = r#"
@@ -1765,7 +1773,8 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         [length * cos * sin, length * sin * sin]
     ]);
     said(&needle, "too small for the initial set");
-    // velocities to one side: scaled back about their centre they hold all, but not those of half the risk
+    // velocities to one side: scaled back about their centre they hold all, but not those of half
+    // the risk
     let text = std::fs::read_to_string(file("colregs/give-way.toml")).expect("a scenario");
     let mut scenario = Scenario::parse(&text).expect("a scenario");
     scenario.max_risk = 0.5;
@@ -1793,8 +1802,8 @@ fn sets_that_only_seem_large_enough_are_too_small() {
 }
 
 /// Words beside the motion: what was minimised, and what was given up first.
-/// Sets around the hull on the heading that is expected, and for a ship that turns on those of her course spread at the
-/// start: as she takes another course, her bow is beyond them.
+/// Sets around the hull on the heading that is expected, and for a ship that turns on those of her
+/// course spread at the start: as she takes another course, her bow is beyond them.
 #[test]
 fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
     let around = |ship: &ShipTrack, hull: ConvexPolygon| {
@@ -1874,7 +1883,8 @@ fn an_objective_that_is_not_the_planners_and_another_relaxation_are_rejected() {
     );
 }
 
-/// What a planner says of its plan holds of the document, and every plan is verified. The counts are printed.
+/// What a planner says of its plan holds of the document, and every plan is verified. The counts
+/// are printed.
 #[test]
 fn plans_of_wild_scenes_are_verified_by_their_documents() {
     let text = std::env::var("SEAROOM_WILD").unwrap_or_default();

@@ -1,4 +1,5 @@
-//! Random scenes, and the same scenes moved, turned, mirrored, and of another size: to be planned alike.
+//! Random scenes, and the same scenes moved, turned, mirrored, and of another size: to be planned
+//! alike.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -158,7 +159,8 @@ impl Placing {
         }
     }
 
-    /// The cost of the plan of a scene placed so, at the size of the scene, m²; `None` without a plan.
+    /// The cost of the plan of a scene placed so, at the size of the scene, m²; `None` without a
+    /// plan.
     pub fn cost(&self, scene: &Scenario) -> Option<f64> {
         Some(cost(self.of(scene))? / (self.length * self.length))
     }
@@ -178,7 +180,8 @@ pub fn cost(scene: Scenario) -> Option<f64> {
     run.relaxations.is_empty().then_some(plan.cost)
 }
 
-/// A path of one to three legs and one to four targets, each of which would meet own ship somewhere on it.
+/// A path of one to three legs and one to four targets, each of which would meet own ship somewhere
+/// on it.
 pub fn scene(seed: u64) -> Scenario {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let speed = rng.random_range(4.0..8.0);

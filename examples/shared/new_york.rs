@@ -1,4 +1,5 @@
-//! The traffic of New York harbour as scenes: each vessel under way in turn is own ship, all others are targets.
+//! The traffic of New York harbour as scenes: each vessel under way in turn is own ship, all others
+//! are targets.
 
 use searoom::frame::{
     Geographic, Georeference, KNOT_MPS, Pose, Vector, direction, heading_from_course_deg,
@@ -20,7 +21,8 @@ const COURSE_SPREAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 const POSITION_STD: f64 = 5.0;
 /// Metres between the hulls.
 const MARGIN_M: f64 = 20.0;
-/// Seconds that own ship means to hold her course and speed, and of which the horizon is twice as many.
+/// Seconds that own ship means to hold her course and speed, and of which the horizon is twice as
+/// many.
 const AHEAD_S: f64 = 600.0;
 /// Lengths of own ship in her smallest turning radius.
 const RADIUS_LENGTHS: f64 = 4.0;

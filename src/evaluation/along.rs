@@ -13,10 +13,11 @@ struct Whereabouts {
     distance: f64,
 }
 
-/// Every segment is a wait, or straight along a leg in the path's direction; none is faster than own ship can; she begins at the start of
-/// the first path, goes on where she was, and changes to another path only where the two share a place; she turns only where
-/// she then moves off along a leg. Where she `arrives`, it is at the end of a path. Found without the planner's network: all places on the paths that fit what was sailed so far are
-/// followed at once.
+/// Every segment is a wait, or straight along a leg in the path's direction; none is faster than
+/// own ship can; she begins at the start of the first path, goes on where she was, and changes to
+/// another path only where the two share a place; she turns only where she then moves off along a
+/// leg. Where she `arrives`, it is at the end of a path. Found without the planner's network: all
+/// places on the paths that fit what was sailed so far are followed at once.
 pub(super) fn check(
     segments: &[Segment],
     own: &OwnShip,
@@ -90,7 +91,8 @@ pub(super) fn check(
     found
 }
 
-/// The same places, and those of other paths at the same position: one path is not changed to itself.
+/// The same places, and those of other paths at the same position: one path is not changed to
+/// itself.
 fn everywhere(here: &[Whereabouts], position: Vector, paths: &[Vec<Vector>]) -> Vec<Whereabouts> {
     let mut all = here.to_vec();
     for (path, points) in paths.iter().enumerate() {
@@ -212,7 +214,8 @@ mod tests {
         ];
         assert_eq!(found(&changed, 6.0), 0);
         for wrong in [
-            // off the path, back along it, over a corner, off an alternative, without having been there
+            // off the path, back along it, over a corner, off an alternative, without having been
+            // there
             &[(0.0, 0.0), (50.0, 1e-5)][..],
             &[(0.0, 0.0), (70.0, 0.0), (60.0, 0.0)],
             &[(0.0, 0.0), (100.0, 0.0), (90.0, 72.0)],

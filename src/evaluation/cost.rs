@@ -6,8 +6,9 @@ use crate::trajectory::{DesiredTrajectory, Segment};
 /// Radians. Arcs are cut to this before a rule is put on them.
 const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
 
-/// The space-time error `J = (1 / T_d) ∫ e² dt` in m², docs/theory.md section 7, `q` in m²/s². Accurate to
-/// 1e-9 of itself; corners of `e²`, where the nearest leg changes, are closed in on by halving.
+/// The space-time error `J = (1 / T_d) ∫ e² dt` in m², docs/theory.md section 7, `q` in m²/s².
+/// Accurate to 1e-9 of itself; corners of `e²`, where the nearest leg changes, are closed in on by
+/// halving.
 pub(super) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
     let error = |s: &Segment, time: f64| desired.nearest(s.pose_at(time).position, time, q).error;
     let joints = |s: &Segment| -> Vec<f64> {
@@ -33,9 +34,9 @@ pub(super) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory
 }
 
 /// Eq. (30) read literally, m²: both curves by their own fraction `s` of their own length,
-/// `∫ |x(s) - x_d(s)|² + q (t(s) - t_d(s))² ds` over `[0, 1]`. Cut where either curve has a joint, arcs
-/// to pi/4, then one Gauss-Legendre rule per piece: accurate to rounding. A wait has no length and is a
-/// jump of `t(s)`. NaN for a trajectory of no length.
+/// `∫ |x(s) - x_d(s)|² + q (t(s) - t_d(s))² ds` over `[0, 1]`. Cut where either curve has a joint,
+/// arcs to pi/4, then one Gauss-Legendre rule per piece: accurate to rounding. A wait has no length
+/// and is a jump of `t(s)`. NaN for a trajectory of no length.
 pub(super) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
     let length: f64 = segments.iter().map(Segment::length).sum();
     // negated on purpose: a NaN has no length either

@@ -1,5 +1,5 @@
-//! Until when the space-time error of a motion is counted, so that any two motions compare: one that ends at the last waypoint,
-//! one that stays there, one that passes by.
+//! Until when the space-time error of a motion is counted, so that any two motions compare: one
+//! that ends at the last waypoint, one that stays there, one that passes by.
 
 use super::piece::Piece;
 use super::{cost, steered};
@@ -7,15 +7,16 @@ use crate::frame::Vector;
 use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, Segment, Trajectory};
 
-/// Of the duration: the motion is looked at at least this often near the edge of the disc of arrival. What is within it for less
-/// time may be missed.
+/// Of the duration: the motion is looked at at least this often near the edge of the disc of
+/// arrival. What is within it for less time may be missed.
 const FINEST_LOOK: f64 = 1e-6;
 
 /// Halvings of the time between two looks.
 const HALVINGS: usize = 60;
 
-/// Until when the space-time error of a motion is counted: until it comes within a distance of the last waypoint for the last time, or
-/// where it never does, or starts there and stays, to the end of the desired trajectory, or its own if that is earlier.
+/// Until when the space-time error of a motion is counted: until it comes within a distance of the
+/// last waypoint for the last time, or where it never does, or starts there and stays, to the end
+/// of the desired trajectory, or its own if that is earlier.
 ///
 /// # Examples
 ///
@@ -46,8 +47,8 @@ pub struct Counted {
     pub arrived: bool,
 }
 
-/// The space-time error of a motion, m², and until when it is counted: the same for the same motion, however it is given. `q` in
-/// m²/s², `within` in metres.
+/// The space-time error of a motion, m², and until when it is counted: the same for the same
+/// motion, however it is given. `q` in m²/s², `within` in metres.
 pub fn counted_error(
     trajectory: &Trajectory,
     desired: &DesiredTrajectory,
@@ -116,8 +117,8 @@ fn counted<P: Piece>(pieces: &[P], desired: &DesiredTrajectory, within: f64) -> 
     }
 }
 
-/// When a motion comes `within` metres of a place for the last time, seconds. Backwards in time: a step is the time in which the
-/// edge cannot be reached.
+/// When a motion comes `within` metres of a place for the last time, seconds. Backwards in time: a
+/// step is the time in which the edge cannot be reached.
 fn last_entrance<P: Piece>(pieces: &[P], place: Vector, within: f64) -> Option<f64> {
     let beyond = |piece: &P, time: f64| (piece.pose_at(time).position - place).norm() - within;
     let (first, last) = (pieces.first()?, pieces.last()?);
@@ -254,7 +255,8 @@ mod tests {
         }
     }
 
-    /// What is done after arrival costs nothing, and neither does what is done after the desired time by one that passes by.
+    /// What is done after arrival costs nothing, and neither does what is done after the desired
+    /// time by one that passes by.
     #[test]
     fn nothing_grows_after_the_end() {
         let east = Pose::new(Vector::zeros(), 0.0);

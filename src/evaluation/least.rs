@@ -48,8 +48,9 @@ impl Least {
     }
 
     /// Searches an interval: halves it until every part is bounded by the best value less
-    /// [`tolerance::MARGIN_M`], or, where it is shorter than [`tolerance::INSTANT_S`], half of [`tolerance::DEPTH_M`].
-    /// `probe(time, half)` gives the value at `time` and a lower bound on `[time - half, time + half]`.
+    /// [`tolerance::MARGIN_M`], or, where it is shorter than [`tolerance::INSTANT_S`], half of
+    /// [`tolerance::DEPTH_M`]. `probe(time, half)` gives the value at `time` and a lower bound on
+    /// `[time - half, time + half]`.
     pub fn search(&mut self, from: f64, until: f64, probe: impl Fn(f64, f64) -> Probe) {
         let mut open = vec![(from, until)];
         while let Some((from, until)) = open.pop() {

@@ -14,8 +14,8 @@ use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
 
-/// The velocities of a ship scaled about their centre by `1 - risk`: the centroid of the polygon, or the centre of the
-/// smallest ellipse around it, as her representation has it.
+/// The velocities of a ship scaled about their centre by `1 - risk`: the centroid of the polygon,
+/// or the centre of the smallest ellipse around it, as her representation has it.
 fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<VelocitySpell> {
     let scaled = |spell: &VelocitySpell| {
         let set = &spell.velocities;
@@ -34,8 +34,8 @@ fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<Velocity
     spells.iter().map(scaled).collect()
 }
 
-/// How a target is met; the least clearance that has to be kept: to every hull she may have at the accepted
-/// risk, from the time on at which her set is in force; and what is entered of her.
+/// How a target is met; the least clearance that has to be kept: to every hull she may have at the
+/// accepted risk, from the time on at which her set is in force; and what is entered of her.
 pub(super) fn passage<P: Piece>(
     request: &Request,
     pieces: &[P],

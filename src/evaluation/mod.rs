@@ -128,11 +128,11 @@ pub struct Passage {
     pub dcpa: f64,
     /// And when, seconds.
     pub tcpa: f64,
-    /// Side of own ship on which the target lies then; dead ahead and astern, to [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M), count as
-    /// starboard.
+    /// Side of own ship on which the target lies then; dead ahead and astern, to
+    /// [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M), count as starboard.
     pub passing_side: Side,
-    /// Least distance between own hull and any hull the target may have, metres; negative in overlap.
-    /// For explicit sets: from own position to the set.
+    /// Least distance between own hull and any hull the target may have, metres; negative in
+    /// overlap. For explicit sets: from own position to the set.
     pub min_clearance: f64,
     /// The same after the end of the motion, own ship lying where it ends.
     pub hold_clearance: f64,
@@ -196,7 +196,8 @@ pub struct Evaluation {
     pub delay: f64,
     /// Least of the targets' clearances, metres; infinite without targets.
     pub min_clearance: f64,
-    /// The same over `arrival_hold` after the end of the motion, own ship lying where it ends: told, not judged.
+    /// The same over `arrival_hold` after the end of the motion, own ship lying where it ends:
+    /// told, not judged.
     pub hold_clearance: f64,
     /// Seconds.
     pub arrival_hold: f64,
@@ -220,12 +221,13 @@ impl Evaluation {
     }
 }
 
-/// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in continuous time,
-/// to [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M); every hull that a target may have, whatever the sets say; own hull against
-/// the edges of the land; and the figures.
+/// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in
+/// continuous time, to [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M); every hull that a target
+/// may have, whatever the sets say; own hull against the edges of the land; and the figures.
 ///
-/// Distances are certified least values ([`tolerance::MARGIN_M`](crate::tolerance::MARGIN_M)); the costs are integrated by quadrature
-/// of their own. A segment that is not a number is a violation, and the figures are then NaN.
+/// Distances are certified least values ([`tolerance::MARGIN_M`](crate::tolerance::MARGIN_M)); the
+/// costs are integrated by quadrature of their own. A segment that is not a number is a violation,
+/// and the figures are then NaN.
 pub fn evaluate(request: &Request) -> Evaluation {
     let segments = request.segments;
     let mut violations = motion::check(request);
@@ -271,8 +273,8 @@ fn least_of(passages: &[Passage], figure: impl Fn(&Passage) -> f64) -> f64 {
     passages.iter().map(figure).fold(f64::INFINITY, f64::min)
 }
 
-/// The least signed distance to each set of a request along its segments, metres, certified; minus infinity where that was
-/// not proven.
+/// The least signed distance to each set of a request along its segments, metres, certified; minus
+/// infinity where that was not proven.
 pub fn least_margins(request: &Request) -> Vec<f64> {
     let proven = |least: Least| {
         if least.certified {
@@ -286,8 +288,8 @@ pub fn least_margins(request: &Request) -> Vec<f64> {
         .collect()
 }
 
-/// Every set and every target along a chain of pieces, and the worst of what is entered; what is violated is noted where the
-/// pieces are `judged`.
+/// Every set and every target along a chain of pieces, and the worst of what is entered; what is
+/// violated is noted where the pieces are `judged`.
 fn meetings<P: Piece>(
     request: &Request,
     pieces: &[P],

@@ -11,10 +11,12 @@ const DIRECTIONS: usize = 64;
 /// Radians between two of them.
 const STEP: f64 = std::f64::consts::TAU / DIRECTIONS as f64;
 
-/// Sections of its neighbourhood by the golden ratio: a direction to 4e-8, so a distance to 1e-15 of the set's size.
+/// Sections of its neighbourhood by the golden ratio: a direction to 4e-8, so a distance to 1e-15
+/// of the set's size.
 const GOLDEN_STEPS: usize = 32;
 
-/// Every position in the ellipse of least trace around `O_0 + t V`, docs/theory.md section 3, by its support function
+/// Every position in the ellipse of least trace around `O_0 + t V`, docs/theory.md section 3, by
+/// its support function
 ///
 /// ```text
 /// h(n, t) = n . p_t + sqrt((r_o + r_v t) (n' Q_o n / r_o + t n' Q_v n / r_v)),    r = sqrt(trace Q)
@@ -96,10 +98,11 @@ impl MovingEllipse {
         }
     }
 
-    /// The least signed distance along a chain of pieces. Every direction's line separates the set from what is
-    /// beyond it, so the value is the largest that was found over directions: never above the true distance, and below
-    /// it by rounding at most where the search ended beside the best direction: it errs toward rejecting. Between two
-    /// probes a line stays below its tangent in time, being concave. About a hundred directions a probe.
+    /// The least signed distance along a chain of pieces. Every direction's line separates the set
+    /// from what is beyond it, so the value is the largest that was found over directions: never
+    /// above the true distance, and below it by rounding at most where the search ended beside the
+    /// best direction: it errs toward rejecting. Between two probes a line stays below its tangent
+    /// in time, being concave. About a hundred directions a probe.
     pub fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         let mut least = Least::new();
         for s in pieces {

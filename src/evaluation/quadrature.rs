@@ -2,8 +2,8 @@
 
 use crate::tolerance;
 
-/// Positive nodes and weights of the 12-point Gauss-Legendre rule on `[-1, 1]`: exact for polynomials
-/// up to degree 23.
+/// Positive nodes and weights of the 12-point Gauss-Legendre rule on `[-1, 1]`: exact for
+/// polynomials up to degree 23.
 const GAUSS_LEGENDRE: [(f64, f64); 6] = [
     (0.125_233_408_511_468_9, 0.249_147_045_813_402_77),
     (0.367_831_498_998_180_2, 0.233_492_536_538_354_8),
@@ -13,8 +13,8 @@ const GAUSS_LEGENDRE: [(f64, f64); 6] = [
     (0.981_560_634_246_719_2, 0.047_175_336_386_511_83),
 ];
 
-/// Positive nodes and weights of the 12-point Gauss-Lobatto rule: it sees the ends of the interval, and
-/// so a kink beyond the outermost node of the rule above.
+/// Positive nodes and weights of the 12-point Gauss-Lobatto rule: it sees the ends of the interval,
+/// and so a kink beyond the outermost node of the rule above.
 const GAUSS_LOBATTO: [(f64, f64); 6] = [
     (0.136_552_932_854_927_56, 0.271_405_240_910_696_2),
     (0.399_530_940_965_348_9, 0.251_275_603_199_201_3),
@@ -46,8 +46,8 @@ fn rule(rule: &[(f64, f64)], from: f64, until: f64, f: &impl Fn(f64) -> f64) -> 
 
 /// The integral of a function that is smooth but for kinks, over consecutive intervals between the
 /// sorted `joints`: intervals are halved until two rules, and one rule and its two halves, agree to
-/// [`tolerance::QUADRATURE`] of the whole, or of `least` where that is more: what this is added to. NaN where the
-/// function is.
+/// [`tolerance::QUADRATURE`] of the whole, or of `least` where that is more: what this is added to.
+/// NaN where the function is.
 pub(super) fn adaptive(joints: &[f64], least: f64, f: &impl Fn(f64) -> f64) -> f64 {
     let mut open: Vec<(f64, f64, f64, u32)> = joints
         .windows(2)

@@ -46,13 +46,13 @@ use crate::vessel::OwnShip;
 pub enum Freedom<'a> {
     /// Anywhere, on lines and arcs of at least her turning radius, at the speeds of her finite set.
     Limits,
-    /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest, turning on the spot where she
-    /// moves off along another leg.
+    /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest,
+    /// turning on the spot where she moves off along another leg.
     Paths(&'a [Vec<Vector>]),
     /// The same, but to the horizon instead of to the last waypoint: what does not arrive.
     PathsToHorizon(&'a [Vec<Vector>]),
-    /// Anywhere at any speed and radius, on any course from the start on, and nowhere in particular: what is no plan, to be compared
-    /// with plans.
+    /// Anywhere at any speed and radius, on any course from the start on, and nowhere in
+    /// particular: what is no plan, to be compared with plans.
     Any,
 }
 
@@ -109,11 +109,12 @@ pub struct Request<'a> {
     pub land_margin: f64,
     /// Seconds: arrival must not be later.
     pub horizon: f64,
-    /// For how long after the end of the motion own ship is looked at where it lies, seconds: nothing is claimed of it then.
+    /// For how long after the end of the motion own ship is looked at where it lies, seconds:
+    /// nothing is claimed of it then.
     pub arrival_hold: f64,
     /// `q` of eq. (30), m²/s².
     pub time_weight: f64,
-    /// The risk of eq. (25) that was accepted, in `[0, 1)`: the sets are those of it already, the hulls are judged
-    /// with velocities that are scaled about their centre by what is left of 1.
+    /// The risk of eq. (25) that was accepted, in `[0, 1)`: the sets are those of it already, the
+    /// hulls are judged with velocities that are scaled about their centre by what is left of 1.
     pub max_risk: f64,
 }

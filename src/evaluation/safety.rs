@@ -25,8 +25,8 @@ pub enum Safety {
     Safe,
     /// A hard set, but not its level set of the accepted risk, and no hull.
     AtRisk,
-    /// A hull that a target may have, a hard set of which nothing is kept, or the margin to land. So is a motion that own
-    /// ship cannot sail, and whatever could not be proven.
+    /// A hull that a target may have, a hard set of which nothing is kept, or the margin to land.
+    /// So is a motion that own ship cannot sail, and whatever could not be proven.
     Unsafe,
     /// The hull of a target that keeps course and speed, or land.
     Collides,
@@ -71,8 +71,8 @@ pub(super) fn grounding(least: &Least, margin: f64) -> Option<Violation> {
     })
 }
 
-/// The violation of a set by a least distance, if there is one. A set without interior has no depth:
-/// there, nearer than the tolerance is a violation.
+/// The violation of a set by a least distance, if there is one. A set without interior has no
+/// depth: there, nearer than the tolerance is a violation.
 pub(super) fn collision(label: &str, least: &Least, has_interior: bool) -> Option<Violation> {
     let allowed = if has_interior {
         -tolerance::DEPTH_M
@@ -124,9 +124,10 @@ impl Claim {
         self.kept &= kept;
     }
 
-    /// Toward a ship: `closest` and `worst` are the distances from her hull where she keeps course and speed and from any that
-    /// she may have, `centre` that of own ship's centre from the latter. Her hard set holds the places where own hull, on
-    /// any heading, would be nearer than the margin.
+    /// Toward a ship: `closest` and `worst` are the distances from her hull where she keeps course
+    /// and speed and from any that she may have, `centre` that of own ship's centre from the
+    /// latter. Her hard set holds the places where own hull, on any heading, would be nearer than
+    /// the margin.
     pub fn of_ship(
         &self,
         request: &Request,
@@ -178,8 +179,9 @@ mod tests {
     use crate::target::Motion;
     use crate::trajectory::Segment;
 
-    /// Own ship sails 1500 m along the path, its centre nothing but `north` metres beside a target at rest half-way; hulls reach 4
-    /// and 6 m to that side, half of own diagonal is 15.524 m, the margin 20 m.
+    /// Own ship sails 1500 m along the path, its centre nothing but `north` metres beside a target
+    /// at rest half-way; hulls reach 4 and 6 m to that side, half of own diagonal is 15.524 m, the
+    /// margin 20 m.
     struct Scene {
         scenario: Scenario,
         held: Segment,
@@ -237,8 +239,8 @@ mod tests {
         })
     }
 
-    /// What is entered is told whatever the sets are: a hull at 10 m, any that she may have at 10 m and three standard deviations,
-    /// the hard set at 41.524 m.
+    /// What is entered is told whatever the sets are: a hull at 10 m, any that she may have at 10 m
+    /// and three standard deviations, the hard set at 41.524 m.
     #[test]
     fn what_is_entered_is_told_to_the_millimetre() {
         for (north, spread_m, expected) in [
@@ -256,7 +258,8 @@ mod tests {
         }
     }
 
-    /// At an accepted risk the hard set may be entered where its level set is kept; a set that is left is never kept.
+    /// At an accepted risk the hard set may be entered where its level set is kept; a set that is
+    /// left is never kept.
     #[test]
     fn an_accepted_risk_is_told_from_a_set_of_which_nothing_is_kept() {
         let scene = scene(30.0, 0.0);
@@ -294,7 +297,8 @@ mod tests {
         }
     }
 
-    /// Land is hit, or its margin is not kept; what cannot be sailed, or is no number, is never safe.
+    /// Land is hit, or its margin is not kept; what cannot be sailed, or is no number, is never
+    /// safe.
     #[test]
     fn land_and_motions_that_are_none_are_told() {
         let mut scene = scene(500.0, 0.0);

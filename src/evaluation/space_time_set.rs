@@ -73,8 +73,8 @@ pub struct SpaceTimeSet {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum SetShape {
-    /// Every position that is reached from `O_0` (metres) with the velocity sets (m/s), one after another; the last
-    /// one holds for ever.
+    /// Every position that is reached from `O_0` (metres) with the velocity sets (m/s), one after
+    /// another; the last one holds for ever.
     Polygons {
         /// `O_0`.
         initial: ConvexPolygon,
@@ -113,8 +113,8 @@ impl SpaceTimeSet {
 }
 
 impl SpaceTimeSet {
-    /// The least signed distance of own ship's position along what of a chain of pieces is sailed while the set is in force;
-    /// infinite where nothing is.
+    /// The least signed distance of own ship's position along what of a chain of pieces is sailed
+    /// while the set is in force; infinite where nothing is.
     pub(super) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         if self.from == 0.0 {
             return self.shape.least_distance(pieces);
@@ -127,7 +127,8 @@ impl SpaceTimeSet {
     }
 }
 
-/// What of a chain is sailed from a time on, by a clock that starts at `zero`. A NaN keeps all of it.
+/// What of a chain is sailed from a time on, by a clock that starts at `zero`. A NaN keeps all of
+/// it.
 pub(super) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
     // negated on purpose: a NaN is before
     let later = pieces.iter().filter(|piece| !(piece.end_time() <= from));
@@ -269,8 +270,8 @@ impl MovingSet {
     }
 }
 
-/// Along the bisector of the counter-clockwise gap, at most half a turn, between two unit vectors. The
-/// first part vanishes for opposite vectors, the second for equal ones.
+/// Along the bisector of the counter-clockwise gap, at most half a turn, between two unit vectors.
+/// The first part vanishes for opposite vectors, the second for equal ones.
 fn between(a: Vector, b: Vector) -> Vector {
     (a + b) + to_starboard(b - a)
 }

@@ -15,13 +15,13 @@ pub struct StageWeights {
     pub force: ForceVector,
 }
 
-/// The integral of the stage cost by Simpson's rule over every interval, the state at half time on the cubic through both
-/// nodes with the ship's rates there: the definition of the planner, in code of its own and with the ship as published.
-/// O(nodes).
-/// Where a leg ends within an interval the sum is coarser.
+/// The integral of the stage cost by Simpson's rule over every interval, the state at half time on
+/// the cubic through both nodes with the ship's rates there: the definition of the planner, in code
+/// of its own and with the ship as published. O(nodes). Where a leg ends within an interval the sum
+/// is coarser.
 ///
-/// Where a leg ends at a node or halfway between two, the one that counts there is one of rounding: what it is as the numbers are, and if
-/// legs end some roundings later and earlier.
+/// Where a leg ends at a node or halfway between two, the one that counts there is one of rounding:
+/// what it is as the numbers are, and if legs end some roundings later and earlier.
 pub(crate) fn stage_costs(
     steering: &Steering,
     desired: &DesiredTrajectory,
@@ -32,7 +32,8 @@ pub(crate) fn stage_costs(
         .map(|late| summed(steering, desired, weights, late))
 }
 
-/// `late`: seconds by which legs end later than they say, for what ends and less for what begins at an instant, and for what is halfway.
+/// `late`: seconds by which legs end later than they say, for what ends and less for what begins at
+/// an instant, and for what is halfway.
 fn summed(
     steering: &Steering,
     desired: &DesiredTrajectory,
@@ -70,7 +71,8 @@ enum Moment {
     Later,
 }
 
-/// Where she is meant to be: on her leg, at its course and speed; at the end, at rest, once it is over.
+/// Where she is meant to be: on her leg, at its course and speed; at the end, at rest, once it is
+/// over.
 fn wanted(desired: &DesiredTrajectory, time: f64, moment: Moment, late: f64) -> StateVector {
     let legs = desired.legs();
     let under_way = legs.iter().position(|leg| match moment {

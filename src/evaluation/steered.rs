@@ -1,4 +1,5 @@
-//! Judges a motion under forces: does the ship do what the plan says, and is that clear of everything?
+//! Judges a motion under forces: does the ship do what the plan says, and is that clear of
+//! everything?
 
 use super::counted::counted_error_of_cubics;
 use super::piece::Piece;
@@ -53,11 +54,12 @@ pub struct Steering<'a> {
     pub force_limits: ForceVector,
 }
 
-/// Judges a motion under forces over the whole horizon. It has to start where own ship is and end at the horizon; forces
-/// are within their limits; the ship, integrated anew from every node, is at the next one to [`tolerance::DEFECT`] of her
-/// units; and the cubics between the nodes keep out of every set to [`tolerance::DEPTH_M`], and of every hull, with
-/// certified distances. Arrival is not asked for: the delay is NaN, and the space-time error is
-/// counted until it is within own ship's length of the last waypoint ([`Counted`](super::Counted)). `request.segments` is not looked at.
+/// Judges a motion under forces over the whole horizon. It has to start where own ship is and end
+/// at the horizon; forces are within their limits; the ship, integrated anew from every node, is at
+/// the next one to [`tolerance::DEFECT`] of her units; and the cubics between the nodes keep out of
+/// every set to [`tolerance::DEPTH_M`], and of every hull, with certified distances. Arrival is not
+/// asked for: the delay is NaN, and the space-time error is counted until it is within own ship's
+/// length of the last waypoint ([`Counted`](super::Counted)). `request.segments` is not looked at.
 pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     let mut violations = Vec::new();
     check(request, steering, &mut violations);
@@ -184,8 +186,9 @@ pub(super) fn state(node: &Node) -> StateVector {
     )
 }
 
-/// The state after `duration` seconds under a constant force: by the midpoint rule with Richardson's extrapolation (Gragg,
-/// Bulirsch and Stoer) over doubled numbers of steps, until two of them agree to [`AGREED`].
+/// The state after `duration` seconds under a constant force: by the midpoint rule with
+/// Richardson's extrapolation (Gragg, Bulirsch and Stoer) over doubled numbers of steps, until two
+/// of them agree to [`AGREED`].
 fn integrated(
     vessel: &dyn Manoeuvring,
     from: &StateVector,
@@ -212,7 +215,8 @@ fn integrated(
     }
 }
 
-/// Gragg's midpoint rule with `steps` steps, an even number: its error has even powers of the step alone.
+/// Gragg's midpoint rule with `steps` steps, an even number: its error has even powers of the step
+/// alone.
 fn modified_midpoint(
     vessel: &dyn Manoeuvring,
     from: &StateVector,
@@ -243,7 +247,8 @@ pub(super) fn space_time_error(pieces: &[Cubic], desired: &DesiredTrajectory, q:
     integral / desired.duration()
 }
 
-/// Eq. (30) with both curves by their own fraction of their own length, m²; NaN for a motion of no length.
+/// Eq. (30) with both curves by their own fraction of their own length, m²; NaN for a motion of no
+/// length.
 fn arc_length_error(pieces: &[Cubic], desired: &DesiredTrajectory, q: f64) -> f64 {
     let speed = |piece: &Cubic, time: f64| Piece::velocity_at(piece, time).norm();
     let length_of = |piece: &Cubic| over_parts(piece, &|time| speed(piece, time));

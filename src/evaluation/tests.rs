@@ -105,7 +105,8 @@ fn ship(y: f64, speed: f64) -> Target {
     }
 }
 
-/// Own ship turns on the spot beside a ship at anchor that she lies clear of before and after: her bow sweeps over the other's.
+/// Own ship turns on the spot beside a ship at anchor that she lies clear of before and after: her
+/// bow sweeps over the other's.
 #[test]
 fn a_hull_is_met_in_a_turn_on_the_spot() {
     let mut segments = Vec::new();

@@ -1,4 +1,5 @@
-//! A turn on the spot: own hull sweeps over every heading between two courses while time stands still.
+//! A turn on the spot: own hull sweeps over every heading between two courses while time stands
+//! still.
 
 use super::clearance::{Body, least_distance};
 use super::least::Least;
@@ -10,13 +11,15 @@ use crate::trajectory::Segment;
 /// Where the heading changes at once between two segments.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turn {
-    /// The turn as a motion that takes a second per radian: every heading between the two, on the side of the smaller turn.
+    /// The turn as a motion that takes a second per radian: every heading between the two, on the
+    /// side of the smaller turn.
     pub sweep: Segment,
     /// Seconds at which it happens.
     pub time: f64,
 }
 
-/// Every turn on the spot of a chain of segments. About a hull's middle half a turn covers the same to either side.
+/// Every turn on the spot of a chain of segments. About a hull's middle half a turn covers the same
+/// to either side.
 pub(super) fn turns(segments: &[Segment]) -> Vec<Turn> {
     let joints = segments.windows(2);
     joints
@@ -42,8 +45,8 @@ pub(super) fn turns(segments: &[Segment]) -> Vec<Turn> {
         .collect()
 }
 
-/// The least distance between own hull and a set that stands still as it is at the time of each turn; the times are those of
-/// the turns.
+/// The least distance between own hull and a set that stands still as it is at the time of each
+/// turn; the times are those of the turns.
 pub(super) fn least_while_turning(turns: &[Turn], own: Body, slabs: &MovingSlabs) -> Least {
     let mut least = Least::new();
     for turn in turns {
@@ -75,7 +78,8 @@ mod tests {
         }
     }
 
-    /// The bow, 10 m ahead of the middle, passes a buoy that neither course comes near: 3 m short of it, at any time.
+    /// The bow, 10 m ahead of the middle, passes a buoy that neither course comes near: 3 m short
+    /// of it, at any time.
     #[test]
     fn a_turn_sweeps_over_the_headings_between() {
         let body = Body::hull(&Hull {

@@ -6,8 +6,8 @@ use crate::target::ShipTrack;
 use crate::tolerance;
 use std::f64::consts::TAU;
 
-/// Tangents of a turned hull: a quarter of them lie along the sides of a rectangle, and together they reach at most 0.13 % of its
-/// half-diagonal beyond it.
+/// Tangents of a turned hull: a quarter of them lie along the sides of a rectangle, and together
+/// they reach at most 0.13 % of its half-diagonal beyond it.
 const TANGENTS: usize = 64;
 
 /// A rectangle about a place, turned to either side: the union of all, or its convex hull.
@@ -35,7 +35,8 @@ impl TurnedHull {
         }
     }
 
-    /// How far it reaches in a direction, exactly: the corner that can be turned nearest to it decides.
+    /// How far it reaches in a direction, exactly: the corner that can be turned nearest to it
+    /// decides.
     pub fn support(&self, n: Vector) -> f64 {
         let towards = heading_of(n);
         let off = |corner: f64| (wrap(towards - corner).abs() - self.spread).max(0.0);
@@ -43,8 +44,8 @@ impl TurnedHull {
         n.dot(&self.center) + self.reach * nearest.cos()
     }
 
-    /// Points whose hull contains it: the ends of the arcs of the corners, and the corners of tangents that touch the arcs at most
-    /// twice `spacing` radians apart.
+    /// Points whose hull contains it: the ends of the arcs of the corners, and the corners of
+    /// tangents that touch the arcs at most twice `spacing` radians apart.
     pub fn outer_points(&self, spacing: f64) -> impl Iterator<Item = Vector> + '_ {
         let pieces = (self.spread / spacing).ceil().max(1.0);
         let half = self.spread / pieces;
@@ -59,8 +60,8 @@ impl TurnedHull {
         })
     }
 
-    /// The polygon of its tangents at even angles, one of them ahead. A side shorter than the checker can tell is left
-    /// out.
+    /// The polygon of its tangents at even angles, one of them ahead. A side shorter than the
+    /// checker can tell is left out.
     pub fn outer_polygon(&self) -> ConvexPolygon {
         if self.spread == 0.0 {
             return ConvexPolygon::from_ccw(self.outer_points(1.0).collect());

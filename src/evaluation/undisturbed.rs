@@ -24,8 +24,9 @@ pub(crate) fn undisturbed_legs(desired: &DesiredTrajectory, horizon: f64) -> Vec
         .collect()
 }
 
-/// Least distance along `legs` between the hulls, of explicit sets from own position to the set: metres, negative in
-/// overlap, certified. Own ship is not looked at while she turns from leg to leg. `None` for ellipses.
+/// Least distance along `legs` between the hulls, of explicit sets from own position to the set:
+/// metres, negative in overlap, certified. Own ship is not looked at while she turns from leg to
+/// leg. `None` for ellipses.
 pub(crate) fn undisturbed_distance(
     own: &OwnShip,
     legs: &[Segment],

@@ -38,7 +38,8 @@ fn at_risk(risk: f64) -> String {
     format!("at risk {}", risk_figure(risk))
 }
 
-/// With two decimals. What is more than none is at least a hundredth, and none is rounded down by more than rounding.
+/// With two decimals. What is more than none is at least a hundredth, and none is rounded down by
+/// more than rounding.
 pub(crate) fn risk_figure(risk: f64) -> String {
     let hundredths = if risk > 0.0 {
         (risk * 100.0 - 1e-4).ceil().max(1.0)

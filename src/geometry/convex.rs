@@ -192,8 +192,8 @@ impl ConvexPolygon {
     /// The farthest vertices in directions sorted counter-clockwise with gaps of at most half a
     /// turn. O(vertices + directions).
     ///
-    /// The farthest vertices are sorted likewise, so each search starts at the last result. It passes
-    /// edges so short that rounding hides them.
+    /// The farthest vertices are sorted likewise, so each search starts at the last result. It
+    /// passes edges so short that rounding hides them.
     pub(crate) fn extremes<'a>(
         &'a self,
         directions: &'a [Vector],

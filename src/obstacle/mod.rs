@@ -2,7 +2,8 @@
 //!
 //! [`PolytopeObstacle`] is exact for its sets. [`SlabObstacle`] is a sequence of polytopes: its
 //! velocity set changes with time. [`EllipsoidObstacle`] is an outer set. All three implement
-//! [`SpaceTimeObstacle`]; [`Obstacle`] is any of them. [`LandObstacle`] is land: many static convex sets.
+//! [`SpaceTimeObstacle`]; [`Obstacle`] is any of them. [`LandObstacle`] is land: many static convex
+//! sets.
 
 mod closest_approach;
 pub mod contact;

@@ -30,8 +30,8 @@ impl NoReturn {
 }
 
 impl Run {
-    /// How long own ship can follow the desired trajectory and still have a plan clear of every hard
-    /// set, independent of the plan of this run.
+    /// How long own ship can follow the desired trajectory and still have a plan clear of every
+    /// hard set, independent of the plan of this run.
     ///
     /// `None` for planners other than space-time, and where the trajectory cannot be followed.
     /// Bisection between the start and the first contact: a plan from a later time is also a plan

@@ -402,7 +402,8 @@ fn out_of_time_there_is_still_an_answer() {
     ));
 }
 
-/// A set that grows over the path is passed at a risk. How little is not looked for when the time is up.
+/// A set that grows over the path is passed at a risk. How little is not looked for when the time
+/// is up.
 #[test]
 fn out_of_time_no_more_risks_are_weighed() {
     let text = r#"

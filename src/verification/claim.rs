@@ -238,7 +238,8 @@ impl Claim {
     }
 }
 
-/// Why a text could not be read: it is no JSON, another document, or a plan document with a broken field.
+/// Why a text could not be read: it is no JSON, another document, or a plan document with a broken
+/// field.
 fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> ClaimError {
     let shape = |reason: String| ClaimError::Shape {
         path: error.path().to_string(),

@@ -1,13 +1,16 @@
 //! Are the sets large enough for what is known of the targets?
 //!
-//! A tracked ship's set has to contain its hull, on every heading that it may have until the horizon, ⊕ a disc of own half-diagonal, safety
-//! margin and three standard deviations of its position, and every place that it may come to at a speed and a course within the spreads, turned as far as it may have
-//! turned. Explicit sets have to be contained as they are. Where risk was accepted, the set of the level has to hold what
-//! is known of her scaled to that level, and the set scaled back all of it.
+//! A tracked ship's set has to contain its hull, on every heading that it may have until the
+//! horizon, ⊕ a disc of own half-diagonal, safety margin and three standard deviations of its
+//! position, and every place that it may come to at a speed and a course within the spreads, turned
+//! as far as it may have turned. Explicit sets have to be contained as they are. Where risk was
+//! accepted, the set of the level has to hold what is known of her scaled to that level, and the
+//! set scaled back all of it.
 //!
-//! Polygons are compared by their sections. How far a section reaches in a direction is linear in time between two changes of
-//! its velocities, and how far a target may have come in it linear too, or convex where she turns: what is contained at the changes, at
-//! the start and at the horizon is contained always, however short or fast a slab is.
+//! Polygons are compared by their sections. How far a section reaches in a direction is linear in
+//! time between two changes of its velocities, and how far a target may have come in it linear too,
+//! or convex where she turns: what is contained at the changes, at the start and at the horizon is
+//! contained always, however short or fast a slab is.
 
 use super::claim::Claim;
 use super::reached::{Known, TANGENT_SPACING, at_level, in_order, outer_velocities, reach};
@@ -63,7 +66,8 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
     match &set.shape {
         SetShape::Polygons { initial, spells } => {
             let mut scales = vec![level];
-            // the set around a polygon that was scaled has a centre of its own: it cannot be scaled back
+            // the set around a polygon that was scaled has a centre of its own: it cannot be scaled
+            // back
             if level < 1.0 && claim.file.optimal_control.is_none() {
                 scales.push(1.0);
             }
@@ -76,7 +80,8 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
     }
 }
 
-/// By how much a set is too small, and when first: nothing where it is not. `scale` is that of the velocities about their centre.
+/// By how much a set is too small, and when first: nothing where it is not. `scale` is that of the
+/// velocities about their centre.
 fn in_sections(
     claim: &Claim,
     target: &Target,
@@ -136,7 +141,8 @@ fn in_sections(
     None
 }
 
-/// The same for ellipses, by their two parts: the sum that is kept out of contains the sum of what these contain.
+/// The same for ellipses, by their two parts: the sum that is kept out of contains the sum of what
+/// these contain.
 fn of_ellipses(
     claim: &Claim,
     target: &Target,
@@ -175,7 +181,8 @@ fn of_ellipses(
         };
         need(if ship { HULL } else { INITIAL }, short);
     }
-    // the ellipse around a polygon that was scaled has a centre of its own: it cannot be scaled back
+    // the ellipse around a polygon that was scaled has a centre of its own: it cannot be scaled
+    // back
     if level == 1.0 || claim.file.optimal_control.is_none() {
         let short = match &target.motion {
             Motion::Ship(ship) => {
@@ -237,7 +244,8 @@ pub(super) fn about_centroid(set: &ConvexPolygon, factor: f64) -> ConvexPolygon 
     set.translated(-center).scaled(factor).translated(center)
 }
 
-/// Unit vectors all around, evenly, and the normals of an ellipse at places all around it: where it is a needle, nearly all are across.
+/// Unit vectors all around, evenly, and the normals of an ellipse at places all around it: where it
+/// is a needle, nearly all are across.
 pub(super) fn sampled_directions(ellipse: &Ellipse) -> impl Iterator<Item = Vector> {
     let [a, b] = ellipse.semi_axes();
     let step = std::f64::consts::TAU / SAMPLED_DIRECTIONS as f64;

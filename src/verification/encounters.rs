@@ -110,7 +110,8 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
 const HEADINGS: u32 = 180;
 const HALVINGS: usize = 60;
 
-/// The least distance while own ship turns on the spot from one heading to another, the shorter way.
+/// The least distance while own ship turns on the spot from one heading to another, the shorter
+/// way.
 fn while_turning(claim: &Claim, target: &Target, turn: (&Pose, &Pose), time: f64) -> f64 {
     let (before, after) = turn;
     let angle = wrap(after.heading - before.heading);

@@ -1,7 +1,7 @@
 //! Is a plan that enters a set said to be one?
 //!
-//! Of such a set nothing is claimed until the plan has left it. That is for a plan at the worst alone: it has to say so, and to be
-//! in the set before.
+//! Of such a set nothing is claimed until the plan has left it. That is for a plan at the worst
+//! alone: it has to say so, and to be in the set before.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::untrue;

@@ -1,8 +1,9 @@
 //! Is the escape of a ship that stands on what a document says of it?
 //!
-//! She holds course and speed until the latest time from which an escape is known to be clear, and escapes then: the motion is both.
-//! That the whole of it is clear is checked as of any other; here that it holds, when it ends, what follows, that all
-//! sets are in force meanwhile, and that holding on would have met something. That no escape begins later is not.
+//! She holds course and speed until the latest time from which an escape is known to be clear, and
+//! escapes then: the motion is both. That the whole of it is clear is checked as of any other; here
+//! that it holds, when it ends, what follows, that all sets are in force meanwhile, and that
+//! holding on would have met something. That no escape begins later is not.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::figures::near;
@@ -76,7 +77,8 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
     found
 }
 
-/// The hold and the escape; `None` where no segment begins at the time that is said, or another one does.
+/// The hold and the escape; `None` where no segment begins at the time that is said, or another one
+/// does.
 fn parted<'s>(
     segments: &'s [Segment],
     escape: &EscapeFile,
@@ -86,7 +88,8 @@ fn parted<'s>(
     near(begins, escape.latest_s).then_some((hold, away))
 }
 
-/// True where own ship begins on the first leg as is desired, at a speed that she has: then nothing is to be altered there.
+/// True where own ship begins on the first leg as is desired, at a speed that she has: then nothing
+/// is to be altered there.
 fn is_on_her_way(claim: &Claim) -> bool {
     let (own, leg) = (&claim.own, &claim.desired.legs()[0]);
     let offset = own.pose.position - leg.start;
@@ -96,8 +99,8 @@ fn is_on_her_way(claim: &Claim) -> bool {
         && own.speeds.iter().any(|u| near(*u, leg.speed))
 }
 
-/// The first thing that is altered before the end of the hold. Legs after the first are reached around corners: only what is
-/// sailed well before the first of these is looked at.
+/// The first thing that is altered before the end of the hold. Legs after the first are reached
+/// around corners: only what is sailed well before the first of these is looked at.
 fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
     if !is_on_her_way(claim) {
         return None;
@@ -168,7 +171,8 @@ fn first(claim: &Claim, escape: &EscapeFile, away: &[Segment]) -> Option<Violati
     })
 }
 
-/// Where nothing would be met by holding on to the end of the one leg, nothing is to be escaped from.
+/// Where nothing would be met by holding on to the end of the one leg, nothing is to be escaped
+/// from.
 fn needless(claim: &Claim, hold: &[Segment], request: &Request) -> Option<Violation> {
     let [leg] = claim.desired.legs() else {
         return None;

@@ -110,8 +110,8 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     found
 }
 
-/// Of a plan that does not arrive: the way that it says to be left is no shorter than the straight one, and on one path it is what
-/// has not been sailed.
+/// Of a plan that does not arrive: the way that it says to be left is no shorter than the straight
+/// one, and on one path it is what has not been sailed.
 fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let mut given_up = claim.file.relaxations.iter();
     let said = given_up.find(|r| r.kind == ARRIVAL)?.amount;
@@ -131,8 +131,9 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     None
 }
 
-/// Metres from own hull to land that a document does not hold, at least. It holds all that comes into the square about the
-/// middle between start and end whose half side is half of the way that she can sail, and her footprint.
+/// Metres from own hull to land that a document does not hold, at least. It holds all that comes
+/// into the square about the middle between start and end whose half side is half of the way that
+/// she can sail, and her footprint.
 fn beyond_reach(claim: &Claim) -> f64 {
     let own = &claim.own;
     let (start, end) = (own.pose.position, claim.desired.end());
@@ -167,8 +168,8 @@ fn bulge(segment: &Segment) -> f64 {
     }
 }
 
-/// The stage cost of a motion under forces: of those that rounding may make of it where a leg ends at an instant of the sum, the one
-/// that is nearest to what is said.
+/// The stage cost of a motion under forces: of those that rounding may make of it where a leg ends
+/// at an instant of the sum, the one that is nearest to what is said.
 fn driven(claim: &Claim, said: f64) -> Option<f64> {
     let Some(ClaimedMotion::Steered {
         motion,
@@ -231,8 +232,8 @@ fn profile(claim: &Claim) -> Option<Violation> {
         let said = format!("a start at {at} s");
         return Some(untrue("path_time.profile", said, format!("{start} s")));
     }
-    // between its own points the profile is straight, between the joints of the motion what is sailed is: they are the
-    // same where they are so at both
+    // between its own points the profile is straight, between the joints of the motion what is
+    // sailed is: they are the same where they are so at both
     let joints = segments.iter().map(Segment::end_time);
     let at_joints = joints.filter_map(|t| Some([profile_at(profile, t)?, t]));
     let mut points = profile.iter().copied().chain(at_joints);

@@ -1,19 +1,21 @@
 //! Checks a plan document alone: without the scenario, the map or the planner that it came from.
 //!
-//! A document holds the motion, own ship and her limits, the mission, the targets as they are known, the sets that
-//! were kept out of, and the pieces of land within reach. From these [`verify`] proves anew
+//! A document holds the motion, own ship and her limits, the mission, the targets as they are
+//! known, the sets that were kept out of, and the pieces of land within reach. From these
+//! [`verify`] proves anew
 //!
-//! - that the motion starts where own ship is, has no gap, keeps her turning radius, speeds or paths (or, under forces, her
-//!   dynamics and her forces), and arrives in time;
-//! - that it keeps out of every set, of every hull that a target may have, and of the land, in continuous time, with
-//!   certified distances ([`crate::evaluation`]);
-//! - that the sets are not too small: each contains the target's hull, the margin and the uncertainty, and every velocity
-//!   that she may take;
-//! - that it says of the motion what is true of it: whether it is safe, costs, risks, samples, encounters, path-time profile, the hold and the
-//!   escape of a ship that stands on.
+//! - that the motion starts where own ship is, has no gap, keeps her turning radius, speeds or
+//!   paths (or, under forces, her dynamics and her forces), and arrives in time;
+//! - that it keeps out of every set, of every hull that a target may have, and of the land, in
+//!   continuous time, with certified distances ([`crate::evaluation`]);
+//! - that the sets are not too small: each contains the target's hull, the margin and the
+//!   uncertainty, and every velocity that she may take;
+//! - that it says of the motion what is true of it: whether it is safe, costs, risks, samples,
+//!   encounters, path-time profile, the hold and the escape of a ship that stands on.
 //!
-//! No planner, obstacle or contact test is used here; the document is read by a mirror of its own. Shared with them are geometry,
-//! segments, and the hull and the velocity sets of a tracked ship (`target`).
+//! No planner, obstacle or contact test is used here; the document is read by a mirror of its own.
+//! Shared with them are geometry, segments, and the hull and the velocity sets of a tracked ship
+//! (`target`).
 
 mod claim;
 mod coverage;
@@ -102,9 +104,9 @@ impl Verification {
     }
 }
 
-/// Checks the text of a plan document. The error is for what is no plan document at all: it names the field, what was
-/// found and what is allowed. Some milliseconds; O(segments (vertices of sets + edges of land)) and probes near the
-/// least distances.
+/// Checks the text of a plan document. The error is for what is no plan document at all: it names
+/// the field, what was found and what is allowed. Some milliseconds; O(segments (vertices of sets +
+/// edges of land)) and probes near the least distances.
 ///
 /// ```
 /// use searoom::verification::verify;

@@ -136,8 +136,8 @@ fn segment(segment: &SegmentFile) -> Segment {
     }
 }
 
-/// The samples that are nodes. A course has lost its full circles: the heading goes on by the turn that is nearest to
-/// what the yaw rates make.
+/// The samples that are nodes. A course has lost its full circles: the heading goes on by the turn
+/// that is nearest to what the yaw rates make.
 fn nodes(samples: &[SampleFile]) -> Vec<Node> {
     let mut nodes: Vec<Node> = Vec::new();
     for sample in samples {

@@ -23,8 +23,8 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
     found
 }
 
-/// The outcome with and without a motion and something given up, the planner with the parts that only its plans have, and
-/// each thing given up once, where it was asked for.
+/// The outcome with and without a motion and something given up, the planner with the parts that
+/// only its plans have, and each thing given up once, where it was asked for.
 pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;

@@ -1,4 +1,5 @@
-//! Where a target may be at a time, with what has to be kept of her, by how far it reaches in directions.
+//! Where a target may be at a time, with what has to be kept of her, by how far it reaches in
+//! directions.
 
 use super::claim::Claim;
 use super::coverage::{about_centroid, largest};
@@ -9,8 +10,8 @@ use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Radians, a quarter of a degree: half the angle between tangents of the faster arc. What they cut off beyond the arc is a
-/// hundred-thousandth of the speed.
+/// Radians, a quarter of a degree: half the angle between tangents of the faster arc. What they cut
+/// off beyond the arc is a hundred-thousandth of the speed.
 pub(super) const TANGENT_SPACING: f64 = PI / 720.0;
 
 /// Directions counter-clockwise, each once.
@@ -28,8 +29,8 @@ pub(super) fn reach(claim: &Claim, ship: &ShipTrack) -> f64 {
         + tolerance::POSITION_SIGMAS * ship.position_std
 }
 
-/// The velocities of a target at a level, one set after another: scaled about the centre that her representation has. None of
-/// ellipses.
+/// The velocities of a target at a level, one set after another: scaled about the centre that her
+/// representation has. None of ellipses.
 pub(super) fn at_level(target: &Target, level: f64, horizon: f64) -> Vec<VelocitySpell> {
     let forever = |velocities| VelocitySpell {
         until: f64::INFINITY,
@@ -78,7 +79,8 @@ enum Moving {
 }
 
 impl<'a> Known<'a> {
-    /// `scale` is that of the velocities about their centre. The directions go around counter-clockwise.
+    /// `scale` is that of the velocities about their centre. The directions go around
+    /// counter-clockwise.
     pub fn of(claim: &Claim, target: &Target, scale: f64, normals: &'a [Vector]) -> Self {
         let of_ellipse = |e: &Ellipse| normals.iter().map(|n| e.support(*n)).collect();
         let (initial, across) = match &target.motion {
@@ -147,8 +149,9 @@ impl<'a> Known<'a> {
         reached
     }
 
-    /// Metres by which two sets may differ that are the same: the depth that counts as none, the corners that a polygon
-    /// leaves out, and the last digits, of which velocities lose as many as they are scaled by.
+    /// Metres by which two sets may differ that are the same: the depth that counts as none, the
+    /// corners that a polygon leaves out, and the last digits, of which velocities lose as many as
+    /// they are scaled by.
     pub fn rounding(&self, reached: &[f64], time: f64, factor: f64) -> f64 {
         let way = |a: &f64, b: &f64| (a - b).abs();
         let way = largest(reached.iter().zip(&self.initial).map(|(a, b)| way(a, b)));
@@ -185,8 +188,9 @@ fn widest(ellipse: &Ellipse) -> f64 {
     2.0 * a.norm().max(b.norm())
 }
 
-/// The farthest that a ship may come in a direction by a time, in closed form: at her greatest speed on the course that is nearest
-/// to it, once that is within a right angle of it, and before at her least.
+/// The farthest that a ship may come in a direction by a time, in closed form: at her greatest
+/// speed on the course that is nearest to it, once that is within a right angle of it, and before
+/// at her least.
 fn way(ship: &ShipTrack, n: Vector, time: f64) -> f64 {
     let (slow, fast) = speeds(ship);
     let off = wrap(heading_of(n) - ship.pose.heading).abs() - ship.course_spread;
@@ -217,8 +221,8 @@ fn speeds(ship: &ShipTrack) -> (f64, f64) {
     (slow, ship.speed + ship.speed_spread)
 }
 
-/// Points whose hull contains every velocity that a ship may have until a time: all are of such velocities but the corners of
-/// tangents to the faster arc.
+/// Points whose hull contains every velocity that a ship may have until a time: all are of such
+/// velocities but the corners of tangents to the faster arc.
 pub(super) fn outer_velocities(ship: &ShipTrack, until: f64) -> Vec<Vector> {
     let (slow, fast) = speeds(ship);
     let heading = ship.pose.heading;

@@ -1,8 +1,9 @@
 //! Are the risks of a document those of its motion?
 //!
-//! A motion takes the risk `r` of a set where it comes into the level set of `r`, the one whose velocities are scaled by `1 - r`
-//! about their centre, and into that of no greater risk. So what is said is looked at from both sides: a little above it
-//! the motion is clear of the level set, a little below it is not, at the very time that is named.
+//! A motion takes the risk `r` of a set where it comes into the level set of `r`, the one whose
+//! velocities are scaled by `1 - r` about their centre, and into that of no greater risk. So what
+//! is said is looked at from both sides: a little above it the motion is clear of the level set, a
+//! little below it is not, at the very time that is named.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::coverage::{about_centroid, largest};
@@ -154,7 +155,8 @@ fn is_flat(shape: &SetShape, time: f64) -> bool {
     }
 }
 
-/// True of a target whose set has several velocity sets one after another: the last one does not tell what was before.
+/// True of a target whose set has several velocity sets one after another: the last one does not
+/// tell what was before.
 fn has_changing_velocities(claim: &Claim, name: &str) -> bool {
     let mut targets = claim.targets.iter().filter(|t| t.name == name);
     targets.any(|target| match &target.motion {
@@ -164,9 +166,9 @@ fn has_changing_velocities(claim: &Claim, name: &str) -> bool {
     })
 }
 
-/// The set from the start on, of which a document has what is left when it has been left. A vertex of the section is one of the
-/// initial set that has moved with the extreme velocity of the same direction. `None` for ellipses and for several velocity sets: of these it
-/// cannot be told.
+/// The set from the start on, of which a document has what is left when it has been left. A vertex
+/// of the section is one of the initial set that has moved with the extreme velocity of the same
+/// direction. `None` for ellipses and for several velocity sets: of these it cannot be told.
 fn before_release(set: &SpaceTimeSet) -> Option<SpaceTimeSet> {
     if set.from == 0.0 {
         return Some(set.clone());

@@ -7,7 +7,8 @@ use crate::evaluation::Violation;
 use crate::frame::{Vector, heading_from_course_deg, heading_of, wrap};
 use crate::tolerance;
 
-/// Seconds. Between two samples there is at most this, and rounding; in a long plan one of so many parts.
+/// Seconds. Between two samples there is at most this, and rounding; in a long plan one of so many
+/// parts.
 const STEP: f64 = 1.0;
 const PARTS: f64 = 20_000.0;
 

@@ -9,8 +9,9 @@ use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::target::VelocitySpell;
 use crate::tolerance;
 
-/// The sets, and what is wrong between entries of one name: each holds until the next one starts, with the section that
-/// is reached then, and the last one until the horizon. The first one starts at 0, or when the set that is entered has been left.
+/// The sets, and what is wrong between entries of one name: each holds until the next one starts,
+/// with the section that is reached then, and the last one until the horizon. The first one starts
+/// at 0, or when the set that is entered has been left.
 pub(super) fn read(
     entries: &[ObstacleFile],
     relaxations: &[RelaxationFile],

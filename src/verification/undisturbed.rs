@@ -10,13 +10,15 @@ use crate::target::{Motion, Target};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Of the way that both make meanwhile. Undisturbed distances are found by narrowing down the time, to this part of it.
+/// Of the way that both make meanwhile. Undisturbed distances are found by narrowing down the time,
+/// to this part of it.
 const RESOLUTION: f64 = 1e-9;
 
 /// Instants of a leg at which ellipses are looked at.
 const INSTANTS: u32 = 64;
 
-/// Per target: the least distance along the desired trajectory, and that it is so near at the time given.
+/// Per target: the least distance along the desired trajectory, and that it is so near at the time
+/// given.
 pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     let legs = undisturbed_legs(&claim.desired, claim.file.horizon_s);
     let all = claim.file.encounters.iter().zip(&claim.targets);

@@ -1,5 +1,5 @@
-//! What once went wrong with files and options that nobody means, run as a user runs it. Each test is named after what
-//! holds now.
+//! What once went wrong with files and options that nobody means, run as a user runs it. Each test
+//! is named after what holds now.
 
 use super::program::{HEAD_ON, document, searoom, stderr, text, write};
 use predicates::prelude::PredicateBooleanExt;
@@ -71,7 +71,8 @@ fn a_deadline_is_kept_among_many_targets_and_waypoints() {
         );
     }
     let file = write(folder.path(), "many.toml", &scenario);
-    // how far the search gets depends on the machine: with a plan that is clear of the ships, the status is 0
+    // how far the search gets depends on the machine: with a plan that is clear of the ships, the
+    // status is 0
     let ended = searoom(&["plan", &file, "--json"]).code(vec![0, 1]);
     let plan = document(&ended);
     assert_eq!(plan["outcome"], "deadline");
@@ -150,7 +151,8 @@ fn no_folder_is_made_of_the_name_of_a_file() {
     assert!(folder.path().join("v1.2/one.json").is_file());
 }
 
-/// One metre of way, a turning radius of 1,000 km: the plan ended 0.04 mm short and failed its own verification.
+/// One metre of way, a turning radius of 1,000 km: the plan ended 0.04 mm short and failed its own
+/// verification.
 #[test]
 fn a_short_way_of_a_ship_that_hardly_turns_is_planned() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -10,7 +10,8 @@ use serde_json::Value;
 const IMAZU: &str = include_str!("../../scenarios/imazu/imazu.json");
 const DNV: &str = include_str!("../../scenarios/dnv/traffic_situation_01.json");
 
-/// Three formats and every kind of fault in one folder: an error each, with file and place, and the rest runs.
+/// Three formats and every kind of fault in one folder: an error each, with file and place, and the
+/// rest runs.
 #[test]
 fn a_folder_may_mix_formats_and_faults() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -130,7 +131,8 @@ fn a_format_is_told_by_what_is_in_the_file() {
     searoom(&["check", &dnv, &toml]).success();
 }
 
-/// Commands that take scenario files alone say in one line what a foreign file is, and how many they leave out of a folder.
+/// Commands that take scenario files alone say in one line what a foreign file is, and how many
+/// they leave out of a folder.
 #[test]
 fn scenario_files_alone_are_compared_and_assessed() {
     for (file, is) in [
@@ -167,7 +169,8 @@ fn scenario_files_alone_are_compared_and_assessed() {
     );
 }
 
-/// What is imported is what is run: the same documents, but for the file, the clock and what was noted.
+/// What is imported is what is run: the same documents, but for the file, the clock and what was
+/// noted.
 #[test]
 fn imported_files_run_as_their_originals() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -309,7 +312,8 @@ fn a_lint_finds_mirrors_missing_ships_and_ships_that_never_matter() {
         ))
         .stdout(contains("4 scenarios, 3 targets"));
     searoom(&["suite", "--lint", "--plans", "x", "scenarios"]).code(2);
-    // the same traffic met at three speeds is three encounters, give-way and stand-on are one in a mirror
+    // the same traffic met at three speeds is three encounters, give-way and stand-on are one in a
+    // mirror
     let ours = document(&searoom(&["suite", "--lint", "--json"]).success());
     assert_eq!(findings(&ours, "Ferry crossing"), Vec::<String>::new());
     assert!(findings(&ours, "Stand-on")[0].starts_with("the mirror image of Give-way ("));

@@ -1,4 +1,5 @@
-//! What comes of every scenario of the project, against a kept table. Where a change is meant, write the table anew:
+//! What comes of every scenario of the project, against a kept table. Where a change is meant,
+//! write the table anew:
 //!
 //! ```text
 //! SEAROOM_UPDATE_GOLDEN=1 cargo test --release --no-default-features --test cli the_shipped_scenarios

@@ -450,7 +450,8 @@ fn no_plan_is_an_answer() {
         .success()
         .stdout(contains("verified, not safe: COLLIDES"))
         .stdout(contains("nothing is claimed of it before"));
-    // claimed from too early, not claimed at all, owned up to nowhere, or of a set that has shrunk meanwhile
+    // claimed from too early, not claimed at all, owned up to nowhere, or of a set that has shrunk
+    // meanwhile
     let earlier = text.replace(&until.to_string(), &(until - 1.0).to_string());
     check(&earlier).code(1).stdout(contains("set of"));
     let never = text.replace(&until.to_string(), "1000000");
@@ -470,7 +471,8 @@ fn no_plan_is_an_answer() {
         .stdout(contains("where she may be"));
 }
 
-/// Behind a slower ship, on a path without a way past: clear up to the horizon, which is no plan to the end.
+/// Behind a slower ship, on a path without a way past: clear up to the horizon, which is no plan to
+/// the end.
 #[test]
 fn a_plan_that_does_not_arrive_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -495,8 +497,8 @@ fn a_plan_that_does_not_arrive_says_so() {
     searoom(&["verify", &file]).success();
 }
 
-/// Targets that hold course and speed, on lines parallel to that of own ship: what is left between the hulls is the distance of the
-/// lines without half of both beams, 4 m and 6 m.
+/// Targets that hold course and speed, on lines parallel to that of own ship: what is left between
+/// the hulls is the distance of the lines without half of both beams, 4 m and 6 m.
 #[test]
 fn the_clearance_of_a_plan_is_that_of_the_nearest_target_in_every_view() {
     let (alone, target) = HEAD_ON.split_once("[[targets]]").expect("a target");
@@ -602,7 +604,8 @@ fn a_reader_that_goes_away_is_no_fault() {
     assert!(output.stderr.is_empty());
 }
 
-/// HEAD_ON with another first position and the given waypoints, without its target's motion in the way.
+/// HEAD_ON with another first position and the given waypoints, without its target's motion in the
+/// way.
 fn with_waypoints(own: &str, waypoints: &str) -> String {
     let at = HEAD_ON.find("waypoints").expect("a mission");
     let line = &HEAD_ON[at..at + HEAD_ON[at..].find('\n').expect("a line")];
@@ -790,7 +793,8 @@ fn an_assessment_document_has_what_the_contract_names() {
     assert!(area(&shaped) > area(&assessment));
 }
 
-/// The velocity that the document recommends is in no velocity obstacle, and one a little less far is.
+/// The velocity that the document recommends is in no velocity obstacle, and one a little less far
+/// is.
 #[test]
 fn a_recommended_alteration_leaves_every_velocity_obstacle() {
     for name in ["give-way", "head-on", "overtaking", "stand-on"] {

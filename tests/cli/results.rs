@@ -410,7 +410,8 @@ mod recordings {
         assert_eq!(found["timelines"][0]["last"], 300.0);
     }
 
-    /// Roles over time, scores, every broken rule with its moment, and how long a ship that stands on holds.
+    /// Roles over time, scores, every broken rule with its moment, and how long a ship that stands
+    /// on holds.
     #[test]
     fn inspect_tells_what_the_rules_say() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -12,7 +12,8 @@ fn overlapping() -> String {
     HEAD_ON.replace("position = { east_m = 1500.0", "position = { east_m = 30.0")
 }
 
-/// A target abeam on the same course at the same speed, nearer than the margin, and nothing unknown of her.
+/// A target abeam on the same course at the same speed, nearer than the margin, and nothing unknown
+/// of her.
 fn abeam() -> String {
     let text = HEAD_ON
         .replace(
@@ -152,7 +153,8 @@ fn a_baseline_and_a_plan_that_ram_have_the_same_word() {
     assert_eq!(held["outcome"], "collides", "the key keeps its values");
 }
 
-/// A risk that is taken of the shape alone is safe, one of the hard set is not; both are told with their figure.
+/// A risk that is taken of the shape alone is safe, one of the hard set is not; both are told with
+/// their figure.
 #[test]
 fn a_risk_that_is_taken_is_told_with_its_figure() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -209,7 +211,8 @@ fn a_document_that_is_wrong_about_its_safety_is_rejected() {
     }
 }
 
-/// What a document says in its texts is shown, not done: a terminal sees no control character and no line that is not ours.
+/// What a document says in its texts is shown, not done: a terminal sees no control character and
+/// no line that is not ours.
 #[test]
 fn control_characters_of_others_are_shown_as_codes() {
     let said = stdout(&searoom(&["verify", "tests/faults/verify-spoof.json"]).code(1));
@@ -330,8 +333,8 @@ fn a_report_has_no_folder_of_this_machine() {
     );
 }
 
-/// Three targets at rest beside a straight path, the nearest in the middle of the list; hulls of own ship and of each are 4 and 6 m
-/// to a side.
+/// Three targets at rest beside a straight path, the nearest in the middle of the list; hulls of
+/// own ship and of each are 4 and 6 m to a side.
 const ABEAM_M: [f64; 3] = [500.0, -300.0, 400.0];
 
 /// Every view tells each target's own clearance, and the least of all, to the decimals that it has.

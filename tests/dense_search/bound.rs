@@ -1,11 +1,13 @@
 //! A lower bound of the cost to go, so that the dense search can leave out what cannot win.
 //!
-//! The error of a point is at least `sqrt(across² + kappa lag²)`, the form without its clamp (formulas
-//! section 7). Three facts bound its integral from below over steps of equal length:
-//! - *across* cannot shrink faster than the ship can turn toward the path and run there at full speed;
+//! The error of a point is at least `sqrt(across² + kappa lag²)`, the form without its clamp
+//! (formulas section 7). Three facts bound its integral from below over steps of equal length:
+//! - *across* cannot shrink faster than the ship can turn toward the path and run there at full
+//!   speed;
 //! - *lag* cannot shrink faster than she can turn along the path and run there at full speed;
-//! - at every instant the ship is outside every set, so her error is at least the least error outside.
-//!   Her error changes at a bounded rate, so this also holds, less the rate, before and after.
+//! - at every instant the ship is outside every set, so her error is at least the least error
+//!   outside. Her error changes at a bounded rate, so this also holds, less the rate, before and
+//!   after.
 //!
 //! The first two add up; of their sum and the third the larger counts, step by step.
 
@@ -29,7 +31,8 @@ pub struct Bound {
     step: f64,
     /// Per angle between heading and wish, per step: metres made good at most.
     progress: Vec<Vec<f64>>,
-    /// Per number of steps from t = 0: integral of the squared least error outside until then, m² s.
+    /// Per number of steps from t = 0: integral of the squared least error outside until then, m²
+    /// s.
     outside: Vec<f64>,
 }
 
@@ -110,8 +113,8 @@ impl Bound {
         self.outside[index.min(self.outside.len() - 1)]
     }
 
-    /// Integral over one step of the square of a quantity that is concave in time with these ends and
-    /// counts only where it is positive: a concave curve lies above its chord.
+    /// Integral over one step of the square of a quantity that is concave in time with these ends
+    /// and counts only where it is positive: a concave curve lies above its chord.
     fn squared(&self, (a, b): (f64, f64)) -> f64 {
         let integral = match (a > 0.0, b > 0.0) {
             (true, true) => (a * a + a * b + b * b) / 3.0,
@@ -155,8 +158,8 @@ impl Bound {
         }
     }
 
-    /// Least error of a point outside every set: per set, outside is a union of half-planes, and the
-    /// least error in a half-plane at depth `d` is `d / sqrt(n_across² + n_along² / kappa)`.
+    /// Least error of a point outside every set: per set, outside is a union of half-planes, and
+    /// the least error in a half-plane at depth `d` is `d / sqrt(n_across² + n_along² / kappa)`.
     fn least_outside(&self, problem: &Problem, time: f64) -> f64 {
         let desired = self.leg.start + self.leg.direction * (self.leg.speed * time);
         let of_set = |o: &searoom::obstacle::PolytopeObstacle| {
@@ -177,8 +180,8 @@ impl Bound {
 }
 
 /// Metres made good in a wished direction within `length` metres by a ship that first points `away`
-/// (radians) from it, turns at once on her smallest circle and then runs on; not below 0: she may also
-/// stay. Convex in `length`.
+/// (radians) from it, turns at once on her smallest circle and then runs on; not below 0: she may
+/// also stay. Convex in `length`.
 fn progress(away: f64, length: f64, radius: f64) -> f64 {
     let turning = length.min(away * radius);
     let made = radius * (away.sin() - (away - turning / radius).sin()) + (length - turning);

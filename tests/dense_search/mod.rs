@@ -1,13 +1,13 @@
 //! A search over (east, north, heading, time) that is small, slow and obviously right: what the
 //! space-time planner's cost is measured against.
 //!
-//! Own ship steps `step` seconds at a time at one of her speeds, straight on or on her smallest circle
-//! to either side. States stay continuous; of those that fall into one cell at one time only the
-//! most promising few go on. From every state that goes on the ship also tries to close: back to the
-//! desired path, recover the lag, steer to the end. What comes out is a trajectory of the same ship,
-//! clear of the same sets (sampled in time), so its cost is an upper bound of the optimum. It is not the
-//! optimum: turns come in multiples of a step and cells merge, which costs a few per cent. A planner
-//! that this search does not beat has a ratio of at most 1.
+//! Own ship steps `step` seconds at a time at one of her speeds, straight on or on her smallest
+//! circle to either side. States stay continuous; of those that fall into one cell at one time only
+//! the most promising few go on. From every state that goes on the ship also tries to close: back
+//! to the desired path, recover the lag, steer to the end. What comes out is a trajectory of the
+//! same ship, clear of the same sets (sampled in time), so its cost is an upper bound of the
+//! optimum. It is not the optimum: turns come in multiples of a step and cells merge, which costs a
+//! few per cent. A planner that this search does not beat has a ratio of at most 1.
 //!
 //! Shared with the program: the motion along a [`Segment`], the space-time error of a point, and
 //! membership of a set. One straight desired leg only.
@@ -64,9 +64,9 @@ impl Default for DenseSearch {
 }
 
 impl DenseSearch {
-    /// Cells that grow with the manoeuvre, so that even a dear one is searched in seconds: an error that
-    /// costs `incumbent` m² is as large as its cubic root. Where the cells have grown it overlooks a few per
-    /// cent that the default still finds.
+    /// Cells that grow with the manoeuvre, so that even a dear one is searched in seconds: an error
+    /// that costs `incumbent` m² is as large as its cubic root. Where the cells have grown it
+    /// overlooks a few per cent that the default still finds.
     pub fn coarse(incumbent: f64) -> Self {
         let fine = Self::default();
         Self {
@@ -254,8 +254,8 @@ impl Scene<'_> {
         steps
     }
 
-    /// Distance from the desired line, lag behind the desired motion along it (metres), and whether the
-    /// nearest point in space-time is on the leg: then the error is `across² + kappa lag²`.
+    /// Distance from the desired line, lag behind the desired motion along it (metres), and whether
+    /// the nearest point in space-time is on the leg: then the error is `across² + kappa lag²`.
     fn off(&self, position: Vector, time: f64) -> (f64, f64, bool) {
         let offset = position - self.leg.start;
         let (along, speed) = (self.leg.direction.dot(&offset), self.leg.speed);
@@ -282,9 +282,9 @@ impl Scene<'_> {
         }
     }
 
-    /// The integral of the error along a segment, m² s. Along a line whose nearest points are on the
-    /// desired leg it is that of a quadratic; otherwise three Gauss
-    /// points for every half radian of an arc or 5 s of a line.
+    /// The integral of the error along a segment, m² s. Along a line whose nearest points are on
+    /// the desired leg it is that of a quadratic; otherwise three Gauss points for every half
+    /// radian of an arc or 5 s of a line.
     fn cost(&self, segment: &Segment) -> f64 {
         if segment.turn_rate == 0.0 {
             let (a, b) = (
@@ -327,8 +327,8 @@ impl Scene<'_> {
         total
     }
 
-    /// Membership at instants at most `check` apart, both ends included. A stretch is halved until it is
-    /// that short, or until the slack at its middle is more than can be lost within it.
+    /// Membership at instants at most `check` apart, both ends included. A stretch is halved until
+    /// it is that short, or until the slack at its middle is more than can be lost within it.
     fn is_clear(&self, chain: &[Segment]) -> bool {
         chain
             .iter()
@@ -357,8 +357,8 @@ impl Scene<'_> {
             && self.stretch_is_clear(segment, middle, to)
     }
 
-    /// Ways from a state to the last waypoint, in the leg's own frame: back to the path at an angle,
-    /// recover the lag, then at the desired speed; and near the end straight to it.
+    /// Ways from a state to the last waypoint, in the leg's own frame: back to the path at an
+    /// angle, recover the lag, then at the desired speed; and near the end straight to it.
     fn closings(&self, pose: &Pose, time: f64) -> Vec<Vec<Segment>> {
         let leg = &self.leg;
         let radius = self.problem.own.turning_radius;

@@ -1,4 +1,5 @@
-//! Scenes of the optimal-control planner: figure 9, and random ones with every ellipsoid aimed at own ship's way.
+//! Scenes of the optimal-control planner: figure 9, and random ones with every ellipsoid aimed at
+//! own ship's way.
 #![allow(dead_code, reason = "tests and benches use a part each")]
 
 use std::f64::consts::PI;
@@ -50,7 +51,8 @@ pub fn figure_9() -> Vec<KeepOut> {
     ]
 }
 
-/// Ellipsoids that each meet own ship on her way, or miss it by less than a metre, and are clear of her start.
+/// Ellipsoids that each meet own ship on her way, or miss it by less than a metre, and are clear of
+/// her start.
 pub fn random_ellipsoids(count: usize, rng: &mut ChaCha8Rng) -> Vec<KeepOut> {
     let desired = desired();
     let mut found = Vec::new();
@@ -148,10 +150,12 @@ pub fn straight(task: &Task<CyberShip2>) -> Profile {
     profile_along(task, &(0..=task.intervals).map(place).collect::<Vec<_>>())
 }
 
-/// Of the way that is meant to be made: how far a wave of a wandering way goes to either side, at most.
+/// Of the way that is meant to be made: how far a wave of a wandering way goes to either side, at
+/// most.
 const WAVE: f64 = 0.18;
 
-/// A way that wanders to the sides in three waves, as far as a third of its length, at a pace that varies.
+/// A way that wanders to the sides in three waves, as far as a third of its length, at a pace that
+/// varies.
 pub fn wandering<V: Manoeuvring>(task: &Task<V>, rng: &mut ChaCha8Rng) -> Profile {
     let waves: [f64; 3] = std::array::from_fn(|_| rng.random_range(-WAVE..WAVE));
     let pace = rng.random_range(-0.15..0.15);

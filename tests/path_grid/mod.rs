@@ -1,13 +1,16 @@
-//! A search over (distance, time) that is small, slow and obviously right: what the path-time planner's arrival is held
-//! against.
+//! A search over (distance, time) that is small, slow and obviously right: what the path-time
+//! planner's arrival is held against.
 //!
-//! The path is cut into `cells` pieces and time into steps in which one piece is sailed at full speed. In every step own ship
-//! sails one piece or waits. With the sets as they are every step is tested as a motion, so what comes out is a plan, and no
-//! arrival can be better than the least: an upper bound. With the sets two pieces smaller on every side
-//! only the grid's points are tested. Rounded down to the grid every motion is one of the grid's and never more than two pieces away from
-//! itself at the same time, so no motion arrives earlier than that: a lower bound, less a step.
+//! The path is cut into `cells` pieces and time into steps in which one piece is sailed at full
+//! speed. In every step own ship sails one piece or waits. With the sets as they are every step is
+//! tested as a motion, so what comes out is a plan, and no arrival can be better than the least: an
+//! upper bound. With the sets two pieces smaller on every side only the grid's points are tested.
+//! Rounded down to the grid every motion is one of the grid's and never more than two pieces away
+//! from itself at the same time, so no motion arrives earlier than that: a lower bound, less a
+//! step.
 //!
-//! Shared with the program: membership and contact of a set in the plane and time, not along a path.
+//! Shared with the program: membership and contact of a set in the plane and time, not along a
+//! path.
 
 use searoom::frame::{Pose, Vector, heading_of};
 use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -75,7 +78,8 @@ impl Path {
     }
 }
 
-/// Metres that a motion may be inside a set. Those without interior block, too: planned around as sets a millimetre wide.
+/// Metres that a motion may be inside a set. Those without interior block, too: planned around as
+/// sets a millimetre wide.
 fn depth(obstacle: &Obstacle) -> f64 {
     let initial = match obstacle {
         Obstacle::Polytope(o) => o.initial(),
@@ -90,7 +94,8 @@ fn depth(obstacle: &Obstacle) -> f64 {
     }
 }
 
-/// The earliest arrival on the grid, seconds; `None` when there is none before the horizon. `shrunk` asks for the lower bound.
+/// The earliest arrival on the grid, seconds; `None` when there is none before the horizon.
+/// `shrunk` asks for the lower bound.
 pub fn earliest(
     path: &Path,
     obstacles: &[Obstacle],
@@ -147,8 +152,9 @@ pub fn earliest(
     None
 }
 
-/// The least space-time error on the grid, m²; `None` when the end is not reached before the horizon. What it finds is a
-/// plan, so nothing is the least that costs more. The error is integrated by Simpson's rule over each step.
+/// The least space-time error on the grid, m²; `None` when the end is not reached before the
+/// horizon. What it finds is a plan, so nothing is the least that costs more. The error is
+/// integrated by Simpson's rule over each step.
 pub fn least_error(
     path: &Path,
     obstacles: &[Obstacle],

@@ -1,4 +1,5 @@
-//! The path-time planner through the whole program: what is planned is right by its own judgement and by that of its document.
+//! The path-time planner through the whole program: what is planned is right by its own judgement
+//! and by that of its document.
 
 mod scene;
 
@@ -55,8 +56,9 @@ fn trajectory(run: &Run) -> &Trajectory {
     &run.planned.outcome.plan().expect("a plan").trajectory
 }
 
-/// Networks of paths that share places and come back to their own, among ships over the start, over the end and anywhere: every
-/// answer is a plan that passes its checks, or says why there is none. What does not arrive says so.
+/// Networks of paths that share places and come back to their own, among ships over the start, over
+/// the end and anywhere: every answer is a plan that passes its checks, or says why there is none.
+/// What does not arrive says so.
 #[test]
 fn plans_on_random_networks_pass_their_checks() {
     let count = super::scenes(200);
@@ -107,7 +109,8 @@ fn plans_on_random_networks_pass_their_checks() {
     assert!(20 * none < read, "{told}");
 }
 
-/// A start in a set, on a network that is cut where its path meets itself: she leaves it, and arrives at the end.
+/// A start in a set, on a network that is cut where its path meets itself: she leaves it, and
+/// arrives at the end.
 #[test]
 fn out_of_a_set_the_plan_goes_on_to_the_end() {
     let run = verified(include_str!("../faults/exit3-path-time-stops-short.toml")).expect("sound");
@@ -119,7 +122,8 @@ fn out_of_a_set_the_plan_goes_on_to_the_end() {
     assert!(until > 0.0 && until < 20.0, "{until}");
 }
 
-/// A path that comes to a place twice, and an alternative that does: from one pass to the other only by sailing the alternative.
+/// A path that comes to a place twice, and an alternative that does: from one pass to the other
+/// only by sailing the alternative.
 #[test]
 fn one_pass_of_a_place_is_not_another() {
     verified(include_str!("../faults/exit3-path-time-place-twice.toml")).expect("sound");
@@ -141,7 +145,8 @@ fn a_wait_at_the_start_is_not_turned() {
     );
 }
 
-/// The error of a plan is that against the mission, on whatever path it sails: so the mission itself, which nobody bars, is sailed.
+/// The error of a plan is that against the mission, on whatever path it sails: so the mission
+/// itself, which nobody bars, is sailed.
 #[test]
 fn the_error_on_an_alternative_is_that_against_the_mission() {
     let text = include_str!("../faults/verify-rejects-path-time-alternative.toml");
@@ -161,8 +166,8 @@ fn the_error_on_an_alternative_is_that_against_the_mission() {
     assert!(faults(&less).contains("cost.objective"));
 }
 
-/// A slower ship ahead on a path without a way past: own ship follows, clear of the whole shape up to the horizon, and says that
-/// it does not arrive.
+/// A slower ship ahead on a path without a way past: own ship follows, clear of the whole shape up
+/// to the horizon, and says that it does not arrive.
 #[test]
 fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     let run = verified(&shipped("scenarios/colregs/overtaking.toml")).expect("sound");
@@ -187,7 +192,8 @@ fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     let document = document(&run);
     assert_eq!(document["cost"]["arrived"], false);
     assert_eq!(document["outcome"], "relaxed");
-    // who says that it arrives, or that more of the way is done, or goes on for less than the horizon, is found out
+    // who says that it arrives, or that more of the way is done, or goes on for less than the
+    // horizon, is found out
     let altered = |alter: &dyn Fn(&mut Value)| {
         let mut altered = document.clone();
         alter(&mut altered);
@@ -215,8 +221,9 @@ fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
     assert!(shorter.contains("s from the horizon"), "{shorter}");
 }
 
-/// Ships that come the other way, where nothing along the path is clear: own ship stops and lets itself be passed; inside the set it makes no
-/// way, and when the ship is past it goes on to the end.
+/// Ships that come the other way, where nothing along the path is clear: own ship stops and lets
+/// itself be passed; inside the set it makes no way, and when the ship is past it goes on to the
+/// end.
 #[test]
 fn where_a_ship_comes_down_the_path_own_ship_stops() {
     let text = shipped("scenarios/colregs/head-on.toml");
@@ -248,7 +255,8 @@ fn where_a_ship_comes_down_the_path_own_ship_stops() {
     }
 }
 
-/// A ship at anchor over the last waypoint: own ship stays off, and says so; at a horizon that ends before it gets there as well.
+/// A ship at anchor over the last waypoint: own ship stays off, and says so; at a horizon that ends
+/// before it gets there as well.
 #[test]
 fn before_a_ship_over_the_end_own_ship_stops() {
     let anchored = |horizon: f64| {
@@ -274,8 +282,8 @@ fn before_a_ship_over_the_end_own_ship_stops() {
     }
 }
 
-/// The shipped scenario does what it says: the other path, on which it sails slower for the ship that crosses; without the dredger
-/// its own, without the coaster at full speed.
+/// The shipped scenario does what it says: the other path, on which it sails slower for the ship
+/// that crosses; without the dredger its own, without the coaster at full speed.
 #[test]
 fn on_the_alternative_path_the_ferry_lets_the_coaster_pass() {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));

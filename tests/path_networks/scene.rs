@@ -1,5 +1,6 @@
-//! Random scenes of the path-time planner, as files: paths on a coarse grid that share places, come back to their own, cross and
-//! lie on one another, tiny legs, ships over the start and over the end.
+//! Random scenes of the path-time planner, as files: paths on a coarse grid that share places, come
+//! back to their own, cross and lie on one another, tiny legs, ships over the start and over the
+//! end.
 
 use std::fmt::Write;
 

@@ -1,5 +1,5 @@
-//! Random obstacles that favour degenerate sets: points, segments, collinear and repeated vertices, singular
-//! matrices.
+//! Random obstacles that favour degenerate sets: points, segments, collinear and repeated vertices,
+//! singular matrices.
 #![allow(dead_code, reason = "every test file uses a part")]
 
 use nalgebra::Matrix2;

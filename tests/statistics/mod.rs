@@ -11,9 +11,9 @@ pub fn quantile(values: &[f64], p: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-/// Clopper–Pearson, one-sided, 95 %: the largest failure probability at which `failures` or fewer in
-/// `trials` still has a chance of 5 %. Clopper & Pearson 1934, doi:10.1093/biomet/26.4.404. By bisection
-/// of the binomial distribution function; O(failures · 60).
+/// Clopper–Pearson, one-sided, 95 %: the largest failure probability at which `failures` or fewer
+/// in `trials` still has a chance of 5 %. Clopper & Pearson 1934, doi:10.1093/biomet/26.4.404. By
+/// bisection of the binomial distribution function; O(failures · 60).
 pub fn failure_bound(failures: usize, trials: usize) -> f64 {
     if failures >= trials {
         return 1.0;

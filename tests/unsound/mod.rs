@@ -1,4 +1,5 @@
-//! Documents that agree with themselves in all figures and are unsound, and plans that are sound and nearly did not seem so.
+//! Documents that agree with themselves in all figures and are unsound, and plans that are sound
+//! and nearly did not seem so.
 
 use std::f64::consts::TAU;
 
@@ -40,8 +41,9 @@ fn scaled(corners: &Value, factor: f64) -> Value {
     json!(corners.iter().map(scaled).collect::<Vec<_>>())
 }
 
-/// A slab of half a nanosecond that carries the set aside; a level set to one side of the velocities, in two slabs; a jump
-/// through a wall during a turn of many circles; a round trip that nobody sails.
+/// A slab of half a nanosecond that carries the set aside; a level set to one side of the
+/// velocities, in two slabs; a jump through a wall during a turn of many circles; a round trip that
+/// nobody sails.
 #[test]
 fn unsound_documents_are_rejected() {
     for (name, expected) in [
@@ -190,7 +192,8 @@ fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
     );
 }
 
-/// Of several velocity sets each one after the first, too small alone: given outright, of a ship that may turn, and at a risk.
+/// Of several velocity sets each one after the first, too small alone: given outright, of a ship
+/// that may turn, and at a risk.
 #[test]
 fn each_later_velocity_set_that_is_too_small_is_found() {
     let mut at_risk = scenario("uncertainty/turning.toml");
@@ -367,8 +370,9 @@ fn each_target_has_its_own_clearance_in_every_view() {
     );
 }
 
-/// Plans that are what they say: something given up when the time was out, a node at a rounding past a whole second, ellipses and sets
-/// at the ends of the numbers, an arc of a millimetre at the end of a long way; a ship that stands on from beside her leg by a rounding; one that has arrived
+/// Plans that are what they say: something given up when the time was out, a node at a rounding
+/// past a whole second, ellipses and sets at the ends of the numbers, an arc of a millimetre at the
+/// end of a long way; a ship that stands on from beside her leg by a rounding; one that has arrived
 /// within a set; a plan until the horizon near a ship that turns.
 #[test]
 fn sound_plans_at_the_ends_of_the_numbers_are_verified() {

@@ -1,5 +1,5 @@
-//! Any scene that a file can hold: each planner and every setting, places far from the origin, land, path networks, budgets of
-//! milliseconds, numbers of any size.
+//! Any scene that a file can hold: each planner and every setting, places far from the origin,
+//! land, path networks, budgets of milliseconds, numbers of any size.
 #![allow(dead_code, reason = "the tests take the scenes beside these")]
 
 use std::f64::consts::PI;
@@ -37,7 +37,8 @@ const EXTREME: [&str; 22] = [
     "-1e7",
 ];
 
-/// A scenario file, which the program may refuse; the same arguments give the same scene. `maps` is the folder of the maps.
+/// A scenario file, which the program may refuse; the same arguments give the same scene. `maps` is
+/// the folder of the maps.
 pub fn anything(seed: u64, planner: Option<&str>, maps: &str) -> String {
     let mut scene = Scene::new(seed ^ 0x0066_757a_7a00);
     scene.domains = &["colregs", "colregs", "paper", "hull", "custom"];
@@ -296,8 +297,8 @@ impl Scene {
         position(&[east + self.origin[0], north + self.origin[1]])
     }
 
-    /// Puts another number in the place of one: an extreme one, one that is nearly the same, or one of another place. The budget
-    /// stays short.
+    /// Puts another number in the place of one: an extreme one, one that is nearly the same, or one
+    /// of another place. The budget stays short.
     fn alter_a_number(&mut self) {
         let numbers: Vec<(usize, usize)> = numbers(&self.text);
         let Some((from, to)) = (!numbers.is_empty()).then(|| self.one(&numbers)) else {

@@ -1,4 +1,5 @@
-//! Scenes as no harbour has them: sets of every kind anywhere, own ship within some, targets at rest on its path, risk taken.
+//! Scenes as no harbour has them: sets of every kind anywhere, own ship within some, targets at
+//! rest on its path, risk taken.
 
 mod anything;
 

@@ -14,8 +14,8 @@ use super::read;
 /// Differences of two plan documents that are listed; the rest is counted.
 const LISTED: usize = 20;
 
-/// Entities that are not compared row by row: the title, and the documents, which are compared field
-/// by field without the time that planning took.
+/// Entities that are not compared row by row: the title, and the documents, which are compared
+/// field by field without the time that planning took.
 const APART: [&str; 3] = ["/__properties", "/plan_document", "/comparison_document"];
 
 /// The differences of two recordings.

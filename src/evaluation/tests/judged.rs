@@ -1,4 +1,5 @@
-//! What is judged after a release and off the land, from both sides of each bound; what is told of the time after arrival.
+//! What is judged after a release and off the land, from both sides of each bound; what is told of
+//! the time after arrival.
 
 use super::*;
 use crate::geometry::Polygon;
@@ -103,7 +104,8 @@ fn land_nearer_than_the_margin_is_a_violation() {
     }
 }
 
-/// Own ship arrives after 300 s and lies across the way of a ship that comes by later, from the side or nearly.
+/// Own ship arrives after 300 s and lies across the way of a ship that comes by later, from the
+/// side or nearly.
 #[test]
 fn the_time_after_arrival_is_told_and_not_judged() {
     let coming = |after: f64, north: f64| {

@@ -35,7 +35,8 @@ fn the_worst_hull_is_turned_as_far_as_its_course_may_be() {
         assert!(off < 1e-6 && off > -1.3e-3 * reach, "{spread}: {off}");
         assert!((found.passages[0].dcpa - 50.0).abs() < 1e-6, "as expected");
     }
-    // stem to stern she is nearer than on the heading told: that is a violation, whatever the sets say
+    // stem to stern she is nearer than on the heading told: that is a violation, whatever the sets
+    // say
     let mut near = lying(1.2, 0.0);
     if let Motion::Ship(track) = &mut near.motion {
         track.pose.position.y = 30.0;
@@ -45,7 +46,8 @@ fn the_worst_hull_is_turned_as_far_as_its_course_may_be() {
     assert_eq!(words(&found), ["arrival:", "hull"]);
 }
 
-/// Own ship comes by at 20 s: by then she may have turned so far, in the first seconds hardly at all.
+/// Own ship comes by at 20 s: by then she may have turned so far, in the first seconds hardly at
+/// all.
 #[test]
 fn the_worst_hull_of_a_ship_that_turns_is_that_of_the_time() {
     let rate = 0.02;

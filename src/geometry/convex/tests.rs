@@ -132,7 +132,8 @@ fn outer_square(half: f64) -> ConvexPolygon {
     .expect("finite")
 }
 
-/// Along an edge of 27 m, seen a hair from its normal, lies one of 17 nm, whose ends rounding makes equally far.
+/// Along an edge of 27 m, seen a hair from its normal, lies one of 17 nm, whose ends rounding makes
+/// equally far.
 #[test]
 fn the_farthest_vertex_is_beyond_an_edge_that_rounding_hides() {
     let vertices = [

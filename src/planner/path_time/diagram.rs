@@ -100,7 +100,8 @@ pub struct PathTimeDiagram {
     pub legs: Vec<DiagramLeg>,
     /// Leg after leg.
     pub obstacles: Vec<DiagramObstacle>,
-    /// Where the course changes; the first is at 0 where own ship does not start on the course of the first leg.
+    /// Where the course changes; the first is at 0 where own ship does not start on the course of
+    /// the first leg.
     pub corners: Vec<DiagramCorner>,
     /// From the start to arrival, straight in between; the start alone where there is no plan.
     pub profile: Vec<PathTime>,

@@ -34,7 +34,8 @@ pub(crate) struct State {
     pub tested: Cell<bool>,
 }
 
-/// See the head of the file. Lines never leave a leg: arrivals at the end of a leg at full speed are nodes, made as the search asks for them.
+/// See the head of the file. Lines never leave a leg: arrivals at the end of a leg at full speed
+/// are nodes, made as the search asks for them.
 #[derive(Debug)]
 pub(crate) struct Graph<'a> {
     pub scene: &'a Scene<'a>,
@@ -209,8 +210,8 @@ impl<'a> Graph<'a> {
         out.push((state, step));
     }
 
-    /// True when own ship, having been at the place before, could as well have waited there: on a path from which all may be
-    /// sailed that may be from here.
+    /// True when own ship, having been at the place before, could as well have waited there: on a
+    /// path from which all may be sailed that may be from here.
     fn waited_for(&self, point: usize, time: f64) -> bool {
         let within = self.measure.as_good_within();
         let network = self.scene.network;

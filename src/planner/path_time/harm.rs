@@ -1,10 +1,12 @@
 //! Where no motion along the paths is clear of every set: the one that does least harm.
 //!
-//! Candidates: own ship stays where she is, or sails along a path at a share of her greatest speed to some place and stays
-//! there, or sails on to the end. The harm of each is what she does inside sets: metres sailed, and seconds at a tenth of her
-//! greatest speed, each weighed by the risk. So to stop and be passed by is better than to run through, and to leave a set is
-//! better than to stay in it. Of those that do about the least harm she takes the one from which she still arrives, or gets
-//! farthest; of these the one that sails least, at the least speed. From when it is clear for good, the planner goes on.
+//! Candidates: own ship stays where she is, or sails along a path at a share of her greatest speed
+//! to some place and stays there, or sails on to the end. The harm of each is what she does inside
+//! sets: metres sailed, and seconds at a tenth of her greatest speed, each weighed by the risk. So
+//! to stop and be passed by is better than to run through, and to leave a set is better than to
+//! stay in it. Of those that do about the least harm she takes the one from which she still
+//! arrives, or gets farthest; of these the one that sails least, at the least speed. From when it
+//! is clear for good, the planner goes on.
 
 use std::time::Instant;
 
@@ -30,7 +32,8 @@ const SECOND: f64 = 0.1;
 /// Times the least harm is about the least.
 const ABOUT: f64 = 1.1;
 
-/// See the head of the file. The obstacles are the whole sets. `None` where the paths are none. Some milliseconds.
+/// See the head of the file. The obstacles are the whole sets. `None` where the paths are none.
+/// Some milliseconds.
 pub fn least_harm(problem: &Problem) -> Option<Planned> {
     let started = Instant::now();
     let network = PathNetwork::new(&problem.desired.waypoints(), problem.alternatives).ok()?;
@@ -154,7 +157,8 @@ fn candidates(scene: &Scene) -> Vec<Profile> {
     all
 }
 
-/// Along legs at a speed for some metres, and there until the horizon; at the last waypoint the end.
+/// Along legs at a speed for some metres, and there until the horizon; at the last waypoint the
+/// end.
 fn along(scene: &Scene, way: &[usize], speed: f64, stop: f64) -> Profile {
     let mut profile = Profile::new();
     let (mut time, mut left) = (0.0, stop);

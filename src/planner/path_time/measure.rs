@@ -11,7 +11,8 @@ use crate::planner::{Objective, Problem, SearchKind};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Metres per second. Of ways of one length the earliest is the best: a thousand seconds weigh a millimetre.
+/// Metres per second. Of ways of one length the earliest is the best: a thousand seconds weigh a
+/// millimetre.
 const METRES_PER_SECOND: f64 = 1e-6;
 
 /// Of the horizon. Arrivals at a place on a network so soon after another are not followed.
@@ -87,9 +88,9 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// Seconds within which to arrive at a place after another way did, which costs less so far, is taken for worse. Of the space-time
-    /// error that is so where own ship could wait meanwhile, but for what the wait costs; on a network the ways would
-    /// be too many without it.
+    /// Seconds within which to arrive at a place after another way did, which costs less so far, is
+    /// taken for worse. Of the space-time error that is so where own ship could wait meanwhile, but
+    /// for what the wait costs; on a network the ways would be too many without it.
     pub(crate) fn as_good_within(&self) -> f64 {
         if self.waits_are_free() {
             f64::INFINITY
@@ -100,8 +101,9 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// True when a line between two nodes of a leg may be part of a best profile: of least time or length any may; of least
-    /// space-time error those at an extreme speed, on schedule, along an edge, and those that end at a corner.
+    /// True when a line between two nodes of a leg may be part of a best profile: of least time or
+    /// length any may; of least space-time error those at an extreme speed, on schedule, along an
+    /// edge, and those that end at a corner.
     pub(crate) fn joins(
         &self,
         scene: &Scene,
@@ -121,8 +123,9 @@ impl<'a> Measure<'a> {
             || (before.on_edge_of.is_some() && before.on_edge_of == after.on_edge_of)
     }
 
-    /// Where the way to a corner that keeps nearest to the schedule bends: at full speed first while behind it, at rest first while ahead.
-    /// `None` where that would cross the schedule, or nothing is won.
+    /// Where the way to a corner that keeps nearest to the schedule bends: at full speed first
+    /// while behind it, at rest first while ahead. `None` where that would cross the schedule, or
+    /// nothing is won.
     pub(crate) fn bend(
         &self,
         scene: &Scene,

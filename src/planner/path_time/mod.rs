@@ -4,8 +4,9 @@
 //! network of legs ─► obstacles along each leg ─► graph over their corners (A*) ─► taut profile ─► plan
 //! ```
 //!
-//! A motion is a curve in distance and time, `0 <= speed <= max`; an obstacle is a convex polygon on each leg.
-//! The least time is exact for these polygons; docs/path-time-planner.md has the proof.
+//! A motion is a curve in distance and time, `0 <= speed <= max`; an obstacle is a convex polygon
+//! on each leg. The least time is exact for these polygons; docs/path-time-planner.md has the
+//! proof.
 
 mod diagram;
 mod due;
@@ -54,17 +55,19 @@ const MOST_LINES: usize = 500_000;
 
 /// Plans one problem along its desired path and the alternatives to it.
 ///
-/// The plan begins at the first waypoint at t = 0, keeps to the paths, goes forward at no more than the greatest speed or waits, is
-/// clear of every obstacle to rounding (deeper than 1e-7 m nowhere), and ends at the last waypoint before the
-/// horizon. At corners of the path own ship turns on the spot. For the objectives of time and of length it is the best of all such motions
-/// along the paths; the space-time error is the least on the graph. The same problem gives the same plan unless the
-/// deadline strikes.
+/// The plan begins at the first waypoint at t = 0, keeps to the paths, goes forward at no more than
+/// the greatest speed or waits, is clear of every obstacle to rounding (deeper than 1e-7 m
+/// nowhere), and ends at the last waypoint before the horizon. At corners of the path own ship
+/// turns on the spot. For the objectives of time and of length it is the best of all such motions
+/// along the paths; the space-time error is the least on the graph. The same problem gives the same
+/// plan unless the deadline strikes.
 pub fn plan(problem: &Problem) -> Planned {
     planned(problem, Aim::Arrive, 0.0)
 }
 
-/// The same where own ship cannot arrive in time: the motion that is clear of every obstacle up to the horizon and has the least
-/// way left then, whatever the objective. `risk` is that of the obstacles.
+/// The same where own ship cannot arrive in time: the motion that is clear of every obstacle up to
+/// the horizon and has the least way left then, whatever the objective. `risk` is that of the
+/// obstacles.
 pub fn stay_clear(problem: &Problem, risk: f64) -> Planned {
     planned(problem, Aim::Last, risk)
 }
@@ -99,7 +102,8 @@ fn planned(problem: &Problem, aim: Aim, risk: f64) -> Planned {
     search(problem, &scene, &Profile::new(), risk)
 }
 
-/// The best motion that begins with a profile, as far as it goes, and is clear of every obstacle after that.
+/// The best motion that begins with a profile, as far as it goes, and is clear of every obstacle
+/// after that.
 fn search(problem: &Problem, scene: &Scene, begun: &Profile, risk: f64) -> Planned {
     let objective = match scene.aim {
         Aim::Arrive => problem.objective,
@@ -109,8 +113,9 @@ fn search(problem: &Problem, scene: &Scene, begun: &Profile, risk: f64) -> Plann
     search_for(objective, problem, scene, begun, risk)
 }
 
-/// The same for another objective. Where the least space-time error takes long to find, that of least time is found meanwhile:
-/// it shows whether there is a plan at all, and is the answer where the better one is not found.
+/// The same for another objective. Where the least space-time error takes long to find, that of
+/// least time is found meanwhile: it shows whether there is a plan at all, and is the answer where
+/// the better one is not found.
 fn search_for(
     objective: Objective,
     problem: &Problem,

@@ -89,8 +89,8 @@ pub(crate) struct Known {
 }
 
 impl Known {
-    /// The corners of the obstacles at which a shortest way may bend, that can be reached and left in time, and that no other
-    /// obstacle covers.
+    /// The corners of the obstacles at which a shortest way may bend, that can be reached and left
+    /// in time, and that no other obstacle covers.
     pub(crate) fn corners(scene: &Scene) -> Self {
         let mut known = Self {
             on: vec![Vec::new(); scene.tracks.len()],
@@ -115,7 +115,8 @@ impl Known {
         known
     }
 
-    /// Adds the places at which a motion may stay until the horizon: the ends of legs, and where it begins.
+    /// Adds the places at which a motion may stay until the horizon: the ends of legs, and where it
+    /// begins.
     pub(crate) fn add_last(&mut self, scene: &Scene, root: &Node) {
         let mut add = |leg: usize, distance: f64| {
             let time = scene.horizon;
@@ -171,7 +172,8 @@ impl Known {
         }
     }
 
-    /// Gives the nodes of each point to every other point at its place, too: own ship may be there on any of the paths.
+    /// Gives the nodes of each point to every other point at its place, too: own ship may be there
+    /// on any of the paths.
     pub(crate) fn share(&mut self, scene: &Scene) {
         let own: Vec<usize> = self.at.iter().map(Vec::len).collect();
         for point in 0..self.at.len() {
@@ -211,8 +213,9 @@ impl Known {
     }
 }
 
-/// True where a line at a speed from 0 to the greatest may touch a polygon at a corner without entering it: only there a
-/// taut profile bends. `before`, `at`, `after` are in the order of the polygon, either way round.
+/// True where a line at a speed from 0 to the greatest may touch a polygon at a corner without
+/// entering it: only there a taut profile bends. `before`, `at`, `after` are in the order of the
+/// polygon, either way round.
 fn bends(before: PathTime, at: PathTime, after: PathTime, max_speed: f64) -> bool {
     // on which side of the line at a speed a neighbour is: linear in the speed
     let side = |p: PathTime, speed: f64| (p.distance - at.distance) - speed * (p.time - at.time);

@@ -187,8 +187,8 @@ impl Profile {
             .all(|(leg, a, b)| scene.barrier(leg, a, b).is_none())
     }
 
-    /// Pulls the profile taut: from each knot on straight to the last one that can be reached at one speed. The end, and when it
-    /// is reached, stay what they are.
+    /// Pulls the profile taut: from each knot on straight to the last one that can be reached at
+    /// one speed. The end, and when it is reached, stay what they are.
     pub(crate) fn pull_taut(&mut self, scene: &Scene) {
         let mut taut = vec![self.knots[0]];
         let mut at = 0;
@@ -203,8 +203,8 @@ impl Profile {
         self.knots = taut;
     }
 
-    /// Leaves out bends that are no more than an instant from the next, where the line without them is free: a place against an
-    /// edge is beside the corner of the edge.
+    /// Leaves out bends that are no more than an instant from the next, where the line without them
+    /// is free: a place against an edge is beside the corner of the edge.
     pub(crate) fn tidy(&mut self, scene: &Scene) {
         let mut k = 1;
         while k + 1 < self.knots.len() {
@@ -234,7 +234,8 @@ impl Profile {
         for pair in self.knots.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let way = to.distance - from.distance;
-            // what is no way is a wait; of a short piece rounding may make more than the greatest speed
+            // what is no way is a wait; of a short piece rounding may make more than the greatest
+            // speed
             let speed = if way > TOUCH_M {
                 (way / (to.time - from.time)).min(scene.max_speed)
             } else {

@@ -1,9 +1,10 @@
-//! Places where a profile of least space-time error may bend besides the corners: where it joins or leaves the desired trajectory, or
-//! an obstacle's edge.
+//! Places where a profile of least space-time error may bend besides the corners: where it joins or
+//! leaves the desired trajectory, or an obstacle's edge.
 //!
 //! While own ship is behind her schedule, or ahead of it, nothing is won by a speed in between: she
-//! waits or sails at full speed, or slides along an edge. So from every corner rays are drawn at both extreme speeds, forward and
-//! backward in time, toward the schedule, until they reach it or meet an obstacle.
+//! waits or sails at full speed, or slides along an edge. So from every corner rays are drawn at
+//! both extreme speeds, forward and backward in time, toward the schedule, until they reach it or
+//! meet an obstacle.
 
 use super::due::Due;
 use super::nodes::{Known, Mark, Node, Place};
@@ -14,7 +15,8 @@ use crate::tolerance;
 /// Rays go on over leg after leg; at most so many pieces of one.
 const MAX_PIECES: usize = 100;
 
-/// Adds to the corners where the schedule meets legs' ends and obstacles' edges, and where the rays end.
+/// Adds to the corners where the schedule meets legs' ends and obstacles' edges, and where the rays
+/// end.
 pub(crate) fn add_rays(scene: &Scene, known: &mut Known, root: &Node) {
     for (leg, due) in scene.dues.iter().enumerate() {
         if let Some(due) = due {
@@ -110,8 +112,8 @@ struct Ray<'a> {
 }
 
 impl Ray<'_> {
-    /// A ray toward the schedule: at full speed to catch up and at rest to let it catch up, forward; backward the
-    /// other way round. Where there is no schedule, at full speed.
+    /// A ray toward the schedule: at full speed to catch up and at rest to let it catch up,
+    /// forward; backward the other way round. Where there is no schedule, at full speed.
     fn cast(&self, leg: usize, at: PathTime, forward: bool, known: &mut Known) {
         let Some(due) = self.scene.dues[leg] else {
             self.run(leg, at, forward, None, known);
@@ -134,7 +136,8 @@ impl Ray<'_> {
         }
     }
 
-    /// At full speed over the legs, until on schedule, against an obstacle, or at the end of what there is.
+    /// At full speed over the legs, until on schedule, against an obstacle, or at the end of what
+    /// there is.
     fn run(
         &self,
         leg: usize,

@@ -1,11 +1,13 @@
-//! At most the space-time error of the way to the end: what cannot be caught up with, obstacles or not.
+//! At most the space-time error of the way to the end: what cannot be caught up with, obstacles or
+//! not.
 //!
-//! Let `s` be metres along the path, `d(t)` where own ship is due, `c` at most `|x(s) - x(r)| / |s - r|` for any two places of the
-//! path, `u` the fastest desired speed. Then for every `r`: `|x(s) - x_d(r)| >= c |s - r|` and `|t - t_d(r)| >= |d(t) - r| / u`, and
-//! the least over `r` of the sum of squares is `e² >= k (d(t) - s)²`, `k = c² q / (q + c² u²)`. The lag `d(t) - s` falls no
-//! faster than greatest less slowest desired speed, and a lead no faster than `u`; the motion lasts no less than the way left at the
-//! greatest speed. The integral of the least that is left of the lag meanwhile is the bound. It follows the lag of any motion from
-//! below, so it is consistent.
+//! Let `s` be metres along the path, `d(t)` where own ship is due, `c` at most `|x(s) - x(r)| / |s
+//! - r|` for any two places of the path, `u` the fastest desired speed. Then for every `r`: `|x(s)
+//! - x_d(r)| >= c |s - r|` and `|t - t_d(r)| >= |d(t) - r| / u`, and the least over `r` of the sum
+//! of squares is `e² >= k (d(t) - s)²`, `k = c² q / (q + c² u²)`. The lag `d(t) - s` falls no
+//! faster than greatest less slowest desired speed, and a lead no faster than `u`; the motion lasts
+//! no less than the way left at the greatest speed. The integral of the least that is left of the
+//! lag meanwhile is the bound. It follows the lag of any motion from below, so it is consistent.
 
 use crate::frame::Vector;
 use crate::planner::Problem;
@@ -27,8 +29,9 @@ pub(crate) struct Recovery<'a> {
 }
 
 impl<'a> Recovery<'a> {
-    /// `None` where nothing better than zero is known: with alternatives, on which the way along the path says nothing of
-    /// the distance from the schedule, and on a path that comes back to itself.
+    /// `None` where nothing better than zero is known: with alternatives, on which the way along
+    /// the path says nothing of the distance from the schedule, and on a path that comes back to
+    /// itself.
     pub(crate) fn new(problem: &Problem<'a>) -> Option<Self> {
         if !problem.alternatives.is_empty() {
             return None;
@@ -50,7 +53,8 @@ impl<'a> Recovery<'a> {
         })
     }
 
-    /// Metres along the path at which own ship is due; on at the fastest desired speed after the end.
+    /// Metres along the path at which own ship is due; on at the fastest desired speed after the
+    /// end.
     fn due(&self, time: f64) -> f64 {
         let legs = self.desired.legs();
         let late = time - self.desired.duration();
@@ -84,7 +88,8 @@ impl<'a> Recovery<'a> {
 /// Looks at pairs of pieces of a path before its straightness is given up.
 const MAX_PAIRS: usize = 20_000;
 
-/// A piece is far enough from another when the bound of the two is this share of the least that was seen.
+/// A piece is far enough from another when the bound of the two is this share of the least that was
+/// seen.
 const SETTLED: f64 = 0.6;
 
 /// A piece of a path between two distances along it, on the legs from one to another.
@@ -96,9 +101,10 @@ struct Piece {
     last: usize,
 }
 
-/// At most the least of `|x(s) - x(r)| / |s - r|` over a path, from 0 to 1: 1 on a straight one, the cosine of half the turn
-/// about one corner, 0 where the path comes back to a place of its own, or where this takes too long to find. Pairs of pieces are halved:
-/// no place of a piece is farther than half its length from its middle.
+/// At most the least of `|x(s) - x(r)| / |s - r|` over a path, from 0 to 1: 1 on a straight one,
+/// the cosine of half the turn about one corner, 0 where the path comes back to a place of its own,
+/// or where this takes too long to find. Pairs of pieces are halved: no place of a piece is farther
+/// than half its length from its middle.
 fn straightness(desired: &DesiredTrajectory) -> f64 {
     let legs = desired.legs();
     let at = |distance: f64, leg: usize| -> Vector {
@@ -233,8 +239,9 @@ mod tests {
         }
     }
 
-    /// Motions along random paths, from anywhere at any time to the end: none costs less than the bound of where it begins,
-    /// and waiting first until on schedule, or sailing at full speed until then, attains it on a straight path.
+    /// Motions along random paths, from anywhere at any time to the end: none costs less than the
+    /// bound of where it begins, and waiting first until on schedule, or sailing at full speed
+    /// until then, attains it on a straight path.
     #[test]
     fn no_motion_costs_less_than_the_bound() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);

@@ -47,8 +47,8 @@ pub(crate) struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// Projects every part of every obstacle onto every leg that its positions up to the horizon come near. Sets without
-    /// interior are widened, ellipsoids replaced by outer polytopes.
+    /// Projects every part of every obstacle onto every leg that its positions up to the horizon
+    /// come near. Sets without interior are widened, ellipsoids replaced by outer polytopes.
     pub(crate) fn new(problem: &Problem, network: &'a PathNetwork, aim: Aim) -> Self {
         let tracks: Vec<Track> = network
             .legs()
@@ -137,8 +137,9 @@ impl<'a> Scene<'a> {
         &self.touching[point]
     }
 
-    /// The obstacle that a line on a leg, sailed from its beginning or back from its end, meets first, and the share of the line
-    /// at which it does: half as deep as a line may go, so that the place itself is free.
+    /// The obstacle that a line on a leg, sailed from its beginning or back from its end, meets
+    /// first, and the share of the line at which it does: half as deep as a line may go, so that
+    /// the place itself is free.
     pub(crate) fn nearest_barrier(
         &self,
         leg: usize,
@@ -159,8 +160,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// What bars a line on a leg: of the obstacles that it meets the one that begins first. O(obstacles on the leg), most of them
-    /// by their extent.
+    /// What bars a line on a leg: of the obstacles that it meets the one that begins first.
+    /// O(obstacles on the leg), most of them by their extent.
     pub(crate) fn barrier(&self, leg: usize, from: PathTime, to: PathTime) -> Option<usize> {
         self.seen[leg]
             .iter()
@@ -177,8 +178,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Until when an obstacle that is met at a place of a leg is there, or ahead on the leg; infinite where that is up to the
-    /// horizon.
+    /// Until when an obstacle that is met at a place of a leg is there, or ahead on the leg;
+    /// infinite where that is up to the horizon.
     pub(crate) fn bars_until(&self, leg: usize, obstacle: usize, at: PathTime) -> f64 {
         let seen = self.seen[leg].iter().filter(|s| s.obstacle == obstacle);
         let ahead = seen
@@ -192,8 +193,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Until when, waiting from `time` on at a place of a leg, an obstacle that covers it then goes on to; infinite when it does
-    /// up to the horizon.
+    /// Until when, waiting from `time` on at a place of a leg, an obstacle that covers it then goes
+    /// on to; infinite when it does up to the horizon.
     pub(crate) fn covered_until(&self, leg: usize, obstacle: usize, at: PathTime) -> f64 {
         let end = PathTime {
             time: self.horizon,

@@ -22,10 +22,11 @@ impl Level {
     }
 }
 
-/// Plans for the least of length plus `weight` metres times the accepted risk, over risks from 0 to `max_risk`: the obstacles of
-/// `problem` are the whole sets. The level sets shrink as the risk grows, so the shortest way is never longer at a greater risk, and
-/// takes few lengths: between two risks of different lengths the step is closed in on by halves, to 1e-4. Where
-/// no way exists at `max_risk`, the answer is that of `max_risk`.
+/// Plans for the least of length plus `weight` metres times the accepted risk, over risks from 0 to
+/// `max_risk`: the obstacles of `problem` are the whole sets. The level sets shrink as the risk
+/// grows, so the shortest way is never longer at a greater risk, and takes few lengths: between two
+/// risks of different lengths the step is closed in on by halves, to 1e-4. Where no way exists at
+/// `max_risk`, the answer is that of `max_risk`.
 pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Planned {
     let clock = Clock::new(problem.deadline);
     let at = |risk: f64| {

@@ -29,9 +29,9 @@ pub struct Query {
     pub velocities: Vec<Vector>,
 }
 
-/// Answers a query about the scenario `title`. `sets` is `"hard"` or `"shaped"`. Per target: a point
-/// O(n + m), a velocity O(n + m), the largest risk of holding course O((n + m)²) at worst; for the
-/// alteration see [`least_alteration`].
+/// Answers a query about the scenario `title`. `sets` is `"hard"` or `"shaped"`. Per target: a
+/// point O(n + m), a velocity O(n + m), the largest risk of holding course O((n + m)²) at worst;
+/// for the alteration see [`least_alteration`].
 pub fn assess(title: &str, sets: &str, situation: &Situation, query: &Query) -> AssessmentDocument {
     let obstacles = situation.obstacles;
     let held = situation.held();

@@ -7,7 +7,8 @@
 //! until it arrives. The outside of a convex set is the union of its faces' outer half-planes. So
 //! the unclamped error satisfies
 //!
-//! `e(tau) >= E(tau) = max over O of min over faces n of depth_n(p_d) / sqrt(n_across² + n_along² / kappa)`:
+//! `e(tau) >= E(tau) = max over O of min over faces n of depth_n(p_d) / sqrt(n_across² + n_along² /
+//! kappa)`:
 //!
 //! This is the depth of the scheduled point behind a face, in the metric of `e`. `e` changes by at
 //! most `rho = max over |v| <= u_max of sqrt(v_across² + kappa (u_d - v_along)²)` per second. So

@@ -411,8 +411,8 @@ pub(crate) fn ahead(
 }
 
 /// Graph plan as an initial guess. It keeps the order of arcs and lines, adds the other speeds
-/// beside each, and an empty turn back where it has only one turn. `path` holds the states after the
-/// root.
+/// beside each, and an empty turn back where it has only one turn. `path` holds the states after
+/// the root.
 pub(crate) fn from_graph(problem: &Problem, path: &[&State]) -> Option<InitialGuess> {
     let speeds = ManoeuvreSpeeds::of(problem);
     let (last, before) = path.split_last()?;
