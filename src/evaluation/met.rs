@@ -1,14 +1,14 @@
 //! How one target is met along a chain of pieces.
 
-use super::clearance::{Body, least_distance};
-use super::least::Least;
-use super::moving_ellipse::MovingEllipse;
-use super::moving_slabs::MovingSlabs;
-use super::piece::{Piece, at_rest};
 use super::safety::Claim;
-use super::space_time_set::{MovingSet, since};
-use super::turn::{Turn, least_while_turning};
 use super::{Passage, Request, Safety, TurnedHull};
+use crate::evaluation::distance::clearance::{Body, least_distance};
+use crate::evaluation::distance::least::Least;
+use crate::evaluation::distance::piece::{Piece, at_rest};
+use crate::evaluation::distance::turn::{Turn, least_while_turning};
+use crate::evaluation::sets::moving_ellipse::MovingEllipse;
+use crate::evaluation::sets::moving_slabs::MovingSlabs;
+use crate::evaluation::sets::space_time_set::{MovingSet, since};
 use crate::frame::{Side, cross, direction};
 use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};

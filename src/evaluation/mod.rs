@@ -3,45 +3,36 @@
 //! tracked ship (`target`).
 
 mod along;
-mod clearance;
 mod cost;
-mod counted;
-mod least;
+mod distance;
+mod land;
 mod met;
 mod motion;
-mod moving_ellipse;
-mod moving_slabs;
-mod piece;
-mod quadrature;
+mod nominal;
 mod request;
 mod safety;
-mod shore;
-mod space_time_set;
-mod stage_cost;
+mod sets;
 mod steered;
-mod turn;
-mod turned_hull;
-mod undisturbed;
 mod words;
 
-pub use counted::{Counted, counted_error};
+pub use cost::counted::{Counted, counted_error};
+pub(crate) use cost::stage_cost::{StageWeights, stage_costs};
+pub(crate) use distance::turned_hull::TurnedHull;
+pub(crate) use nominal::{nominal_distance, nominal_legs};
 pub use request::{Freedom, Request};
 pub use safety::Safety;
-pub use space_time_set::{SetShape, SpaceTimeSet};
-pub(crate) use stage_cost::{StageWeights, stage_costs};
+pub use sets::space_time_set::{SetShape, SpaceTimeSet};
 pub use steered::{Steering, evaluate_steered};
-pub(crate) use turned_hull::TurnedHull;
-pub(crate) use undisturbed::{undisturbed_distance, undisturbed_legs};
 pub(crate) use words::risk_figure;
 pub use words::{facts, outcome_word};
 
-use clearance::Body;
-use least::Least;
+use distance::clearance::Body;
+use distance::least::Least;
+use distance::piece::Piece;
+use distance::turn::{Turn, turns};
+use land::Shore;
 use met::passage;
-use piece::Piece;
 use safety::{Claim, collision, grounding};
-use shore::Shore;
-use turn::{Turn, turns};
 
 use std::collections::HashMap;
 
@@ -242,7 +233,7 @@ pub fn evaluate(request: &Request) -> Evaluation {
     Evaluation {
         violations,
         safety: sound.max(met).max(Safety::of_land(&shore, request)),
-        counted: counted::to_end(segments, request.desired),
+        counted: cost::counted::to_end(segments, request.desired),
         space_time_error: or_nan(cost::space_time_error(
             segments,
             request.desired,

@@ -1,10 +1,10 @@
 //! Judges a motion under forces: does the ship do what the plan says, and is that clear of
 //! everything?
 
-use super::counted::counted_error_of_cubics;
-use super::piece::Piece;
-use super::quadrature::smooth;
 use super::{Evaluation, Request, Safety, Violation, least_of, meetings, shore};
+use crate::evaluation::cost::counted::counted_error_of_cubics;
+use crate::evaluation::cost::quadrature::smooth;
+use crate::evaluation::distance::piece::Piece;
 use crate::frame::{Vector, wrap};
 use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, Node, Steered};

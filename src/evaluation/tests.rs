@@ -1,7 +1,7 @@
 //! A valid plan, and every way to spoil it: each must be found, and nothing else.
 
-use super::moving_ellipse::MovingEllipse;
 use super::*;
+use crate::evaluation::sets::moving_ellipse::MovingEllipse;
 use crate::frame::{Pose, Side, Vector};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, VelocitySpell};

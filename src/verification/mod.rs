@@ -20,7 +20,6 @@
 mod claim;
 mod coverage;
 mod encounters;
-mod entered;
 mod escape;
 mod figures;
 mod file;
@@ -134,7 +133,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         ),
     });
     violations.extend(coverage::check(&claim));
-    violations.extend(entered::check(&claim));
+    violations.extend(outcome::releases(&claim));
     violations.extend(outcome::check(&claim));
     violations.extend(outcome::safety(&claim, evaluation.as_ref()));
     if let (Some(evaluation), Some(motion)) = (&evaluation, &claim.motion) {

@@ -1,8 +1,9 @@
-//! Does the answer that a document names agree with what is in it?
+//! Checks that the outcome, the verdict and the releases of a document agree with its content.
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion, OPTIMAL_CONTROL, PATH_TIME};
 use super::untrue;
 use crate::evaluation::{Evaluation, Violation, outcome_word};
+use crate::tolerance;
 
 /// Whether something is entered, and the word for that.
 pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Violation> {
@@ -107,6 +108,52 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
                 &what,
                 format!("'{}' twice", given_up.kind),
                 "given up once",
+            ));
+        }
+    }
+    found
+}
+
+/// Outcomes of a plan that may enter a set.
+const OUTCOMES: [&str; 2] = ["relaxed", "deadline"];
+const RISK: &str = "risk";
+
+/// Releases of sets that the document does not report as it must: outcome, kind, amount and time.
+pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
+    let mut found = Vec::new();
+    let released = claim.file.relaxations.iter();
+    for (given_up, until) in released.filter_map(|r| Some((r, r.until_s?))) {
+        let of = |key: &str| format!("relaxation of '{}', {key}", given_up.target);
+        if !OUTCOMES.contains(&claim.file.outcome.as_str()) {
+            found.push(untrue(
+                "outcome",
+                &claim.file.outcome,
+                OUTCOMES.join(" or "),
+            ));
+        }
+        if given_up.kind != RISK {
+            found.push(untrue(&of("kind"), &given_up.kind, RISK));
+        }
+        if claim.file.max_risk > 0.0 {
+            found.push(untrue("max_risk", claim.file.max_risk, 0.0));
+        }
+        // Own ship may start on the very edge.
+        if !(given_up.amount >= 0.0 && given_up.amount <= 1.0) {
+            found.push(untrue(&of("amount"), given_up.amount, "from 0 to 1"));
+        }
+        let end = match &claim.motion {
+            Some(ClaimedMotion::Segments(segments)) => segments.last().map(|s| s.end_time()),
+            Some(ClaimedMotion::Steered { .. }) | None => None,
+        };
+        let end = end.unwrap_or(0.0).min(claim.file.horizon_s);
+        // Nothing is claimed of a ship that has arrived.
+        let end = if end > 0.0 { end } else { claim.file.horizon_s };
+        // Negated on purpose: a NaN fails.
+        if !(until > 0.0 && until <= end + tolerance::TIME_S * (1.0 + end)) {
+            found.push(untrue(
+                &of("until_s"),
+                until,
+                format!("above 0, at most {end}"),
             ));
         }
     }

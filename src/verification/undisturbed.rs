@@ -4,7 +4,7 @@ use super::claim::Claim;
 use super::encounters::distance;
 use super::figures::near;
 use super::untrue;
-use crate::evaluation::{Violation, undisturbed_distance, undisturbed_legs};
+use crate::evaluation::{Violation, nominal_distance, nominal_legs};
 use crate::geometry::ConvexPolygon;
 use crate::target::{Motion, Target};
 use crate::tolerance;
@@ -20,12 +20,12 @@ const INSTANTS: u32 = 64;
 /// Per target: the least distance along the desired trajectory, and that it is so near at the time
 /// given.
 pub(super) fn check(claim: &Claim) -> Vec<Violation> {
-    let legs = undisturbed_legs(&claim.desired, claim.file.horizon_s);
+    let legs = nominal_legs(&claim.desired, claim.file.horizon_s);
     let all = claim.file.encounters.iter().zip(&claim.targets);
     all.filter_map(|(said, target)| {
         let label = |key: &str| format!("encounter with '{}', {key}", target.name);
         let missed = RESOLUTION * legs.iter().map(|leg| way(target, leg)).sum::<f64>();
-        let (least, most) = match undisturbed_distance(&claim.own, &legs, target) {
+        let (least, most) = match nominal_distance(&claim.own, &legs, target) {
             Some(so) => (so, so + missed),
             None => (f64::NEG_INFINITY, sampled(claim, target, &legs)),
         };

@@ -1,6 +1,6 @@
 //! What a motion under forces costs, from its states and forces alone.
 
-use super::steered::{Steering, force, state};
+use crate::evaluation::steered::{Steering, force, state};
 use crate::frame::{heading_of, wrap};
 use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;

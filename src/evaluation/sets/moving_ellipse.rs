@@ -1,7 +1,7 @@
 //! An ellipsoid as the checker sees it: its support function alone.
 
-use super::least::{Least, Probe};
-use super::piece::Piece;
+use crate::evaluation::distance::least::{Least, Probe};
+use crate::evaluation::distance::piece::Piece;
 use crate::frame::{Vector, direction};
 use crate::geometry::Ellipse;
 
@@ -24,7 +24,7 @@ const GOLDEN_STEPS: usize = 32;
 ///
 /// which is concave in time: the root of a product of two lines that are not negative.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct MovingEllipse {
+pub(crate) struct MovingEllipse {
     initial: Ellipse,
     velocity: Ellipse,
     /// Metres, and m/s.

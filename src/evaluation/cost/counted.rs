@@ -1,8 +1,8 @@
 //! Until when the space-time error of a motion is counted, so that any two motions compare: one
 //! that ends at the last waypoint, one that stays there, one that passes by.
 
-use super::piece::Piece;
-use super::{cost, steered};
+use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::{cost, steered};
 use crate::frame::Vector;
 use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, Segment, Trajectory};
@@ -69,7 +69,7 @@ pub fn counted_error(
 }
 
 /// To the end of segments, which arrive at the last waypoint itself.
-pub(super) fn to_end(segments: &[Segment], desired: &DesiredTrajectory) -> Counted {
+pub(crate) fn to_end(segments: &[Segment], desired: &DesiredTrajectory) -> Counted {
     let off = |s: &Segment| (s.end().position - desired.end()).norm();
     Counted {
         within: tolerance::ARRIVAL_M,
@@ -81,7 +81,7 @@ pub(super) fn to_end(segments: &[Segment], desired: &DesiredTrajectory) -> Count
 }
 
 /// [`counted_error`] of a motion under forces.
-pub(super) fn counted_error_of_cubics(
+pub(crate) fn counted_error_of_cubics(
     pieces: &[Cubic],
     desired: &DesiredTrajectory,
     q: f64,

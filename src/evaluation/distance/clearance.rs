@@ -1,8 +1,8 @@
 //! Distances in continuous time between own ship, a rectangle or a point, and a moving set.
 
-use super::least::{Least, Probe};
-use super::piece::Piece;
-use super::space_time_set::{Face, MovingSet};
+use crate::evaluation::distance::least::{Least, Probe};
+use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::sets::space_time_set::{Face, MovingSet};
 use crate::frame::{Pose, Vector, to_port};
 use crate::geometry::{Between, shortest_between};
 use crate::tolerance;
@@ -16,13 +16,13 @@ use crate::vessel::Hull;
 /// below by supporting lines, which separate the two for as long as they do. About a hundred probes
 /// a segment near the minimum and one far from it, each linear in the vertices. A distance that
 /// parry does not find, or that a supporting line contradicts, is a NaN, which is a collision.
-pub(super) fn least_distance<P: Piece>(pieces: &[P], own: Body, set: &MovingSet) -> Least {
+pub(crate) fn least_distance<P: Piece>(pieces: &[P], own: Body, set: &MovingSet) -> Least {
     least_distance_below(Least::new(), pieces, own, set)
 }
 
 /// The same where a least distance to something else is known already: what is not nearer is not
 /// looked at closely.
-pub(super) fn least_distance_below<P: Piece>(
+pub(crate) fn least_distance_below<P: Piece>(
     known: Least,
     pieces: &[P],
     own: Body,
@@ -49,7 +49,7 @@ pub(super) fn least_distance_below<P: Piece>(
 
 /// Own ship's shape about her position: a rectangle, or a point of no size.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Body {
+pub(crate) struct Body {
     half_length: f64,
     half_beam: f64,
 }

@@ -4,7 +4,7 @@ use crate::frame::{Pose, Vector};
 use crate::trajectory::{Bounds, Cubic, Segment};
 
 /// A stretch of own ship's motion, smooth within its time.
-pub(super) trait Piece: Copy {
+pub(crate) trait Piece: Copy {
     /// Seconds.
     fn start_time(&self) -> f64;
     /// Seconds.
@@ -22,7 +22,7 @@ pub(super) trait Piece: Copy {
 }
 
 /// Where a chain of pieces ends, lain at for `duration` seconds; nothing where there is none.
-pub(super) fn at_rest<P: Piece>(pieces: &[P], duration: f64) -> Vec<Segment> {
+pub(crate) fn at_rest<P: Piece>(pieces: &[P], duration: f64) -> Vec<Segment> {
     let lying = |last: &P| Segment {
         start: last.pose_at(last.end_time()),
         start_time: last.end_time(),

@@ -1,9 +1,9 @@
 //! Velocity sets one after another as the checker sees them: a moving set per slab of time.
 
-use super::clearance::{Body, least_distance_below};
-use super::least::Least;
-use super::piece::Piece;
-use super::space_time_set::MovingSet;
+use crate::evaluation::distance::clearance::{Body, least_distance_below};
+use crate::evaluation::distance::least::Least;
+use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::sets::space_time_set::MovingSet;
 use crate::geometry::ConvexPolygon;
 use crate::target::VelocitySpell;
 use crate::tolerance;
@@ -19,7 +19,7 @@ struct Slab {
 /// The slabs of a set, in order of time; each begins with the section that the one before ends
 /// with, or a larger one.
 #[derive(Debug, Clone)]
-pub(super) struct MovingSlabs {
+pub(crate) struct MovingSlabs {
     slabs: Vec<Slab>,
 }
 

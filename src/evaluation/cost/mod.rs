@@ -1,6 +1,10 @@
 //! The two figures for how far a plan strays, docs/theory.md section 7, by quadrature of their own.
 
-use super::quadrature::{adaptive, smooth};
+pub(crate) mod counted;
+pub(crate) mod quadrature;
+pub(crate) mod stage_cost;
+
+use crate::evaluation::cost::quadrature::{adaptive, smooth};
 use crate::trajectory::{DesiredTrajectory, Segment};
 
 /// Radians. Arcs are cut to this before a rule is put on them.
@@ -9,7 +13,7 @@ const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
 /// The space-time error `J = (1 / T_d) ∫ e² dt` in m², docs/theory.md section 7, `q` in m²/s².
 /// Accurate to 1e-9 of itself; corners of `e²`, where the nearest leg changes, are closed in on by
 /// halving.
-pub(super) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
+pub(crate) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
     let error = |s: &Segment, time: f64| desired.nearest(s.pose_at(time).position, time, q).error;
     let joints = |s: &Segment| -> Vec<f64> {
         let pieces = pieces(s);
@@ -37,7 +41,7 @@ pub(super) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory
 /// `∫ |x(s) - x_d(s)|² + q (t(s) - t_d(s))² ds` over `[0, 1]`. Cut where either curve has a joint,
 /// arcs to pi/4, then one Gauss-Legendre rule per piece: accurate to rounding. A wait has no length
 /// and is a jump of `t(s)`. NaN for a trajectory of no length.
-pub(super) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
+pub(crate) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
     let length: f64 = segments.iter().map(Segment::length).sum();
     // negated on purpose: a NaN has no length either
     if !(length > 0.0) {

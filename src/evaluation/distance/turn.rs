@@ -1,16 +1,16 @@
 //! A turn on the spot: own hull sweeps over every heading between two courses while time stands
 //! still.
 
-use super::clearance::{Body, least_distance};
-use super::least::Least;
-use super::moving_slabs::MovingSlabs;
+use crate::evaluation::distance::clearance::{Body, least_distance};
+use crate::evaluation::distance::least::Least;
+use crate::evaluation::sets::moving_slabs::MovingSlabs;
 use crate::frame::wrap;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
 /// Where the heading changes at once between two segments.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Turn {
+pub(crate) struct Turn {
     /// The turn as a motion that takes a second per radian: every heading between the two, on the
     /// side of the smaller turn.
     pub sweep: Segment,
@@ -20,7 +20,7 @@ pub(super) struct Turn {
 
 /// Every turn on the spot of a chain of segments. About a hull's middle half a turn covers the same
 /// to either side.
-pub(super) fn turns(segments: &[Segment]) -> Vec<Turn> {
+pub(crate) fn turns(segments: &[Segment]) -> Vec<Turn> {
     let joints = segments.windows(2);
     joints
         .filter_map(|pair| {
@@ -47,7 +47,7 @@ pub(super) fn turns(segments: &[Segment]) -> Vec<Turn> {
 
 /// The least distance between own hull and a set that stands still as it is at the time of each
 /// turn; the times are those of the turns.
-pub(super) fn least_while_turning(turns: &[Turn], own: Body, slabs: &MovingSlabs) -> Least {
+pub(crate) fn least_while_turning(turns: &[Turn], own: Body, slabs: &MovingSlabs) -> Least {
     let mut least = Least::new();
     for turn in turns {
         let section = slabs.section_at(turn.time);

@@ -31,7 +31,7 @@ const MAX_DEPTH: u32 = 32;
 const MAX_INTERVALS: usize = 20_000;
 
 /// The integral of a smooth function by one rule.
-pub(super) fn smooth(from: f64, until: f64, f: &impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn smooth(from: f64, until: f64, f: &impl Fn(f64) -> f64) -> f64 {
     rule(&GAUSS_LEGENDRE, from, until, f)
 }
 
@@ -48,7 +48,7 @@ fn rule(rule: &[(f64, f64)], from: f64, until: f64, f: &impl Fn(f64) -> f64) -> 
 /// sorted `joints`: intervals are halved until two rules, and one rule and its two halves, agree to
 /// [`tolerance::QUADRATURE`] of the whole, or of `least` where that is more: what this is added to.
 /// NaN where the function is.
-pub(super) fn adaptive(joints: &[f64], least: f64, f: &impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn adaptive(joints: &[f64], least: f64, f: &impl Fn(f64) -> f64) -> f64 {
     let mut open: Vec<(f64, f64, f64, u32)> = joints
         .windows(2)
         .map(|w| (w[0], w[1], smooth(w[0], w[1], f), 0))

@@ -1,10 +1,10 @@
 //! A moving set as the checker sees it: sections from matched vertices, faces from supports.
 
-use super::clearance::Body;
-use super::least::Least;
-use super::moving_ellipse::MovingEllipse;
-use super::moving_slabs::MovingSlabs;
-use super::piece::Piece;
+use crate::evaluation::distance::clearance::Body;
+use crate::evaluation::distance::least::Least;
+use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::sets::moving_ellipse::MovingEllipse;
+use crate::evaluation::sets::moving_slabs::MovingSlabs;
 use crate::frame::{Vector, to_starboard};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::VelocitySpell;
@@ -115,7 +115,7 @@ impl SpaceTimeSet {
 impl SpaceTimeSet {
     /// The least signed distance of own ship's position along what of a chain of pieces is sailed
     /// while the set is in force; infinite where nothing is.
-    pub(super) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
+    pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         if self.from == 0.0 {
             return self.shape.least_distance(pieces);
         }
@@ -129,7 +129,7 @@ impl SpaceTimeSet {
 
 /// What of a chain is sailed from a time on, by a clock that starts at `zero`. A NaN keeps all of
 /// it.
-pub(super) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
+pub(crate) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
     // negated on purpose: a NaN is before
     let later = pieces.iter().filter(|piece| !(piece.end_time() <= from));
     later
@@ -139,7 +139,7 @@ pub(super) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
 
 impl SetShape {
     /// The least signed distance of own ship's position along a chain of pieces.
-    pub(super) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
+    pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         match self {
             Self::Polygons { initial, spells } => {
                 MovingSlabs::new(initial, spells).least_distance(pieces, Body::POINT)
@@ -163,7 +163,7 @@ impl SetShape {
 
 /// A vertex of the section: `initial + t velocity`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct MovingVertex {
+pub(crate) struct MovingVertex {
     /// Metres, at t = 0.
     pub initial: Vector,
     /// m/s.
@@ -179,7 +179,7 @@ impl MovingVertex {
 
 /// A face: `normal . x <= initial + t rate`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Face {
+pub(crate) struct Face {
     /// Unit, outward.
     pub normal: Vector,
     /// Metres at t = 0.
@@ -198,7 +198,7 @@ impl Face {
 /// `O_0 + t V` prepared for distances: for `t > 0` each vertex of the section is one vertex of
 /// `O_0` that moves with one vertex of `V`, and each face moves along its normal.
 #[derive(Debug, Clone)]
-pub(super) struct MovingSet {
+pub(crate) struct MovingSet {
     initial: ConvexPolygon,
     velocity: ConvexPolygon,
     /// Counter-clockwise.

@@ -1,9 +1,9 @@
 //! The closest approach if nobody alters.
 
-use super::clearance::{Body, least_distance};
-use super::least::Least;
-use super::moving_slabs::MovingSlabs;
-use super::space_time_set::MovingSet;
+use crate::evaluation::distance::clearance::{Body, least_distance};
+use crate::evaluation::distance::least::Least;
+use crate::evaluation::sets::moving_slabs::MovingSlabs;
+use crate::evaluation::sets::space_time_set::MovingSet;
 use crate::frame::{Pose, heading_of};
 use crate::geometry::ConvexPolygon;
 use crate::target::{Motion, Target, VelocitySpell};
@@ -11,7 +11,7 @@ use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::OwnShip;
 
 /// The legs until the horizon, seconds, as own ship would sail them.
-pub(crate) fn undisturbed_legs(desired: &DesiredTrajectory, horizon: f64) -> Vec<Segment> {
+pub(crate) fn nominal_legs(desired: &DesiredTrajectory, horizon: f64) -> Vec<Segment> {
     let legs = desired.legs().iter();
     legs.take_while(|leg| leg.start_time <= horizon)
         .map(|leg| Segment {
@@ -27,11 +27,7 @@ pub(crate) fn undisturbed_legs(desired: &DesiredTrajectory, horizon: f64) -> Vec
 /// Least distance along `legs` between the hulls, of explicit sets from own position to the set:
 /// metres, negative in overlap, certified. Own ship is not looked at while she turns from leg to
 /// leg. `None` for ellipses.
-pub(crate) fn undisturbed_distance(
-    own: &OwnShip,
-    legs: &[Segment],
-    target: &Target,
-) -> Option<f64> {
+pub(crate) fn nominal_distance(own: &OwnShip, legs: &[Segment], target: &Target) -> Option<f64> {
     let least: Least = match &target.motion {
         Motion::Ship(ship) => {
             let held = VelocitySpell {

@@ -7,7 +7,7 @@ const MAX_PROBES: usize = 200_000;
 
 /// What is known of a function around an instant.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Probe {
+pub(crate) struct Probe {
     /// Its value at the instant.
     pub value: f64,
     /// A lower bound of its values within the half-width asked for.
@@ -16,7 +16,7 @@ pub(super) struct Probe {
 
 /// The least value found so far.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Least {
+pub(crate) struct Least {
     /// NaN as soon as any value was.
     pub value: f64,
     /// Seconds.

@@ -1,14 +1,14 @@
 //! Land as the checker sees it: the edges of its polygons, and the even-odd rule.
 
-use super::clearance::{Body, least_distance_below};
-use super::least::Least;
-use super::piece::Piece;
-use super::space_time_set::MovingSet;
+use crate::evaluation::distance::clearance::{Body, least_distance_below};
+use crate::evaluation::distance::least::Least;
+use crate::evaluation::distance::piece::Piece;
+use crate::evaluation::sets::space_time_set::MovingSet;
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, EdgeTree, Polygon};
 
 /// Land, and its edges by place.
-pub(super) struct Shore<'a> {
+pub(crate) struct Shore<'a> {
     land: &'a [Polygon],
     edges: EdgeTree,
 }

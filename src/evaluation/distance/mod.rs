@@ -1,0 +1,7 @@
+//! Distances between own ship's hull, on its motion, and hulls and sets of targets.
+
+pub(crate) mod clearance;
+pub(crate) mod least;
+pub(crate) mod piece;
+pub(crate) mod turn;
+pub(crate) mod turned_hull;
