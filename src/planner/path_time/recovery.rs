@@ -6,8 +6,8 @@
 //! - x_d(r)| >= c |s - r|` and `|t - t_d(r)| >= |d(t) - r| / u`, and the least over `r` of the sum
 //! of squares is `e² >= k (d(t) - s)²`, `k = c² q / (q + c² u²)`. The lag `d(t) - s` falls no
 //! faster than greatest less slowest desired speed, and a lead no faster than `u`; the motion lasts
-//! no less than the way left at the greatest speed. The integral of the least that is left of the
-//! lag meanwhile is the bound. It follows the lag of any motion from below, so it is consistent.
+//!   no less than the way left at the greatest speed. The integral of the least that is left of the
+//!   lag meanwhile is the bound. It follows the lag of any motion from below, so it is consistent.
 
 use crate::frame::Vector;
 use crate::planner::Problem;
