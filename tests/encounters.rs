@@ -20,6 +20,7 @@ mod statistics;
 
 use dense_search::{Answer, DenseSearch, recheck};
 use passing::crosses_ahead;
+use petgraph::algo::{astar, dijkstra};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -28,7 +29,7 @@ use searoom::frame::{Pose, Side, Vector, direction, heading_of, wrap};
 use searoom::geometry::ConvexPolygon;
 use searoom::obstacle::{LandObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::pipeline::{self, problem};
-use searoom::planner::{Outcome, Planned, Problem, SearchKind, space_time};
+use searoom::planner::{EdgeVerdict, NodeKind, Outcome, Planned, Problem, SearchKind, space_time};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{
     Behaviour, Drawn, EncounterKind, Placement, Signal, random_encounter, random_traffic,
@@ -713,6 +714,50 @@ fn a_star_expands_half_of_dijkstra_on_the_four_scenarios() {
         blind += b.0;
     }
     assert!(2 * expanded <= blind, "{expanded} of {blind}");
+}
+
+/// petgraph's A* and Dijkstra, on the free edges of the explored graph, find the cost that our
+/// search reports.
+#[test]
+fn petgraph_finds_the_cost_of_the_graph() {
+    let mut compared = 0;
+    for kind in EncounterKind::ALL {
+        for seed in 0..15 {
+            let drawn = random_encounter(kind, seed, Placement::Random).expect("drawn");
+            for search in [SearchKind::AStar, SearchKind::Dijkstra] {
+                let mut scenario = drawn.scenario.clone();
+                scenario.search = search;
+                let planned = pipeline::run(scenario).planned;
+                let Some(ours) = planned.outcome.plan().and_then(|p| p.graph_cost) else {
+                    continue;
+                };
+                let mut graph = planned.explored;
+                graph.retain_edges(|graph, edge| graph[edge].verdict == EdgeVerdict::Free);
+                let start = graph
+                    .node_indices()
+                    .find(|n| graph[*n].kind == NodeKind::Start)
+                    .expect("a start");
+                let costs = dijkstra(&graph, start, None, |e| e.weight().cost);
+                let ends = costs
+                    .iter()
+                    .filter(|(n, _)| graph[**n].kind == NodeKind::End);
+                let least = ends.map(|(_, cost)| *cost).fold(f64::INFINITY, f64::min);
+                let is_end = |n: petgraph::graph::NodeIndex| graph[n].kind == NodeKind::End;
+                let (by_a_star, path) =
+                    astar(&graph, start, is_end, |e| e.weight().cost, |_| 0.0).expect("a path");
+                for theirs in [least, by_a_star] {
+                    let apart = (theirs - ours).abs();
+                    assert!(
+                        apart <= 1e-9 * ours.max(1.0),
+                        "{kind:?} {seed}: {theirs} {ours}"
+                    );
+                }
+                assert!(path.len() >= 2, "{kind:?} {seed}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 80, "{compared}");
 }
 
 /// Moved, turned, mirrored, larger, smaller, slower: the plan is the same. All 300 scenes: `cargo
