@@ -157,8 +157,7 @@ impl Evaluation {
 ///     time_weight: scenario.time_weight,
 ///     max_risk: 0.0,
 /// };
-/// let found = evaluate(&request);
-/// let found: Evaluation = found;
+/// let found: Evaluation = evaluate(&request);
 /// assert!(!found.verified() && !found.safe() && found.min_clearance < 0.0);
 /// assert_eq!((found.duration, found.length, found.delay), (300.0, 1500.0, 0.0));
 /// # Ok::<(), searoom::scenario::ScenarioError>(())

@@ -2,9 +2,9 @@
 //!
 //! Own ship holds course and speed until the latest time from which a clear escape is known, and
 //! escapes then. The motion contains both. Its clearances are checked like those of any other
-//! motion. This module checks that own ship holds course and speed, when the hold ends, the first
-//! action of the escape, that all sets are valid during the escape, and that holding on would have
-//! entered something. It does not check that no later escape exists.
+//! motion. This module checks the hold of course and speed, the time at which it ends, and the
+//! first action of the escape. It also checks that all sets are valid during the escape, and that
+//! holding on would have entered something. It does not check that no later escape exists.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::figures::near;

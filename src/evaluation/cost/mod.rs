@@ -70,8 +70,7 @@ pub(crate) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory
         .filter(|w| w[0] < w[1])
         .map(|w| {
             let middle = 0.5 * (w[0] + w[1]);
-            // Of the segments that start at one fraction, only the last one moves; the others are
-            // waits.
+            // Only the last of the segments that start at one fraction moves; the others are waits.
             let index = starts.partition_point(|s| *s <= middle).max(1) - 1;
             let (own, own_start) = (&segments[index], starts[index]);
             let legs = desired.legs();
