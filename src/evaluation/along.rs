@@ -72,9 +72,8 @@ pub(super) fn check(
             }
         }
         if next.is_empty() {
-            let what = format!(
-                "path: segment {index} is not along a leg that goes on from where it starts"
-            );
+            let what =
+                format!("path: segment {index} does not follow a leg from its start position");
             add(s.start_time, what);
             return found;
         }

@@ -144,7 +144,7 @@ fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
             f64::NAN
         };
         limit(
-            format!("the ship off the plan after interval {index}, in her units"),
+            format!("vessel state off the plan after interval {index}, in its units"),
             to.time,
             off,
             tolerance::DEFECT,

@@ -98,7 +98,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     {
         let beyond = beyond_reach(claim);
         if !(said >= beyond || near(said, beyond)) {
-            let so = format!("{land}, or of land beyond reach {beyond} at least");
+            let so = format!("{land}, or at least {beyond} for land beyond reach");
             found.push(untrue("cost.min_land_distance_m", said, so));
         }
     }

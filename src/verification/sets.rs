@@ -67,7 +67,7 @@ pub(super) fn read(
             (ConvexSet::Polygon(initial), ConvexSet::Polygon(velocities)) => {
                 if follows && !section.as_ref().is_some_and(|s| same(s, &initial)) {
                     note(
-                        "its slabs do not begin with the section that the one before ends with"
+                        "a slab does not begin with the final section of the previous one"
                             .to_owned(),
                         from,
                     );
