@@ -1,4 +1,4 @@
-//! Does a chain of segments keep to the paths that own ship may sail?
+//! Checks that a chain of segments follows the paths that own ship is restricted to.
 
 use super::Violation;
 use crate::frame::{Vector, direction, wrap};
@@ -6,18 +6,24 @@ use crate::tolerance;
 use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
 
-/// Being on a path: which, and how far along it.
+/// Position on the paths: index of the path and distance along it.
 #[derive(Debug, Clone, Copy)]
 struct Whereabouts {
     path: usize,
     distance: f64,
 }
 
-/// Every segment is a wait, or straight along a leg in the path's direction; none is faster than
-/// own ship can; she begins at the start of the first path, goes on where she was, and changes to
-/// another path only where the two share a place; she turns only where she then moves off along a
-/// leg. Where she `arrives`, it is at the end of a path. Found without the planner's network: all
-/// places on the paths that fit what was sailed so far are followed at once.
+/// Checks a chain of segments against `paths`.
+///
+/// - Each segment is a wait, or runs straight along a leg in the direction of its path.
+/// - No segment is faster than own ship's greatest speed.
+/// - The chain begins at the start of the first path and continues from where it was. It changes to
+///   another path only at a place that the two paths share.
+/// - Own ship turns on the spot only where it then departs along a leg.
+/// - With `arrives`, the chain ends at the end of a path.
+///
+/// The planner's network is not used. All positions on the paths that are consistent with the
+/// motion so far are tracked in parallel.
 pub(super) fn check(
     segments: &[Segment],
     own: &OwnShip,
@@ -33,7 +39,7 @@ pub(super) fn check(
     let mut here = vec![start];
     for (index, s) in segments.iter().enumerate() {
         let fastest = own.max_speed();
-        // negated on purpose: a NaN is too fast
+        // Negated on purpose: a NaN speed is too fast.
         if !(s.speed <= fastest * (1.0 + tolerance::LIMIT)) {
             let what = format!(
                 "speed in segment {index}: {} m/s, allowed 0 to {fastest}",
@@ -66,9 +72,8 @@ pub(super) fn check(
             }
         }
         if next.is_empty() {
-            let what = format!(
-                "path: segment {index} is not along a leg that goes on from where it starts"
-            );
+            let what =
+                format!("path: segment {index} does not follow a leg from its start position");
             add(s.start_time, what);
             return found;
         }
@@ -91,7 +96,7 @@ pub(super) fn check(
     found
 }
 
-/// The same places, and those of other paths at the same position: one path is not changed to
+/// Returns `here`, and the places of other paths at the same position. A path never changes to
 /// itself.
 fn everywhere(here: &[Whereabouts], position: Vector, paths: &[Vec<Vector>]) -> Vec<Whereabouts> {
     let mut all = here.to_vec();
@@ -103,7 +108,7 @@ fn everywhere(here: &[Whereabouts], position: Vector, paths: &[Vec<Vector>]) -> 
     all
 }
 
-/// Distances along a path at which a position lies on it, one per leg at most.
+/// Distances along a path at which `position` lies on it, at most one per leg.
 fn places(points: &[Vector], position: Vector) -> impl Iterator<Item = f64> + '_ {
     let mut run = 0.0;
     points.windows(2).filter_map(move |leg| {
@@ -117,7 +122,8 @@ fn places(points: &[Vector], position: Vector) -> impl Iterator<Item = f64> + '_
     })
 }
 
-/// Where a segment ends on a path that it starts on at a distance, if it is along one leg of it.
+/// Distance along a path at which a segment ends that starts at distance `from`. `None` if the
+/// segment is not along one leg.
 fn sailed(points: &[Vector], from: f64, s: &Segment) -> Option<f64> {
     let mut run = 0.0;
     for leg in points.windows(2) {
@@ -164,7 +170,7 @@ mod tests {
         list.iter().map(|&(x, y)| Vector::new(x, y)).collect()
     }
 
-    /// Straight pieces between places, each at a speed.
+    /// Straight segments between places, all at one speed.
     fn chain(places: &[(f64, f64)], speed: f64) -> Vec<Segment> {
         let places = points(places);
         let (mut time, mut heading) = (0.0, 0.0);
@@ -214,14 +220,14 @@ mod tests {
         ];
         assert_eq!(found(&changed, 6.0), 0);
         for wrong in [
-            // off the path, back along it, over a corner, off an alternative, without having been
-            // there
+            // Off the path, back along it, across a corner, off an alternative, and on a path
+            // without having reached it.
             &[(0.0, 0.0), (50.0, 1e-5)][..],
             &[(0.0, 0.0), (70.0, 0.0), (60.0, 0.0)],
             &[(0.0, 0.0), (100.0, 0.0), (90.0, 72.0)],
             &[(0.0, 0.0), (40.0, 0.0), (50.0, -10.0), (80.0, 0.0)],
             &[(100.0, 80.0), (0.0, 0.0)],
-            // the last leg before the others, although it begins where the first ends
+            // The last leg before the others, although it begins where the first leg ends.
             &[(0.0, 0.0), (100.0, 80.0)],
         ] {
             assert_eq!(found(wrong, 5.0), 1, "{wrong:?}");

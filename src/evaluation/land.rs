@@ -1,4 +1,4 @@
-//! Land as the checker sees it: the edges of its polygons, and the even-odd rule.
+//! Distance from own hull to land, by the edges of polygons and the even-odd rule.
 
 use crate::evaluation::distance::clearance::{Body, least_distance_below};
 use crate::evaluation::distance::least::Least;
@@ -7,14 +7,14 @@ use crate::evaluation::sets::space_time_set::MovingSet;
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, EdgeTree, Polygon};
 
-/// Land, and its edges by place.
+/// Land polygons with a spatial index of their edges.
 pub(crate) struct Shore<'a> {
     land: &'a [Polygon],
     edges: EdgeTree,
 }
 
 impl<'a> Shore<'a> {
-    /// O(edges log edges).
+    /// Builds the index of edges. O(edges log edges).
     pub fn new(land: &'a [Polygon]) -> Self {
         Self {
             land,
@@ -22,12 +22,13 @@ impl<'a> Shore<'a> {
         }
     }
 
-    /// The least distance between own hull, which reaches so far from its middle, and land along a
-    /// chain of pieces: negative on land. A hull that starts on water and touches no edge stays on
-    /// water, so edges are all that is looked at, each as a set of two points that does not move; a
-    /// position inside a polygon is on land whatever its edges say. Certified like
-    /// [`least_distance_below`]; infinite without land. O(log edges) per piece, and probes for
-    /// those that are near.
+    /// Least signed distance between own hull and land along a chain of pieces; negative on land.
+    ///
+    /// `reach` is the distance in metres from the centre of the hull to its farthest point. A hull
+    /// that starts on water and touches no edge stays on water. Only edges are therefore tested,
+    /// each as a fixed set of two points. A position inside a polygon is on land, whatever the
+    /// edges show. The result is certified like that of [`least_distance_below`] and is infinite
+    /// without land. Costs O(log edges) per piece, and probes for the near edges.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body, reach: f64) -> Least {
         let mut least = Least::new();
         for s in pieces {
@@ -38,13 +39,13 @@ impl<'a> Shore<'a> {
                     least.see(depth.map_or(f64::NAN, |edge| -edge.distance), time);
                 }
             }
-            // no point of the hull leaves this disc meanwhile
+            // No point of the hull leaves this disc during the piece.
             let half = 0.5 * (s.end_time() - s.start_time());
             let middle = s.pose_at(s.start_time() + half).position;
             let radius = s.bounds().speed * half + reach;
             let Some(first) = self.edges.nearest(middle) else {
-                // without edges there is no land; with some, a place that is no number has no
-                // nearest one
+                // Without edges there is no land. With edges, only a NaN position has no nearest
+                // edge.
                 if !self.land.is_empty() {
                     least.see(f64::NAN, s.start_time());
                 }
@@ -58,7 +59,7 @@ impl<'a> Shore<'a> {
                 .collect();
             near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             for (bound, index) in near {
-                // negated on purpose: a NaN on either side is looked at
+                // Negated on purpose: an edge is tested if either side is NaN.
                 if !(bound >= least.value) {
                     self.look(&mut least, s, own, index);
                 }
@@ -67,7 +68,7 @@ impl<'a> Shore<'a> {
         least
     }
 
-    /// Takes note of the distance from one edge along a piece.
+    /// Updates `least` with the distance to one edge along a piece.
     fn look<P: Piece>(&self, least: &mut Least, piece: &P, own: Body, index: usize) {
         let (a, b) = self.edges.edge(index);
         let set = MovingSet::new(
@@ -101,7 +102,7 @@ mod tests {
         Polygon::new(&[ring, hole]).expect("valid")
     }
 
-    /// Sampled hulls against every edge.
+    /// Compares with hulls sampled in time against every edge.
     #[test]
     fn land_distances_match_a_dense_scan() {
         let mut rng = ChaCha8Rng::seed_from_u64(77);

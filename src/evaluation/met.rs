@@ -1,4 +1,4 @@
-//! How one target is met along a chain of pieces.
+//! Clearances and safety of own ship with respect to one target.
 
 use super::safety::Claim;
 use super::{Passage, Request, Safety, TurnedHull};
@@ -14,8 +14,9 @@ use crate::geometry::{ConvexPolygon, outer_disc, outer_enclosing_ellipse};
 use crate::target::{Motion, Representation, Target, VelocitySpell};
 use crate::tolerance;
 
-/// The velocities of a ship scaled about their centre by `1 - risk`: the centroid of the polygon,
-/// or the centre of the smallest ellipse around it, as her representation has it.
+/// Scales a ship's velocities by `1 - risk` about their centre. The centre is the centroid of the
+/// polygon, or the centre of the smallest enclosing ellipse, according to the target's
+/// representation.
 fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<VelocitySpell> {
     let scaled = |spell: &VelocitySpell| {
         let set = &spell.velocities;
@@ -34,8 +35,10 @@ fn at_risk(spells: &[VelocitySpell], target: &Target, risk: f64) -> Vec<Velocity
     spells.iter().map(scaled).collect()
 }
 
-/// How a target is met; the least clearance that has to be kept: to every hull she may have at the
-/// accepted risk, from the time on at which her set is in force; and what is entered of her.
+/// Returns the encounter with a target, the least clearance that is judged, and the safety.
+///
+/// The judged clearance is the distance to every hull that the target may have at the accepted
+/// risk, from the time at which its set becomes valid.
 pub(super) fn passage<P: Piece>(
     request: &Request,
     pieces: &[P],
@@ -113,12 +116,12 @@ pub(super) fn passage<P: Piece>(
     let passing_side = pieces
         .iter()
         .find(|s| closest.time <= s.end_time())
-        // at the end of all, but for rounding
+        // The closest approach is at the end of the motion, up to rounding.
         .or(pieces.last())
         .map_or(Side::Starboard, |s| {
             let pose = s.pose_at(closest.time);
             let off = target.position_at(closest.time) - pose.position;
-            // athwart by so little, the side is one of rounding
+            // Within this offset to port, rounding would decide the side.
             if cross(direction(pose.heading), off) > tolerance::DEPTH_M {
                 Side::Port
             } else {

@@ -1,6 +1,7 @@
-//! Judges any trajectory without the sets, contact tests and searches of the planners. Distances
-//! are parry's. Shared are polygons, ellipses, segments, and the hull and the velocity sets of a
-//! tracked ship (`target`).
+//! Evaluates any trajectory without the sets, contact tests and searches of the planners.
+//!
+//! Distances are computed by parry. The evaluation shares with the planners only polygons,
+//! ellipses, segments, and the hull and velocity sets of a tracked ship (`target`).
 
 mod along;
 mod cost;
@@ -40,101 +41,96 @@ use crate::frame::Side;
 use crate::trajectory::Segment;
 
 /// One violated requirement.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::{Freedom, Request, Violation, evaluate};
-/// use searoom::scenario::Scenario;
-/// use searoom::trajectory::Segment;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// // own ship holds course and speed
-/// let start = scenario.own_ship.pose;
-/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
-/// let request = Request {
-///     segments: &held,
-///     own: &scenario.own_ship,
-///     freedom: Freedom::Limits,
-///     desired: &scenario.desired,
-///     targets: &scenario.targets,
-///     sets: &[],
-///     land: &[],
-///     land_margin: 0.0,
-///     horizon: scenario.horizon,
-///     arrival_hold: scenario.arrival_hold,
-///     time_weight: scenario.time_weight,
-///     max_risk: 0.0,
-/// };
-/// let found = evaluate(&request);
-/// let violation: &Violation = found.violations.first().expect("she runs into the ferry");
-/// assert!(violation.what.contains("target") && violation.time > 0.0);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Violation {
-    /// What is violated, in words: the quantity, what was found, what is allowed.
+    /// Description of the violation: the quantity, the value found, and the allowed value.
     pub what: String,
-    /// Seconds.
+    /// Time of the violation, seconds.
     pub time: f64,
 }
 
-/// A target as it was met along the plan.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::{Freedom, Passage, Request, evaluate};
-/// use searoom::scenario::Scenario;
-/// use searoom::trajectory::Segment;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// // own ship holds course and speed
-/// let start = scenario.own_ship.pose;
-/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
-/// let request = Request {
-///     segments: &held,
-///     own: &scenario.own_ship,
-///     freedom: Freedom::Limits,
-///     desired: &scenario.desired,
-///     targets: &scenario.targets,
-///     sets: &[],
-///     land: &[],
-///     land_margin: 0.0,
-///     horizon: scenario.horizon,
-///     arrival_hold: scenario.arrival_hold,
-///     time_weight: scenario.time_weight,
-///     max_risk: 0.0,
-/// };
-/// let found = evaluate(&request);
-/// let Passage { dcpa, tcpa, min_clearance, .. } = found.passages[0];
-/// assert!(dcpa < 0.0 && (tcpa - 150.0).abs() < 1.0, "the hulls meet half-way");
-/// assert!(min_clearance <= dcpa, "and the worst that the ferry may do is worse");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Encounter of own ship with one target along the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {
     /// Least distance between own hull and the target's nominal hull, metres; negative in overlap.
-    /// For explicit sets: from own position to the set.
+    /// For explicit sets: distance from own position to the set.
     pub dcpa: f64,
-    /// And when, seconds.
+    /// Time of the closest approach, seconds.
     pub tcpa: f64,
-    /// Side of own ship on which the target lies then; dead ahead and astern, to
+    /// Side of own ship on which the target lies at `tcpa`. Dead ahead and astern, to
     /// [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M), count as starboard.
     pub passing_side: Side,
-    /// Least distance between own hull and any hull the target may have, metres; negative in
-    /// overlap. For explicit sets: from own position to the set.
+    /// Least distance between own hull and any hull that the target may have, metres; negative in
+    /// overlap. For explicit sets: distance from own position to the set.
     pub min_clearance: f64,
-    /// The same after the end of the motion, own ship lying where it ends.
+    /// Like `min_clearance`, but after the end of the motion, with own ship at rest at its final
+    /// pose.
     pub hold_clearance: f64,
-    /// Least signed distance to the set the plan was made against, metres, and when, seconds.
-    /// Infinite for a target without a set.
+    /// Least signed distance to the set against which the plan was made, metres. Infinite for a
+    /// target without a set.
     pub min_margin: f64,
-    /// Seconds.
+    /// Time of `min_margin`, seconds.
     pub min_margin_time: f64,
 }
 
-/// The figures of a plan that do not depend on how it was found.
+/// Figures and violations of a plan, independent of the planner that found it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluation {
+    /// All violations; a plan is verified when this is empty.
+    pub violations: Vec<Violation>,
+    /// Safety from start to arrival.
+    pub safety: Safety,
+    /// Space-time error, docs/theory.md section 7, m².
+    pub space_time_error: f64,
+    /// Time until which the space-time error is counted. For segments: their end.
+    pub counted: Counted,
+    /// Eq. (30) read literally over the whole motion, m².
+    pub arc_length_error: f64,
+    /// Duration of the motion, seconds.
+    pub duration: f64,
+    /// Length of the motion, metres.
+    pub length: f64,
+    /// Arrival time minus desired end, seconds; NaN where no arrival is required.
+    pub delay: f64,
+    /// Least clearance over all targets, metres; infinite without targets.
+    pub min_clearance: f64,
+    /// Like `min_clearance`, but over `arrival_hold` after the end of the motion, with own ship at
+    /// rest at its final pose. It is reported, but it does not affect the verdict.
+    pub hold_clearance: f64,
+    /// Time after arrival that `hold_clearance` covers, seconds.
+    pub arrival_hold: f64,
+    /// Least distance between own hull and land, metres; infinite without land, negative on land.
+    pub min_land_distance: f64,
+    /// Time of `min_land_distance`, seconds.
+    pub min_land_distance_time: f64,
+    /// Encounters, one per target, in the scenario's order.
+    pub passages: Vec<Passage>,
+}
+
+impl Evaluation {
+    /// Returns true when the independent check found no violation.
+    pub fn verified(&self) -> bool {
+        self.violations.is_empty()
+    }
+
+    /// Returns true when no hard set, hull or land is entered from start to arrival.
+    pub fn safe(&self) -> bool {
+        self.safety == Safety::Safe
+    }
+}
+
+/// Evaluates a trajectory of lines and arcs.
+///
+/// Checks
+///
+/// - start, joints, turning radius and speeds or paths, and arrival;
+/// - every set in continuous time, to [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M);
+/// - every hull that a target may have, independently of the sets;
+/// - own hull against the edges of the land.
+///
+/// Distances are certified least values ([`tolerance::MARGIN_M`](crate::tolerance::MARGIN_M)). The
+/// costs are integrated by a separate quadrature. A segment with a non-finite value is a violation,
+/// and the figures are then NaN.
 ///
 /// # Examples
 ///
@@ -161,64 +157,11 @@ pub struct Passage {
 ///     time_weight: scenario.time_weight,
 ///     max_risk: 0.0,
 /// };
-/// let found = evaluate(&request);
-/// let found: Evaluation = found;
+/// let found: Evaluation = evaluate(&request);
 /// assert!(!found.verified() && !found.safe() && found.min_clearance < 0.0);
 /// assert_eq!((found.duration, found.length, found.delay), (300.0, 1500.0, 0.0));
 /// # Ok::<(), searoom::scenario::ScenarioError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Evaluation {
-    /// Everything that is wrong; a plan is verified when this is empty.
-    pub violations: Vec<Violation>,
-    /// What is entered from start to arrival.
-    pub safety: Safety,
-    /// Formulas section 7, m².
-    pub space_time_error: f64,
-    /// Until when that is counted: of segments to their end.
-    pub counted: Counted,
-    /// Eq. (30) read literally over the whole motion, m².
-    pub arc_length_error: f64,
-    /// Seconds.
-    pub duration: f64,
-    /// Metres.
-    pub length: f64,
-    /// Arrival minus desired end, seconds; NaN where no arrival is asked for.
-    pub delay: f64,
-    /// Least of the targets' clearances, metres; infinite without targets.
-    pub min_clearance: f64,
-    /// The same over `arrival_hold` after the end of the motion, own ship lying where it ends:
-    /// told, not judged.
-    pub hold_clearance: f64,
-    /// Seconds.
-    pub arrival_hold: f64,
-    /// Least distance between own hull and land, metres; infinite without land, negative on it.
-    pub min_land_distance: f64,
-    /// And when, seconds.
-    pub min_land_distance_time: f64,
-    /// Per target, in the scenario's order.
-    pub passages: Vec<Passage>,
-}
-
-impl Evaluation {
-    /// True when the independent check found nothing wrong.
-    pub fn verified(&self) -> bool {
-        self.violations.is_empty()
-    }
-
-    /// True when no hard set, hull or land is entered from start to arrival.
-    pub fn safe(&self) -> bool {
-        self.safety == Safety::Safe
-    }
-}
-
-/// Judges a trajectory: start, joints, turning radius and speeds or paths, arrival; every set in
-/// continuous time, to [`tolerance::DEPTH_M`](crate::tolerance::DEPTH_M); every hull that a target
-/// may have, whatever the sets say; own hull against the edges of the land; and the figures.
-///
-/// Distances are certified least values ([`tolerance::MARGIN_M`](crate::tolerance::MARGIN_M)); the
-/// costs are integrated by quadrature of their own. A segment that is not a number is a violation,
-/// and the figures are then NaN.
 pub fn evaluate(request: &Request) -> Evaluation {
     let segments = request.segments;
     let mut violations = motion::check(request);
@@ -259,13 +202,13 @@ pub fn evaluate(request: &Request) -> Evaluation {
     }
 }
 
-/// The least of the passages; infinite without any.
+/// Least value of one figure over all encounters; infinite without any.
 fn least_of(passages: &[Passage], figure: impl Fn(&Passage) -> f64) -> f64 {
     passages.iter().map(figure).fold(f64::INFINITY, f64::min)
 }
 
-/// The least signed distance to each set of a request along its segments, metres, certified; minus
-/// infinity where that was not proven.
+/// Least signed distance to each set of a request along its segments, metres, certified. Minus
+/// infinity where the search did not prove the value.
 pub fn least_margins(request: &Request) -> Vec<f64> {
     let proven = |least: Least| {
         if least.certified {
@@ -279,8 +222,8 @@ pub fn least_margins(request: &Request) -> Vec<f64> {
         .collect()
 }
 
-/// Every set and every target along a chain of pieces, and the worst of what is entered; what is
-/// violated is noted where the pieces are `judged`.
+/// Evaluates every set and every target along a chain of pieces. Returns the encounters and the
+/// worst safety; violations are added only if `judged` is true.
 fn meetings<P: Piece>(
     request: &Request,
     pieces: &[P],
@@ -312,7 +255,7 @@ fn meetings<P: Piece>(
         let claim = by_name.get(target.name.as_str()).unwrap_or(&unclaimed);
         let (passage, clearance, safety) = passage(request, pieces, turns, target, claim);
         worst = worst.max(safety);
-        // explicit sets are judged above, as sets
+        // Explicit sets are already judged above, as sets.
         if judged && target.ship().is_some() {
             let label = format!("hull of '{}'", target.name);
             violations.extend(collision(&label, &clearance, true));
@@ -322,7 +265,7 @@ fn meetings<P: Piece>(
     (passages, worst)
 }
 
-/// The land along a chain of pieces; what is violated is noted where they are `judged`.
+/// Least distance to land along a chain of pieces. Violations are added only if `judged` is true.
 fn shore<P: Piece>(
     request: &Request,
     pieces: &[P],

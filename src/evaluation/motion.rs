@@ -1,4 +1,4 @@
-//! Does a chain of segments start, move and arrive as own ship can and must?
+//! Checks that a chain of segments starts, moves and arrives within own ship's limits.
 
 use super::{Freedom, Request, Violation, along};
 use crate::frame::wrap;
@@ -6,7 +6,7 @@ use crate::tolerance;
 use crate::trajectory::Segment;
 use crate::vessel::OwnShip;
 
-/// The requirements on motion alone.
+/// Returns the violated requirements on the motion alone.
 pub(super) fn check(request: &Request) -> Vec<Violation> {
     let Request {
         segments,
@@ -35,7 +35,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
             );
         }
     }
-    // what is not a number is not judged any further
+    // Non-finite values cannot be judged further.
     if !found.0.is_empty() {
         return found.0;
     }
@@ -77,7 +77,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
             step,
             tolerance::JOINT_M,
         );
-        // along paths she turns where the path does
+        // On paths, own ship turns on the spot at the corners of the path.
         if let Freedom::Limits = request.freedom {
             let turn = wrap(end.heading - after.start.heading).abs();
             found.limit(
@@ -121,7 +121,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
         tolerance::ARRIVAL_M,
     );
     let sailed: f64 = segments.iter().map(Segment::length).sum();
-    // negated on purpose: a NaN is nothing
+    // Negated on purpose: a NaN length is no motion.
     if !(sailed > tolerance::ARRIVAL_M) && desired.comes_by(own.pose.position) {
         let what = format!("arrival: {sailed} m sailed, with the path still ahead");
         found.add(end_time, what);
@@ -136,10 +136,10 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
     found.0
 }
 
-/// Turning radius and speeds.
+/// Checks turning radius and speeds.
 fn limits(segments: &[Segment], own: &OwnShip, found: &mut Report) {
     for (index, s) in segments.iter().enumerate() {
-        // in this form a turn on the spot is a violation too
+        // In this form, a turn on the spot is a violation too.
         let speed_needed = s.turn_rate.abs() * own.turning_radius;
         found.limit(
             &format!("turn rate times turning radius in segment {index}"),
@@ -171,7 +171,7 @@ impl Report {
         self.0.push(Violation { what, time });
     }
 
-    /// Notes a quantity over its limit; a NaN is over every limit.
+    /// Adds a violation if a quantity exceeds its limit; a NaN exceeds every limit.
     fn limit(&mut self, what: &str, unit: &str, time: f64, value: f64, allowed: f64) {
         if !(value <= allowed) {
             self.add(

@@ -1,4 +1,4 @@
-//! The closest approach if nobody alters.
+//! Closest approach of the nominal motions: own ship and target both follow their plans unchanged.
 
 use crate::evaluation::distance::clearance::{Body, least_distance};
 use crate::evaluation::distance::least::Least;
@@ -10,7 +10,7 @@ use crate::target::{Motion, Target, VelocitySpell};
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::OwnShip;
 
-/// The legs until the horizon, seconds, as own ship would sail them.
+/// Segments of own ship along the desired legs until the horizon, in seconds.
 pub(crate) fn nominal_legs(desired: &DesiredTrajectory, horizon: f64) -> Vec<Segment> {
     let legs = desired.legs().iter();
     legs.take_while(|leg| leg.start_time <= horizon)
@@ -24,9 +24,10 @@ pub(crate) fn nominal_legs(desired: &DesiredTrajectory, horizon: f64) -> Vec<Seg
         .collect()
 }
 
-/// Least distance along `legs` between the hulls, of explicit sets from own position to the set:
-/// metres, negative in overlap, certified. Own ship is not looked at while she turns from leg to
-/// leg. `None` for ellipses.
+/// Least distance along `legs` between the hulls, metres; negative in overlap, certified.
+///
+/// For explicit sets: distance from own position to the set. Turns between legs are not evaluated.
+/// `None` for ellipses.
 pub(crate) fn nominal_distance(own: &OwnShip, legs: &[Segment], target: &Target) -> Option<f64> {
     let least: Least = match &target.motion {
         Motion::Ship(ship) => {

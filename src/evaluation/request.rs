@@ -1,4 +1,4 @@
-//! What is judged.
+//! Input of an evaluation.
 
 use super::SpaceTimeSet;
 use crate::frame::Vector;
@@ -7,114 +7,49 @@ use crate::target::Target;
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::OwnShip;
 
-/// How own ship may move.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::{Freedom, Request, evaluate};
-/// use searoom::scenario::Scenario;
-/// use searoom::trajectory::Segment;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// // own ship holds course and speed
-/// let start = scenario.own_ship.pose;
-/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
-/// let request = Request {
-///     segments: &held,
-///     own: &scenario.own_ship,
-///     freedom: Freedom::Limits,
-///     desired: &scenario.desired,
-///     targets: &scenario.targets,
-///     sets: &[],
-///     land: &[],
-///     land_margin: 0.0,
-///     horizon: scenario.horizon,
-///     arrival_hold: scenario.arrival_hold,
-///     time_weight: scenario.time_weight,
-///     max_risk: 0.0,
-/// };
-/// let found = evaluate(&request);
-/// // at 5.5 m/s, which is none of her speeds
-/// let faster = [Segment { duration: 1500.0 / 5.5, speed: 5.5, ..held[0] }];
-/// let alone = Request { segments: &faster, targets: &[], ..request };
-/// assert!(!evaluate(&alone).verified());
-/// assert!(evaluate(&Request { freedom: Freedom::Any, ..alone }).verified());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Set of motions that own ship is allowed.
 #[derive(Debug, Clone, Copy)]
 pub enum Freedom<'a> {
-    /// Anywhere, on lines and arcs of at least her turning radius, at the speeds of her finite set.
+    /// Lines and arcs of at least own turning radius, at the speeds of own ship's finite set.
     Limits,
-    /// Along paths, the main one first, waypoints in metres: at any speed up to her greatest,
-    /// turning on the spot where she moves off along another leg.
+    /// Motion along paths, the main one first, waypoints in metres. Any speed up to own ship's
+    /// greatest is allowed, and turns on the spot where it departs along another leg.
     Paths(&'a [Vec<Vector>]),
-    /// The same, but to the horizon instead of to the last waypoint: what does not arrive.
+    /// Like `Paths`, but the motion ends at the horizon and not at the last waypoint. For plans
+    /// that do not arrive.
     PathsToHorizon(&'a [Vec<Vector>]),
-    /// Anywhere at any speed and radius, on any course from the start on, and nowhere in
-    /// particular: what is no plan, to be compared with plans.
+    /// Any speed, radius and initial course, without arrival. For motions that are no plans, but
+    /// are compared with plans.
     Any,
 }
 
-/// What is to be judged, and by what.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::{Freedom, Request, evaluate};
-/// use searoom::scenario::Scenario;
-/// use searoom::trajectory::Segment;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// // own ship holds course and speed
-/// let start = scenario.own_ship.pose;
-/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
-/// let request = Request {
-///     segments: &held,
-///     own: &scenario.own_ship,
-///     freedom: Freedom::Limits,
-///     desired: &scenario.desired,
-///     targets: &scenario.targets,
-///     sets: &[],
-///     land: &[],
-///     land_margin: 0.0,
-///     horizon: scenario.horizon,
-///     arrival_hold: scenario.arrival_hold,
-///     time_weight: scenario.time_weight,
-///     max_risk: 0.0,
-/// };
-/// let found = evaluate(&request);
-/// assert!(!found.verified());
-/// // with nobody else there is nothing wrong with it
-/// assert!(evaluate(&Request { targets: &[], ..request }).verified());
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Trajectory to evaluate, and all data it is evaluated against.
 #[derive(Debug, Clone)]
 pub struct Request<'a> {
-    /// The trajectory's segments as they are, right or wrong.
+    /// Segments of the trajectory, without prior validation.
     pub segments: &'a [Segment],
-    /// Own ship and her limits; of no size where the sets already contain her.
+    /// Own ship and its limits; with zero size where the sets already contain its hull.
     pub own: &'a OwnShip,
-    /// How she may move.
+    /// Set of motions that own ship is allowed.
     pub freedom: Freedom<'a>,
-    /// Where she was meant to be, and when.
+    /// Desired trajectory of own ship.
     pub desired: &'a DesiredTrajectory,
-    /// The others.
+    /// Targets.
     pub targets: &'a [Target],
-    /// The sets that the plan was made against; several may bear one target's name.
+    /// Sets against which the plan was made; several may have the name of one target.
     pub sets: &'a [SpaceTimeSet],
-    /// Land, which may overlap itself.
+    /// Land polygons, which may overlap.
     pub land: &'a [Polygon],
-    /// Kept between own hull and land, metres.
+    /// Required distance between own hull and land, metres.
     pub land_margin: f64,
-    /// Seconds: arrival must not be later.
+    /// Latest arrival time, seconds.
     pub horizon: f64,
-    /// For how long after the end of the motion own ship is looked at where it lies, seconds:
-    /// nothing is claimed of it then.
+    /// Time after the end of the motion over which clearances at rest are reported, seconds. They
+    /// do not affect the verdict.
     pub arrival_hold: f64,
     /// `q` of eq. (30), m²/s².
     pub time_weight: f64,
-    /// The risk of eq. (25) that was accepted, in `[0, 1)`: the sets are those of it already, the
-    /// hulls are judged with velocities that are scaled about their centre by what is left of 1.
+    /// Accepted risk of eq. (25), in `[0, 1)`. The sets are already the level sets of this risk.
+    /// Hulls are judged with velocities scaled by `1 - max_risk` about their centre.
     pub max_risk: f64,
 }

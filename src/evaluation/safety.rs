@@ -1,46 +1,31 @@
-//! What a motion enters: the fact beside that it is verified.
+//! Classifies what a motion enters: sets, hulls or land. This is independent of verification.
 
 use super::{Least, Request, Violation};
 use crate::tolerance;
 
-/// What a motion enters from start to arrival, the worst last.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::Safety;
-/// use searoom::pipeline;
-/// use searoom::scenario::Scenario;
-///
-/// let mut scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let safety = |scenario| pipeline::run(scenario).evaluation.expect("a plan").safety;
-/// assert_eq!(safety(scenario.clone()), Safety::Safe);
-/// scenario.max_risk = 0.3;
-/// assert_eq!(safety(scenario), Safety::Safe, "the shape alone is entered, not the hard set");
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Worst region that a motion enters from start to arrival, in ascending order of severity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Safety {
-    /// No hard set, no hull and no land.
+    /// Enters no hard set, no hull and no land.
     Safe,
-    /// A hard set, but not its level set of the accepted risk, and no hull.
+    /// Enters a hard set, but neither its level set of the accepted risk nor a hull.
     AtRisk,
-    /// A hull that a target may have, a hard set of which nothing is kept, or the margin to land.
-    /// So is a motion that own ship cannot sail, and whatever could not be proven.
+    /// Enters a hull that a target may have, a hard set without a retained level set, or the margin
+    /// to land. Also a motion outside own ship's limits, and any case without proof.
     Unsafe,
-    /// The hull of a target that keeps course and speed, or land.
+    /// Enters land, or the hull of a target that keeps course and speed.
     Collides,
 }
 
 impl Safety {
-    /// Of a motion that can be sailed, or not.
+    /// Safety of a motion that is within own ship's limits (`sound`) or not.
     pub(super) fn of_motion(sound: bool) -> Self {
         if sound { Self::Safe } else { Self::Unsafe }
     }
 
-    /// Of a motion at this distance from land.
+    /// Safety of a motion with this least distance to land.
     pub(super) fn of_land(least: &Least, request: &Request) -> Self {
-        // negated on purpose: a NaN is aground
+        // Negated on purpose: a NaN counts as aground.
         if !(least.value >= -tolerance::DEPTH_M) {
             Self::Collides
         } else if grounding(least, request.land_margin).is_some() {
@@ -51,10 +36,10 @@ impl Safety {
     }
 }
 
-/// The violation of the land by a least distance, if there is one.
+/// Violation of the land margin by a least distance, if any.
 pub(super) fn grounding(least: &Least, margin: f64) -> Option<Violation> {
     let allowed = margin - tolerance::DEPTH_M;
-    // negated on purpose: a NaN is aground
+    // Negated on purpose: a NaN counts as aground.
     let what = if !(least.value >= allowed) {
         format!(
             "land: own hull at {:.6e} m, allowed {allowed:.6e}",
@@ -71,8 +56,8 @@ pub(super) fn grounding(least: &Least, margin: f64) -> Option<Violation> {
     })
 }
 
-/// The violation of a set by a least distance, if there is one. A set without interior has no
-/// depth: there, nearer than the tolerance is a violation.
+/// Violation of a set by a least distance, if any. A set without interior has no depth, so there a
+/// distance below the tolerance is a violation.
 pub(super) fn collision(label: &str, least: &Least, has_interior: bool) -> Option<Violation> {
     let allowed = if has_interior {
         -tolerance::DEPTH_M
@@ -95,18 +80,18 @@ pub(super) fn collision(label: &str, least: &Least, has_interior: bool) -> Optio
     })
 }
 
-/// What is kept of the sets of one target.
+/// Result of the checks against the sets of one target.
 pub(super) struct Claim {
-    /// The least distance to them.
+    /// Least distance to the sets.
     pub margin: Least,
-    /// Seconds. Nothing is claimed of them before.
+    /// Time from which the sets are valid, seconds.
     pub from: f64,
     sets: usize,
     kept: bool,
 }
 
 impl Claim {
-    /// Of a target without a set.
+    /// Result for a target without a set.
     pub fn new() -> Self {
         Self {
             margin: Least::new(),
@@ -116,7 +101,7 @@ impl Claim {
         }
     }
 
-    /// Takes note of one of her sets.
+    /// Adds the result of one set.
     pub fn see(&mut self, least: &Least, kept: bool, from: f64) {
         self.margin.see(least.value, least.time);
         self.from = self.from.max(from);
@@ -124,17 +109,19 @@ impl Claim {
         self.kept &= kept;
     }
 
-    /// Toward a ship: `closest` and `worst` are the distances from her hull where she keeps course
-    /// and speed and from any that she may have, `centre` that of own ship's centre from the
-    /// latter. Her hard set holds the places where own hull, on any heading, would be nearer than
-    /// the margin.
+    /// Safety with respect to a ship.
+    ///
+    /// `closest` is the distance from the target's hull at constant course and speed. `worst` is
+    /// the distance from any hull that it may have, and `centre` the distance of own ship's centre
+    /// from these. The hard set contains all positions where own hull, on any heading, would be
+    /// nearer than the margin.
     pub fn of_ship(
         &self,
         request: &Request,
         [closest, worst]: [&Least; 2],
         centre: impl FnOnce() -> Least,
     ) -> Safety {
-        // negated on purpose: a NaN is a collision
+        // Negated on purpose: a NaN counts as a collision.
         if !(closest.value >= -tolerance::DEPTH_M) {
             return Safety::Collides;
         }
@@ -148,7 +135,7 @@ impl Claim {
         })
     }
 
-    /// Toward a target whose set is given: that is her hard set.
+    /// Safety with respect to a target with an explicit set, which is its hard set.
     pub fn of_set(&self, request: &Request, least: &Least, has_interior: bool) -> Safety {
         self.of_hard_set(request, || collision("", least, has_interior).is_none())
     }
@@ -158,7 +145,7 @@ impl Claim {
             return Safety::Unsafe;
         }
         let kept = self.sets > 0 && self.kept;
-        // whole sets hold the hard ones
+        // A full set contains the hard set.
         if kept && request.max_risk == 0.0 || clear() {
             Safety::Safe
         } else if kept {
@@ -179,9 +166,9 @@ mod tests {
     use crate::target::Motion;
     use crate::trajectory::Segment;
 
-    /// Own ship sails 1500 m along the path, its centre nothing but `north` metres beside a target
-    /// at rest half-way; hulls reach 4 and 6 m to that side, half of own diagonal is 15.524 m, the
-    /// margin 20 m.
+    /// Scenario in which own ship moves 1500 m along the path and passes a target at rest half-way.
+    /// The centres are `north` metres apart there. The half-beams are 4 m and 6 m, half of own
+    /// diagonal is 15.524 m, and the margin is 20 m.
     struct Scene {
         scenario: Scenario,
         held: Segment,
@@ -214,7 +201,7 @@ mod tests {
         ConvexPolygon::hull(&corners).expect("finite")
     }
 
-    /// What is found of the motion among these sets at this risk, and off this land by this margin.
+    /// Evaluates the motion with these sets, risk, land and land margin.
     fn judged(
         scene: &Scene,
         sets: &[SpaceTimeSet],
@@ -239,8 +226,8 @@ mod tests {
         })
     }
 
-    /// What is entered is told whatever the sets are: a hull at 10 m, any that she may have at 10 m
-    /// and three standard deviations, the hard set at 41.524 m.
+    /// The limits do not depend on the sets: 10 m for the nominal hull, 10 m plus three standard
+    /// deviations for any hull, and 41.524 m for the hard set.
     #[test]
     fn what_is_entered_is_told_to_the_millimetre() {
         for (north, spread_m, expected) in [
@@ -258,8 +245,8 @@ mod tests {
         }
     }
 
-    /// At an accepted risk the hard set may be entered where its level set is kept; a set that is
-    /// left is never kept.
+    /// At an accepted risk, the hard set may be entered if its level set is retained. A released
+    /// set is never retained.
     #[test]
     fn an_accepted_risk_is_told_from_a_set_of_which_nothing_is_kept() {
         let scene = scene(30.0, 0.0);
@@ -280,7 +267,7 @@ mod tests {
         }
     }
 
-    /// A set that is given is the hard one.
+    /// An explicit set is the hard set.
     #[test]
     fn a_set_that_is_given_is_entered_or_not() {
         for (half, expected) in [(59.0, Safety::Safe), (61.0, Safety::Unsafe)] {
@@ -297,7 +284,7 @@ mod tests {
         }
     }
 
-    /// Land is hit, or its margin is not kept; what cannot be sailed, or is no number, is never
+    /// Land or its margin is entered. A motion outside own ship's limits, or with a NaN, is never
     /// safe.
     #[test]
     fn land_and_motions_that_are_none_are_told() {

@@ -1,5 +1,4 @@
-//! Judges a motion under forces: does the ship do what the plan says, and is that clear of
-//! everything?
+//! Evaluates a motion under forces: checks the vessel dynamics and the clearances.
 
 use super::{Evaluation, Request, Safety, Violation, least_of, meetings, shore};
 use crate::evaluation::cost::counted::counted_error_of_cubics;
@@ -10,56 +9,40 @@ use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, Node, Steered};
 use crate::vessel::{ForceVector, Manoeuvring, StateVector};
 
-/// Steps of the integrator in an interval, first; doubled until two results agree.
+/// Initial number of integrator steps per interval; doubled until two results agree.
 const FIRST_STEPS: usize = 8;
 const MOST_STEPS: usize = 4096;
 
-/// Of the ship's units. Two results this near are the same.
+/// Largest difference of two results that agree, in the vessel's state units.
 const AGREED: f64 = 1e-9;
 
-/// Parts of a piece on which one quadrature rule is put.
+/// Parts of a piece, each integrated by one quadrature rule.
 const PARTS: usize = 4;
 
-/// A motion under forces and the ship that is to make it.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::Steering;
-/// use searoom::pipeline;
-/// use searoom::scenario::Scenario;
-/// use searoom::vessel::VesselKind;
-///
-/// let scenario = Scenario::read("scenarios/paper/figure_9.toml".as_ref())?;
-/// let planned = pipeline::run(scenario).planned;
-/// let trajectory = &planned.outcome.plan().expect("a way").trajectory;
-/// let vessel = VesselKind::CyberShip2;
-/// let exact = vessel.exact(1.255);
-/// let steering = Steering {
-///     motion: trajectory.steered().expect("a plan of forces"),
-///     vessel: exact.as_ref(),
-///     force_limits: vessel.force_limits(1.255),
-/// };
-/// let within = |force: f64, limit: f64| force.abs() <= limit + 1e-9;
-/// assert!(steering.motion.nodes().iter().all(|node| within(node.force.x, steering.force_limits.x)));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Motion under forces and the vessel that executes it.
 #[derive(Debug, Clone, Copy)]
 pub struct Steering<'a> {
     /// Nodes with forces.
     pub motion: &'a Steered,
-    /// As published, not smoothed.
+    /// Published vessel model, not smoothed.
     pub vessel: &'a dyn Manoeuvring,
-    /// To either side of zero: newtons, newtons, newton metres.
+    /// Largest absolute surge force, sway force and yaw moment: newtons, newtons, newton metres.
     pub force_limits: ForceVector,
 }
 
-/// Judges a motion under forces over the whole horizon. It has to start where own ship is and end
-/// at the horizon; forces are within their limits; the ship, integrated anew from every node, is at
-/// the next one to [`tolerance::DEFECT`] of her units; and the cubics between the nodes keep out of
-/// every set to [`tolerance::DEPTH_M`], and of every hull, with certified distances. Arrival is not
-/// asked for: the delay is NaN, and the space-time error is counted until it is within own ship's
-/// length of the last waypoint ([`Counted`](super::Counted)). `request.segments` is not looked at.
+/// Evaluates a motion under forces over the whole horizon.
+///
+/// Checks
+///
+/// - that it starts at own ship's pose and ends at the horizon, with forces within their limits;
+/// - that the vessel model, integrated from each node, reaches the next node to
+///   [`tolerance::DEFECT`] in its state units;
+/// - that the cubics between the nodes stay outside every set, to [`tolerance::DEPTH_M`], and
+///   outside every hull, with certified distances.
+///
+/// Arrival is not required, so the delay is NaN. The space-time error is counted until the motion
+/// is within own ship's length of the last waypoint ([`Counted`](super::Counted)).
+/// `request.segments` is ignored.
 pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     let mut violations = Vec::new();
     check(request, steering, &mut violations);
@@ -90,12 +73,12 @@ pub fn evaluate_steered(request: &Request, steering: &Steering) -> Evaluation {
     }
 }
 
-/// Start, end, forces and dynamics.
+/// Checks start, end, forces and dynamics.
 fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
     let nodes = steering.motion.nodes();
     let (first, last) = (&nodes[0], &nodes[nodes.len() - 1]);
     let own = request.own;
-    // a quantity over its limit; a NaN is over every limit
+    // Adds a violation if a quantity exceeds its limit; a NaN exceeds every limit.
     let mut limit = |what: String, time: f64, value: f64, allowed: f64| {
         if !(value <= allowed) {
             let what = format!("{what}: {value:.6e}, allowed {allowed:.6e}");
@@ -154,14 +137,14 @@ fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
         let duration = to.time - from.time;
         let reached = integrated(steering.vessel, &state(from), &force, duration);
         let off = (reached - state(to)).component_div(&scales.state);
-        // a maximum would lose a NaN
+        // The maximum norm would lose a NaN.
         let off = if off.sum().is_finite() {
             off.amax()
         } else {
             f64::NAN
         };
         limit(
-            format!("the ship off the plan after interval {index}, in her units"),
+            format!("vessel state off the plan after interval {index}, in its units"),
             to.time,
             off,
             tolerance::DEFECT,
@@ -169,7 +152,7 @@ fn check(request: &Request, steering: &Steering, found: &mut Vec<Violation>) {
     }
 }
 
-/// The forces held from a node on.
+/// Forces from a node until the next one.
 pub(super) fn force(node: &Node) -> ForceVector {
     ForceVector::new(node.force.x, node.force.y, node.moment)
 }
@@ -186,9 +169,9 @@ pub(super) fn state(node: &Node) -> StateVector {
     )
 }
 
-/// The state after `duration` seconds under a constant force: by the midpoint rule with
-/// Richardson's extrapolation (Gragg, Bulirsch and Stoer) over doubled numbers of steps, until two
-/// of them agree to [`AGREED`].
+/// State after `duration` seconds under a constant force. Midpoint rule with Richardson
+/// extrapolation (Gragg, Bulirsch and Stoer) over doubled numbers of steps, until two results agree
+/// to [`AGREED`].
 fn integrated(
     vessel: &dyn Manoeuvring,
     from: &StateVector,
@@ -215,8 +198,8 @@ fn integrated(
     }
 }
 
-/// Gragg's midpoint rule with `steps` steps, an even number: its error has even powers of the step
-/// alone.
+/// Gragg's modified midpoint rule with an even number of `steps`. Its error expansion has only even
+/// powers of the step.
 fn modified_midpoint(
     vessel: &dyn Manoeuvring,
     from: &StateVector,
@@ -234,7 +217,7 @@ fn modified_midpoint(
     0.5 * (here + before + h * vessel.rates(&here, force))
 }
 
-/// Formulas section 7 over all pieces, m².
+/// Space-time error of all pieces, docs/theory.md section 7, m².
 pub(super) fn space_time_error(pieces: &[Cubic], desired: &DesiredTrajectory, q: f64) -> f64 {
     let integral: f64 = pieces
         .iter()
@@ -247,13 +230,13 @@ pub(super) fn space_time_error(pieces: &[Cubic], desired: &DesiredTrajectory, q:
     integral / desired.duration()
 }
 
-/// Eq. (30) with both curves by their own fraction of their own length, m²; NaN for a motion of no
-/// length.
+/// Eq. (30) with each curve parametrised by the fraction of its own length, m²; NaN for a motion of
+/// zero length.
 fn arc_length_error(pieces: &[Cubic], desired: &DesiredTrajectory, q: f64) -> f64 {
     let speed = |piece: &Cubic, time: f64| Piece::velocity_at(piece, time).norm();
     let length_of = |piece: &Cubic| over_parts(piece, &|time| speed(piece, time));
     let length: f64 = pieces.iter().map(length_of).sum();
-    // negated on purpose: a NaN has no length either
+    // Negated on purpose: a NaN has no length either.
     if !(length > 0.0) {
         return f64::NAN;
     }

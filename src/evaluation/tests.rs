@@ -1,4 +1,4 @@
-//! A valid plan, and every way to spoil it: each must be found, and nothing else.
+//! A valid plan and its corruptions: each must be found, and nothing else.
 
 use super::*;
 use crate::evaluation::sets::moving_ellipse::MovingEllipse;
@@ -34,7 +34,7 @@ fn desired() -> DesiredTrajectory {
     DesiredTrajectory::new(&[Vector::zeros(), Vector::new(1500.0, 0.0)], &[5.0]).expect("valid")
 }
 
-/// Follows on with a piece of `length` metres, turning by `turn` radians.
+/// Appends a segment of `length` metres that turns by `turn` radians.
 fn follow(segments: &mut Vec<Segment>, length: f64, speed: f64, turn: f64) {
     let (start, start_time) = segments
         .last()
@@ -49,7 +49,7 @@ fn follow(segments: &mut Vec<Segment>, length: f64, speed: f64, turn: f64) {
     });
 }
 
-/// 200 m ahead, a dip to starboard and back, ahead to the end.
+/// 200 m ahead, a deviation to starboard and back, ahead to the end.
 fn plan() -> Vec<Segment> {
     let mut s = Vec::new();
     let turn = 0.6;
@@ -69,7 +69,7 @@ fn lowest() -> f64 {
     plan()[3].pose_after(plan()[3].duration / 2.0).position.y
 }
 
-/// A set whose upper side stays where it is while its ends move.
+/// A set whose upper side is fixed while its ends move.
 fn below(upper: f64) -> SpaceTimeSet {
     let corners = [
         (200.0, -900.0),
@@ -105,8 +105,8 @@ fn ship(y: f64, speed: f64) -> Target {
     }
 }
 
-/// Own ship turns on the spot beside a ship at anchor that she lies clear of before and after: her
-/// bow sweeps over the other's.
+/// Own ship turns on the spot beside an anchored ship and is clear of it before and after. During
+/// the turn, own bow sweeps over the other hull.
 #[test]
 fn a_hull_is_met_in_a_turn_on_the_spot() {
     let mut segments = Vec::new();
@@ -162,7 +162,7 @@ fn judge(segments: &[Segment], sets: &[SpaceTimeSet], targets: &[Target]) -> Eva
     })
 }
 
-/// What is wrong, by the first word of each violation.
+/// First word of each violation.
 fn faults(segments: &[Segment]) -> Vec<String> {
     words(&judge(
         segments,
@@ -194,7 +194,7 @@ fn a_valid_plan_passes_with_its_figures() {
     assert!(found.space_time_error > 0.0 && found.arc_length_error > 0.0);
     let passage = found.passages[0];
     assert_eq!(passage.passing_side, Side::Port);
-    // meets near the middle of the dip: own hull nearly level there
+    // They meet near the middle of the deviation, where own hull is nearly parallel to the x axis.
     assert!(passage.dcpa > 290.0 && passage.dcpa < 300.0 - lowest());
     assert!(passage.min_clearance < passage.dcpa - 6.0);
     assert_eq!(found.min_clearance, passage.min_clearance);
@@ -235,7 +235,7 @@ fn a_cut_plan_does_not_arrive() {
 fn speeds_outside_the_set_are_found() {
     let mut s = plan();
     let factor = 1.0 + 1e-6;
-    // the same way, faster: only the speed is wrong
+    // On the path as before, but faster: only the speed is wrong.
     s[6].speed *= factor;
     s[6].duration /= factor;
     assert_eq!(faults(&s), ["speed"]);
@@ -246,7 +246,7 @@ fn a_tightened_turn_is_found() {
     let mut s = plan();
     s[5].turn_rate *= 1.0 + 1e-6;
     assert_eq!(faults(&s), ["position", "heading", "turn"]);
-    // a turn on the spot
+    // A turn on the spot.
     let mut s = plan();
     let (pose, time) = (s[6].end(), s[6].end_time());
     s.push(Segment {
@@ -266,12 +266,12 @@ fn jumps_in_position_heading_and_time_are_found() {
     assert_eq!(faults(&s), ["position"]);
     let mut s = plan();
     s[6].start.heading += 1e-7;
-    // the last leg is long: it ends elsewhere, too
+    // The last leg is long, so the arrival is wrong too.
     assert_eq!(faults(&s), ["heading", "arrival:"]);
     let mut s = plan();
     s[3].start_time += 1e-6;
     assert_eq!(faults(&s), ["time"]);
-    // a piece left out
+    // A segment is missing.
     let mut s = plan();
     s.remove(4);
     assert_eq!(faults(&s), ["position", "time"]);
@@ -292,7 +292,7 @@ fn the_depth_decides_on_an_arc() {
 
 #[test]
 fn a_set_crossed_between_any_two_samples_is_found() {
-    // a needle that own ship meets for a hundredth of a second
+    // A needle that own ship crosses in a hundredth of a second.
     let at = plan()[0].pose_at(17.0).position;
     let thin = |half: f64| {
         let initial = ConvexPolygon::hull(&[
@@ -318,7 +318,7 @@ fn the_hulls_are_judged_whatever_the_sets_say() {
     let found = judge(&plan(), &[], &[ship(0.0, 5.0)]);
     assert_eq!(words(&found), ["hull"]);
     assert!(found.min_clearance < 0.0);
-    // nominally she passes, but she may be anywhere near
+    // The nominal motion is clear, but the uncertain hull is not.
     let near = judge(&plan(), &[], &[ship(17.0, 0.0)]);
     assert!(near.passages[0].dcpa > 3.0 && near.min_clearance < 0.0);
     assert_eq!(words(&near), ["hull"]);
@@ -402,10 +402,10 @@ fn disc(center: Vector, radius: f64) -> Ellipse {
 
 #[test]
 fn a_growing_disc_is_met_to_a_micrometre() {
-    // two discs: exact, radius 50 + 0.5 t, its centre at (400 + t, 0)
+    // The sum of two discs is exact: radius 50 + 0.5 t, centre at (400 + t, 0).
     let middle = Vector::new(400.0, 0.0);
     let set = round(disc(middle, 50.0), disc(Vector::new(1.0, 0.0), 0.5));
-    // own ship abeam at speed 5 relative 4: past the growing disc along a tangent of its cone
+    // Own ship moves at a relative speed of 4 m/s along a tangent of the growing disc's cone.
     let moved = Vector::new(4.0, 0.0);
     let sine = 0.5 / moved.norm();
     let cosine = (1.0 - sine * sine).sqrt();
@@ -440,7 +440,7 @@ fn distances_of_ellipses_match_a_dense_scan() {
             speed: rng.random_range(0.0..8.0),
             turn_rate: [0.0, 0.1, -0.2][case % 3],
         };
-        // the section as an ellipse, and the distance to that
+        // Distance to the section as an ellipse.
         let at = |time: f64| {
             let root = |e: &Ellipse| e.shape().trace().sqrt();
             let (ro, rv) = (root(&set.0), root(&set.1));
@@ -454,7 +454,7 @@ fn distances_of_ellipses_match_a_dense_scan() {
             .map(|i| at(s.start_time + s.duration * f64::from(i) / 2000.0))
             .fold(f64::INFINITY, f64::min);
         assert!(found.certified, "{case}");
-        // a shape matrix keeps half of the digits of a thin axis
+        // A shape matrix keeps half of the digits of a thin axis.
         assert!(
             (at(found.time) - found.value).abs() < 1e-6,
             "{case} {found:?} {}",
@@ -469,7 +469,7 @@ fn distances_of_ellipses_match_a_dense_scan() {
 
 #[test]
 fn slabs_are_judged_within_their_time() {
-    // at rest for 60 s, then away at 5 m/s northwards
+    // At rest for 60 s, then north at 5 m/s.
     let square = ConvexPolygon::hull(&[
         Vector::new(280.0, -10.0),
         Vector::new(320.0, -10.0),
@@ -493,6 +493,6 @@ fn slabs_are_judged_within_their_time() {
         let found = judge(&[line(Vector::zeros(), 0.0, 300.0)], &[set], &[]);
         words(&found).contains(&"set".to_owned())
     };
-    // own ship is beside it from 56 s to 64 s; it needs 2 s to clear her way
+    // Own ship is beside the set from 56 s to 64 s; the set needs 2 s to clear its path.
     assert!(!judged(54.0 - 1e-5) && judged(54.0 + 1e-5) && judged(60.0));
 }

@@ -1,10 +1,12 @@
-//! Words for an outcome, a risk, and whether a plan is verified and safe.
+//! Text for an outcome, a risk, and whether a plan is verified and safe.
 
 use super::Safety;
 
-/// The word that people see for an outcome, by what happens to hulls. `outcome` is the word of the
-/// documents, `safety` what is entered (`None` without a motion), `risk` the largest that is taken.
-/// The outcome of a baseline may also be `"clear"`, or `"collides"` where it enters a set.
+/// Returns the displayed word for an outcome, according to the safety of the motion.
+///
+/// `outcome` is the word in the documents, `safety` the safety of the motion (`None` without a
+/// motion), and `risk` the largest risk taken. The outcome of a baseline may also be `"clear"`, or
+/// `"collides"` where it enters a set.
 ///
 /// # Examples
 ///
@@ -20,7 +22,7 @@ use super::Safety;
 /// ```
 pub fn outcome_word(outcome: &str, safety: Option<Safety>, risk: f64) -> String {
     let word = match safety {
-        // more than the hard sets is entered, at a risk that nobody accepted
+        // Sets larger than the hard sets are entered, at a risk above the accepted one.
         Some(Safety::Safe) if outcome == "collides" => "relaxed".to_owned(),
         Some(Safety::Collides) => "COLLIDES".to_owned(),
         Some(Safety::Unsafe) => "NOT SAFE".to_owned(),
@@ -38,8 +40,8 @@ fn at_risk(risk: f64) -> String {
     format!("at risk {}", risk_figure(risk))
 }
 
-/// With two decimals. What is more than none is at least a hundredth, and none is rounded down by
-/// more than rounding.
+/// Formats a risk with two decimals, rounded up. A positive risk is at least 0.01, and rounding
+/// down is limited to 1e-6.
 pub(crate) fn risk_figure(risk: f64) -> String {
     let hundredths = if risk > 0.0 {
         (risk * 100.0 - 1e-4).ceil().max(1.0)
@@ -49,7 +51,7 @@ pub(crate) fn risk_figure(risk: f64) -> String {
     format!("{:.2}", hundredths / 100.0)
 }
 
-/// The two facts of a plan, in one breath.
+/// Returns the two properties of a plan, verified and safe, as one text.
 ///
 /// # Examples
 ///

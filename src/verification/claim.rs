@@ -1,4 +1,4 @@
-//! From the text of a document to what it claims, without invalid state.
+//! Parses and validates a plan document; the result has no invalid state.
 
 use super::FORMAT;
 use super::file::{OwnShipFile, PlaceFile, PlanFile, SetFile, TargetFile};
@@ -11,9 +11,9 @@ use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, Veloc
 use crate::trajectory::{DesiredTrajectory, Segment, Steered};
 use crate::vessel::{ForceVector, Hull, OwnShip, VesselKind};
 
-/// The planner whose plans keep to paths.
+/// Name of the planner whose plans follow paths.
 pub(super) const PATH_TIME: &str = "path-time";
-/// The planner whose plans are of forces.
+/// Name of the planner whose plans are motions under forces.
 pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
 
 const PLANNERS: [&str; 3] = ["space-time", PATH_TIME, OPTIMAL_CONTROL];
@@ -29,57 +29,32 @@ const OUTCOMES: [&str; 4] = ["solved", "relaxed", "infeasible", "deadline"];
 const KINDS: [&str; 4] = ["compliance", "domain", "risk", ARRIVAL];
 pub(super) const ARRIVAL: &str = "arrival";
 
-/// Keys of another document that are named.
+/// Most keys listed in the error for a document of another format.
 const KEYS: usize = 5;
 
-/// One field of a document that is not as it has to be.
-///
-/// # Examples
-///
-/// ```
-/// # use searoom::{pipeline, document::PlanDocument, scenario::Scenario};
-/// use searoom::verification::{ClaimError, ClaimFault, verify};
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let text = serde_json::to_string(&PlanDocument::of(&pipeline::run(scenario))).expect("JSON");
-/// let Err(ClaimError::Value(fault)) = verify(&text.replace("searoom-plan/1", "other/1")) else {
-///     panic!("another format");
-/// };
-/// let ClaimFault { path, found, allowed } = fault;
-/// assert_eq!([path.as_str(), found.as_str(), allowed.as_str()], ["format", "'other/1'", "searoom-plan/1"]);
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// A field of a document with an invalid value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ClaimFault {
-    /// The field.
+    /// Path of the field.
     pub path: String,
-    /// What is there.
+    /// The value found.
     pub found: String,
-    /// What may be there.
+    /// The allowed values.
     pub allowed: String,
 }
 
-/// Why a text is no plan document that can be checked.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::verification::{ClaimError, verify};
-///
-/// let error = verify("[1, 2").expect_err("no document");
-/// assert!(matches!(error, ClaimError::Shape { .. }), "{error}");
-/// ```
+/// Reason why a text is not a plan document that can be checked.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ClaimError {
-    /// No JSON, a key that is missing, or a value of another kind.
+    /// Invalid JSON, a missing key, or a value of the wrong type.
     #[error("{}{reason}", place(.path))]
     Shape {
-        /// The field; "." for the whole.
+        /// Path of the field; "." for the whole document.
         path: String,
-        /// In words, with line and column.
+        /// Description, with line and column.
         reason: String,
     },
-    /// A value that cannot be.
+    /// An invalid value.
     #[error("{}: found {}; allowed: {}", .0.path, .0.found, .0.allowed)]
     Value(ClaimFault),
 }
@@ -92,10 +67,10 @@ fn place(path: &str) -> String {
     }
 }
 
-/// The motion that is claimed.
+/// Motion of a document.
 #[derive(Debug, Clone)]
 pub(super) enum ClaimedMotion {
-    /// Lines and arcs, right or wrong.
+    /// Lines and arcs, without prior validation.
     Segments(Vec<Segment>),
     /// Nodes with forces.
     Steered {
@@ -106,30 +81,30 @@ pub(super) enum ClaimedMotion {
     },
 }
 
-/// A document, read.
+/// Content of a parsed document.
 #[derive(Debug)]
 pub(super) struct Claim {
     pub file: PlanFile,
     pub own: OwnShip,
     pub desired: DesiredTrajectory,
-    /// Where she is bound to paths.
+    /// Paths to which own ship is restricted, if any.
     pub paths: Option<Vec<Vec<Vector>>>,
     pub targets: Vec<Target>,
     pub sets: Vec<SpaceTimeSet>,
     pub land: Vec<Polygon>,
     pub motion: Option<ClaimedMotion>,
-    /// What cannot be true of the parts together.
+    /// Contradictions between the parts of the document.
     pub faults: Vec<Violation>,
 }
 
 impl Claim {
-    /// True where the document says that the plan does not arrive.
+    /// Returns true where the document reports that the plan does not arrive.
     pub fn gives_up_arrival(&self) -> bool {
         let mut given_up = self.file.relaxations.iter();
         given_up.any(|r| r.kind == ARRIVAL)
     }
 
-    /// Reads a document; the first field that cannot be read or cannot be so is the error.
+    /// Parses a document; the error is the first field that is unreadable or invalid.
     pub fn read(text: &str) -> Result<Self, ClaimError> {
         let mut json = serde_json::Deserializer::from_str(text);
         let file: PlanFile =
@@ -227,19 +202,19 @@ impl Claim {
     }
 }
 
-/// Seconds, as in scenarios.
+/// Longest arrival hold in seconds, equal to that of scenarios.
 const LONGEST_HOLD_S: f64 = 1e6;
 
 impl Claim {
-    /// Seconds after the motion of which a clearance is told.
+    /// Time after the end of the motion over which a clearance is reported, seconds.
     pub fn arrival_hold(&self) -> f64 {
         let cost = self.file.cost.as_ref();
         cost.and_then(|cost| cost.arrival_hold_s).unwrap_or(0.0)
     }
 }
 
-/// Why a text could not be read: it is no JSON, another document, or a plan document with a broken
-/// field.
+/// Explains why a text was not parsed: invalid JSON, another kind of document, or a plan document
+/// with a broken field.
 fn unread(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> ClaimError {
     let shape = |reason: String| ClaimError::Shape {
         path: error.path().to_string(),
@@ -270,7 +245,7 @@ pub(super) fn fault(path: &str, found: impl std::fmt::Display, allowed: &str) ->
     })
 }
 
-/// One of the words that there are.
+/// Checks that a word is one of the allowed words.
 fn word(path: &str, found: &str, allowed: &[&str]) -> Result<(), ClaimError> {
     if allowed.contains(&found) {
         return Ok(());
@@ -400,7 +375,7 @@ fn target(path: &str, target: &TargetFile) -> Result<Target, ClaimError> {
                     &at("turn_rate_deg_per_s"),
                     ship.turn_rate_deg_per_s,
                 )?),
-                // the shape is no part of what is proven
+                // The ship domain is no part of the proof.
                 domain: DomainKind::Hull,
             })
         }

@@ -1,16 +1,20 @@
-//! Are the sets large enough for what is known of the targets?
+//! Checks that the sets are large enough for the known state and uncertainty of the targets.
 //!
-//! A tracked ship's set has to contain its hull, on every heading that it may have until the
-//! horizon, ⊕ a disc of own half-diagonal, safety margin and three standard deviations of its
-//! position, and every place that it may come to at a speed and a course within the spreads, turned
-//! as far as it may have turned. Explicit sets have to be contained as they are. Where risk was
-//! accepted, the set of the level has to hold what is known of her scaled to that level, and the
-//! set scaled back all of it.
+//! A tracked ship's set has to contain two things:
 //!
-//! Polygons are compared by their sections. How far a section reaches in a direction is linear in
-//! time between two changes of its velocities, and how far a target may have come in it linear too,
-//! or convex where she turns: what is contained at the changes, at the start and at the horizon is
-//! contained always, however short or fast a slab is.
+//! - its hull, on every heading that it may have until the horizon, ⊕ a disc; the radius of the
+//!   disc is own half-diagonal, safety margin and three standard deviations of the target's
+//!   position;
+//! - every position that it may reach at a speed and course within the spreads, with the largest
+//!   possible turn.
+//!
+//! Explicit sets have to be contained unchanged. If risk was accepted, the level set has to contain
+//! the known velocities scaled to that level. Scaled back, it has to contain all of them.
+//!
+//! Polygons are compared by their sections. The support of a section in a direction is linear in
+//! time between two changes of its velocities. The support of the target's reachable set is linear
+//! too, or convex where the target turns. Containment at the changes, at the start and at the
+//! horizon therefore proves containment at all times, for a slab of any duration and speed.
 
 use super::claim::Claim;
 use super::reached::{Known, TANGENT_SPACING, at_level, in_order, outer_velocities, reach};
@@ -20,7 +24,7 @@ use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{Motion, Target, VelocitySpell};
 use crate::tolerance;
 
-/// What a set may be too small for.
+/// Parts of the known set that a set may fail to contain.
 const HULL: &str = "the hull, the margin and the uncertainty";
 const VELOCITIES: &str = "her velocities";
 const INITIAL: &str = "the initial set";
@@ -28,10 +32,10 @@ const VELOCITY: &str = "the velocity set";
 const LEVEL: &str = "the velocities at the accepted risk";
 const LEFT: &str = "where she may be when it has been left";
 
-/// Places around an ellipse at which it is compared with an ellipse.
+/// Number of directions in which two ellipses are compared.
 pub(super) const SAMPLED_DIRECTIONS: usize = 720;
 
-/// Every target without a set of her own, or with one that is too small; every set of nobody.
+/// Reports every target without exactly one set of sufficient size, and every set without a target.
 pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     let mut found = Vec::new();
     let mut note = |what: String, time: f64| found.push(Violation { what, time });
@@ -60,14 +64,13 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     found
 }
 
-/// What a set lacks of a target, and from when.
+/// Describes each part of a target's known set that the set does not contain, with the first time.
 fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64)> {
     let level = 1.0 - claim.file.max_risk;
     match &set.shape {
         SetShape::Polygons { initial, spells } => {
             let mut scales = vec![level];
-            // the set around a polygon that was scaled has a centre of its own: it cannot be scaled
-            // back
+            // The set around a scaled polygon has a centre of its own, so it cannot be scaled back.
             if level < 1.0 && claim.file.optimal_control.is_none() {
                 scales.push(1.0);
             }
@@ -80,8 +83,8 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
     }
 }
 
-/// By how much a set is too small, and when first: nothing where it is not. `scale` is that of the
-/// velocities about their centre.
+/// Returns by how much a polygonal set is too small and the first such time; `None` for a
+/// sufficient set. `scale` is the scale of the velocities about their centre.
 fn in_sections(
     claim: &Claim,
     target: &Target,
@@ -115,7 +118,7 @@ fn in_sections(
         let short = largest((0..normals.len()).flat_map(|k| {
             let step = (time - here) * rates[slab][k];
             section[k] += step;
-            // no slab lives on what the initial set is larger than it has to be
+            // An oversized initial set does not compensate for a velocity set that is too small.
             [wanted[k] - section[k], wanted[k] - before[k] - step]
         }));
         here = time;
@@ -123,7 +126,7 @@ fn in_sections(
             slab += 1;
         }
         let rounding = known.rounding(&wanted, time, factor);
-        // negated on purpose: a NaN is too small
+        // Negated on purpose: a NaN counts as too small.
         if !(short <= rounding && rounding.is_finite()) {
             let ship = matches!(target.motion, Motion::Ship(_));
             let part = match (time > from, ship) {
@@ -141,8 +144,8 @@ fn in_sections(
     None
 }
 
-/// The same for ellipses, by their two parts: the sum that is kept out of contains the sum of what
-/// these contain.
+/// Like [`in_sections`], for ellipses by their two parts. If each part contains its known part, the
+/// obstacle, which is an outer set of the sum, contains the known sum.
 fn of_ellipses(
     claim: &Claim,
     target: &Target,
@@ -154,7 +157,7 @@ fn of_ellipses(
     let ship = matches!(target.motion, Motion::Ship(_));
     let mut lacks = Vec::new();
     let mut need = |what: &str, short: f64| {
-        // negated on purpose: a NaN is too small
+        // Negated on purpose: a NaN counts as too small.
         if !(short <= tolerance::DEPTH_M) {
             lacks.push((format!("too small for {what}: by {short:.3e}"), from));
         }
@@ -181,8 +184,7 @@ fn of_ellipses(
         };
         need(if ship { HULL } else { INITIAL }, short);
     }
-    // the ellipse around a polygon that was scaled has a centre of its own: it cannot be scaled
-    // back
+    // The ellipse around a scaled polygon has a centre of its own, so it cannot be scaled back.
     if level == 1.0 || claim.file.optimal_control.is_none() {
         let short = match &target.motion {
             Motion::Ship(ship) => {
@@ -216,7 +218,7 @@ fn of_ellipses(
     lacks
 }
 
-/// How far the farthest point of a polygon is outside an ellipse.
+/// Largest distance of a polygon's vertices outside an ellipse.
 fn beyond_polygon(set: &Ellipse, known: &ConvexPolygon) -> f64 {
     largest(
         known
@@ -226,26 +228,27 @@ fn beyond_polygon(set: &Ellipse, known: &ConvexPolygon) -> f64 {
     )
 }
 
-/// How far an ellipse reaches outside another, in the directions of [`sampled_directions`].
+/// Largest excess of one ellipse's support over another's, in the directions of
+/// [`sampled_directions`].
 fn beyond_ellipse(set: &Ellipse, known: &Ellipse) -> f64 {
     largest(sampled_directions(set).map(|n| known.support(n) - set.support(n)))
 }
 
-/// The largest, NaN if any is.
+/// The largest value; NaN if any value is NaN.
 pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, |most, v| {
         if v > most || v.is_nan() { v } else { most }
     })
 }
 
-/// A polygon scaled about its centroid: what a level of risk does to a velocity set.
+/// Scales a polygon about its centroid, as a level of risk scales a velocity set.
 pub(super) fn about_centroid(set: &ConvexPolygon, factor: f64) -> ConvexPolygon {
     let center = set.centroid();
     set.translated(-center).scaled(factor).translated(center)
 }
 
-/// Unit vectors all around, evenly, and the normals of an ellipse at places all around it: where it
-/// is a needle, nearly all are across.
+/// Evenly spaced unit vectors, and the normals of an ellipse at points around it. For a thin
+/// ellipse, nearly all normals are perpendicular to its long axis.
 pub(super) fn sampled_directions(ellipse: &Ellipse) -> impl Iterator<Item = Vector> {
     let [a, b] = ellipse.semi_axes();
     let step = std::f64::consts::TAU / SAMPLED_DIRECTIONS as f64;

@@ -1,4 +1,4 @@
-//! Are the encounters of a document those of its motion?
+//! Checks the encounters of a document against its motion.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::figures::near;
@@ -10,7 +10,7 @@ use crate::target::{Motion, Target};
 use crate::tolerance;
 use nalgebra::Matrix2;
 
-/// Per target: the least distance, that it is so near at the time given, and the side.
+/// Checks for each target the least distance, the distance at the given time, and the passing side.
 pub(super) fn check(
     claim: &Claim,
     motion: &ClaimedMotion,
@@ -43,7 +43,7 @@ pub(super) fn check(
             found.push(untrue(&label("dcpa_m"), value, dcpa));
             continue;
         }
-        // the least distance may last, so the time is asked what the distance is then
+        // The least distance may last for some time, so the distance at the given time is compared.
         let tcpa = said.tcpa_s.unwrap_or(f64::NAN);
         let poses = motion.poses_at(tcpa);
         let then = poses.iter().map(|pose| distance(claim, target, pose, tcpa));
@@ -65,7 +65,7 @@ pub(super) fn check(
         }
         let side_said = said.passing_side.as_deref().unwrap_or("nothing");
         let abeam = |pose: &Pose| port_of(pose, target.position_at(tcpa));
-        // dead ahead and astern count as starboard, as far as rounding does not make it either
+        // Dead ahead and astern count as starboard; within rounding, both sides are accepted.
         let may_be = |pose: &Pose| match side_said {
             "port" => abeam(pose) >= 0.0,
             "starboard" => abeam(pose) <= 2.0 * tolerance::DEPTH_M,
@@ -80,14 +80,14 @@ pub(super) fn check(
     found
 }
 
-/// Metres by which a place lies to port of the line ahead through a pose.
+/// Offset of a place to port of the line ahead through a pose, metres.
 fn port_of(pose: &Pose, place: Vector) -> f64 {
     let (sin, cos) = pose.heading.sin_cos();
     let offset = place - pose.position;
     cos * offset.y - sin * offset.x
 }
 
-/// Between the hulls, or from own position to the set.
+/// Distance between the hulls, or from own position to the set.
 pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -> f64 {
     match target.ship() {
         Some(ship) => claim
@@ -106,12 +106,11 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
     }
 }
 
-/// Headings looked at in a turn on the spot, and halvings about the nearest of them.
+/// Sampled headings of a turn on the spot, and bisection steps about the nearest of them.
 const HEADINGS: u32 = 180;
 const HALVINGS: usize = 60;
 
-/// The least distance while own ship turns on the spot from one heading to another, the shorter
-/// way.
+/// Least distance while own ship turns on the spot between two headings, through the smaller angle.
 fn while_turning(claim: &Claim, target: &Target, turn: (&Pose, &Pose), time: f64) -> f64 {
     let (before, after) = turn;
     let angle = wrap(after.heading - before.heading);
@@ -136,7 +135,7 @@ fn while_turning(claim: &Claim, target: &Target, turn: (&Pose, &Pose), time: f64
     least
 }
 
-/// The ellipse of least trace around `initial + t velocity`, docs/theory.md section 3.
+/// Ellipse of least trace around `initial + t velocity`, docs/theory.md section 3.
 fn least_trace_sum(initial: &Ellipse, velocity: &Ellipse, time: f64) -> Option<Ellipse> {
     let center = initial.center() + velocity.center() * time;
     let (still, moving) = (initial.shape(), velocity.shape() * (time * time));

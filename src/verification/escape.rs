@@ -1,9 +1,10 @@
-//! Is the escape of a ship that stands on what a document says of it?
+//! Checks the escape manoeuvre of a stand-on ship against its motion.
 //!
-//! She holds course and speed until the latest time from which an escape is known to be clear, and
-//! escapes then: the motion is both. That the whole of it is clear is checked as of any other; here
-//! that it holds, when it ends, what follows, that all sets are in force meanwhile, and that
-//! holding on would have met something. That no escape begins later is not.
+//! Own ship holds course and speed until the latest time from which a clear escape is known, and
+//! escapes then. The motion contains both. Its clearances are checked like those of any other
+//! motion. This module checks the hold of course and speed, the time at which it ends, and the
+//! first action of the escape. It also checks that all sets are valid during the escape, and that
+//! holding on would have entered something. It does not check that no later escape exists.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::figures::near;
@@ -14,15 +15,16 @@ use crate::frame::{clockwise_deg, wrap};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// The only policy there is, and what it takes.
+/// The only policy, and the compliance that it requires.
 const POLICY: &str = "stand-on-hold";
 const COMPLIANCE: &str = "rules";
 
-/// Degrees to starboard that are readily apparent, and of the speed what is no more than half.
+/// Smallest turn to starboard that is readily apparent (Rule 8), degrees, and the largest reduced
+/// speed as a fraction of the desired speed.
 const APPARENT_DEG: f64 = 30.0;
 const HALF: f64 = 0.5;
 
-/// Everything that is wrong with an escape; nothing without one.
+/// Returns all violations of an escape; none without an escape.
 pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -> Vec<Violation> {
     let Some(escape) = &claim.file.escape else {
         return Vec::new();
@@ -63,7 +65,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
         found.push(at(untrue("escape", said, so)));
     }
     for (target, passage) in claim.targets.iter().zip(&evaluation.passages) {
-        // negated on purpose: a NaN is not clear
+        // Negated on purpose: a NaN is not clear.
         if !(passage.min_margin >= -tolerance::DEPTH_M) && passage.min_margin_time >= latest {
             let depth = -passage.min_margin;
             let so = format!("{depth} m deep in the set of '{}'", target.name);
@@ -77,8 +79,8 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation, request: &Request) -
     found
 }
 
-/// The hold and the escape; `None` where no segment begins at the time that is said, or another one
-/// does.
+/// Splits the segments into hold and escape. `None` where the first segment of the escape does not
+/// begin at the given time.
 fn parted<'s>(
     segments: &'s [Segment],
     escape: &EscapeFile,
@@ -88,8 +90,8 @@ fn parted<'s>(
     near(begins, escape.latest_s).then_some((hold, away))
 }
 
-/// True where own ship begins on the first leg as is desired, at a speed that she has: then nothing
-/// is to be altered there.
+/// Returns true where own ship starts on the first leg at the desired course, with the desired
+/// speed in its finite set. No alteration is then needed there.
 fn is_on_her_way(claim: &Claim) -> bool {
     let (own, leg) = (&claim.own, &claim.desired.legs()[0]);
     let offset = own.pose.position - leg.start;
@@ -99,8 +101,8 @@ fn is_on_her_way(claim: &Claim) -> bool {
         && own.speeds.iter().any(|u| near(*u, leg.speed))
 }
 
-/// The first thing that is altered before the end of the hold. Legs after the first are reached
-/// around corners: only what is sailed well before the first of these is looked at.
+/// Returns the first alteration before the end of the hold. Later legs are reached around corners,
+/// so only motion well before the first corner is checked.
 fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
     if !is_on_her_way(claim) {
         return None;
@@ -116,7 +118,7 @@ fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
         let along = (s.end().position - legs[0].start).dot(&legs[0].direction);
         along <= straight
     });
-    // from beside the leg by a rounding a way onto it turns by one
+    // A rounding in the start position turns the connection to the leg by a rounding.
     let heading = crate::frame::heading_of(legs[0].direction);
     let kept = |s: &Segment| {
         [s.start.heading, s.end().heading]
@@ -125,7 +127,7 @@ fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
             && (s.turn_rate * s.duration).abs() <= HELD_RAD
     };
     let wrong = on_leg.into_iter().find(|s| {
-        // negated on purpose: a NaN is no hold
+        // Negated on purpose: a NaN is no hold.
         !(kept(s) && near(s.speed, legs[0].speed))
     })?;
     Some(Violation {
@@ -138,13 +140,13 @@ fn held(claim: &Claim, hold: &[Segment]) -> Option<Violation> {
     })
 }
 
-/// Radians off the course that is held: nobody steers that exactly.
+/// Allowed course deviation during the hold, radians; far below the accuracy of steering.
 const HELD_RAD: f64 = 1e-6;
 
-/// Turning radii before a corner within which she may begin to turn.
+/// Distance before a corner at which own ship may begin to turn, in turning radii.
 const CORNER_RADII: f64 = 4.0;
 
-/// What the escape begins with.
+/// Checks the first action of the escape.
 fn first(claim: &Claim, escape: &EscapeFile, away: &[Segment]) -> Option<Violation> {
     let speed = away[0].speed;
     if !near(escape.speed_mps, speed) {
@@ -171,8 +173,7 @@ fn first(claim: &Claim, escape: &EscapeFile, away: &[Segment]) -> Option<Violati
     })
 }
 
-/// Where nothing would be met by holding on to the end of the one leg, nothing is to be escaped
-/// from.
+/// Reports a needless escape: holding on to the end of the only leg would enter nothing.
 fn needless(claim: &Claim, hold: &[Segment], request: &Request) -> Option<Violation> {
     let [leg] = claim.desired.legs() else {
         return None;

@@ -1,4 +1,4 @@
-//! Are the figures of a document those of its motion?
+//! Checks the figures of a document against its motion.
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion};
 use super::untrue;
@@ -7,7 +7,7 @@ use crate::frame::Vector;
 use crate::tolerance;
 use crate::trajectory::{Node, Segment};
 
-/// Costs, the mission's own figures and the path-time profile.
+/// Checks the costs, the figures of the mission and the path-time profile.
 pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;
@@ -62,7 +62,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         cost.min_clearance_m,
         evaluation.min_clearance,
     );
-    // what is not told of is not held against anything
+    // A figure that the document omits is not checked.
     if cost.arrival_hold_s.is_some() || cost.hold_clearance_m.is_some() {
         same(
             "cost.hold_clearance_m",
@@ -84,7 +84,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     if cost.arrived != arrives {
         found.push(untrue("cost.arrived", cost.arrived, arrives));
     }
-    // the document holds the land within reach, the nearest of the map may lie beyond
+    // The document holds only the land within reach; the nearest land of the map may be beyond.
     let land = evaluation.min_land_distance;
     if let Some(said) = cost
         .min_land_distance_m
@@ -98,7 +98,7 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     {
         let beyond = beyond_reach(claim);
         if !(said >= beyond || near(said, beyond)) {
-            let so = format!("{land}, or of land beyond reach {beyond} at least");
+            let so = format!("{land}, or at least {beyond} for land beyond reach");
             found.push(untrue("cost.min_land_distance_m", said, so));
         }
     }
@@ -110,8 +110,8 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     found
 }
 
-/// Of a plan that does not arrive: the way that it says to be left is no shorter than the straight
-/// one, and on one path it is what has not been sailed.
+/// Checks the remaining distance of a plan that does not arrive. It is at least the straight
+/// distance; with a single path, it is the part of the path that was not covered.
 fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let mut given_up = claim.file.relaxations.iter();
     let said = given_up.find(|r| r.kind == ARRIVAL)?.amount;
@@ -123,7 +123,7 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     let unsailed = claim.desired.length() - evaluation.length;
     let alone = claim.file.mission.alternatives.is_empty();
     let so = if alone { unsailed } else { straight };
-    // negated on purpose: a NaN is untrue
+    // Negated on purpose: a NaN is untrue.
     if !(said > 0.0 && (near(said, so) || !alone && said >= so)) {
         let so = format!("{so} m{}", if alone { "" } else { " at least" });
         return Some(untrue("relaxation of arrival, amount", said, so));
@@ -131,9 +131,10 @@ fn way_left(claim: &Claim, evaluation: &Evaluation) -> Option<Violation> {
     None
 }
 
-/// Metres from own hull to land that a document does not hold, at least. It holds all that comes
-/// into the square about the middle between start and end whose half side is half of the way that
-/// she can sail, and her footprint.
+/// Lower bound of the distance from own hull to land outside the document, metres.
+///
+/// The document holds all land in a square about the midpoint of start and end. Half of its side is
+/// half of the distance that own ship can cover, plus its footprint.
 fn beyond_reach(claim: &Claim) -> f64 {
     let own = &claim.own;
     let (start, end) = (own.pose.position, claim.desired.end());
@@ -141,12 +142,12 @@ fn beyond_reach(claim: &Claim) -> f64 {
     let middle = (start + end) * 0.5;
     let off = |p: Vector| (p - middle).abs().max();
     let farthest = match &claim.motion {
-        // an arc is no farther from an end than half of its way
+        // The distance of an arc from its nearer end is at most half of its length.
         Some(ClaimedMotion::Segments(segments)) => {
             let most = |s: &Segment| off(s.start.position).max(off(s.end().position)) + bulge(s);
             segments.iter().map(most).fold(0.0, f64::max)
         }
-        // between two nodes within the distance of these
+        // Between two nodes, the motion is within their distance of the nodes.
         Some(ClaimedMotion::Steered { motion, .. }) => {
             let nodes = motion.nodes().windows(2);
             let most = |w: &[Node]| {
@@ -168,8 +169,8 @@ fn bulge(segment: &Segment) -> f64 {
     }
 }
 
-/// The stage cost of a motion under forces: of those that rounding may make of it where a leg ends
-/// at an instant of the sum, the one that is nearest to what is said.
+/// Stage cost of a motion under forces. Where a leg ends at a sampled instant, rounding may change
+/// the cost; the candidate nearest to the reported cost is returned.
 fn driven(claim: &Claim, said: f64) -> Option<f64> {
     let Some(ClaimedMotion::Steered {
         motion,
@@ -191,7 +192,7 @@ fn driven(claim: &Claim, said: f64) -> Option<f64> {
     costs.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// Equal to [`tolerance::FIGURE`], relative above one.
+/// Returns true for figures that are equal to [`tolerance::FIGURE`], relative above one.
 pub(super) fn near(said: f64, so: f64) -> bool {
     (said - so).abs() <= tolerance::FIGURE * so.abs().max(1.0)
 }
@@ -200,7 +201,7 @@ fn words(value: Option<f64>) -> String {
     value.map_or_else(|| "nothing".to_owned(), |v| format!("{v}"))
 }
 
-/// Metres along the profile at a time; `None` where it does not reach.
+/// Distance along the profile at a time, metres; `None` outside the profile.
 fn profile_at(profile: &[[f64; 2]], time: f64) -> Option<f64> {
     let piece = profile
         .windows(2)
@@ -214,7 +215,7 @@ fn profile_at(profile: &[[f64; 2]], time: f64) -> Option<f64> {
     })
 }
 
-/// The profile is the way sailed over time.
+/// Checks that the profile is the distance covered over time.
 fn profile(claim: &Claim) -> Option<Violation> {
     let profile = &claim.file.path_time.as_ref()?.profile;
     let Some(ClaimedMotion::Segments(segments)) = &claim.motion else {
@@ -232,8 +233,8 @@ fn profile(claim: &Claim) -> Option<Violation> {
         let said = format!("a start at {at} s");
         return Some(untrue("path_time.profile", said, format!("{start} s")));
     }
-    // between its own points the profile is straight, between the joints of the motion what is
-    // sailed is: they are the same where they are so at both
+    // The profile is linear between its points, and the covered distance between the joints of the
+    // motion. They are equal if they are equal at both.
     let joints = segments.iter().map(Segment::end_time);
     let at_joints = joints.filter_map(|t| Some([profile_at(profile, t)?, t]));
     let mut points = profile.iter().copied().chain(at_joints);

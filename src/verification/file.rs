@@ -1,6 +1,7 @@
-//! The plan document as this checker reads it: the keys that it needs, in the units of the file.
+//! Schema of the plan document for the checker: the required keys, in the units of the file.
 //!
-//! A mirror of its own, so that a slip of the writer is not read back as if it were right.
+//! It is separate from the writer's schema, so that an error of the writer is not read back as
+//! valid.
 
 use serde::Deserialize;
 
@@ -11,7 +12,7 @@ pub(super) struct PlanFile {
     pub planner: String,
     pub compliance: String,
     pub outcome: String,
-    /// A document without these two is rejected.
+    /// A document without `verdict` and `safe` is rejected.
     pub verdict: Option<String>,
     pub safe: Option<bool>,
     pub time_weight_m2_per_s2: f64,
@@ -23,7 +24,7 @@ pub(super) struct PlanFile {
     pub land: Vec<Vec<[f64; 2]>>,
     pub targets: Vec<TargetFile>,
     pub obstacles: Vec<ObstacleFile>,
-    /// The first of them.
+    /// The first of `relaxations`.
     pub relaxation: Option<RelaxationFile>,
     pub relaxations: Vec<RelaxationFile>,
     pub cost: Option<CostFile>,
@@ -63,7 +64,7 @@ pub(super) struct MissionFile {
     pub alternatives: Vec<Vec<PlaceFile>>,
 }
 
-/// A tracked ship, or the sets outright.
+/// A tracked ship, or explicit sets.
 #[derive(Debug, Deserialize)]
 pub(super) struct TargetFile {
     pub name: String,
@@ -87,7 +88,7 @@ pub(super) struct ShipFile {
     pub turn_rate_deg_per_s: f64,
 }
 
-/// Positions or velocities: the two have keys of their own, and one is there.
+/// Set of positions or of velocities. The two have different keys, and one of them is present.
 #[derive(Debug, Deserialize)]
 pub(super) struct SetFile {
     #[serde(alias = "vertices_mps")]
@@ -114,7 +115,7 @@ pub(super) struct ObstacleFile {
     pub velocity_set: SetFile,
 }
 
-/// Something that was given up: what of it bears on what is claimed.
+/// A relaxed requirement; only the keys that the checks need.
 #[derive(Debug, PartialEq, Deserialize)]
 pub(super) struct RelaxationFile {
     pub kind: String,
@@ -169,7 +170,7 @@ pub(super) struct SampleFile {
     pub north_m: f64,
     pub course_deg: f64,
     pub speed_mps: f64,
-    /// At the nodes of a motion under forces these are all there, elsewhere none.
+    /// At the nodes of a motion under forces, all of these are present, elsewhere none.
     pub heading_deg: Option<f64>,
     pub surge_mps: Option<f64>,
     pub sway_mps: Option<f64>,
@@ -191,7 +192,7 @@ pub(super) struct EncounterFile {
     pub max_risk_t_s: Option<f64>,
 }
 
-/// What follows the hold of a ship that stands on.
+/// Escape of a stand-on ship after the hold.
 #[derive(Debug, Deserialize)]
 pub(super) struct EscapeFile {
     pub policy: String,

@@ -1,21 +1,21 @@
-//! Checks a plan document alone: without the scenario, the map or the planner that it came from.
+//! Verifies a plan document alone, without the scenario, the map or the planner that it came from.
 //!
-//! A document holds the motion, own ship and her limits, the mission, the targets as they are
-//! known, the sets that were kept out of, and the pieces of land within reach. From these
-//! [`verify`] proves anew
+//! A document holds the motion, own ship and its limits, the mission, the known state of the
+//! targets, the sets that were avoided, and the land within reach. From these [`verify`] proves
+//! independently
 //!
-//! - that the motion starts where own ship is, has no gap, keeps her turning radius, speeds or
-//!   paths (or, under forces, her dynamics and her forces), and arrives in time;
-//! - that it keeps out of every set, of every hull that a target may have, and of the land, in
+//! - that the motion starts at own ship's pose, has no gap, respects its turning radius, speeds or
+//!   paths (or, under forces, its dynamics and force limits), and arrives in time;
+//! - that the motion stays outside every set, every hull that a target may have, and the land, in
 //!   continuous time, with certified distances ([`crate::evaluation`]);
-//! - that the sets are not too small: each contains the target's hull, the margin and the
-//!   uncertainty, and every velocity that she may take;
-//! - that it says of the motion what is true of it: whether it is safe, costs, risks, samples,
-//!   encounters, path-time profile, the hold and the escape of a ship that stands on.
+//! - that the sets are large enough: each contains the target's hull, the margin and the
+//!   uncertainty, and every velocity that the target may take;
+//! - that the reported properties are those of the motion: safety, costs, risks, samples,
+//!   encounters, path-time profile, and the hold and escape of a stand-on ship.
 //!
-//! No planner, obstacle or contact test is used here; the document is read by a mirror of its own.
-//! Shared with them are geometry, segments, and the hull and the velocity sets of a tracked ship
-//! (`target`).
+//! It uses no planner, obstacle or contact test, and parses the document by its own schema. It
+//! shares with the planners only geometry, segments, and the hull and velocity sets of a tracked
+//! ship (`target`).
 
 mod claim;
 mod coverage;
@@ -40,10 +40,57 @@ use crate::evaluation::{
 };
 use crate::trajectory::Segment;
 
-/// The name of the format that can be checked.
+/// Name of the supported document format.
 pub const FORMAT: &str = "searoom-plan/1";
 
-/// What became of a plan document.
+/// Result of the verification of a plan document.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verification {
+    /// Title of the scenario.
+    pub scenario: String,
+    /// Name of the planner.
+    pub planner: String,
+    /// Outcome that the document reports.
+    pub outcome: String,
+    /// Accepted risk, in `[0, 1)`.
+    pub max_risk: f64,
+    /// Largest risk taken according to the document; 0 without a plan.
+    pub risk_taken: f64,
+    /// Names of the targets, in the document's order, which is that of the encounters.
+    pub targets: Vec<String>,
+    /// Time from which each target's set is valid, seconds, in the order of `targets`; 0 without a
+    /// release.
+    pub claimed_from: Vec<f64>,
+    /// Evaluation of the motion; `None` for a document without one.
+    pub evaluation: Option<Evaluation>,
+    /// Number of segments, or of intervals between nodes.
+    pub pieces: usize,
+    /// Number of sets checked.
+    pub sets: usize,
+    /// Number of land polygons.
+    pub land: usize,
+    /// All violations, in order of time.
+    pub violations: Vec<Violation>,
+}
+
+impl Verification {
+    /// Returns true for a plan without violations; false without a plan.
+    pub fn verified(&self) -> bool {
+        self.evaluation.is_some() && self.violations.is_empty()
+    }
+
+    /// Returns true for a verified plan that enters no hard set, hull or land from start to
+    /// arrival.
+    pub fn safe(&self) -> bool {
+        self.verified() && self.evaluation.as_ref().is_some_and(Evaluation::safe)
+    }
+}
+
+/// Verifies the text of a plan document.
+///
+/// Takes some milliseconds: O(segments (vertices of sets + edges of land)), and probes near the
+/// least distances. The error is for a text that is no valid plan document: it names the field, the
+/// value found and the allowed values.
 ///
 /// ```
 /// use searoom::pipeline;
@@ -56,56 +103,13 @@ pub const FORMAT: &str = "searoom-plan/1";
 /// let document = serde_json::to_string_pretty(&document).expect("JSON");
 /// let found: Verification = verify(&document)?;
 /// assert!(found.verified() && found.safe());
-/// // a figure that the motion does not bear out
+/// // a figure that contradicts the motion
 /// let mut altered: serde_json::Value = serde_json::from_str(&document).expect("JSON");
 /// altered["cost"]["length_m"] = 1600.0.into();
 /// assert!(!verify(&altered.to_string())?.verified());
 /// assert!(verify("{}").is_err());
 /// # Ok::<(), ClaimError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct Verification {
-    /// Title of the scenario.
-    pub scenario: String,
-    /// Who planned.
-    pub planner: String,
-    /// What the document says came out.
-    pub outcome: String,
-    /// The risk that the plan was allowed, in `[0, 1)`.
-    pub max_risk: f64,
-    /// The largest risk that the document says is taken; 0 without a plan.
-    pub risk_taken: f64,
-    /// Names of the targets, in the document's order: that of the passages.
-    pub targets: Vec<String>,
-    /// Seconds, per target in the same order: of her set nothing is claimed before; 0 where all is.
-    pub claimed_from: Vec<f64>,
-    /// The judgement of the motion; `None` for a document without one.
-    pub evaluation: Option<Evaluation>,
-    /// Segments, or intervals between nodes.
-    pub pieces: usize,
-    /// Sets that were checked, and pieces of land.
-    pub sets: usize,
-    /// Convex pieces.
-    pub land: usize,
-    /// Everything that is wrong, in order of time.
-    pub violations: Vec<Violation>,
-}
-
-impl Verification {
-    /// True for a plan in which nothing was found wrong; false without a plan.
-    pub fn verified(&self) -> bool {
-        self.evaluation.is_some() && self.violations.is_empty()
-    }
-
-    /// True for a verified plan that enters no hard set, hull or land from start to arrival.
-    pub fn safe(&self) -> bool {
-        self.verified() && self.evaluation.as_ref().is_some_and(Evaluation::safe)
-    }
-}
-
-/// Checks the text of a plan document. The error is for what is no plan document at all: it names
-/// the field, what was found and what is allowed. Some milliseconds; O(segments (vertices of sets +
-/// edges of land)) and probes near the least distances.
 ///
 /// ```
 /// use searoom::verification::verify;
@@ -151,7 +155,7 @@ pub fn verify(text: &str) -> Result<Verification, ClaimError> {
         let own = claim.sets.iter().filter(|set| set.name == name);
         own.map(|set| set.from).fold(0.0, f64::max)
     };
-    // a NaN has no place in time and goes last
+    // A NaN time sorts last.
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(Verification {
         scenario: claim.file.scenario.clone(),
@@ -198,7 +202,8 @@ fn request(claim: &Claim) -> Request<'_> {
     }
 }
 
-/// Notes what a document says wrongly: the quantity, what was found and what is so.
+/// Violation for a false statement in the document: the quantity, the reported value and the true
+/// value.
 fn untrue(what: &str, said: impl std::fmt::Display, so: impl std::fmt::Display) -> Violation {
     Violation {
         what: format!("{what}: the document says {said}, it is {so}"),

@@ -1,4 +1,4 @@
-//! The motion of a document: segments, or nodes with forces.
+//! Motion of a document: segments, or nodes with forces.
 
 use super::claim::{ClaimError, ClaimedMotion, fault, not_negative};
 use super::file::{ControlFile, PlanFile, SampleFile, SegmentFile, StartFile};
@@ -8,7 +8,7 @@ use crate::trajectory::{Node, Segment, Steered};
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 impl ClaimedMotion {
-    /// Segments, or intervals between nodes.
+    /// Number of segments, or of intervals between nodes.
     pub fn pieces(&self) -> usize {
         match self {
             Self::Segments(segments) => segments.len(),
@@ -16,7 +16,7 @@ impl ClaimedMotion {
         }
     }
 
-    /// False for segments that are no motion: of these nothing more can be said.
+    /// Returns false for invalid or missing segments, which allow no further checks.
     pub fn is_sound(&self) -> bool {
         match self {
             Self::Segments(segments) => {
@@ -26,7 +26,7 @@ impl ClaimedMotion {
         }
     }
 
-    /// Seconds; NaN without segments.
+    /// End of the motion, seconds; NaN without segments.
     pub fn end_time(&self) -> f64 {
         match self {
             Self::Segments(segments) => segments.last().map_or(f64::NAN, Segment::end_time),
@@ -34,7 +34,7 @@ impl ClaimedMotion {
         }
     }
 
-    /// The poses that it has at a time: two where one piece ends and the next begins.
+    /// Poses at a time: two at the joint of two segments.
     pub fn poses_at(&self, time: f64) -> Vec<Pose> {
         match self {
             Self::Segments(segments) => around(segments, time).map(|s| s.pose_at(time)).collect(),
@@ -43,16 +43,17 @@ impl ClaimedMotion {
     }
 }
 
-/// The segments that a time belongs to.
+/// Returns the segments that contain a time.
 pub(super) fn around(segments: &[Segment], time: f64) -> impl Iterator<Item = &Segment> {
-    // the end of one and the start of the next differ by rounding
+    // The end of one segment and the start of the next differ by rounding.
     let slack = crate::tolerance::TIME_S;
     segments
         .iter()
         .filter(move |s| s.start_time - slack <= time && time <= s.end_time() + slack)
 }
 
-/// What a document without a plan has is `None`; nodes that are no motion are noted.
+/// Reads the motion. `None` for a document without a plan; nodes that form no valid motion are
+/// added to `faults`.
 pub(super) fn read(
     file: &PlanFile,
     faults: &mut Vec<Violation>,
@@ -87,7 +88,7 @@ pub(super) fn read(
                         what: format!("nodes among trajectory.samples: {error}"),
                         time: 0.0,
                     });
-                    // judged as a chain without segments, which is no motion
+                    // A chain without segments is judged as no motion.
                     Ok(Some(ClaimedMotion::Segments(Vec::new())))
                 }
             }
@@ -136,8 +137,8 @@ fn segment(segment: &SegmentFile) -> Segment {
     }
 }
 
-/// The samples that are nodes. A course has lost its full circles: the heading goes on by the turn
-/// that is nearest to what the yaw rates make.
+/// Converts the samples that are nodes. A course has no full circles, so the heading is continued
+/// by the turn nearest to the integral of the yaw rates.
 fn nodes(samples: &[SampleFile]) -> Vec<Node> {
     let mut nodes: Vec<Node> = Vec::new();
     for sample in samples {
@@ -154,7 +155,8 @@ fn nodes(samples: &[SampleFile]) -> Vec<Node> {
     nodes
 }
 
-/// Starboard and clockwise are positive in the file, port and counter-clockwise here.
+/// Converts the signs: starboard and clockwise are positive in the file, port and counter-clockwise
+/// here.
 fn node(sample: &SampleFile) -> Option<Node> {
     let yaw_rate = radians_from_deg(-sample.yaw_rate_deg_per_s?);
     Some(Node {

@@ -5,7 +5,7 @@ use super::untrue;
 use crate::evaluation::{Evaluation, Violation, outcome_word};
 use crate::tolerance;
 
-/// Whether something is entered, and the word for that.
+/// Checks the reported safety and verdict against the evaluation.
 pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Violation> {
     let file = &claim.file;
     let mut found = Vec::new();
@@ -24,8 +24,11 @@ pub(super) fn safety(claim: &Claim, evaluation: Option<&Evaluation>) -> Vec<Viol
     found
 }
 
-/// The outcome with and without a motion and something given up, the planner with the parts that
-/// only its plans have, and each thing given up once, where it was asked for.
+/// Checks outcome, planner and relaxations against the content.
+///
+/// The outcome must fit the presence of a motion and of relaxations. The planner must fit the parts
+/// that only its plans have. Each relaxation occurs at most once, and only where its requirement
+/// applies.
 pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;
@@ -118,7 +121,8 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
 const OUTCOMES: [&str; 2] = ["relaxed", "deadline"];
 const RISK: &str = "risk";
 
-/// Releases of sets that the document does not report as it must: outcome, kind, amount and time.
+/// Returns released sets that the document does not report correctly: outcome, kind, amount and
+/// time.
 pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
     let mut found = Vec::new();
     let released = claim.file.relaxations.iter();
@@ -137,7 +141,7 @@ pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
         if claim.file.max_risk > 0.0 {
             found.push(untrue("max_risk", claim.file.max_risk, 0.0));
         }
-        // Own ship may start on the very edge.
+        // Own ship may start on the edge of the set.
         if !(given_up.amount >= 0.0 && given_up.amount <= 1.0) {
             found.push(untrue(&of("amount"), given_up.amount, "from 0 to 1"));
         }
@@ -146,7 +150,7 @@ pub(super) fn releases(claim: &Claim) -> Vec<Violation> {
             Some(ClaimedMotion::Steered { .. }) | None => None,
         };
         let end = end.unwrap_or(0.0).min(claim.file.horizon_s);
-        // Nothing is claimed of a ship that has arrived.
+        // The document makes no claim about a ship that has arrived.
         let end = if end > 0.0 { end } else { claim.file.horizon_s };
         // Negated on purpose: a NaN fails.
         if !(until > 0.0 && until <= end + tolerance::TIME_S * (1.0 + end)) {

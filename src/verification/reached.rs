@@ -1,5 +1,4 @@
-//! Where a target may be at a time, with what has to be kept of her, by how far it reaches in
-//! directions.
+//! Support functions of the region that a target may reach by a time, with the required distance.
 
 use super::claim::Claim;
 use super::coverage::{about_centroid, largest};
@@ -10,11 +9,11 @@ use crate::target::{Motion, Representation, ShipTrack, Target, VelocitySpell};
 use crate::tolerance;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Radians, a quarter of a degree: half the angle between tangents of the faster arc. What they cut
-/// off beyond the arc is a hundred-thousandth of the speed.
+/// Half the angle between tangents of the outer arc, radians: a quarter of a degree. The tangents
+/// exceed the arc by a hundred-thousandth of the speed.
 pub(super) const TANGENT_SPACING: f64 = PI / 720.0;
 
-/// Directions counter-clockwise, each once.
+/// Sorts directions counter-clockwise, without duplicates.
 pub(super) fn in_order(directions: impl Iterator<Item = Vector>) -> Vec<Vector> {
     let mut normals: Vec<(f64, Vector)> = directions.map(|n| (heading_of(n), n)).collect();
     normals.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -22,15 +21,15 @@ pub(super) fn in_order(directions: impl Iterator<Item = Vector>) -> Vec<Vector> 
     normals.into_iter().map(|(_, normal)| normal).collect()
 }
 
-/// Metres that own ship has to keep from a ship's hull, own ship's middle being what is kept out.
+/// Required distance of own ship's centre from a target's hull, metres.
 pub(super) fn reach(claim: &Claim, ship: &ShipTrack) -> f64 {
     claim.own.hull.half_diagonal()
         + claim.own.safety_margin
         + tolerance::POSITION_SIGMAS * ship.position_std
 }
 
-/// The velocities of a target at a level, one set after another: scaled about the centre that her
-/// representation has. None of ellipses.
+/// Velocity sets of a target at a risk level, in order of time. Each is scaled about the centre
+/// that the target's representation defines. Empty for ellipses.
 pub(super) fn at_level(target: &Target, level: f64, horizon: f64) -> Vec<VelocitySpell> {
     let forever = |velocities| VelocitySpell {
         until: f64::INFINITY,
@@ -60,27 +59,27 @@ pub(super) fn at_level(target: &Target, level: f64, horizon: f64) -> Vec<Velocit
         .collect()
 }
 
-/// How far a target may have come in directions, and what has to be kept of her.
+/// Known reachable set of a target with the required distance, by its supports in given directions.
 pub(super) struct Known<'a> {
     normals: &'a [Vector],
-    /// Metres in each direction at t = 0.
+    /// Support in each direction at t = 0, metres.
     initial: Vec<f64>,
-    /// Metres across it, at most.
+    /// Upper bound of the diameter at t = 0, metres.
     across: f64,
     motion: Moving,
 }
 
-/// How it goes on.
+/// Further motion of the target.
 enum Moving {
-    /// At every speed and course within the spreads.
+    /// Every speed and course within the spreads.
     Ship(ShipTrack),
-    /// The end of each velocity set, how fast it reaches in each direction, and m/s across it.
+    /// For each velocity set: its end, its support in each direction, and its diameter in m/s.
     Sets(Vec<(f64, Vec<f64>, f64)>),
 }
 
 impl<'a> Known<'a> {
-    /// `scale` is that of the velocities about their centre. The directions go around
-    /// counter-clockwise.
+    /// Builds the reachable set. `scale` is the scale of the velocities about their centre. The
+    /// directions are in counter-clockwise order.
     pub fn of(claim: &Claim, target: &Target, scale: f64, normals: &'a [Vector]) -> Self {
         let of_ellipse = |e: &Ellipse| normals.iter().map(|n| e.support(*n)).collect();
         let (initial, across) = match &target.motion {
@@ -120,7 +119,7 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// When its velocities change at once.
+    /// Times at which the velocities change instantly.
     pub fn changes(&self) -> impl Iterator<Item = f64> + '_ {
         let sets = match &self.motion {
             Moving::Ship(_) => &[][..],
@@ -129,7 +128,7 @@ impl<'a> Known<'a> {
         sets.iter().map(|(until, ..)| *until)
     }
 
-    /// Metres in each direction at a time.
+    /// Support in each direction at a time, metres.
     pub fn at(&self, time: f64) -> Vec<f64> {
         let mut reached = self.initial.clone();
         match &self.motion {
@@ -149,9 +148,9 @@ impl<'a> Known<'a> {
         reached
     }
 
-    /// Metres by which two sets may differ that are the same: the depth that counts as none, the
-    /// corners that a polygon leaves out, and the last digits, of which velocities lose as many as
-    /// they are scaled by.
+    /// Largest difference between equal sets, metres. It consists of the depth tolerance, the
+    /// corners that a polygon omits, and rounding. Scaled velocities lose digits in proportion to
+    /// `factor`.
     pub fn rounding(&self, reached: &[f64], time: f64, factor: f64) -> f64 {
         let way = |a: &f64, b: &f64| (a - b).abs();
         let way = largest(reached.iter().zip(&self.initial).map(|(a, b)| way(a, b)));
@@ -169,7 +168,7 @@ impl<'a> Known<'a> {
     }
 }
 
-/// For how long each velocity set holds until a time.
+/// Duration of each velocity set until a time.
 fn lasting(
     sets: &[(f64, Vec<f64>, f64)],
     time: f64,
@@ -182,15 +181,16 @@ fn lasting(
         })
 }
 
-/// Metres across an ellipse.
+/// Diameter of an ellipse.
 fn widest(ellipse: &Ellipse) -> f64 {
     let [a, b] = ellipse.semi_axes();
     2.0 * a.norm().max(b.norm())
 }
 
-/// The farthest that a ship may come in a direction by a time, in closed form: at her greatest
-/// speed on the course that is nearest to it, once that is within a right angle of it, and before
-/// at her least.
+/// Support of the ship's displacement in a direction by a time, in closed form.
+///
+/// While the nearest possible course is more than a right angle off the direction, the least speed
+/// is the best. After that, the greatest speed is.
 fn way(ship: &ShipTrack, n: Vector, time: f64) -> f64 {
     let (slow, fast) = speeds(ship);
     let off = wrap(heading_of(n) - ship.pose.heading).abs() - ship.course_spread;
@@ -202,7 +202,7 @@ fn way(ship: &ShipTrack, n: Vector, time: f64) -> f64 {
         }
     };
     let (abeam, ahead) = (turned_to(FRAC_PI_2), turned_to(0.0));
-    // the integral of the cosine of an angle that falls evenly
+    // Integral of the cosine of an angle that decreases uniformly.
     let along = |from: f64, until: f64| {
         let half = 0.5 * (until - from);
         let turn = ship.turn_rate * half;
@@ -221,8 +221,8 @@ fn speeds(ship: &ShipTrack) -> (f64, f64) {
     (slow, ship.speed + ship.speed_spread)
 }
 
-/// Points whose hull contains every velocity that a ship may have until a time: all are of such
-/// velocities but the corners of tangents to the faster arc.
+/// Points whose convex hull contains every velocity that a ship may have until a time. All are
+/// possible velocities, except the intersections of tangents to the outer arc.
 pub(super) fn outer_velocities(ship: &ShipTrack, until: f64) -> Vec<Vector> {
     let (slow, fast) = speeds(ship);
     let heading = ship.pose.heading;

@@ -1,9 +1,9 @@
-//! Are the risks of a document those of its motion?
+//! Checks the risks of a document against its motion.
 //!
-//! A motion takes the risk `r` of a set where it comes into the level set of `r`, the one whose
-//! velocities are scaled by `1 - r` about their centre, and into that of no greater risk. So what
-//! is said is looked at from both sides: a little above it the motion is clear of the level set, a
-//! little below it is not, at the very time that is named.
+//! A motion takes the risk `r` of a set if it enters the level set of `r` and no level set of a
+//! greater risk. The velocities of the level set are scaled by `1 - r` about their centre. The
+//! reported risk is therefore checked from both sides: slightly above it, the motion is clear of
+//! the level set; slightly below it, the motion is not, at the reported time.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::coverage::{about_centroid, largest};
@@ -18,10 +18,10 @@ use crate::target::{Motion, VelocitySpell};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// What was given up where risk is taken.
+/// Kind of the relaxation where risk is taken.
 const KIND: &str = "risk";
 
-/// The risk with each target and when, the largest of all, and what is said to have been given up.
+/// Checks the risk and its time for each target, the largest risk, and the reported relaxations.
 pub(super) fn check(claim: &Claim, request: &Request) -> Vec<Violation> {
     let mut found = Vec::new();
     let encounters = &claim.file.encounters;
@@ -48,7 +48,7 @@ fn label(encounter: &EncounterFile, key: &str) -> String {
     format!("encounter with '{}', {key}", encounter.target)
 }
 
-/// No more than was accepted; of sets that are entered and left all may be taken.
+/// Checks that the risk is at most the accepted one; for a released set it may be up to 1.
 fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
     let mut sets = claim.sets.iter();
     let released = sets.any(|set| set.name == encounter.target && set.from > 0.0);
@@ -63,7 +63,7 @@ fn bounds(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violati
     })
 }
 
-/// Whoever's risk is taken is named among what was given up, with that risk.
+/// Checks that a target whose risk is taken has a relaxation with that risk.
 fn given_up(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Violation> {
     let mut named = claim.file.relaxations.iter();
     let named = named.find(|r| r.kind == KIND && r.target == encounter.target);
@@ -78,7 +78,7 @@ fn given_up(claim: &Claim, encounter: &EncounterFile, said: f64) -> Option<Viola
     }
 }
 
-/// A risk that is taken is taken at a time, and none at none.
+/// Checks that a time is given if, and only if, a risk is taken.
 fn instant(encounter: &EncounterFile, said: f64) -> Option<Violation> {
     let what = label(encounter, "max_risk_t_s");
     match encounter.max_risk_t_s {
@@ -88,7 +88,7 @@ fn instant(encounter: &EncounterFile, said: f64) -> Option<Violation> {
     }
 }
 
-/// The risk along lines and arcs, from both sides.
+/// Checks the risk along lines and arcs from both sides.
 fn taken(
     claim: &Claim,
     encounter: &EncounterFile,
@@ -98,7 +98,7 @@ fn taken(
     let said = encounter.max_risk?;
     let set = claim.sets.iter().find(|s| s.name == encounter.target)?;
     let accepted = claim.file.max_risk;
-    // what is clear of the whole set, as every set is judged to be, takes no risk
+    // Every full set is checked elsewhere, and a motion that is clear of it takes no risk.
     if accepted == 0.0 && set.from == 0.0 {
         return None;
     }
@@ -116,7 +116,7 @@ fn taken(
         least.first().copied().unwrap_or(f64::NAN)
     };
     let what = label(encounter, "max_risk");
-    // a set is closed, and risk falls to none beyond its edge; there is none above 1
+    // A set is closed, and the risk drops to zero beyond its edge; there is no risk above 1.
     let above = said + tolerance::FIGURE;
     if above < 1.0 && !(margin(above, segments) >= -tolerance::DEPTH_M) {
         return Some(untrue(&what, said, "more"));
@@ -126,13 +126,13 @@ fn taken(
     let then: Vec<Segment> = around(segments, time)
         .map(|s| s.between(time.max(s.start_time), time.min(s.end_time())))
         .collect();
-    // what has no interior was grown before it was planned around, by a polygon around a disc
+    // A set without interior was enlarged for the planner, by a polygon around a disc.
     let near = if is_flat(&whole.shape, time) {
         tolerance::DEPTH_M + 1.1 * tolerance::HALF_WIDTH_M
     } else {
         tolerance::DEPTH_M
     };
-    // negated on purpose: a NaN is not in the set
+    // Negated on purpose: a NaN is not in the set.
     if below > 0.0 && !(margin(below, &then) <= near) {
         let so = format!("less at {time} s");
         return Some(Violation {
@@ -143,7 +143,7 @@ fn taken(
     None
 }
 
-/// True of a set whose section at a time is a point or a segment, to rounding.
+/// Returns true for a set whose section at a time is a point or a segment, to rounding.
 fn is_flat(shape: &SetShape, time: f64) -> bool {
     match shape {
         SetShape::Polygons { initial, spells } if spells.len() == 1 => {
@@ -155,8 +155,8 @@ fn is_flat(shape: &SetShape, time: f64) -> bool {
     }
 }
 
-/// True of a target whose set has several velocity sets one after another: the last one does not
-/// tell what was before.
+/// Returns true for a target with several velocity sets in sequence: the last one does not
+/// determine the earlier ones.
 fn has_changing_velocities(claim: &Claim, name: &str) -> bool {
     let mut targets = claim.targets.iter().filter(|t| t.name == name);
     targets.any(|target| match &target.motion {
@@ -166,9 +166,11 @@ fn has_changing_velocities(claim: &Claim, name: &str) -> bool {
     })
 }
 
-/// The set from the start on, of which a document has what is left when it has been left. A vertex
-/// of the section is one of the initial set that has moved with the extreme velocity of the same
-/// direction. `None` for ellipses and for several velocity sets: of these it cannot be told.
+/// Reconstructs a released set at t = 0 from its section at the release.
+///
+/// A vertex of the section is a vertex of the initial set that has moved with the extreme velocity
+/// of the same direction. `None` for ellipses and for several velocity sets, which cannot be
+/// reconstructed.
 fn before_release(set: &SpaceTimeSet) -> Option<SpaceTimeSet> {
     if set.from == 0.0 {
         return Some(set.clone());

@@ -1,4 +1,4 @@
-//! Do the samples of a document lie on its motion?
+//! Checks that the samples of a document lie on its motion.
 
 use super::claim::{Claim, ClaimedMotion};
 use super::file::SampleFile;
@@ -7,12 +7,12 @@ use crate::evaluation::Violation;
 use crate::frame::{Vector, heading_from_course_deg, heading_of, wrap};
 use crate::tolerance;
 
-/// Seconds. Between two samples there is at most this, and rounding; in a long plan one of so many
-/// parts.
+/// Largest time step between two samples, seconds, up to rounding; in a long plan it is the
+/// duration divided by [`PARTS`].
 const STEP: f64 = 1.0;
 const PARTS: f64 = 20_000.0;
 
-/// The first sample that is not on the motion, or leaves a part of it out.
+/// Returns the first sample that is not on the motion or leaves a gap.
 pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> {
     let samples = claim
         .file
@@ -62,7 +62,7 @@ pub(super) fn check(claim: &Claim, motion: &ClaimedMotion) -> Option<Violation> 
     None
 }
 
-/// How a sample differs from the motion at its time, if it does.
+/// Describes how a sample differs from the motion at its time, if it does.
 fn off(sample: &SampleFile, motion: &ClaimedMotion) -> Option<String> {
     let place = Vector::new(sample.east_m, sample.north_m);
     let course = heading_from_course_deg(sample.course_deg);

@@ -1,4 +1,4 @@
-//! The sets of a document, put together again where velocity sets follow one another.
+//! Assembles the sets of a document from entries with successive velocity sets.
 
 use super::claim::{ClaimError, fault, plane_set};
 use super::coverage::largest;
@@ -9,9 +9,10 @@ use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::target::VelocitySpell;
 use crate::tolerance;
 
-/// The sets, and what is wrong between entries of one name: each holds until the next one starts,
-/// with the section that is reached then, and the last one until the horizon. The first one starts
-/// at 0, or when the set that is entered has been left.
+/// Reads the sets, and reports inconsistent entries of one name.
+///
+/// Each entry is valid until the next one starts, with the section reached then, and the last one
+/// until the horizon. The first one starts at 0, or at the release of a set that is entered.
 pub(super) fn read(
     entries: &[ObstacleFile],
     relaxations: &[RelaxationFile],
@@ -26,7 +27,7 @@ pub(super) fn read(
         let [from, to] = entry.valid_s;
         let follows = index > 0 && entries[index - 1].name == entry.name;
         let released = released(relaxations, &entry.name);
-        // a set that is not left before the horizon is in force no more
+        // A set that is not released before the horizon is never valid.
         let never = released.is_some() && from == to && from == horizon;
         if !(from < to || never) {
             let found = format!("{from} to {to}");
@@ -66,7 +67,7 @@ pub(super) fn read(
             (ConvexSet::Polygon(initial), ConvexSet::Polygon(velocities)) => {
                 if follows && !section.as_ref().is_some_and(|s| same(s, &initial)) {
                     note(
-                        "its slabs do not begin with the section that the one before ends with"
+                        "a slab does not begin with the final section of the previous one"
                             .to_owned(),
                         from,
                     );
@@ -121,13 +122,13 @@ pub(super) fn read(
     Ok((sets, faults))
 }
 
-/// Seconds from which on something is claimed of a set that is entered.
+/// Release time of a set that is entered, seconds. The set is valid from then on.
 pub(super) fn released(relaxations: &[RelaxationFile], name: &str) -> Option<f64> {
     let mut own = relaxations.iter().filter(|r| r.target == name);
     own.find_map(|r| r.until_s)
 }
 
-/// Each contains the other, as nearly as two sets that are the same.
+/// Returns true if the polygons have equal supports, to the tolerance of equal sets.
 fn same(a: &ConvexPolygon, b: &ConvexPolygon) -> bool {
     let normals = in_order([a, b].into_iter().flat_map(ConvexPolygon::normals));
     let apart = a.supports(&normals).into_iter().zip(b.supports(&normals));

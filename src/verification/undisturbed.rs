@@ -1,4 +1,4 @@
-//! Are the undisturbed closest approaches of a document those of its mission?
+//! Checks the nominal closest approaches of a document against its mission.
 
 use super::claim::Claim;
 use super::encounters::distance;
@@ -10,15 +10,15 @@ use crate::target::{Motion, Target};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Of the way that both make meanwhile. Undisturbed distances are found by narrowing down the time,
-/// to this part of it.
+/// Error of a nominal distance, as a fraction of the distance that both ships cover. The search
+/// that finds it narrows down the time.
 const RESOLUTION: f64 = 1e-9;
 
-/// Instants of a leg at which ellipses are looked at.
+/// Number of samples per leg for ellipses.
 const INSTANTS: u32 = 64;
 
-/// Per target: the least distance along the desired trajectory, and that it is so near at the time
-/// given.
+/// Checks for each target the least distance along the desired trajectory, and the distance at the
+/// given time.
 pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     let legs = nominal_legs(&claim.desired, claim.file.horizon_s);
     let all = claim.file.encounters.iter().zip(&claim.targets);
@@ -50,7 +50,7 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     .collect()
 }
 
-/// Metres between the hulls, or from own position to the set, at a time of a leg.
+/// Distance between the hulls, or from own position to the set, at a time of a leg, metres.
 fn at(claim: &Claim, target: &Target, leg: &Segment, time: f64) -> f64 {
     let pose = leg.pose_at(time);
     match target.outer_set_at(time) {
@@ -59,7 +59,7 @@ fn at(claim: &Claim, target: &Target, leg: &Segment, time: f64) -> f64 {
     }
 }
 
-/// The least of some instants: no less than the least of all.
+/// Least distance over the samples: an upper bound of the least distance.
 fn sampled(claim: &Claim, target: &Target, legs: &[Segment]) -> f64 {
     let instants = |leg: &Segment| {
         let (start, step) = (leg.start_time, leg.duration / f64::from(INSTANTS));
@@ -71,7 +71,7 @@ fn sampled(claim: &Claim, target: &Target, legs: &[Segment]) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// Metres that own ship and a target make together along a leg, at most.
+/// Upper bound of the distance that own ship and a target cover together along a leg, metres.
 fn way(target: &Target, leg: &Segment) -> f64 {
     let speed = match &target.motion {
         Motion::Ship(ship) => ship.speed,

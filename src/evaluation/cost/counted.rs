@@ -1,5 +1,5 @@
-//! Until when the space-time error of a motion is counted, so that any two motions compare: one
-//! that ends at the last waypoint, one that stays there, one that passes by.
+//! End of the interval over which the space-time error is counted. It makes any two motions
+//! comparable: one that ends at the last waypoint, one that stays there, and one that passes by.
 
 use crate::evaluation::distance::piece::Piece;
 use crate::evaluation::{cost, steered};
@@ -7,48 +7,32 @@ use crate::frame::Vector;
 use crate::tolerance;
 use crate::trajectory::{Cubic, DesiredTrajectory, Segment, Trajectory};
 
-/// Of the duration: the motion is looked at at least this often near the edge of the disc of
-/// arrival. What is within it for less time may be missed.
+/// Longest time step near the edge of the arrival disc, as a fraction of the duration. A shorter
+/// stay in the disc may be missed.
 const FINEST_LOOK: f64 = 1e-6;
 
-/// Halvings of the time between two looks.
+/// Bisection steps between two samples.
 const HALVINGS: usize = 60;
 
-/// Until when the space-time error of a motion is counted: until it comes within a distance of the
-/// last waypoint for the last time, or where it never does, or starts there and stays, to the end
-/// of the desired trajectory, or its own if that is earlier.
+/// End of the interval over which the space-time error of a motion is counted.
 ///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::{Counted, counted_error};
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::trajectory::{DesiredTrajectory, Segment, Trajectory};
-///
-/// let desired = DesiredTrajectory::new(&[Vector::zeros(), Vector::new(1000.0, 0.0)], &[5.0])?;
-/// // on the path at 4 m/s, and on beyond its end
-/// let line = Segment { start: Pose::new(Vector::zeros(), 0.0), start_time: 0.0, duration: 400.0, speed: 4.0, turn_rate: 0.0 };
-/// let (_, counted) = counted_error(&Trajectory::new(vec![line])?, &desired, 25.0, 40.0);
-/// let Counted { within, until, arrived } = counted;
-/// assert!(arrived && within == 40.0 && (until - 240.0).abs() < 1e-6);
-/// // past it at a distance: to the end of the desired time
-/// let aside = Segment { start: Pose::new(Vector::new(0.0, 50.0), 0.0), ..line };
-/// let (error, counted) = counted_error(&Trajectory::new(vec![aside])?, &desired, 25.0, 40.0);
-/// assert!(!counted.arrived && counted.until == 200.0 && error > 2500.0);
-/// # Ok::<(), searoom::trajectory::TrajectoryError>(())
-/// ```
+/// It is the last time at which the motion enters the disc of radius `within` around the last
+/// waypoint. If the motion never enters the disc, or starts in it and stays, it is the end of the
+/// desired trajectory, or of the motion if that is earlier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Counted {
-    /// Metres from the last waypoint.
+    /// Radius of the disc around the last waypoint, metres.
     pub within: f64,
-    /// Seconds.
+    /// End of the counted interval, seconds.
     pub until: f64,
-    /// True where the motion comes so near.
+    /// True where the motion enters the disc.
     pub arrived: bool,
 }
 
-/// The space-time error of a motion, m², and until when it is counted: the same for the same
-/// motion, however it is given. `q` in m²/s², `within` in metres.
+/// Space-time error of a motion in m², and the interval over which it is counted.
+///
+/// The result does not depend on the representation of the motion. `q` in m²/s², `within` in
+/// metres.
 pub fn counted_error(
     trajectory: &Trajectory,
     desired: &DesiredTrajectory,
@@ -68,7 +52,7 @@ pub fn counted_error(
     }
 }
 
-/// To the end of segments, which arrive at the last waypoint itself.
+/// Counts to the end of segments, which arrive at the last waypoint itself.
 pub(crate) fn to_end(segments: &[Segment], desired: &DesiredTrajectory) -> Counted {
     let off = |s: &Segment| (s.end().position - desired.end()).norm();
     Counted {
@@ -92,7 +76,7 @@ pub(crate) fn counted_error_of_cubics(
     (steered::space_time_error(&kept, desired, q), counted)
 }
 
-/// The pieces up to a time.
+/// Returns the pieces up to a time.
 fn until<P: Piece>(pieces: &[P], time: f64) -> Vec<P> {
     pieces
         .iter()
@@ -117,13 +101,13 @@ fn counted<P: Piece>(pieces: &[P], desired: &DesiredTrajectory, within: f64) -> 
     }
 }
 
-/// When a motion comes `within` metres of a place for the last time, seconds. Backwards in time: a
-/// step is the time in which the edge cannot be reached.
+/// Last time at which a motion enters the disc of radius `within` around `place`, seconds. Searches
+/// backwards in time with steps in which the motion cannot reach the edge.
 fn last_entrance<P: Piece>(pieces: &[P], place: Vector, within: f64) -> Option<f64> {
     let beyond = |piece: &P, time: f64| (piece.pose_at(time).position - place).norm() - within;
     let (first, last) = (pieces.first()?, pieces.last()?);
     let least = FINEST_LOOK * (last.end_time() - first.start_time());
-    // the last time at which it was looked at and was inside
+    // Last sampled time inside the disc.
     let mut inside = None;
     for piece in pieces.iter().rev() {
         let fastest = piece.bounds().speed;
@@ -135,11 +119,11 @@ fn last_entrance<P: Piece>(pieces: &[P], place: Vector, within: f64) -> Option<f
             } else if let Some(later) = inside {
                 return Some(entrance(piece, time, later, &beyond));
             }
-            // negated on purpose: a NaN is the end of looking
+            // Negated on purpose: a NaN ends the search.
             if !(time > piece.start_time()) {
                 break;
             }
-            // within this time the edge is not reached
+            // The edge is not reached within this time.
             let step = (off.abs() / fastest).max(least);
             time = (time - step).max(piece.start_time());
         }
@@ -147,7 +131,7 @@ fn last_entrance<P: Piece>(pieces: &[P], place: Vector, within: f64) -> Option<f
     None
 }
 
-/// The instant between a time outside and a later one inside.
+/// Bisects for the time of entry between a time outside and a later one inside.
 fn entrance<P: Piece>(
     piece: &P,
     mut outside: f64,
@@ -192,7 +176,7 @@ mod tests {
         let mut nodes = Vec::new();
         for s in &segments {
             let many = s.duration.ceil() as usize;
-            // the velocity changes at once: two nodes a nanosecond apart
+            // The velocity changes instantly: two nodes, one nanosecond apart.
             nodes.extend((0..=many).map(|k| {
                 let first = if k == 0 && s.start_time > 0.0 {
                     1e-9
@@ -216,7 +200,7 @@ mod tests {
         ]
     }
 
-    /// A planner of segments and one of forces have the same error for the same motion.
+    /// Segments and nodes of one motion have equal errors.
     #[test]
     fn the_same_motion_has_the_same_error_however_it_is_given() {
         let east = Pose::new(Vector::zeros(), 0.0);
@@ -255,8 +239,8 @@ mod tests {
         }
     }
 
-    /// What is done after arrival costs nothing, and neither does what is done after the desired
-    /// time by one that passes by.
+    /// Motion after arrival adds no cost. For a motion that passes by, motion after the desired
+    /// time adds none.
     #[test]
     fn nothing_grows_after_the_end() {
         let east = Pose::new(Vector::zeros(), 0.0);
@@ -285,7 +269,7 @@ mod tests {
         assert!(!long.1.arrived && long.1.until == 200.0);
     }
 
-    /// A round trip starts at its end: arrival is to come back.
+    /// A round trip starts at its end: it arrives when it comes back.
     #[test]
     fn a_round_trip_arrives_when_it_comes_back() {
         let wish = desired(&[(0.0, 0.0), (500.0, 0.0), (0.0, 0.0)]);
@@ -297,7 +281,7 @@ mod tests {
         );
         for trajectory in [there, nodes] {
             let (_, counted) = counted_error(&trajectory, &wish, 25.0, 40.0);
-            // the way back lies 31.8 m to the side
+            // The return leg is 31.8 m to the side.
             assert!(counted.arrived && counted.until > 180.0, "{counted:?}");
         }
         let [stays, _] = both(east, &[(300.0, 0.0, 0.0)]);

@@ -1,4 +1,5 @@
-//! The two figures for how far a plan strays, docs/theory.md section 7, by quadrature of their own.
+//! Two cost figures for the deviation from the desired trajectory, docs/theory.md section 7, with a
+//! separate quadrature.
 
 pub(crate) mod counted;
 pub(crate) mod quadrature;
@@ -7,12 +8,13 @@ pub(crate) mod stage_cost;
 use crate::evaluation::cost::quadrature::{adaptive, smooth};
 use crate::trajectory::{DesiredTrajectory, Segment};
 
-/// Radians. Arcs are cut to this before a rule is put on them.
+/// Largest turn per quadrature rule, radians.
 const ARC_PIECE: f64 = std::f64::consts::FRAC_PI_4;
 
-/// The space-time error `J = (1 / T_d) ∫ e² dt` in m², docs/theory.md section 7, `q` in m²/s².
-/// Accurate to 1e-9 of itself; corners of `e²`, where the nearest leg changes, are closed in on by
-/// halving.
+/// Space-time error `J = (1 / T_d) ∫ e² dt` in m², docs/theory.md section 7, `q` in m²/s².
+///
+/// Relative accuracy 1e-9. Intervals are halved towards kinks of `e²`, where the nearest leg
+/// changes.
 pub(crate) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
     let error = |s: &Segment, time: f64| desired.nearest(s.pose_at(time).position, time, q).error;
     let joints = |s: &Segment| -> Vec<f64> {
@@ -21,7 +23,7 @@ pub(crate) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory
             .map(|k| s.start_time + s.duration * k as f64 / pieces as f64)
             .collect()
     };
-    // what is small beside the whole need not be exact to its own last digits
+    // A small part of the whole needs accuracy relative to the whole only.
     let about: f64 = segments
         .iter()
         .flat_map(|s| {
@@ -37,13 +39,14 @@ pub(crate) fn space_time_error(segments: &[Segment], desired: &DesiredTrajectory
     integral / desired.duration()
 }
 
-/// Eq. (30) read literally, m²: both curves by their own fraction `s` of their own length,
-/// `∫ |x(s) - x_d(s)|² + q (t(s) - t_d(s))² ds` over `[0, 1]`. Cut where either curve has a joint,
-/// arcs to pi/4, then one Gauss-Legendre rule per piece: accurate to rounding. A wait has no length
-/// and is a jump of `t(s)`. NaN for a trajectory of no length.
+/// Eq. (30) read literally, m²: `∫ |x(s) - x_d(s)|² + q (t(s) - t_d(s))² ds` over `[0, 1]`.
+///
+/// Each curve is parametrised by the fraction `s` of its own length. The integral is split at the
+/// joints of both curves, and arcs to pi/4, with one Gauss-Legendre rule per piece: accurate to
+/// rounding. A wait has no length and is a jump of `t(s)`. NaN for a trajectory of zero length.
 pub(crate) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory, q: f64) -> f64 {
     let length: f64 = segments.iter().map(Segment::length).sum();
-    // negated on purpose: a NaN has no length either
+    // Negated on purpose: a NaN has no length either.
     if !(length > 0.0) {
         return f64::NAN;
     }
@@ -67,7 +70,7 @@ pub(crate) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory
         .filter(|w| w[0] < w[1])
         .map(|w| {
             let middle = 0.5 * (w[0] + w[1]);
-            // of segments that start at one fraction the last one moves, the others wait
+            // Only the last of the segments that start at one fraction moves; the others are waits.
             let index = starts.partition_point(|s| *s <= middle).max(1) - 1;
             let (own, own_start) = (&segments[index], starts[index]);
             let legs = desired.legs();
@@ -84,7 +87,7 @@ pub(crate) fn arc_length_error(segments: &[Segment], desired: &DesiredTrajectory
         .sum()
 }
 
-/// How many rules a segment needs: one per [`ARC_PIECE`] of turn.
+/// Number of quadrature rules for a segment: one per [`ARC_PIECE`] of turn.
 fn pieces(segment: &Segment) -> usize {
     let turn = (segment.turn_rate * segment.duration).abs();
     (turn / ARC_PIECE).ceil().clamp(1.0, 1e4) as usize
@@ -121,7 +124,8 @@ mod tests {
 
     #[test]
     fn running_late_on_a_straight_leg_has_a_closed_form() {
-        // 100 s at 4 m/s where 5 m/s is desired: late by 1 m per second, then along at 5 m/s
+        // 100 s at 4 m/s where 5 m/s is desired: the lag grows by 1 m per second, then stays
+        // constant.
         let own = chain(
             Pose::new(Vector::zeros(), 0.0),
             &[(100.0, 4.0, 0.0), (60.0, 5.0, 0.0)],
@@ -202,7 +206,7 @@ mod tests {
             })
             .sum();
         let dense = sum / f64::from(n);
-        // the wait is a jump, which the dense sum places to one part of n only
+        // The wait is a jump. The dense sum locates it to `1 / n` only.
         assert!((found - dense).abs() < 1e-6 * dense, "{found} {dense}");
         assert!(arc_length_error(&own[..1], &wish, 25.0).is_nan());
     }

@@ -13,8 +13,8 @@ const GAUSS_LEGENDRE: [(f64, f64); 6] = [
     (0.981_560_634_246_719_2, 0.047_175_336_386_511_83),
 ];
 
-/// Positive nodes and weights of the 12-point Gauss-Lobatto rule: it sees the ends of the interval,
-/// and so a kink beyond the outermost node of the rule above.
+/// Positive nodes and weights of the 12-point Gauss-Lobatto rule. It samples the ends of the
+/// interval, and so detects a kink beyond the outermost Gauss-Legendre node.
 const GAUSS_LOBATTO: [(f64, f64); 6] = [
     (0.136_552_932_854_927_56, 0.271_405_240_910_696_2),
     (0.399_530_940_965_348_9, 0.251_275_603_199_201_3),
@@ -24,13 +24,13 @@ const GAUSS_LOBATTO: [(f64, f64); 6] = [
     (1.0, 0.015_151_515_151_515_152),
 ];
 
-/// Halvings of one interval.
+/// Most halvings of one interval.
 const MAX_DEPTH: u32 = 32;
 
-/// Intervals of one integral.
+/// Most intervals of one integral.
 const MAX_INTERVALS: usize = 20_000;
 
-/// The integral of a smooth function by one rule.
+/// Integrates a smooth function by one Gauss-Legendre rule.
 pub(crate) fn smooth(from: f64, until: f64, f: &impl Fn(f64) -> f64) -> f64 {
     rule(&GAUSS_LEGENDRE, from, until, f)
 }
@@ -44,10 +44,13 @@ fn rule(rule: &[(f64, f64)], from: f64, until: f64, f: &impl Fn(f64) -> f64) -> 
     half * sum
 }
 
-/// The integral of a function that is smooth but for kinks, over consecutive intervals between the
-/// sorted `joints`: intervals are halved until two rules, and one rule and its two halves, agree to
-/// [`tolerance::QUADRATURE`] of the whole, or of `least` where that is more: what this is added to.
-/// NaN where the function is.
+/// Integrates a function that is smooth except for kinks, over the intervals between sorted
+/// `joints`.
+///
+/// Adaptive bisection: an interval is halved until the two rules agree, and one rule agrees with
+/// its two halves. The tolerance is [`tolerance::QUADRATURE`] of the whole integral or of `least`,
+/// the larger of the two; `least` is the size of the sum to which the integral is added. NaN where
+/// the function is NaN.
 pub(crate) fn adaptive(joints: &[f64], least: f64, f: &impl Fn(f64) -> f64) -> f64 {
     let mut open: Vec<(f64, f64, f64, u32)> = joints
         .windows(2)
@@ -64,7 +67,7 @@ pub(crate) fn adaptive(joints: &[f64], least: f64, f: &impl Fn(f64) -> f64) -> f
         let closed = rule(&GAUSS_LOBATTO, from, until, f);
         let error = (left + right - whole).abs().max((closed - whole).abs());
         done += 1;
-        // a NaN is not worth halving
+        // A NaN error is not halved.
         if error > allowed * (until - from) / span && depth < MAX_DEPTH && done < MAX_INTERVALS {
             open.push((from, middle, left, depth + 1));
             open.push((middle, until, right, depth + 1));
@@ -94,7 +97,7 @@ mod tests {
         let (a, b) = (std::f64::consts::PI, 7.0 - std::f64::consts::PI);
         let exact = 0.5 * (a * a + b * b);
         assert!((found - exact).abs() < 1e-9 * exact, "{found} {exact}");
-        // so near to an end that the open rule and both of its halves miss it
+        // The kink is so near the end that the open rule and both of its halves miss it.
         let found = adaptive(&[0.0, 1.0], 0.0, &|x| 1.0 + (x - 0.999).max(0.0));
         assert!((found - 1.0 - 0.5e-6).abs() < 1e-10, "{found}");
         assert_eq!(adaptive(&[0.0, 5.0], 0.0, &|_| 0.0), 0.0);

@@ -1,4 +1,4 @@
-//! What a motion under forces costs, from its states and forces alone.
+//! Stage cost of a motion under forces, computed from its states and forces alone.
 
 use crate::evaluation::steered::{Steering, force, state};
 use crate::frame::{heading_of, wrap};
@@ -6,22 +6,23 @@ use crate::tolerance;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::{ForceVector, StateVector};
 
-/// The diagonals of the stage cost `(x - r)' Q (x - r) + tau' R tau`.
+/// Diagonals of the stage cost `(x - r)' Q (x - r) + tau' R tau`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StageWeights {
-    /// Of `Q`, per squared unit of [`StateVector`] and second.
+    /// Diagonal of `Q`, per squared unit of [`StateVector`] and second.
     pub state: StateVector,
-    /// Of `R`, per squared unit of [`ForceVector`] and second.
+    /// Diagonal of `R`, per squared unit of [`ForceVector`] and second.
     pub force: ForceVector,
 }
 
-/// The integral of the stage cost by Simpson's rule over every interval, the state at half time on
-/// the cubic through both nodes with the ship's rates there: the definition of the planner, in code
-/// of its own and with the ship as published. O(nodes). Where a leg ends within an interval the sum
-/// is coarser.
+/// Integral of the stage cost by Simpson's rule over every interval.
 ///
-/// Where a leg ends at a node or halfway between two, the one that counts there is one of rounding:
-/// what it is as the numbers are, and if legs end some roundings later and earlier.
+/// The state at half time is on the cubic through both nodes, with the vessel's rates there. The
+/// definition is that of the planner; the code is separate and uses the published vessel model.
+/// O(nodes). The sum is less accurate in an interval within which a leg ends.
+///
+/// If a leg ends at a node or halfway between two, rounding decides which leg counts there. The
+/// three results are for leg ends as given, and shifted by a rounding later and earlier.
 pub(crate) fn stage_costs(
     steering: &Steering,
     desired: &DesiredTrajectory,
@@ -32,8 +33,8 @@ pub(crate) fn stage_costs(
         .map(|late| summed(steering, desired, weights, late))
 }
 
-/// `late`: seconds by which legs end later than they say, for what ends and less for what begins at
-/// an instant, and for what is halfway.
+/// Stage cost with shifted leg ends. `late` is the shift in seconds, one value for nodes and one
+/// for half times. At the start of an interval the shift is subtracted.
 fn summed(
     steering: &Steering,
     desired: &DesiredTrajectory,
@@ -64,15 +65,15 @@ fn summed(
     sum
 }
 
-/// Which leg counts at the instant at which one follows another.
+/// Selects the leg that counts at the instant between two legs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Moment {
     Earlier,
     Later,
 }
 
-/// Where she is meant to be: on her leg, at its course and speed; at the end, at rest, once it is
-/// over.
+/// Reference state: on the current leg at its course and speed, or at rest at the end after the
+/// last leg.
 fn wanted(desired: &DesiredTrajectory, time: f64, moment: Moment, late: f64) -> StateVector {
     let legs = desired.legs();
     let under_way = legs.iter().position(|leg| match moment {

@@ -9,19 +9,20 @@ use crate::tolerance;
 use crate::trajectory::Bounds;
 use crate::vessel::Hull;
 
-/// The least signed distance between own hull and a moving set along a chain of pieces: negative in
-/// overlap, minus the shortest translation that separates the two. The distance is parry's, the
-/// depth the smallest overlap along a normal of either (separating axes). Exact to
-/// [`crate::tolerance::MARGIN_M`] and certified: between two probes the distance is bounded from
-/// below by supporting lines, which separate the two for as long as they do. About a hundred probes
-/// a segment near the minimum and one far from it, each linear in the vertices. A distance that
-/// parry does not find, or that a supporting line contradicts, is a NaN, which is a collision.
+/// Least signed distance between own hull and a moving set along a chain of pieces.
+///
+/// In overlap, it is negative: minus the shortest translation that separates the two. The distance
+/// is parry's; the depth is the smallest overlap along a normal of either shape (separating axes).
+/// Exact to [`crate::tolerance::MARGIN_M`] and certified: between two probes, supporting lines that
+/// separate the two bound the distance from below. About a hundred probes for a segment near the
+/// minimum and one for a segment far from it, each linear in the vertices. A distance that parry
+/// does not find, or that a supporting line contradicts, is NaN, which counts as a collision.
 pub(crate) fn least_distance<P: Piece>(pieces: &[P], own: Body, set: &MovingSet) -> Least {
     least_distance_below(Least::new(), pieces, own, set)
 }
 
-/// The same where a least distance to something else is known already: what is not nearer is not
-/// looked at closely.
+/// [`least_distance`] with a `known` least distance to something else. Parts that are not nearer
+/// are not refined.
 pub(crate) fn least_distance_below<P: Piece>(
     known: Least,
     pieces: &[P],
@@ -47,28 +48,28 @@ pub(crate) fn least_distance_below<P: Piece>(
     least
 }
 
-/// Own ship's shape about her position: a rectangle, or a point of no size.
+/// Own ship's shape about its position: a rectangle, or a point of zero size.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Body {
     half_length: f64,
     half_beam: f64,
 }
 
-/// How own ship moves at an instant.
+/// Velocity and turn rate of own ship at an instant.
 #[derive(Debug, Clone, Copy)]
 struct Moving {
     velocity: Vector,
     turn_rate: f64,
 }
 
-/// One of own ship's sides: its normal, and how far it is from her centre.
+/// One side of own hull: its normal, and its distance from the centre.
 #[derive(Debug, Clone, Copy)]
 struct Side {
     normal: Vector,
     reach: f64,
 }
 
-/// A corner: where it is, and how it moves.
+/// Position and velocity of a corner.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     position: Vector,
@@ -76,7 +77,7 @@ struct Corner {
 }
 
 impl Body {
-    /// The position alone.
+    /// The position alone, without a hull.
     pub const POINT: Self = Self {
         half_length: 0.0,
         half_beam: 0.0,
@@ -94,7 +95,7 @@ impl Body {
         self.half_length == 0.0 && self.half_beam == 0.0
     }
 
-    /// The distance at `time`, and its lower bound within `half` seconds.
+    /// Returns the distance at `time` and its lower bound within `half` seconds.
     fn probe(
         &self,
         piece: &impl Piece,
@@ -104,7 +105,7 @@ impl Body {
         half: f64,
     ) -> Probe {
         let pose = piece.pose_at(time);
-        // minima and maxima below lose a NaN, so it is caught here
+        // Minima and maxima below lose a NaN, so it is caught here.
         if !(pose.position.x.is_finite() && pose.position.y.is_finite() && time.is_finite()) {
             return Probe {
                 value: f64::NAN,
@@ -121,14 +122,15 @@ impl Body {
         } else {
             &corners[..]
         };
-        // a corner leaves its tangent by at most half of its acceleration times the time squared
+        // A corner deviates from its tangent by at most half of its acceleration times the time
+        // squared.
         let bend = 0.5
             * half
             * half
             * (bounds.acceleration
                 + (bounds.yaw_rate * bounds.yaw_rate + bounds.yaw_acceleration)
                     * self.half_length.hypot(self.half_beam));
-        // how far the body is beyond a face now, and at least within the time asked for
+        // Distance of the body from a face now, and its lower bound within `half` seconds.
         let beyond = |face: &Face| {
             let mut gap = Probe {
                 value: f64::INFINITY,
@@ -146,7 +148,7 @@ impl Body {
             value: f64::NEG_INFINITY,
             lower: f64::NEG_INFINITY,
         };
-        // from the set to the body across the widest gap
+        // Direction from the set to the body across the widest gap.
         let mut across = Vector::zeros();
         let mut keep = |gap: Probe, toward: Vector| {
             if gap.value > best.value {
@@ -170,12 +172,12 @@ impl Body {
                 keep(gap, -normal);
             }
         }
-        // not apart along any normal of either: they overlap, and the smallest overlap along one is
-        // the depth
+        // No normal of either shape separates them: they overlap, and the smallest overlap along a
+        // normal is the depth.
         if !(best.value > 0.0) {
             return best;
         }
-        // about own ship, where numbers are small
+        // Relative to own ship, where the numbers are small.
         let on_set =
             |n: Vector| farthest(n, set.vertices.iter().map(|v| v.at(time) - pose.position));
         let on_hull = |n: Vector| farthest(n, corners.iter().map(|c| c.position - pose.position));
@@ -211,7 +213,7 @@ impl Body {
     }
 }
 
-/// The farthest of some points in a direction.
+/// Returns the farthest of some points in a direction.
 fn farthest(n: Vector, points: impl Iterator<Item = Vector>) -> Vector {
     let (mut most, mut best) = (f64::NEG_INFINITY, Vector::repeat(f64::NAN));
     for p in points {
@@ -223,9 +225,9 @@ fn farthest(n: Vector, points: impl Iterator<Item = Vector>) -> Vector {
     best
 }
 
-/// How far a set is beyond one of own ship's sides now, and at least within `half` seconds. The
-/// side turns with her: a fixed line through it would lose a distance of first order in time at its
-/// ends.
+/// Distance of a set from one side of own hull now, and its lower bound within `half` seconds. The
+/// side turns with the hull: a fixed line would lose a distance of first order in time at the ends
+/// of the side.
 fn beyond_side(
     pose: &Pose,
     moving: &Moving,
@@ -249,7 +251,7 @@ fn beyond_side(
         let relative = vertex.velocity - moving.velocity;
         let value = normal.dot(&offset) - reach;
         let rate = normal.dot(&relative) + turning.dot(&offset);
-        // of n . (p - x): the largest that the second derivative can be within the time asked for
+        // Largest second derivative of n . (p - x) within `half` seconds.
         let fastest = vertex.velocity.norm() + bounds.speed;
         let bend =
             swing * (offset.norm() + fastest * half) + 2.0 * turn * fastest + bounds.acceleration;
@@ -349,7 +351,7 @@ mod tests {
             .expect("finite")
         };
         let set = MovingSet::new(&square(10.0), &square(0.5));
-        // along the growing upper face, then around a corner of a set at rest
+        // First along the growing upper face, then around a corner of a fixed set.
         let slide = Segment {
             start: Pose::new(Vector::new(-8.0, 10.0), 0.5),
             start_time: 0.0,
@@ -389,14 +391,14 @@ mod tests {
 
     #[test]
     fn turning_broadside_past_a_corner_costs_few_probes() {
-        // the nearest point is inside own ship's side, which turns: a fixed line bounds it badly
+        // The nearest point is inside own ship's side, which turns; a fixed line bounds it badly.
         let buoy = ConvexPolygon::point(Vector::new(0.0, 40.0));
         let set = MovingSet::new(&buoy, &ConvexPolygon::point(Vector::zeros()));
         let hull = Hull {
             length: 30.0,
             beam: 8.0,
         };
-        // round a circle of 100 m about (0, 100), lowest after 10 s
+        // On a circle of 100 m about (0, 100), lowest after 10 s.
         let (half_turn, rate) = (0.6_f64, 0.06);
         let s = Segment {
             start: Pose::new(

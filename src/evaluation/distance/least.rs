@@ -1,34 +1,34 @@
-//! The certified least value of a function of time, by branch and bound.
+//! Certified least value of a function of time, by branch and bound.
 
 use crate::tolerance;
 
-/// Probes spent on one function before the search gives up.
+/// Most probes spent on one function.
 const MAX_PROBES: usize = 200_000;
 
-/// What is known of a function around an instant.
+/// Value and lower bound of a function near an instant.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Probe {
-    /// Its value at the instant.
+    /// Value at the instant.
     pub value: f64,
-    /// A lower bound of its values within the half-width asked for.
+    /// Lower bound of the values within the half-width of the probe.
     pub lower: f64,
 }
 
-/// The least value found so far.
+/// Least value found so far.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Least {
-    /// NaN as soon as any value was.
+    /// NaN if any value was NaN.
     pub value: f64,
-    /// Seconds.
+    /// Time of the least value, seconds.
     pub time: f64,
-    /// False when the budget ran out before the bound was proven.
+    /// False when the probes ran out before the bound was proven.
     pub certified: bool,
     /// Probes spent.
     pub probes: usize,
 }
 
 impl Least {
-    /// Nothing seen yet.
+    /// Initial state without any value.
     pub fn new() -> Self {
         Self {
             value: f64::INFINITY,
@@ -38,18 +38,20 @@ impl Least {
         }
     }
 
-    /// Takes note of a value.
+    /// Updates the least value with one more value.
     pub fn see(&mut self, value: f64, time: f64) {
-        // negated on purpose: a NaN is taken over and stays
+        // Negated on purpose: a NaN replaces the value and remains.
         if !(value >= self.value) && !self.value.is_nan() {
             self.value = value;
             self.time = time;
         }
     }
 
-    /// Searches an interval: halves it until every part is bounded by the best value less
-    /// [`tolerance::MARGIN_M`], or, where it is shorter than [`tolerance::INSTANT_S`], half of
-    /// [`tolerance::DEPTH_M`]. `probe(time, half)` gives the value at `time` and a lower bound on
+    /// Searches an interval by bisection until a lower bound proves every part.
+    ///
+    /// A part is proven if its bound is at most [`tolerance::MARGIN_M`] below the best value. For a
+    /// part shorter than [`tolerance::INSTANT_S`] the limit is half of [`tolerance::DEPTH_M`].
+    /// `probe(time, half)` returns the value at `time` and a lower bound on
     /// `[time - half, time + half]`.
     pub fn search(&mut self, from: f64, until: f64, probe: impl Fn(f64, f64) -> Probe) {
         let mut open = vec![(from, until)];
@@ -65,14 +67,15 @@ impl Least {
             if self.value.is_nan() {
                 return;
             }
-            // what is left open between two instants counts as none, of slow and of fast ships
+            // An error within such a short time is below the depth tolerance, for slow and for fast
+            // ships.
             let close = 2.0 * half <= tolerance::INSTANT_S;
             let open_m = if close {
                 0.5 * tolerance::DEPTH_M
             } else {
                 tolerance::MARGIN_M
             };
-            // negated on purpose: a NaN bound certifies nothing
+            // Negated on purpose: a NaN bound certifies nothing.
             if !(found.lower >= self.value - open_m) {
                 if !(from < middle && middle < until) {
                     self.certified = false;

@@ -1,4 +1,4 @@
-//! Distances between own ship's hull, on its motion, and hulls and sets of targets.
+//! Distances between own hull along its motion, and hulls and sets of targets.
 
 pub(crate) mod clearance;
 pub(crate) mod least;

@@ -1,27 +1,27 @@
-//! What the checker asks of a piece of motion: exact values, and bounds between two looks.
+//! Interface of the checker to a piece of motion: exact values, and bounds between two samples.
 
 use crate::frame::{Pose, Vector};
 use crate::trajectory::{Bounds, Cubic, Segment};
 
-/// A stretch of own ship's motion, smooth within its time.
+/// Piece of own ship's motion, smooth within its time.
 pub(crate) trait Piece: Copy {
-    /// Seconds.
+    /// Start time, seconds.
     fn start_time(&self) -> f64;
-    /// Seconds.
+    /// End time, seconds.
     fn end_time(&self) -> f64;
-    /// At a time in seconds.
+    /// Pose at a time in seconds.
     fn pose_at(&self, time: f64) -> Pose;
-    /// Over ground, m/s.
+    /// Velocity over ground, m/s.
     fn velocity_at(&self, time: f64) -> Vector;
-    /// rad/s, counter-clockwise.
+    /// Turn rate, rad/s, counter-clockwise.
     fn turn_rate_at(&self, time: f64) -> f64;
-    /// The most that derivatives become within it.
+    /// Upper bounds of the derivatives within the piece.
     fn bounds(&self) -> Bounds;
-    /// The part between two times, on a clock that starts at `zero`.
+    /// Part between two times, with time measured from `zero`.
     fn part(&self, from: f64, to: f64, zero: f64) -> Self;
 }
 
-/// Where a chain of pieces ends, lain at for `duration` seconds; nothing where there is none.
+/// Segment at rest at the end of a chain of pieces, for `duration` seconds; empty without pieces.
 pub(crate) fn at_rest<P: Piece>(pieces: &[P], duration: f64) -> Vec<Segment> {
     let lying = |last: &P| Segment {
         start: last.pose_at(last.end_time()),

@@ -1,5 +1,4 @@
-//! A turn on the spot: own hull sweeps over every heading between two courses while time stands
-//! still.
+//! Turns on the spot: own hull sweeps every heading between two courses at one instant.
 
 use crate::evaluation::distance::clearance::{Body, least_distance};
 use crate::evaluation::distance::least::Least;
@@ -8,18 +7,18 @@ use crate::frame::wrap;
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Where the heading changes at once between two segments.
+/// Instantaneous change of heading between two segments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Turn {
-    /// The turn as a motion that takes a second per radian: every heading between the two, on the
-    /// side of the smaller turn.
+    /// The turn as a motion of one second per radian, through every heading on the side of the
+    /// smaller turn.
     pub sweep: Segment,
-    /// Seconds at which it happens.
+    /// Time of the turn, seconds.
     pub time: f64,
 }
 
-/// Every turn on the spot of a chain of segments. About a hull's middle half a turn covers the same
-/// to either side.
+/// Returns every turn on the spot of a chain of segments. For a half turn the side does not matter:
+/// the hull covers equal areas about its centre.
 pub(crate) fn turns(segments: &[Segment]) -> Vec<Turn> {
     let joints = segments.windows(2);
     joints
@@ -45,8 +44,8 @@ pub(crate) fn turns(segments: &[Segment]) -> Vec<Turn> {
         .collect()
 }
 
-/// The least distance between own hull and a set that stands still as it is at the time of each
-/// turn; the times are those of the turns.
+/// Least distance between own hull and a set during the turns. The set is fixed at the time of each
+/// turn; the times of the result are those of the turns.
 pub(crate) fn least_while_turning(turns: &[Turn], own: Body, slabs: &MovingSlabs) -> Least {
     let mut least = Least::new();
     for turn in turns {
@@ -78,8 +77,8 @@ mod tests {
         }
     }
 
-    /// The bow, 10 m ahead of the middle, passes a buoy that neither course comes near: 3 m short
-    /// of it, at any time.
+    /// The bow, 10 m ahead of the centre, passes a buoy at a distance of 3 m. Neither course comes
+    /// near the buoy at any time.
     #[test]
     fn a_turn_sweeps_over_the_headings_between() {
         let body = Body::hull(&Hull {
@@ -111,7 +110,7 @@ mod tests {
             least(1.4, 0.7)
         );
         assert!(least(1.4, -0.7) > 7.0 && least(1.4, 2.1) > 7.0);
-        // a turn about may be either way
+        // A half turn may be to either side.
         assert!(least(PI, 0.7) < 3.01 && least(PI, -0.7) < 3.01);
         assert!(turns(&[straight(0.3, 0.0), straight(0.3, 10.0)]).is_empty());
     }

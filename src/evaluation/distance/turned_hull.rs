@@ -1,4 +1,4 @@
-//! A hull on every heading that its ship may have.
+//! Hull of a ship over all headings that the ship may have.
 
 use crate::frame::{Vector, direction, heading_of, to_port, wrap};
 use crate::geometry::ConvexPolygon;
@@ -6,24 +6,25 @@ use crate::target::ShipTrack;
 use crate::tolerance;
 use std::f64::consts::TAU;
 
-/// Tangents of a turned hull: a quarter of them lie along the sides of a rectangle, and together
-/// they reach at most 0.13 % of its half-diagonal beyond it.
+/// Number of tangents of a turned hull. A quarter of them are parallel to the sides of a rectangle,
+/// and together they extend at most 0.13 % of its half-diagonal beyond the hull.
 const TANGENTS: usize = 64;
 
-/// A rectangle about a place, turned to either side: the union of all, or its convex hull.
+/// Rectangle about a fixed centre, rotated by every angle up to `spread` to either side: the union,
+/// or its convex hull.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TurnedHull {
     center: Vector,
-    /// Directions of the corners in the middle of the turn, counter-clockwise, radians.
+    /// Directions of the corners at the mean heading, counter-clockwise, radians.
     corners: [f64; 4],
-    /// From the centre to a corner, metres.
+    /// Distance from the centre to a corner, metres.
     reach: f64,
-    /// To either side, radians.
+    /// Largest rotation to either side, radians.
     spread: f64,
 }
 
 impl TurnedHull {
-    /// Where a ship is at t = 0, on every heading that she may have until `time`.
+    /// Hull of a ship at t = 0, over every heading that it may have until `time`.
     pub fn of(ship: &ShipTrack, time: f64) -> Self {
         let (l, b) = (ship.hull.length, ship.hull.beam);
         let corners = [(l, b), (-l, b), (-l, -b), (l, -b)];
@@ -35,7 +36,7 @@ impl TurnedHull {
         }
     }
 
-    /// How far it reaches in a direction, exactly: the corner that can be turned nearest to it
+    /// Exact support in a direction. The corner that can be rotated nearest to the direction
     /// decides.
     pub fn support(&self, n: Vector) -> f64 {
         let towards = heading_of(n);
@@ -44,8 +45,8 @@ impl TurnedHull {
         n.dot(&self.center) + self.reach * nearest.cos()
     }
 
-    /// Points whose hull contains it: the ends of the arcs of the corners, and the corners of
-    /// tangents that touch the arcs at most twice `spacing` radians apart.
+    /// Returns points whose convex hull contains the turned hull: the ends of the corner arcs, and
+    /// the intersections of tangents at most twice `spacing` radians apart.
     pub fn outer_points(&self, spacing: f64) -> impl Iterator<Item = Vector> + '_ {
         let pieces = (self.spread / spacing).ceil().max(1.0);
         let half = self.spread / pieces;
@@ -60,8 +61,8 @@ impl TurnedHull {
         })
     }
 
-    /// The polygon of its tangents at even angles, one of them ahead. A side shorter than the
-    /// checker can tell is left out.
+    /// Polygon of the tangents at even angles, one of them ahead. Sides shorter than the checker's
+    /// tolerance are omitted.
     pub fn outer_polygon(&self) -> ConvexPolygon {
         if self.spread == 0.0 {
             return ConvexPolygon::from_ccw(self.outer_points(1.0).collect());
@@ -104,7 +105,8 @@ mod tests {
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    /// By brute force over the headings; and never larger than what the planners keep out of.
+    /// Compares with all headings by brute force. The result is never larger than the hull of the
+    /// planners.
     #[test]
     fn a_turned_hull_is_every_heading_and_little_more() {
         let mut rng = ChaCha8Rng::seed_from_u64(23);

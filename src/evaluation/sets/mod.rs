@@ -1,4 +1,4 @@
-//! The checker's own form of the sets that a plan must stay outside of.
+//! Representations of space-time sets in the checker, separate from those of the planners.
 
 pub(crate) mod moving_ellipse;
 pub(crate) mod moving_slabs;

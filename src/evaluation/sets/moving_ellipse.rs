@@ -1,39 +1,39 @@
-//! An ellipsoid as the checker sees it: its support function alone.
+//! Moving ellipse of the checker, represented by its support function alone.
 
 use crate::evaluation::distance::least::{Least, Probe};
 use crate::evaluation::distance::piece::Piece;
 use crate::frame::{Vector, direction};
 use crate::geometry::Ellipse;
 
-/// Directions among which the best one is looked for first.
+/// Number of directions of the initial scan.
 const DIRECTIONS: usize = 64;
 
-/// Radians between two of them.
+/// Angle between two directions, radians.
 const STEP: f64 = std::f64::consts::TAU / DIRECTIONS as f64;
 
-/// Sections of its neighbourhood by the golden ratio: a direction to 4e-8, so a distance to 1e-15
-/// of the set's size.
+/// Golden-section steps around the best direction. They determine the direction to 4e-8, so the
+/// distance to 1e-15 of the set's size.
 const GOLDEN_STEPS: usize = 32;
 
-/// Every position in the ellipse of least trace around `O_0 + t V`, docs/theory.md section 3, by
-/// its support function
+/// Ellipse of least trace around `O_0 + t V`, docs/theory.md section 3, by its support function
 ///
 /// ```text
-/// h(n, t) = n . p_t + sqrt((r_o + r_v t) (n' Q_o n / r_o + t n' Q_v n / r_v)),    r = sqrt(trace Q)
+/// h(n, t) = n . p_t + sqrt((r_o + r_v t) (n' Q_o n / r_o + t n' Q_v n / r_v))
+/// r = sqrt(trace Q)
 /// ```
 ///
-/// which is concave in time: the root of a product of two lines that are not negative.
+/// which is concave in time: it is the root of a product of two non-negative linear functions.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MovingEllipse {
     initial: Ellipse,
     velocity: Ellipse,
-    /// Metres, and m/s.
+    /// `r` of the initial ellipse in metres, and of the velocity ellipse in m/s.
     roots: [f64; 2],
-    /// Those looked at first, evenly spaced.
+    /// Directions of the initial scan, evenly spaced.
     directions: [Vector; DIRECTIONS],
 }
 
-/// Where the supporting line of a direction is, and how fast it moves outward.
+/// Supporting line in a direction: its offset, and its outward speed.
 #[derive(Debug, Clone, Copy)]
 struct Line {
     support: f64,
@@ -54,7 +54,7 @@ impl MovingEllipse {
         }
     }
 
-    /// False when every section is a point or a segment.
+    /// Returns false when every section is a point or a segment.
     pub fn has_interior(&self) -> bool {
         let spans = |a: Vector, b: Vector| crate::frame::cross(a, b) != 0.0;
         let [a, b] = self.initial.semi_axes();
@@ -82,7 +82,7 @@ impl MovingEllipse {
         } else if growing == 0.0 {
             0.0
         } else {
-            // infinite where a segment starts to open
+            // Infinite at the instant at which a segment starts to widen.
             let opening = if b > 0.0 {
                 b * (reach / mean).sqrt()
             } else {
@@ -98,11 +98,13 @@ impl MovingEllipse {
         }
     }
 
-    /// The least signed distance along a chain of pieces. Every direction's line separates the set
-    /// from what is beyond it, so the value is the largest that was found over directions: never
-    /// above the true distance, and below it by rounding at most where the search ended beside the
-    /// best direction: it errs toward rejecting. Between two probes a line stays below its tangent
-    /// in time, being concave. About a hundred directions a probe.
+    /// Least signed distance along a chain of pieces.
+    ///
+    /// The value is the largest over directions of the distance from a supporting line. Each line
+    /// separates the set from the points beyond it, so the value never exceeds the true distance.
+    /// It is smaller by at most a rounding, where the search ended beside the best direction: it
+    /// errs toward rejection. Between two probes, a line stays below its tangent in time because it
+    /// is concave. About a hundred directions per probe.
     pub fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         let mut least = Least::new();
         for s in pieces {
@@ -120,7 +122,7 @@ impl MovingEllipse {
 
     fn probe(&self, piece: &impl Piece, time: f64, half: f64) -> Probe {
         let position = piece.pose_at(time).position;
-        // a comparison below loses a NaN, so it is caught here
+        // A comparison below loses a NaN, so it is caught here.
         if !(position.x.is_finite() && position.y.is_finite() && time.is_finite()) {
             return Probe {
                 value: f64::NAN,
@@ -129,7 +131,7 @@ impl MovingEllipse {
         }
         let beyond = |normal: Vector| normal.dot(&position) - self.line(normal, time).support;
         let sampled = self.directions.map(beyond);
-        // inside there may be several local maxima
+        // Inside the set there may be several local maxima.
         let (mut angle, mut best) = (0.0, f64::NEG_INFINITY);
         for (k, here) in sampled.iter().enumerate() {
             let before = sampled[(k + DIRECTIONS - 1) % DIRECTIONS];
@@ -152,7 +154,8 @@ impl MovingEllipse {
     }
 }
 
-/// The largest value of a function, and where, within a distance of a place: by golden section.
+/// Golden-section search: returns the argument and the value of the maximum within `reach` of
+/// `place`.
 fn golden_maximum(place: f64, reach: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut low, mut high) = (place - reach, place + reach);

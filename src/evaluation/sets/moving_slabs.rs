@@ -1,4 +1,4 @@
-//! Velocity sets one after another as the checker sees them: a moving set per slab of time.
+//! Sequence of velocity sets in the checker: one moving set per time interval (slab).
 
 use crate::evaluation::distance::clearance::{Body, least_distance_below};
 use crate::evaluation::distance::least::Least;
@@ -8,7 +8,7 @@ use crate::geometry::ConvexPolygon;
 use crate::target::VelocitySpell;
 use crate::tolerance;
 
-/// One slab. The time of its set counts from its start.
+/// Moving set over one time interval. Its time counts from `start`.
 #[derive(Debug, Clone)]
 struct Slab {
     start: f64,
@@ -16,22 +16,22 @@ struct Slab {
     set: MovingSet,
 }
 
-/// The slabs of a set, in order of time; each begins with the section that the one before ends
-/// with, or a larger one.
+/// Slabs of a set, in order of time. Each begins with the final section of the previous one, or
+/// with a larger section.
 #[derive(Debug, Clone)]
 pub(crate) struct MovingSlabs {
     slabs: Vec<Slab>,
 }
 
 impl MovingSlabs {
-    /// From the set at t = 0 and the velocity sets in order; the last one holds for ever. O(slabs
-    /// (n + m)²).
+    /// Builds the slabs from the set at t = 0 and the velocity sets in order. The last velocity set
+    /// holds for ever. O(slabs (n + m)²).
     pub fn new(initial: &ConvexPolygon, spells: &[VelocitySpell]) -> Self {
         Self::growing(|_| initial.clone(), spells)
     }
 
-    /// The same where the set at t = 0 is another one for each slab, known by its end: that of the
-    /// last is infinite.
+    /// Like [`MovingSlabs::new`], but with one set at t = 0 per slab, as a function of the slab's
+    /// end. The end of the last slab is infinite.
     pub fn growing(initial: impl Fn(f64) -> ConvexPolygon, spells: &[VelocitySpell]) -> Self {
         let mut slabs = Vec::with_capacity(spells.len());
         let (mut start, mut way) = (0.0, None::<ConvexPolygon>);
@@ -57,24 +57,24 @@ impl MovingSlabs {
         Self { slabs }
     }
 
-    /// False when some section is a point or a segment for a while.
+    /// Returns false when the sections are points or segments over some time interval.
     pub fn has_interior(&self) -> bool {
         self.slabs.iter().all(|s| s.set.has_interior())
     }
 
-    /// The section at a time, standing still.
+    /// The section at a time, as a fixed set.
     pub fn section_at(&self, time: f64) -> MovingSet {
         let index = self.slabs.partition_point(|slab| slab.end < time);
         let slab = &self.slabs[index.min(self.slabs.len() - 1)];
         slab.set.still_at(time - slab.start)
     }
 
-    /// The least distance over the slabs, each within its time.
+    /// Least distance over all slabs, each within its time.
     pub fn least_distance<P: Piece>(&self, pieces: &[P], own: Body) -> Least {
         let mut least = Least::new();
         for slab in &self.slabs {
-            // what ends as a slab begins, but for rounding, is in the slab before: a set that grows
-            // is not as large yet
+            // A piece that ends at the start of a slab, up to rounding, belongs to the previous
+            // slab: a growing set is still smaller there.
             let begun = slab.start * (1.0 + 8.0 * f64::EPSILON);
             let fastest = slab.set.fastest();
             let before = |s: &P| {
@@ -82,16 +82,16 @@ impl MovingSlabs {
                 let both = fastest + s.bounds().speed;
                 s.end_time() < slab.start
                     || slab.start > 0.0 && s.start_time() <= slab.start && s.end_time() <= begun
-                    // at any speed of a ship they stay where they are meanwhile
+                    // Neither own ship nor the set moves by more than the margin meanwhile.
                     && rounding * both <= tolerance::MARGIN_M
             };
             let parts: Vec<P> = pieces
                 .iter()
-                // negated on purpose: a NaN is looked at
+                // Negated on purpose: a NaN is included.
                 .filter(|s| !(before(s) || s.start_time() > slab.end))
                 .map(|s| s.part(slab.start, slab.end, slab.start))
                 .collect();
-            // what is not nearer than in the slabs before is not looked at closely
+            // Parts that are not nearer than in earlier slabs are not refined.
             let known = Least {
                 value: least.value,
                 ..Least::new()
@@ -111,7 +111,7 @@ mod tests {
     use crate::frame::{Pose, Vector};
     use crate::trajectory::Segment;
 
-    /// A set 90 m abeam that starts to widen at 1e15 m/s some roundings before own ship arrives.
+    /// A set 90 m abeam starts to move at up to 1e14 m/s some roundings before own ship arrives.
     #[test]
     fn a_slab_that_begins_by_a_rounding_before_the_end_is_looked_at_where_it_matters() {
         let end = 600.0_f64;

@@ -1,4 +1,4 @@
-//! A moving set as the checker sees it: sections from matched vertices, faces from supports.
+//! Moving set of the checker: sections from matched vertices, faces from supports.
 
 use crate::evaluation::distance::clearance::Body;
 use crate::evaluation::distance::least::Least;
@@ -9,89 +9,39 @@ use crate::frame::{Vector, to_starboard};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::VelocitySpell;
 
-/// A set that a plan was made against.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::{Freedom, Request, SpaceTimeSet, evaluate};
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::scenario::Scenario;
-/// use searoom::trajectory::Segment;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// // own ship holds course and speed
-/// let start = scenario.own_ship.pose;
-/// let held = [Segment { start, start_time: 0.0, duration: 300.0, speed: 5.0, turn_rate: 0.0 }];
-/// let request = Request {
-///     segments: &held,
-///     own: &scenario.own_ship,
-///     freedom: Freedom::Limits,
-///     desired: &scenario.desired,
-///     targets: &scenario.targets,
-///     sets: &[],
-///     land: &[],
-///     land_margin: 0.0,
-///     horizon: scenario.horizon,
-///     arrival_hold: scenario.arrival_hold,
-///     time_weight: scenario.time_weight,
-///     max_risk: 0.0,
-/// };
-/// let found = evaluate(&request);
-/// let shoal = ConvexPolygon::hull(&[(700.0, -10.0), (800.0, -10.0), (750.0, 10.0)].map(|(x, y)| Vector::new(x, y)));
-/// let still = ConvexPolygon::point(Vector::zeros());
-/// let sets = [SpaceTimeSet::polytope("shoal", shoal.expect("a triangle"), still)];
-/// let found = evaluate(&Request { sets: &sets, targets: &[], ..request });
-/// assert!(found.violations.iter().any(|v| v.what.contains("shoal")));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
+/// Space-time set against which a plan was made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpaceTimeSet {
-    /// The target's name.
+    /// Name of the target.
     pub name: String,
-    /// Seconds: before, nothing is claimed; its clock starts then.
+    /// Time from which the set is valid, seconds; the time of the shape starts at zero then.
     pub from: f64,
-    /// What it is made of.
+    /// Geometry of the set.
     pub shape: SetShape,
 }
 
-/// What a set is made of.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::{SetShape, SpaceTimeSet};
-/// use searoom::frame::Vector;
-/// use searoom::geometry::Ellipse;
-///
-/// let around = |x: f64| Ellipse::point(Vector::new(x, 0.0));
-/// let shape = SetShape::Ellipses { initial: around(500.0), velocity: around(-5.0) };
-/// // nothing is claimed of it in the first minute
-/// let set = SpaceTimeSet { name: "ferry".to_owned(), from: 60.0, shape };
-/// assert!(matches!(set.shape, SetShape::Ellipses { .. }));
-/// ```
+/// Geometry of a space-time set.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SetShape {
-    /// Every position that is reached from `O_0` (metres) with the velocity sets (m/s), one after
-    /// another; the last one holds for ever.
+    /// Every position reached from `O_0` (metres) with the velocity sets (m/s) in sequence; the
+    /// last one holds for ever.
     Polygons {
-        /// `O_0`.
+        /// Initial set `O_0`.
         initial: ConvexPolygon,
-        /// Not empty, in order of time.
+        /// Velocity sets, at least one, in order of time.
         spells: Vec<VelocitySpell>,
     },
-    /// The ellipse of least trace around `O_0 + t V` at every `t`: an outer set of the sum.
+    /// Ellipse of least trace around `O_0 + t V` at every `t`: an outer set of the sum.
     Ellipses {
-        /// `O_0`, metres.
+        /// Initial set `O_0`, metres.
         initial: Ellipse,
-        /// `V`, m/s.
+        /// Velocity set `V`, m/s.
         velocity: Ellipse,
     },
 }
 
 impl SpaceTimeSet {
-    /// `initial + t velocity`, `t >= 0`; metres and m/s.
+    /// Builds the set `initial + t velocity`, `t >= 0`; metres and m/s.
     pub fn polytope(
         name: impl Into<String>,
         initial: ConvexPolygon,
@@ -113,8 +63,8 @@ impl SpaceTimeSet {
 }
 
 impl SpaceTimeSet {
-    /// The least signed distance of own ship's position along what of a chain of pieces is sailed
-    /// while the set is in force; infinite where nothing is.
+    /// Least signed distance of own ship's position from the set while the set is valid. Infinite
+    /// where no piece is within that time.
     pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         if self.from == 0.0 {
             return self.shape.least_distance(pieces);
@@ -127,10 +77,10 @@ impl SpaceTimeSet {
     }
 }
 
-/// What of a chain is sailed from a time on, by a clock that starts at `zero`. A NaN keeps all of
-/// it.
+/// Returns the parts of a chain of pieces after `from`, with time measured from `zero`. If `from`
+/// is NaN, returns all pieces.
 pub(crate) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
-    // negated on purpose: a NaN is before
+    // Negated on purpose: a NaN removes no piece.
     let later = pieces.iter().filter(|piece| !(piece.end_time() <= from));
     later
         .map(|piece| piece.part(piece.start_time().max(from), piece.end_time(), zero))
@@ -138,7 +88,7 @@ pub(crate) fn since<P: Piece>(pieces: &[P], from: f64, zero: f64) -> Vec<P> {
 }
 
 impl SetShape {
-    /// The least signed distance of own ship's position along a chain of pieces.
+    /// Least signed distance of own ship's position along a chain of pieces.
     pub(crate) fn least_distance<P: Piece>(&self, pieces: &[P]) -> Least {
         match self {
             Self::Polygons { initial, spells } => {
@@ -150,7 +100,7 @@ impl SetShape {
         }
     }
 
-    /// False when a section is a point or a segment for a while.
+    /// Returns false when the sections are points or segments over some time interval.
     pub(crate) fn has_interior(&self) -> bool {
         match self {
             Self::Polygons { initial, spells } => MovingSlabs::new(initial, spells).has_interior(),
@@ -161,55 +111,55 @@ impl SetShape {
     }
 }
 
-/// A vertex of the section: `initial + t velocity`.
+/// Vertex of the section: `initial + t velocity`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MovingVertex {
-    /// Metres, at t = 0.
+    /// Position at t = 0, metres.
     pub initial: Vector,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Vector,
 }
 
 impl MovingVertex {
-    /// Where it is at `time`.
+    /// Position at `time`.
     pub fn at(&self, time: f64) -> Vector {
         self.initial + self.velocity * time
     }
 }
 
-/// A face: `normal . x <= initial + t rate`.
+/// Face of the section: `normal . x <= initial + t rate`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Face {
-    /// Unit, outward.
+    /// Outward unit normal.
     pub normal: Vector,
-    /// Metres at t = 0.
+    /// Offset at t = 0, metres.
     pub initial: f64,
-    /// m/s outward.
+    /// Outward speed, m/s.
     pub rate: f64,
 }
 
 impl Face {
-    /// Where the face is along its normal at `time`.
+    /// Offset along the normal at `time`.
     pub fn support(&self, time: f64) -> f64 {
         self.initial + self.rate * time
     }
 }
 
-/// `O_0 + t V` prepared for distances: for `t > 0` each vertex of the section is one vertex of
+/// `O_0 + t V`, prepared for distances. For `t > 0`, each vertex of the section is one vertex of
 /// `O_0` that moves with one vertex of `V`, and each face moves along its normal.
 #[derive(Debug, Clone)]
 pub(crate) struct MovingSet {
     initial: ConvexPolygon,
     velocity: ConvexPolygon,
-    /// Counter-clockwise.
+    /// Vertices, counter-clockwise.
     pub vertices: Vec<MovingVertex>,
-    /// By the angle of their normals.
+    /// Faces, sorted by the angle of their normals.
     pub faces: Vec<Face>,
 }
 
 impl MovingSet {
-    /// Matches vertices by asking both sets for their extreme point between each two neighbouring
-    /// normals, once around. O((n + m) log (n + m)).
+    /// Matches the vertices of both sets by their extreme points between each two neighbouring
+    /// normals. O((n + m) log (n + m)).
     pub fn new(initial: &ConvexPolygon, velocity: &ConvexPolygon) -> Self {
         let normals = initial.normals().into_iter().chain(velocity.normals());
         let mut normals: Vec<(f64, Vector)> = normals.map(|n| (n.y.atan2(n.x), n)).collect();
@@ -244,13 +194,13 @@ impl MovingSet {
         }
     }
 
-    /// The section at a time as a set that does not move.
+    /// The section at a time, as a fixed set.
     pub fn still_at(&self, time: f64) -> Self {
         let section = self.initial.minkowski_sum(&self.velocity.scaled(time));
         Self::new(&section, &ConvexPolygon::point(Vector::zeros()))
     }
 
-    /// The supporting line in any unit direction.
+    /// Returns the supporting line in any unit direction.
     pub fn face(&self, normal: Vector) -> Face {
         Face {
             normal,
@@ -259,19 +209,19 @@ impl MovingSet {
         }
     }
 
-    /// m/s of its fastest vertex.
+    /// Speed of the fastest vertex, m/s.
     pub fn fastest(&self) -> f64 {
         self.velocity.reach()
     }
 
-    /// False when the sections are points or segments at every time.
+    /// Returns false when the sections are points or segments at every time.
     pub fn has_interior(&self) -> bool {
         self.vertices.len() > 2
     }
 }
 
-/// Along the bisector of the counter-clockwise gap, at most half a turn, between two unit vectors.
-/// The first part vanishes for opposite vectors, the second for equal ones.
+/// Returns the direction of the bisector of the counter-clockwise gap between two unit vectors, at
+/// most half a turn. The first term vanishes for opposite vectors, the second for equal ones.
 fn between(a: Vector, b: Vector) -> Vector {
     (a + b) + to_starboard(b - a)
 }

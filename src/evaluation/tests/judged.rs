@@ -1,5 +1,5 @@
-//! What is judged after a release and off the land, from both sides of each bound; what is told of
-//! the time after arrival.
+//! Sets after a release, the land margin, and the time after arrival, from both sides of each
+//! bound.
 
 use super::*;
 use crate::geometry::Polygon;
@@ -15,7 +15,7 @@ fn rectangle([x, y]: [f64; 2], [right, upper]: [f64; 2]) -> Vec<Vector> {
     corners.map(|(x, y)| Vector::new(x, y)).to_vec()
 }
 
-/// A set at rest that is entered, and left at `from` seconds.
+/// A set at rest that own ship enters, and that is released at `from` seconds.
 fn left(at: &[Vector], from: f64) -> SpaceTimeSet {
     let initial = ConvexPolygon::hull(at).expect("finite");
     let still = ConvexPolygon::point(Vector::zeros());
@@ -25,7 +25,8 @@ fn left(at: &[Vector], from: f64) -> SpaceTimeSet {
     }
 }
 
-/// Own ship is within it from 53 s to 60 s: to leave it before is not to have left it.
+/// Own ship is within the set from 53 s to 60 s. A release before 60 s does not avoid the
+/// violation.
 #[test]
 fn a_set_is_judged_from_its_release_on() {
     let wall = rectangle([265.0, -10.0], [300.0, 10.0]);
@@ -38,7 +39,7 @@ fn a_set_is_judged_from_its_release_on() {
     assert!(found.verified(), "{:?}", found.violations);
 }
 
-/// The hulls overlap from 52.4 s to 59.6 s, far from the set of the name.
+/// The hulls overlap from 52.4 s to 59.6 s, far from the set with the target's name.
 #[test]
 fn a_hull_is_judged_from_the_release_of_its_set_on() {
     let mut other = ship(0.0, 0.0);
@@ -60,7 +61,7 @@ fn a_hull_is_judged_from_the_release_of_its_set_on() {
         assert!(found.violations[0].time >= from && found.min_clearance < -4.0);
     }
     assert!(judged(&straight(), 59.7).verified());
-    // a turn on the spot at 53 s, beside her on either course
+    // A turn on the spot at 53 s, abeam of the target on both courses.
     let mut turning = straight();
     turning[0].duration = 53.0;
     turning[0].start.position = Vector::new(280.0 - 265.0, -12.0);
@@ -72,7 +73,7 @@ fn a_hull_is_judged_from_the_release_of_its_set_on() {
     assert!(hit(0.0) && hit(40.0) && hit(52.9) && !hit(53.1));
 }
 
-/// The land margin is 20 m, own side 4 m off her way.
+/// The land margin is 20 m, own side is 4 m off the path.
 #[test]
 fn land_nearer_than_the_margin_is_a_violation() {
     for (share, is_near) in [
@@ -104,8 +105,8 @@ fn land_nearer_than_the_margin_is_a_violation() {
     }
 }
 
-/// Own ship arrives after 300 s and lies across the way of a ship that comes by later, from the
-/// side or nearly.
+/// Own ship arrives after 300 s and lies across the path of a ship that passes later, from the side
+/// or nearly.
 #[test]
 fn the_time_after_arrival_is_told_and_not_judged() {
     let coming = |after: f64, north: f64| {
@@ -136,7 +137,7 @@ fn the_time_after_arrival_is_told_and_not_judged() {
         assert_eq!(found.arrival_hold, arrival_hold);
         found
     };
-    // bow to bow, 15 m and 30 m from the middles: she is at 5 m/s and abeam after 29 s
+    // Bow to bow, 15 m and 30 m from the centres: the target is at 5 m/s and abeam after 29 s.
     let near = |left: f64, found: f64| (found - left).abs() < 1e-6;
     let found = hold(&[coming(29.0, 14.5)], 60.0);
     assert!(near(14.5 - 4.0 - 6.0, found.hold_clearance), "{found:?}");

@@ -4,7 +4,7 @@ use super::*;
 use crate::frame::radians_from_deg;
 use std::f64::consts::FRAC_PI_2;
 
-/// A ship at rest abeam of own ship's way, her stem to own ship or to the side.
+/// A ship at rest abeam of own ship's path, nominally parallel to it.
 fn lying(course_spread: f64, turn_rate: f64) -> Target {
     let mut lying = ship(60.0, 0.0);
     if let Motion::Ship(track) = &mut lying.motion {
@@ -15,14 +15,15 @@ fn lying(course_spread: f64, turn_rate: f64) -> Target {
     lying
 }
 
-/// Straight on, past [`lying`] at 20 s.
+/// Straight motion past [`lying`] at 20 s.
 fn past() -> Vec<Segment> {
     let mut segments = Vec::new();
     follow(&mut segments, 300.0, 5.0, 0.0);
     segments
 }
 
-/// Own side is 4 m off her way; of the other, 60 m long and 12 m wide, a corner comes nearest.
+/// Own side is 4 m off its path. The target is 60 m long and 12 m wide; one of its corners comes
+/// nearest.
 #[test]
 fn the_worst_hull_is_turned_as_far_as_its_course_may_be() {
     let reach = 30.0_f64.hypot(6.0);
@@ -35,8 +36,8 @@ fn the_worst_hull_is_turned_as_far_as_its_course_may_be() {
         assert!(off < 1e-6 && off > -1.3e-3 * reach, "{spread}: {off}");
         assert!((found.passages[0].dcpa - 50.0).abs() < 1e-6, "as expected");
     }
-    // stem to stern she is nearer than on the heading told: that is a violation, whatever the sets
-    // say
+    // Within its course spread, the target comes nearer than on its nominal heading: a violation,
+    // independent of the sets.
     let mut near = lying(1.2, 0.0);
     if let Motion::Ship(track) = &mut near.motion {
         track.pose.position.y = 30.0;
@@ -46,8 +47,8 @@ fn the_worst_hull_is_turned_as_far_as_its_course_may_be() {
     assert_eq!(words(&found), ["arrival:", "hull"]);
 }
 
-/// Own ship comes by at 20 s: by then she may have turned so far, in the first seconds hardly at
-/// all.
+/// Own ship passes at 20 s. The target's possible turn grows with time: small in the first seconds,
+/// full at the passage.
 #[test]
 fn the_worst_hull_of_a_ship_that_turns_is_that_of_the_time() {
     let rate = 0.02;
@@ -64,7 +65,7 @@ fn the_worst_hull_of_a_ship_that_turns_is_that_of_the_time() {
         all.fold(f64::INFINITY, f64::min)
     });
     let scan = scan.fold(f64::INFINITY, f64::min);
-    // a spell of her turn is 5 degrees
+    // One time interval of its turn covers 5 degrees.
     let off = found.min_clearance - scan;
     assert!(off < 1e-6 && off > -31.0 * radians_from_deg(5.1), "{off}");
 }
