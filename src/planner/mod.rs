@@ -179,8 +179,6 @@ pub struct SearchStats {
     pub generated: usize,
     /// Edges tested against every obstacle.
     pub edges_checked: usize,
-    /// Nodes expanded afterwards, for plans that pass the targets on other sides.
-    pub further_expanded: usize,
 }
 
 /// A collision-free trajectory to the end of the desired path.

@@ -191,7 +191,6 @@ fn search_for(
         expanded: counts.expanded,
         generated: counts.generated,
         edges_checked: counts.tested,
-        further_expanded: 0,
     };
     let found = goal.map(|goal| {
         let mut profile = begun.clone();

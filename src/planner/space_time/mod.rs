@@ -2,7 +2,7 @@
 //! space-time error, then refines the result.
 //!
 //! ```text
-//! route ─► nominal motion ─► graph (A*, k best) ─► initial guesses ─► SQP ─► exact test ─► plan
+//! route ─► nominal motion ─► graph (A*) ─► initial guesses ─► SQP ─► exact test ─► plan
 //! ```
 //!
 //! The graph decides the sides, the order and whether to wait. The refinement optimises the
@@ -45,12 +45,6 @@ use selection::Selection;
 use selection::budget::SearchBudget;
 use selection::initial_guess::Conflict;
 use similarity::Similarity;
-
-/// Largest number of graph plans that are refined; each passes the targets on other sides.
-const MAX_SIGNATURES: usize = 4;
-
-/// Expansions beyond the graph's best plan, in search of such plans.
-const FURTHER_EXPANDED: usize = 4;
 
 /// Plans one problem.
 ///
@@ -202,28 +196,24 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let mut budget = 0;
     let mut timed_out = false;
     let mut optimum = None;
-    while selection.signatures() < MAX_SIGNATURES {
+    loop {
         match search.next_goal(&mut graph, budget) {
             Stop::Goal(goal) => {
                 optimum.get_or_insert(search.counts());
                 let path = node::path_to(&search, goal);
-                let is_plan = selection
-                    .add_graph_plan(search.nodes()[goal].cost, &path.iter().collect::<Vec<_>>());
-                if is_plan && path.len() == 1 {
+                let cost = search.nodes()[goal].cost;
+                if selection.add_graph_plan(cost, &path.iter().collect::<Vec<_>>()) {
                     break;
                 }
-                if is_plan {
-                    budget = budget.min(search.counts().expanded + FURTHER_EXPANDED);
-                }
             }
-            Stop::Budget if selection.signatures() == 0 => {
+            Stop::Budget => {
                 let Some((most, weight)) = stages.next() else {
                     break;
                 };
                 search.weigh(*weight);
                 budget = *most;
             }
-            Stop::Exhausted | Stop::Budget => break,
+            Stop::Exhausted => break,
             Stop::Time => {
                 timed_out = true;
                 break;
@@ -264,7 +254,6 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         expanded: counts.expanded,
         generated: counts.generated,
         edges_checked: counts.tested,
-        further_expanded: search.counts().expanded - counts.expanded,
     };
     let plan = selection.plan();
     let outcome = match (plan, timed_out) {

@@ -220,24 +220,6 @@ impl<'a> Proxy<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Position and velocity relative to the centre of the piece; `None` outside the time window.
-    pub(crate) fn relative(
-        &self,
-        position: Vector,
-        velocity: Vector,
-        time: f64,
-    ) -> Option<(Vector, Vector)> {
-        if let Some(w) = &self.window
-            && !(time >= w.start && time <= w.end)
-        {
-            return None;
-        }
-        Some((
-            position - self.centre - self.drift * (time - self.start()),
-            velocity - self.drift,
-        ))
-    }
-
     /// First instant at which the segment is inside, deeper than touching.
     pub(crate) fn first_contact(&self, segment: &Segment) -> Option<f64> {
         let Some(window) = &self.window else {

@@ -5,13 +5,13 @@ pub(crate) mod budget;
 pub(crate) mod initial_guess;
 pub(crate) mod warm_start;
 
-use crate::frame::{Side, cross};
+use crate::frame::Side;
 use crate::planner::Plan;
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::land;
-use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
+use crate::planner::space_time::proxy::first_met;
 use crate::planner::space_time::refinement::approach::{COARSE_CHORD_RAD, FINE_CHORD_RAD};
 use crate::planner::space_time::refinement::insertion::{pruned, with_insertions};
 use crate::planner::space_time::refinement::trial::Context;
@@ -143,7 +143,6 @@ pub(crate) struct Selection<'a> {
     /// Route on schedule.
     nominal_motion: &'a [Segment],
     search_budget: &'a SearchBudget,
-    signatures: Vec<Vec<bool>>,
     guesses: Vec<InitialGuess>,
     best: Option<Candidate>,
     graph_cost: Option<f64>,
@@ -159,16 +158,10 @@ impl<'a> Selection<'a> {
             context,
             nominal_motion,
             search_budget,
-            signatures: Vec::new(),
             guesses: Vec::new(),
             best: None,
             graph_cost: None,
         }
-    }
-
-    /// Number of distinct passing signatures seen so far.
-    pub(crate) fn signatures(&self) -> usize {
-        self.signatures.len()
     }
 
     /// Adds a manoeuvre to refine.
@@ -183,41 +176,13 @@ impl<'a> Selection<'a> {
         if !complies(&self.context, self.nominal_motion, &motion) {
             return false;
         }
-        let signature = self.signature(&motion);
-        self.graph_cost.get_or_insert(cost);
-        if self.signatures.contains(&signature) {
-            return true;
-        }
-        self.signatures.push(signature);
+        self.graph_cost = Some(cost);
         self.guesses.extend(from_graph(self.context.problem, path));
         self.add_candidate(motion);
         true
     }
 
-    /// Passing signature: the side on which each target is passed, as the sign of its relative
-    /// bearing rate at the least distance of the centres.
-    fn signature(&self, motion: &[Segment]) -> Vec<bool> {
-        by_obstacle(self.context.proxies)
-            .map(|proxies| {
-                let mut nearest = (f64::INFINITY, false);
-                for s in motion {
-                    for k in 0..=4 {
-                        let t = s.start_time + s.duration * f64::from(k) / 4.0;
-                        let (position, velocity) = (s.pose_at(t).position, s.velocity_at(t));
-                        let relative = |h: &Proxy| h.relative(position, velocity, t);
-                        if let Some((r, w)) = proxies.iter().find_map(relative)
-                            && r.norm() < nearest.0
-                        {
-                            nearest = (r.norm(), cross(w, r) > 0.0);
-                        }
-                    }
-                }
-                nearest.1
-            })
-            .collect()
-    }
-
-    /// Refines the graph's plans and the predefined manoeuvres; true when the deadline was reached.
+    /// Refines the graph's plan and the predefined manoeuvres; true when the deadline was reached.
     pub(crate) fn refine(&mut self, conflicts: &[Conflict], clock: Clock) -> bool {
         let mut context = self.context;
         context.chord = COARSE_CHORD_RAD;
