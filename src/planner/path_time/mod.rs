@@ -1,7 +1,7 @@
 //! Path-time planner: own ship follows given paths and chooses its speed, paper section III.B.
 //!
 //! ```text
-//! network legs ─► obstacles along each leg ─► graph over their corners (A*) ─► taut profile ─► plan
+//! path legs ─► obstacles along each leg ─► graph over their corners (A*) ─► taut profile ─► plan
 //! ```
 //!
 //! A motion is a curve in distance and time with `0 <= speed <= max`. An obstacle is a convex

@@ -2,7 +2,7 @@
 //! approach of a velocity, and the least alteration that leaves every velocity obstacle.
 //!
 //! ```text
-//! Situation (own ship, obstacles, horizon) + Query (times, points, velocities) ─► AssessmentDocument
+//! Situation (ship, obstacles, horizon) + Query (times, points, velocities) ─► AssessmentDocument
 //! ```
 
 mod alteration;
