@@ -1,7 +1,8 @@
 //! Runs random scenes through the whole program: text, scenario, plan, document, verification.
 //!
 //! ```text
-//! cargo run --release --no-default-features --example fuzz -- --scenes 10000 --seed 1 [--planner KIND] [--keep DIR]
+//! cargo run --release --no-default-features --example fuzz \
+//!     -- --scenes 10000 --seed 1 [--planner KIND] [--keep DIR]
 //! ```
 //!
 //! Counts faults and exits with status 1 if any occurred, except lateness. Scenes with a fault are

@@ -3,7 +3,8 @@
 //! The default is short. To run 3,000 encounters of each kind with their bounds:
 //!
 //! ```text
-//! SEAROOM_ENCOUNTERS=12000 cargo test --release --no-default-features --test compliance -- --nocapture
+//! SEAROOM_ENCOUNTERS=12000 cargo test --release --no-default-features \
+//!     --test compliance -- --nocapture
 //! ```
 
 mod passing;

@@ -109,7 +109,7 @@ fn every_case_of_imazu_meets_where_it_is_said_to() {
 }
 
 /// Tests that every target of DNV's files is on a collision course: its nominal motion passes
-/// within
+/// within 30 m of own ship.
 #[test]
 fn every_target_of_dnv_meets_own_ship() {
     let files = dnv_files();

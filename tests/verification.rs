@@ -4,7 +4,8 @@
 //! To check more random scenes than the default:
 //!
 //! ```sh
-//! SEAROOM_WILD=2000 cargo test --release --no-default-features --test verification wild -- --nocapture
+//! SEAROOM_WILD=2000 cargo test --release --no-default-features \
+//!     --test verification wild -- --nocapture
 //! ```
 
 mod unsound;

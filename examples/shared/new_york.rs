@@ -19,7 +19,7 @@ const SLENDERNESS: f64 = 5.0;
 const SPEED_SPREAD: f64 = 0.5;
 const COURSE_SPREAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 const POSITION_STD: f64 = 5.0;
-/// Distance between the hulls in metres.
+/// Safety margin between the hulls in metres.
 const MARGIN_M: f64 = 20.0;
 /// Time in seconds for which own ship intends to hold course and speed; the horizon is twice as
 /// long.
