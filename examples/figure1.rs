@@ -1,5 +1,5 @@
-//! Figure 1 of the paper: a polytope, its two sets (10) and (11) and its sections over time, from
-//! above and from the side.
+//! Figure 1 of the paper: a polytope, its two sets (10) and (11) and its sections over time, in top
+//! view and side view.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure1 [FILE.svg|FILE.png]

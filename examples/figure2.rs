@@ -1,5 +1,5 @@
-//! Figure 2 of the paper: an ellipsoid, its two sets (20) and (21) and its sections over time, from
-//! above and from the side.
+//! Figure 2 of the paper: an ellipsoid, its two sets (20) and (21) and its sections over time, in
+//! top view and side view.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure2 [FILE.svg|FILE.png]

@@ -1,5 +1,5 @@
-//! Figure 6 of the paper: three ships that are known to different degrees, and the profiles of
-//! least time at three greatest speeds.
+//! Figure 6 of the paper: three ships with different uncertainty, and the time-optimal profiles at
+//! three maximum speeds.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure6 [FILE.svg|FILE.png]
@@ -15,7 +15,7 @@ use searoom::report::figure::{
 };
 use searoom::scenario::Scenario;
 
-/// The fastest first.
+/// Scenarios in order of decreasing maximum speed.
 const SCENARIOS: [&str; 3] = ["figure_6", "figure_6_slower", "figure_6_slowest"];
 
 const STROKES: [(&str, bool); 3] = [("#000000", false), ("#000000", true), ("#777777", false)];

@@ -1,4 +1,4 @@
-//! Figure 7 of the paper: the motions clear of all sets that a search finds, and the plan.
+//! Figure 7 of the paper: the collision-free motions found by a search, and the plan.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example figure7 [FILE.svg|FILE.png]

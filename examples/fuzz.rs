@@ -1,13 +1,13 @@
-//! Random scenes of every kind through the whole of the program: text, scenario, plan, document,
-//! verification.
+//! Runs random scenes through the whole program: text, scenario, plan, document, verification.
 //!
 //! ```text
-//! cargo run --release --no-default-features --example fuzz -- --scenes 10000 --seed 1 [--planner KIND] [--keep DIR]
+//! cargo run --release --no-default-features --example fuzz \
+//!     -- --scenes 10000 --seed 1 [--planner KIND] [--keep DIR]
 //! ```
 //!
-//! Counts what must not happen, and ends with status 1 if something did, lateness aside. Scenes
-//! with a fault are written to DIR as scenario files; `--scenes 1 --seed N` runs one of them again.
-//! Scenes that the program refuses are drawn too, and not counted as scenes.
+//! Counts faults and exits with status 1 if any occurred, except lateness. Scenes with a fault are
+//! written to DIR as scenario files; `--scenes 1 --seed N` repeats one of them. Scenes rejected by
+//! the program are not counted.
 
 #[path = "../tests/wild/mod.rs"]
 mod wild;
@@ -25,7 +25,7 @@ use searoom::pipeline;
 use searoom::scenario::Scenario;
 use searoom::verification::verify;
 
-/// What must not happen, in the order of the summary.
+/// Faults in the order of the summary.
 const FAULTS: [&str; 6] = [
     "panic",
     "status 3",
@@ -35,13 +35,13 @@ const FAULTS: [&str; 6] = [
     "program late",
 ];
 
-/// From here on the faults are of time.
+/// Index of the first timing fault.
 const LATENESS: usize = 4;
 
-/// A plan may take this much longer than its budget, and the program.
+/// Permitted excess over the time budget, of a plan and of the program.
 const LATE: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(50)];
 
-/// A scene counts as late if it is late as often as this: a shared machine is held up now and then.
+/// A scene is late if it is late in all these attempts; a shared machine has occasional delays.
 const TRIES: usize = 4;
 
 thread_local! {
@@ -55,13 +55,13 @@ struct Arguments {
     keep: Option<PathBuf>,
 }
 
-/// What came of a scene.
+/// Result of a scene.
 #[derive(Default)]
 struct Found {
     outcome: String,
-    /// Of [`FAULTS`], each with what is known of it.
+    /// Indices into [`FAULTS`] with their details.
     faults: BTreeMap<usize, String>,
-    /// Seconds, of planning, of the program, and of verification.
+    /// Times in seconds of planning, the program, and verification.
     times: [f64; 3],
 }
 
@@ -120,7 +120,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     for (fault, count) in FAULTS.iter().zip(counts) {
         println!("{fault:>20} {count:>6}");
     }
-    // times are of the machine: they are printed
+    // timing faults depend on the machine: print only
     let wrong = counts[..LATENESS].iter().any(|n| *n > 0);
     Ok(ExitCode::from(u8::from(wrong)))
 }
@@ -147,7 +147,7 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
     Ok(found)
 }
 
-/// `None` for a scene that the program refuses. A late one has another chance.
+/// Runs a scene; `None` if the program rejects it. A late scene is repeated.
 fn of(text: &str) -> Option<Found> {
     let is_late = |found: &Found| found.faults.keys().any(|k| *k >= LATENESS);
     let mut best = run(text)?;
@@ -203,7 +203,7 @@ fn planned_and_verified(text: &str) -> Option<Found> {
     }
     let begun = Instant::now();
     match verify(&json) {
-        // a document without a motion has nothing to be verified, but may be wrong
+        // a document without a motion needs no verification, but may be wrong
         Ok(found) => wrong.extend(found.violations.into_iter().map(|v| (2, v.what))),
         Err(error) => wrong.push((2, error.to_string())),
     }

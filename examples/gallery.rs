@@ -1,4 +1,4 @@
-//! Draws the pictures of docs/gallery.md into a folder.
+//! Draws the images of docs/gallery.md into a folder.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example gallery [FOLDER]
@@ -11,7 +11,7 @@ use searoom::report::figure::{comparison_figure, plan_figure};
 use searoom::scenario::Scenario;
 use searoom::study::compare::compare;
 
-/// Folder of the pictures.
+/// Output folder.
 const FOLDER: &str = "docs/gallery";
 
 /// Scenario files below `scenarios/` whose plans are drawn.

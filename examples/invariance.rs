@@ -1,5 +1,5 @@
-//! Whether plans depend on where a scene lies, which way, and how large it is, and whether larger
-//! sets ever make a plan cheaper: two tables.
+//! Prints two tables: invariance of plans to translation, rotation and scaling of a scene, and
+//! cases where larger sets reduce the cost.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example invariance [SCENES]
@@ -13,10 +13,10 @@ use rayon::prelude::*;
 use searoom::scenario::Scenario;
 use searoom::target::Motion;
 
-/// Costs closer than this, relative, are equal.
+/// Relative difference below which costs are equal.
 const EQUAL: f64 = 1e-6;
 
-/// What makes the sets larger.
+/// Change that enlarges the sets.
 type Change = fn(&mut Scenario);
 const LARGER: [(&str, Change); 4] = [
     ("margin + 20 m", |s| s.own_ship.safety_margin += 20.0),
@@ -31,7 +31,7 @@ const LARGER: [(&str, Change); 4] = [
     }),
 ];
 
-/// Scenes with larger sets: so many of the first.
+/// Number of scenes tested with larger sets, from the first.
 const OF_LARGER: u64 = 60;
 
 fn tracks(scene: &mut Scenario, change: impl Fn(&mut searoom::target::ShipTrack)) {

@@ -102,7 +102,7 @@ contains its escape, which the monitors count as an alteration.
     Ok(())
 }
 
-/// The scenarios of a folder below `scenarios/`, in order of the files' names.
+/// Scenarios of a folder below `scenarios/`, in order of file names.
 fn imported(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenarios")
@@ -130,7 +130,7 @@ fn imported(folder: &str, assumed: &Assumed) -> Result<Vec<Scenario>, Box<dyn Er
     Ok(scenes)
 }
 
-/// The cells of one row after the first.
+/// Cells of one row after the first.
 fn row(
     scenes: &[Scenario],
     compliance: Compliance,
@@ -180,7 +180,7 @@ fn is_clear(run: &Run) -> bool {
         && run.evaluation.as_ref().is_some_and(|e| e.verified())
 }
 
-/// NaN for an empty slice.
+/// Quantile; NaN for an empty slice.
 fn quantile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1) as f64;

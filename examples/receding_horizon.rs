@@ -1,6 +1,6 @@
-//! Receding-horizon control: CyberShip II sails among the ellipsoids of figure 9. Every two seconds
-//! the plan moves on by one interval and is solved again from the state that the ship has come to,
-//! which a current has set off.
+//! Receding-horizon control of CyberShip II among the ellipsoids of figure 9. Every two seconds the
+//! plan shifts by one interval and is solved again from the current state. A current disturbs the
+//! ship.
 //!
 //! ```text
 //! cargo run --release --no-default-features --example receding_horizon
@@ -14,11 +14,11 @@ use searoom::scenario::Scenario;
 use searoom::trajectory::TrajectoryError;
 use searoom::vessel::{CyberShip2, ForceVector, Manoeuvring, StateVector};
 
-/// Intervals that are sailed, and steps of the integrator in each.
+/// Number of intervals simulated, and integrator steps per interval.
 const SAILED: usize = 50;
 const STEPS: usize = 20;
 
-/// East and north, m/s: a current that no plan knows of.
+/// Current, east and north in m/s, unknown to the planner.
 const CURRENT: [f64; 2] = [0.004, -0.003];
 
 fn main() -> Result<(), TrajectoryError> {
@@ -44,7 +44,7 @@ fn main() -> Result<(), TrajectoryError> {
         duration: scenario.horizon,
         intervals: control.intervals,
     };
-    // the last of the family of starts bends about the sets
+    // the last start of the family bends around the sets
     let (_, guess) = family(&task).pop().expect("some starts");
     let mut horizon = RecedingHorizon::new(&task, &guess, Settings::default(), &|| true);
     println!("time  east   north  cost to come  steps  distance to the edge of the nearest set");
@@ -80,8 +80,8 @@ fn main() -> Result<(), TrajectoryError> {
     Ok(())
 }
 
-/// Where the ship is after some seconds under constant forces, with the current (Runge–Kutta,
-/// fourth order).
+/// State after `duration` seconds under constant forces with the current (Runge–Kutta, fourth
+/// order).
 fn sailed(from: &StateVector, force: &ForceVector, duration: f64) -> StateVector {
     let rates = |state: &StateVector| {
         let mut rates = CyberShip2::EXACT.rates(state, force);

@@ -1,4 +1,4 @@
-//! Searoom plans how a ship keeps clear of others whose motion is uncertain.
+//! Collision avoidance for ships among targets with uncertain motion.
 //!
 //! # The problem
 //!
@@ -14,7 +14,7 @@
 //! should follow the desired trajectory, which is at `x_d` at `t_d` and lasts `T_d` seconds. A plan
 //! is a motion `x(t)` of lines and of arcs with the turning radius, at speeds of a finite set, from
 //! the pose at t = 0 to the last waypoint at `T`. Alternatively it follows given paths at any speed
-//! up to the largest. Its cost is the space-time error
+//! up to the maximum. Its cost is the space-time error
 //!
 //! ```text
 //! J = 1/T_d ∫ min over σ of ( |x(t) - x_d(σ)|² + q (t - t_d(σ))² ) dt          m², t from 0 to T
@@ -39,10 +39,10 @@
 //!   from the scenario's start, speeds in m/s. Courses (degrees clockwise from true north) and
 //!   knots exist in files and reports only; [`frame`] converts.
 //! - Port and starboard are [`frame::Side`], never a sign.
-//! - Names of approximations say which way they err: `outer_…` contains the exact set. Safety rests
-//!   on these.
+//! - Names of approximations state the direction of the error: `outer_…` contains the exact set.
+//!   Safety relies on these.
 //! - Comparisons fail closed: a NaN is a collision.
-//! - "No plan" is an [`planner::Outcome`], not an error.
+//! - "No plan" is a [`planner::Outcome`], not an error.
 //! - Equal input gives equal results. The clock is read for the deadline and for the time taken.
 //!
 //! # Modules
@@ -52,27 +52,27 @@
 //!                    (+ colregs)                                                    └──► recording
 //! ```
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! | --- | --- |
-//! | [`frame`] | the plane, poses, headings; the border to degrees, knots, latitudes and longitudes |
+//! | [`frame`] | plane, poses, headings; conversion to degrees, knots, latitudes and longitudes |
 //! | [`tolerance`] | every tolerance with its unit and its reason |
 //! | [`geometry`] | convex sets (polygon or ellipse); polygons and their decomposition into convex pieces |
 //! | [`map`] | land from GeoJSON, cut into convex pieces, indexed |
-//! | [`search`] | A* and Dijkstra over a graph given by its successors |
+//! | [`search`] | A* and Dijkstra over a graph defined by its successors |
 //! | [`trajectory`] | lines and arcs in time; the desired trajectory |
 //! | [`vessel`] | own ship and its limits; Dubins paths; manoeuvring models |
 //! | [`target`] | a tracked ship or explicit sets, with their uncertainty |
-//! | [`colregs`] | roles by the rules of the road; ship domains |
+//! | [`colregs`] | roles under the COLREGs; ship domains |
 //! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
 //! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
-//! | [`evaluation`] | judges any trajectory, without the sets and contact tests of the planner |
+//! | [`evaluation`] | independent evaluation of a trajectory, without the planner's sets and contact tests |
 //! | [`verification`] | checks a plan document alone, without scenario and planner |
-//! | [`input`] | reading of files: bounded text, values with their places, every fault at once |
+//! | [`input`] | reading of files: bounded text, values with their positions, all faults at once |
 //! | [`scenario`] | scenario files; [`scenario::import`]: files of other programs |
-//! | [`pipeline`] | scenario → sets → plan → judgement, in one place |
-//! | [`simulation`] | random encounters, and targets that do anything their sets allow |
+//! | [`pipeline`] | scenario → sets → plan → evaluation |
+//! | [`simulation`] | random encounters, and targets with any motion within their sets |
 //! | [`study`] | [`study::assess`]: risk and closest approach without a plan; [`study::compare`]: every planner and two baselines on one scenario; [`study::lint`]: faults of a scenario |
-//! | [`document`] | the published documents: the one description of a result |
+//! | [`document`] | published documents: the single description of a result |
 //! | [`report`] | tables, HTML pages and figures |
 //! | `recording` | Rerun recordings (feature `recording`, on by default) |
 //!

@@ -1,14 +1,14 @@
-//! Holds the borders between modules: which module may import which, and where an outside library
-//! may be named.
+//! Enforces module boundaries: permitted imports of each module, and the places that may name
+//! external libraries.
 //!
-//! Reads the sources as token trees, so comments, strings and formatting do not count. Unit tests
+//! Parses the sources as token trees, so comments, strings and formatting do not count. Unit tests
 //! inside a file (`#[cfg(test)] mod …`) may use anything.
 
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// What a room may use of the crate; itself is always allowed.
+/// Modules of the crate that each top-level module may use; a module may always use itself.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("frame", &[]),
     ("tolerance", &[]),
@@ -16,9 +16,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("search", &[]),
     ("output", &[]),
     ("text", &[]),
-    // bounded reading, values with their places, faults: for every file format
+    // bounded reading, values with their positions, faults: for every file format
     ("input", &["frame", "text"]),
-    // vectors and their products live in `frame`, which knows neither ship nor time
+    // vectors and their products are in `frame`, which does not depend on ships or time
     ("geometry", &["tolerance", "frame"]),
     ("trajectory", &["frame", "tolerance", "geometry"]),
     ("vessel", &["frame", "tolerance", "geometry", "trajectory"]),
@@ -229,7 +229,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Paths that a room may not name although it may use their room.
+/// Paths that a module may not name although it may use their top-level module.
 const NEVER: &[(&str, &str)] = &[
     ("scenario", "planner::cost"),
     ("scenario", "planner::space_time"),
@@ -237,7 +237,7 @@ const NEVER: &[(&str, &str)] = &[
     ("scenario", "planner::optimal_control"),
 ];
 
-/// A name and the only places (path prefixes below `src/`) where it may stand.
+/// Names with the only path prefixes below `src/` where they may occur.
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("rerun", &["recording/", "cli/inspect"]),
     ("parry2d_f64", &["geometry/parry"]),
@@ -256,10 +256,10 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("dbg", &[]),
 ];
 
-/// Rooms that belong to the binary: they may use everything, nobody may use them.
+/// Modules of the binary: they may use everything, and no module may use them.
 const BINARY: &[&str] = &["cli", "main"];
 
-/// Everything wrong with one file; `path` is below `src/`, with forward slashes.
+/// Lists all faults of one file; `path` is below `src/`, with forward slashes.
 fn faults(path: &str, text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let tokens: TokenStream = match text.parse() {
@@ -267,7 +267,7 @@ fn faults(path: &str, text: &str) -> Vec<String> {
         Err(error) => return vec![format!("{path}: not Rust: {error}")],
     };
     let module = module_of(path);
-    // a file that is nothing but unit tests
+    // a file with unit tests only
     if module.iter().any(|m| m == "tests") {
         return faults;
     }
@@ -282,7 +282,7 @@ fn faults(path: &str, text: &str) -> Vec<String> {
             faults.push(format!("{path}: names {name}, allowed only in {places:?}"));
         }
     }
-    // the library's root names every room, to declare them
+    // the library's root names every module to declare it
     let Some(room) = module.first().filter(|m| !BINARY.contains(&m.as_str())) else {
         return faults;
     };
@@ -314,8 +314,7 @@ fn module_of(path: &str) -> Vec<String> {
     module
 }
 
-/// Collects every identifier that is a path of its own or heads one, and every path below the
-/// crate.
+/// Collects every identifier that is or starts a path, and every path below the crate.
 fn read(tokens: TokenStream, module: &[String], names: &mut Vec<String>, used: &mut Vec<String>) {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let mut i = 0;
@@ -343,7 +342,8 @@ fn read(tokens: TokenStream, module: &[String], names: &mut Vec<String>, used: &
     }
 }
 
-/// `crate::` or `super::super::` at `i`: the module it stands for and where the path goes on.
+/// Resolves `crate::` or `super::super::` at `i` to its module, and the index where the path
+/// continues.
 fn base(tokens: &[TokenTree], i: usize, module: &[String]) -> Option<(Vec<String>, usize)> {
     let word = |i: usize| match tokens.get(i) {
         Some(TokenTree::Ident(ident)) => Some(ident.to_string()),
@@ -390,7 +390,7 @@ fn is_punct(token: Option<&TokenTree>, character: char) -> bool {
     matches!(token, Some(TokenTree::Punct(p)) if p.as_char() == character)
 }
 
-/// Behind `#[cfg(test)] mod name { … }` or `#[cfg(test)] mod name;` when it starts at `i`.
+/// Index after `#[cfg(test)] mod name { … }` or `#[cfg(test)] mod name;` if it starts at `i`.
 fn skip_unit_tests(tokens: &[TokenTree], i: usize) -> Option<usize> {
     let TokenTree::Group(attribute) = tokens.get(i + 1)? else {
         return None;
@@ -401,7 +401,7 @@ fn skip_unit_tests(tokens: &[TokenTree], i: usize) -> Option<usize> {
     if !is_test {
         return None;
     }
-    // visibility and further attributes may stand between
+    // visibility and further attributes may occur between
     while !matches!(tokens.get(at)?, TokenTree::Ident(word) if word == "mod") {
         at += 1;
         if at > i + 8 {
@@ -439,7 +439,7 @@ fn the_sources_keep_the_borders() {
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
-/// The path of a file below a folder, with forward slashes.
+/// Path of a file below a folder, with forward slashes.
 fn below(root: &Path, file: &Path) -> String {
     let path = file.strip_prefix(root).expect("below the folder");
     path.to_string_lossy().replace('\\', "/")

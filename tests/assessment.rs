@@ -1,4 +1,4 @@
-//! The least alteration against a dense search, and the relations that it has to keep.
+//! Tests of the least alteration against a dense search and required relations.
 
 mod set_generators;
 
@@ -14,7 +14,7 @@ use searoom::target::VelocitySpell;
 use set_generators::{seeded, vector};
 use std::f64::consts::PI;
 
-/// Headings of half a turn, and speeds, of the dense search.
+/// Number of headings per half turn, and of speeds, in the dense search.
 const STEPS: usize = 4000;
 
 fn polygon(rng: &mut ChaCha8Rng, center: Vector, reach: f64) -> ConvexPolygon {
@@ -28,7 +28,7 @@ fn ellipse(rng: &mut ChaCha8Rng, center: Vector, reach: f64) -> Ellipse {
     Ellipse::new(center, f * f.transpose()).expect("a shape")
 }
 
-/// Some that meet own ship, of every kind.
+/// Random obstacle of any kind; some meet own ship.
 fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
     let place = direction(rng.random_range(-PI..PI)) * rng.random_range(100.0..1500.0);
     let way = -place / rng.random_range(50.0..400.0) + vector(rng, 4.0);
@@ -69,13 +69,14 @@ fn is_free(s: &Situation, heading: f64, speed: f64) -> bool {
         .all(|o| !o.in_velocity_obstacle(s.pose.position, velocity, s.horizon))
 }
 
-/// The first of the samples that is free.
+/// First free sample.
 fn sampled(step: f64, last: f64, free: impl Fn(f64) -> bool) -> Option<f64> {
     let count = (last / step).floor() as usize;
     (0..=count).map(|i| i as f64 * step).find(|x| free(*x))
 }
 
-/// The closed form is never later than the samples, free itself, and what lies before it is not.
+/// Checks that the closed form is free, not later than the samples, and that smaller values are not
+/// free.
 fn holds(
     exact: Option<f64>,
     sampled: Option<f64>,
@@ -96,7 +97,7 @@ fn holds(
             for i in 0..((exact - 1e-8) / step).max(0.0) as usize {
                 assert!(!free(i as f64 * step), "{what}: {i} before {exact}");
             }
-            // and up to the boundary itself
+            // up to the boundary itself
             let before = exact - 1e-6;
             assert!(
                 before <= 0.0 || !free(before),
@@ -251,16 +252,16 @@ fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
         held
     );
     assert_eq!(still(&[], 5.0), held);
-    // stopped, with a target on its way to her: turning does not help, way on does
+    // at rest with an approaching target: turning does not help, speed does
     let stopped = still(&[at(Vector::new(0.0, 400.0), Vector::new(0.0, -2.0))], 0.0);
     assert_eq!((stopped.starboard, stopped.port), (None, None));
     assert!((stopped.speed.expect("ahead of her") - 10.0 / 197.5).abs() < 1e-6);
-    // tangents to a box at rest, dead ahead: its near corners
+    // tangents to a box at rest dead ahead, through its near corners
     let ahead = still(&[at(Vector::new(410.0, 0.0), Vector::zeros())], 5.0);
     let tangent = (5.0_f64).atan2(400.0);
     assert!((ahead.starboard.expect("a turn") - tangent).abs() < 1e-8);
     assert!((ahead.port.expect("a turn") - tangent).abs() < 1e-8);
-    // 400 m away, reached only after the horizon of 400 s at 1 m/s and less
+    // 400 m away, reached only after the horizon of 400 s at 1 m/s or less
     assert!((ahead.speed.expect("slower") + 4.0).abs() < 1e-8);
 }
 
@@ -290,8 +291,8 @@ fn the_answers_are_those_of_the_obstacles() {
     }
 }
 
-/// Points, segments, needles and repeated vertices, from near and far: the answer is free, and
-/// nothing sampled before it is.
+/// Tests points, segments, needles and repeated vertices, near and far: the answer is free, and no
+/// smaller sample is.
 #[test]
 fn degenerate_sets_are_left_too() {
     let mut rng = seeded(4);
@@ -309,7 +310,7 @@ fn degenerate_sets_are_left_too() {
         let mut s = situation(&mut rng, &obstacles);
         s.pose.position = vector(&mut rng, 150.0 * far);
         s.horizon *= far;
-        // straight at one of them, as a rule
+        // usually directly toward one of them
         if let searoom::geometry::ConvexSet::Polygon(section) = obstacles[0].section(100.0 * far) {
             let relative = section.vertices()[0] - s.pose.position;
             s.pose.heading = relative.y.atan2(relative.x);

@@ -1,4 +1,4 @@
-//! CommonOcean scenarios: the samples, mutated ones, and what is meant to eat memory.
+//! Tests of CommonOcean scenarios: samples, mutated files, and memory exhaustion attacks.
 
 use searoom::frame::Vector;
 use searoom::scenario::import::{Assumed, Assumption, Contents, Format, Imported, Situation};
@@ -14,7 +14,7 @@ fn read(text: &str) -> Result<Vec<Result<Situation, Vec<Fault>>>, Vec<Fault>> {
             assert_eq!(format, Format::CommonOcean);
             Ok(situations)
         }
-        // a text that is cut before its first mark is no XML
+        // a text cut before its first tag is not XML
         _ => Ok(Vec::new()),
     }
 }
@@ -46,7 +46,7 @@ fn a_recorded_ship_on_one_course_is_a_tracked_ship() {
     } = one(HEAD_ON, &Assumed::default());
     assert_eq!(scenario.title, "ZAM_Sample-1_1_T-1");
     assert_eq!(scenario.horizon, 1200.0);
-    // the plane lies about own ship's start
+    // the origin of the plane is own ship's start
     assert_eq!(scenario.own_ship.pose.position, Vector::zeros());
     let goal = scenario.desired.waypoints()[1];
     assert!((goal - Vector::new(0.0, 4500.0)).norm() < 1e-9);
@@ -78,7 +78,7 @@ fn things_that_stand_still_are_sets_with_hull_and_margin() {
         assert_eq!(velocity.vertices(), [Vector::zeros()]);
         -initial.signed_distance(place - Vector::new(-800.0, -100.0))
     };
-    // the buoy's rim keeps the margin, the corner of the land does not
+    // the edge of the buoy keeps the margin, the corner of the land does not
     assert!(depth(1, Vector::new(105.0, 240.0)) >= half + 30.0 - 1e-9);
     let corner = depth(2, Vector::new(1300.0, -400.0));
     assert!(corner >= half - 1e-9 && corner < half + 3.0, "{corner}");
@@ -138,7 +138,7 @@ fn a_ship_that_appears_late_and_slows_is_in_her_sets() {
     ] {
         assert!(depth(time, north) >= clearance - 1e-6, "{time}");
     }
-    // she is nowhere else before she appears
+    // the target is nowhere else before it appears
     for side in [-1.03, 1.03] {
         assert!(depth(500.0, 4000.0 + side * clearance) < 0.0);
     }
@@ -206,7 +206,7 @@ fn one_mistake_is_one_fault_with_its_line() {
         assert_eq!(paths, [path.as_str()], "{from} -> {to}: {found:?}");
         assert!(found[0].line.is_some(), "{found:?}");
     }
-    // a ship without a shape: a fault until the user says how large she is
+    // a ship without a shape is a fault until the user gives its size
     let begun = HEAD_ON.find("<shape>").expect("there");
     let ends = HEAD_ON.find("</shape>").expect("there") + "</shape>".len();
     let bare = format!("{}{}", &HEAD_ON[..begun], &HEAD_ON[ends..]);
@@ -221,8 +221,7 @@ fn one_mistake_is_one_fault_with_its_line() {
     assert!(situation.scenario(&sized).is_ok());
 }
 
-/// Entities that would expand to gigabytes, elements within elements, and more of them than are
-/// allowed.
+/// Tests entities that would expand to gigabytes, nested elements, and an excessive number of them.
 #[test]
 fn what_is_meant_to_eat_memory_is_refused() {
     let mut bomb =

@@ -1,10 +1,10 @@
-//! What plans that keep to the rules achieve over random encounters, counted from the trajectories
-//! alone.
+//! Tests of rule compliance over random encounters, counted from the trajectories alone.
 //!
-//! The default is short. The full counts, 3,000 encounters of each kind, with their bounds:
+//! The default is short. To run 3,000 encounters of each kind with their bounds:
 //!
 //! ```text
-//! SEAROOM_ENCOUNTERS=12000 cargo test --release --no-default-features --test compliance -- --nocapture
+//! SEAROOM_ENCOUNTERS=12000 cargo test --release --no-default-features \
+//!     --test compliance -- --nocapture
 //! ```
 
 mod passing;
@@ -24,35 +24,35 @@ use searoom::target::ShipTrack;
 use searoom::trajectory::Trajectory;
 use statistics::{failure_bound, quantile};
 
-/// Radians, 2°: a smaller turn is no alteration of course.
+/// Angle in radians (2°) below which a turn is not an alteration of course.
 const ALTERATION: f64 = std::f64::consts::PI / 90.0;
 
-/// Radians, 30°, and of the speed a half: what another ship sees at once.
+/// Readily apparent alteration (Rule 8): a turn of 30°, in radians, or half the speed.
 const APPARENT_TURN: f64 = std::f64::consts::FRAC_PI_6;
 const APPARENT_SPEED: f64 = 0.5;
 
-/// Seconds of less speed that another ship sees.
+/// Time in seconds at reduced speed that is readily apparent to another ship.
 const APPARENT_TIME: f64 = 30.0;
 
-/// Share of encounters in which own ship has to pass as the rules ask.
+/// Minimum fraction of encounters in which own ship passes as the rules prescribe.
 const NEARLY_ALL: f64 = 0.99;
 
-/// Share of encounters in which a plan that complies is found at least. Measured: head-on all,
-/// give-way 96, stand-on 98.5 and overtaking 99 % of 750.
+/// Minimum fraction of encounters with a compliant plan. Measured: head-on all, give-way 96,
+/// stand-on 98.5 and overtaking 99 % of 750.
 const RARELY_GIVEN_UP: f64 = 0.94;
 
-/// Share of encounters in which the first judge finds no rule broken at least. Measured: 98.3 to
-/// 99.1 % of 3,000 of each kind.
+/// Minimum fraction of encounters without a rule violation found by the first compliance monitor.
+/// Measured: 98.3 to 99.1 % of 3,000 of each kind.
 const NONE_BROKEN: f64 = 0.96;
 
-/// m², of the median cost of each kind, half as much again as measured.
+/// Upper bounds in m² of the median cost of each kind, 1.5 times the measured values.
 const MEDIAN_COST: [f64; 4] = [7_000.0, 11_000.0, 80_000.0, 14_000.0];
 
-/// Seconds from the end of the hold to the closest approach, at least in all but a twentieth, and
-/// at most.
+/// Time in seconds from the end of the hold to the closest approach: the lower bound holds for 95
+/// %, the upper bound for all.
 const TO_SPARE: [f64; 2] = [15.0, 90.0];
 
-/// The same for a stand-on ship that turns nowhere to port, whether there is another escape or not.
+/// Minimum fraction of stand-on ships that do not turn to port, with or without another escape.
 const STANDS_ON: f64 = 0.99;
 
 fn count() -> u64 {
@@ -72,7 +72,8 @@ fn planned(kind: EncounterKind, seed: u64) -> Run {
     pipeline::run(scenario)
 }
 
-/// The first alteration of course, radians to port: turns to one side without a line between them.
+/// First alteration of course in radians to port: consecutive turns to one side without a line
+/// between them.
 fn first_turn(plan: &Trajectory) -> f64 {
     let mut turn = 0.0;
     for s in plan.segments() {
@@ -88,7 +89,7 @@ fn first_turn(plan: &Trajectory) -> f64 {
     turn
 }
 
-/// Seconds at half the desired speed or less, on a straight course before the first turn.
+/// Time in seconds at half the desired speed or less, on a straight course before the first turn.
 fn slowed_for(plan: &Trajectory, desired: f64) -> f64 {
     let slow = APPARENT_SPEED * desired + 1e-9;
     let straight = plan.segments().iter().take_while(|s| s.turn_rate == 0.0);
@@ -96,7 +97,8 @@ fn slowed_for(plan: &Trajectory, desired: f64) -> f64 {
     slower.map(|s| s.duration).sum()
 }
 
-/// The greatest heading to port of the first, before the centres are nearest, radians.
+/// Largest heading to port of the initial one before the closest approach of the centres, in
+/// radians.
 fn to_port(plan: &Trajectory, ship: &ShipTrack) -> f64 {
     let times = plan.sample_times(0.5, u32::MAX);
     let apart = |t: f64| (plan.pose_at(t).position - ship.pose_at(t).position).norm();
@@ -113,23 +115,24 @@ fn to_port(plan: &Trajectory, ship: &ShipTrack) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// What is seen of one plan.
+/// Observations of one plan.
 struct Seen {
-    /// What the planner claims.
+    /// Compliance as reported by the planner.
     complies: bool,
     planned: bool,
     starboard: bool,
     apparent: bool,
     port_to_port: bool,
     off_the_bow: bool,
-    /// No first turn to port, and no course to port of the first before the other has passed.
+    /// No first turn to port, and no course to port of the initial one before the other ship has
+    /// passed.
     no_port: bool,
-    /// On the desired trajectory until the escape begins, which is to starboard or by less speed;
-    /// none where nothing is to be escaped.
+    /// On the desired trajectory until the escape begins, which is to starboard or by reducing
+    /// speed; none if there is no conflict.
     holds: bool,
-    /// Seconds from the end of the hold to the undisturbed closest approach.
+    /// Time in seconds from the end of the hold to the nominal closest approach.
     to_spare: Option<f64>,
-    /// The rules broken, by the first judge.
+    /// Rule violations found by the first compliance monitor.
     violations: Vec<&'static str>,
     cost: f64,
     milliseconds: f64,
@@ -164,7 +167,7 @@ fn seen(run: &Run) -> Seen {
     }
 }
 
-/// Metres off the desired trajectory that are rounding.
+/// Tolerance in metres of the distance to the desired trajectory.
 const ON_TRACK: f64 = 1e-6;
 
 fn holds(run: &Run, plan: &Trajectory) -> bool {
@@ -189,8 +192,8 @@ fn holds(run: &Run, plan: &Trajectory) -> bool {
     apparent && held.map(off).all(|off| off <= ON_TRACK)
 }
 
-/// Prints in how many of them something holds, with its lower bound, 95 %; the seeds where it does
-/// not.
+/// Prints in how many encounters a property holds, with its 95 % lower bound and the seeds of the
+/// others.
 fn print(what: &str, all: &[Seen], holds: impl Fn(&Seen) -> bool) -> Vec<usize> {
     let failing: Vec<usize> = (0..all.len()).filter(|i| !holds(&all[*i])).collect();
     let bound = 100.0 * (1.0 - failure_bound(failing.len(), all.len()));

@@ -1,4 +1,5 @@
-//! docs/documents.md names every key of the documents, docs/verify.md those of a verification.
+//! Checks that docs/documents.md names every key of the documents, and docs/verify.md those of a
+//! verification.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +14,7 @@ fn keys(value: &Value, found: &mut BTreeSet<String>) {
         Value::Object(map) => {
             for (key, inner) in map {
                 found.insert(key.clone());
-                // a page of its own has what is in this
+                // its content has a separate page
                 if key != "optimal_control" {
                     keys(inner, found);
                 }

@@ -1,5 +1,5 @@
-//! The velocity obstacle of ellipsoids as a region, against its definition: a dense search over
-//! time.
+//! Tests of the velocity obstacle of ellipsoids as a region against its definition, by a dense
+//! search over time.
 
 mod set_generators;
 
@@ -11,7 +11,7 @@ use set_generators::{directions, ellipsoid, seeded, vector};
 
 const HORIZONS: [f64; 4] = [5.0, 40.0, 300.0, f64::INFINITY];
 
-/// A place out of `O_0` by more than `distance`, not so near that rounding decides.
+/// Random position outside `O_0` by more than `distance`, far enough that rounding does not matter.
 fn place(rng: &mut ChaCha8Rng, o: &EllipsoidObstacle, distance: f64) -> Vector {
     loop {
         let x = vector(rng, 250.0);
@@ -21,9 +21,8 @@ fn place(rng: &mut ChaCha8Rng, o: &EllipsoidObstacle, distance: f64) -> Vector {
     }
 }
 
-/// `n . v` of the farthest velocity that leads within the distance of the section of some time, by
-/// a search over times a tenth apart and then between them. The definition: it knows sections and
-/// nothing else.
+/// Maximum `n . v` of the velocities that lead within the distance of the section at some time.
+/// Searches times a tenth apart and refines between them. This definition uses sections only.
 fn searched(o: &EllipsoidObstacle, x: Vector, horizon: f64, distance: f64, n: Vector) -> f64 {
     let of = |time: f64| (o.support(n, time).value + distance - n.dot(&x)) / time;
     let end = horizon.min(1e10);
@@ -49,7 +48,7 @@ fn searched(o: &EllipsoidObstacle, x: Vector, horizon: f64, distance: f64, n: Ve
     of(0.5 * (low + high)).max(of(times[best]))
 }
 
-/// How far a velocity is out of the region, by its supporting lines; negative inside.
+/// Distance of a velocity from the region by its supporting lines; negative inside.
 fn beyond(region: &EllipsoidVelocityObstacle, v: Vector) -> f64 {
     let [port, starboard] = region.sides().expect("own ship is outside");
     let of = |normal: Vector, offset: f64| normal.dot(&v) - offset;
@@ -124,7 +123,7 @@ fn the_region_holds_the_velocities_that_meet_and_no_others() {
                 assert!(drawn || out > 0.0, "an outer set: {o:?} {x:?} {v:?}");
                 assert!(!drawn || out < 2e-3, "{o:?} {x:?} {v:?} {out}");
             }
-            // and time by time
+            // also for each time
             let end = horizon.min(2000.0);
             let meets = (0..=20_000).any(|i| {
                 let t = end * (f64::from(i) / 20_000.0).powi(2);
@@ -141,8 +140,8 @@ fn the_region_holds_the_velocities_that_meet_and_no_others() {
     assert!(within > 300 && outside > 1000, "{within} {outside}");
 }
 
-/// Every corner of the picture is as near to the region as promised, and the region's boundary is
-/// within it.
+/// Tests the accuracy: every corner of the drawn polygon is within the promised distance of the
+/// region, and contains its boundary.
 #[test]
 fn the_half_planes_are_outside_by_no_more_than_was_asked() {
     let mut rng = seeded(303);
@@ -199,8 +198,8 @@ fn from_inside_or_from_nowhere_every_velocity_meets() {
     }
 }
 
-/// Of discs, the textbook's cone: sides of the two tangents, moved by the speed that the target may
-/// have beside her own.
+/// Tests discs against the textbook cone: two tangents, shifted by the speed that the target may
+/// add to its own.
 #[test]
 fn discs_have_the_cone_of_the_textbook() {
     use nalgebra::Matrix2;
@@ -220,7 +219,7 @@ fn discs_have_the_cone_of_the_textbook() {
         assert!((side.normal - normal).norm() < 1e-12, "{side:?}");
         assert!((side.offset - normal.dot(&velocity) - 0.3).abs() < 1e-12);
     }
-    // similar shapes: the sum is exact, and so is the tip, a disc of the target's velocities
+    // similar shapes: the sum is exact, and so is the apex, a disc of the target's velocities
     let tip = region
         .boundary_point(Vector::new(-1.0, 0.0))
         .expect("attained");

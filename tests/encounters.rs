@@ -1,16 +1,16 @@
-//! Random encounters, from the scenario to the verdict: every plan is re-checked, met by targets
-//! that do anything their sets allow, and measured against a dense search.
+//! Tests of random encounters from scenario to verdict. Every plan is re-checked, simulated against
+//! targets with any motion within their sets, and compared with a dense search.
 //!
-//! The default is short. The full counts, with the tables:
+//! The default is short. To run the full counts with tables:
 //!
 //! ```text
 //! SEAROOM_ENCOUNTERS=10000 SEAROOM_ORACLE=200 \
 //!     cargo test --release --no-default-features --test encounters -- --nocapture --test-threads 1
 //! ```
 //!
-//! Seeds are 0, 1, 2, … per kind; nothing is left out after the fact: draws that the generator
-//! replaced and encounters without a plan are counted. Every bound is relative to this generator
-//! and to targets whose velocity stays in their velocity set.
+//! Seeds are 0, 1, 2, … per kind. Nothing is excluded afterwards: draws replaced by the generator
+//! and encounters without a plan are counted. Every bound is relative to this generator and to
+//! targets whose velocity stays in their velocity set.
 
 mod dense_search;
 #[path = "../examples/shared/moved.rs"]
@@ -39,43 +39,42 @@ use searoom::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use searoom::vessel::OwnShip;
 use statistics::{failure_bound, quantile};
 
-/// Radians, 2°: a smaller turn is no alteration of course.
+/// Angle in radians (2°) below which a turn is not an alteration of course.
 const ALTERATION: f64 = std::f64::consts::PI / 90.0;
 
-/// m²: costs nearer than this are equal where the cost itself is tiny.
+/// Cost difference in m² below which small costs are equal.
 const TINY: f64 = 5.0;
 
-/// m²: a dearer way than this is not looked for where the planner has none.
+/// Cost in m² above which the search finds no alternative where the planner has no plan.
 const WORTH_FINDING: f64 = 200_000.0;
 
-/// Share of plans whose side may be against the rules: shapes make the right side the cheaper one,
-/// they do not forbid the other.
+/// Fraction of plans that may pass on the side opposite to the rules. Ship domains make the correct
+/// side cheaper, but do not forbid the other.
 const RARELY: f64 = 0.03;
 
-/// The same for the first turn of a give-way ship. Measured: 5 of 75 to port, most of them for
+/// Fraction of give-way ships whose first turn may be to port. Measured: 5 of 75, mostly for
 /// targets near the beam or abaft it; every one passes astern.
 const RARELY_GIVE_WAY: f64 = 0.15;
 
-/// The same where the rules ask for no side: neither is taken much more often. Measured: to port 37
-/// and 41 of 75.
+/// Maximum fraction of one side where the rules prescribe none. Measured: to port 37 and 41 of 75.
 const EITHER_SIDE: f64 = 0.7;
 
-/// Share of encounters that may be without a plan. Measured: 0 of 1200.
+/// Fraction of encounters that may be without a plan. Measured: 0 of 1200.
 const UNSOLVED: f64 = 0.01;
 
-/// The same of scenes with several targets. Measured: 0 of 999.
+/// Fraction of scenes with several targets that may be without a plan. Measured: 0 of 999.
 const UNSOLVED_AMONG: f64 = 0.1;
 
-/// Share of plans for which a shape may be drawn back. Measured: 235 of 10,000.
+/// Fraction of plans with a relaxed ship domain. Measured: 235 of 10,000.
 const REDUCED: f64 = 0.06;
 
-/// Share of encounters that may be of another kind than was meant. Measured: none of 300.
+/// Fraction of encounters with another role than intended. Measured: none of 300.
 const ANOTHER_ROLE: f64 = 0.02;
 
-/// m², of the median cost of each kind, half as much again as measured.
+/// Upper bounds in m² of the median cost of each kind, 1.5 times the measured values.
 const MEDIAN_COST: [f64; 4] = [6_000.0, 11_000.0, 10_000.0, 13_000.0];
 
-/// J over the dense search at most.
+/// Maximum ratio of J to that of the dense search.
 const WORST_RATIO: f64 = 1.10;
 
 fn count(variable: &str, default: u64) -> u64 {
@@ -87,14 +86,14 @@ fn count(variable: &str, default: u64) -> u64 {
         .unwrap_or_else(|_| panic!("{variable}={text} is not a count"))
 }
 
-/// What is kept of one planned and judged encounter.
+/// Record of one planned and evaluated encounter.
 struct Record {
     seed: u64,
     drawn: Drawn,
     roles: Vec<Role>,
     obstacles: Vec<Obstacle>,
     plan: Option<(Trajectory, f64)>,
-    /// In words, where there is no plan.
+    /// Reason in words if there is no plan.
     refusal: String,
     violations: Vec<String>,
     shape_reduced: bool,
@@ -138,10 +137,10 @@ fn planned(seed: u64, drawn: Drawn) -> Record {
     }
 }
 
-/// Least distance of the hulls, metres, when the target starts anywhere in the disc of its position
-/// uncertainty and its velocity varies anyhow within its velocity set, its hull on the course it
-/// takes or at either end of its course spread. Steps are 0.1 s, longer only while the hulls cannot
-/// come nearer than the least so far.
+/// Least distance of the hulls in metres. The target starts anywhere in the disc of its position
+/// uncertainty, and its velocity varies arbitrarily within its velocity set. Its hull is aligned
+/// with its course or with either end of its course spread. Steps are 0.1 s; longer steps are used
+/// only while the hulls cannot come nearer than the least distance so far.
 fn least_hull_distance(
     own: &OwnShip,
     plan: &Trajectory,
@@ -204,7 +203,7 @@ fn a_ship_that_does_not_give_way_is_hit() {
     assert!(hit >= 30, "only {hit} of 40 undisturbed ships are hit");
 }
 
-/// Least over all targets and signals; infinite without a plan.
+/// Least distance over all targets and signals; infinite without a plan.
 fn least_sampled(record: &Record) -> f64 {
     let Some((plan, _)) = &record.plan else {
         return f64::INFINITY;
@@ -221,8 +220,8 @@ fn least_sampled(record: &Record) -> f64 {
     least
 }
 
-/// Plans that keep out of the hard sets alone pass as near as these let them: the margin is kept
-/// whatever course the other takes, her hull turned with it.
+/// Tests plans that avoid the hard sets alone and pass at their edge. The margin is kept for any
+/// course of the target, with its hull turned to that course.
 #[test]
 fn a_hull_that_turns_with_its_course_keeps_the_margin() {
     let (mut broken, mut near) = (Vec::new(), 0);
@@ -241,7 +240,7 @@ fn a_hull_that_turns_with_its_course_keeps_the_margin() {
     assert!(near >= 12, "only {near} of 60 pass near");
 }
 
-/// Side of the first alteration of course; `None` when speed alone is altered, or nothing.
+/// Side of the first alteration of course; `None` if only the speed changes, or nothing.
 fn first_turn(plan: &Trajectory) -> Option<Side> {
     let turn = plan
         .segments()
@@ -258,7 +257,7 @@ fn claims_of(record: &Record, least: f64) -> Vec<String> {
         .iter()
         .map(|v| format!("{title}: {v}"))
         .collect();
-    // the margin is part of the sets, so it too must be kept; fails closed
+    // the sets include the margin, so it must also be kept; fails closed
     if !(least >= margin - 1e-6) {
         broken.push(format!(
             "{title}: hulls {least:.3} m apart, margin {margin} m"
@@ -455,7 +454,8 @@ fn every_plan_among_many_is_clear_of_all() {
     assert!(broken.is_empty(), "{broken:#?}");
 }
 
-/// The coarse search; then, below what it found, the fine one, which takes ten times as long.
+/// Runs the coarse search, then the fine search below its cost; the fine one takes ten times as
+/// long.
 fn searched(problem: &Problem, cost: f64, thorough: bool) -> Answer {
     let coarse = DenseSearch::coarse(cost).cheaper_than(problem, cost);
     if !thorough {
@@ -557,9 +557,8 @@ fn a_dense_search_finds_hardly_anything_cheaper() {
     assert!(2 * cut_short <= all, "{cut_short} of {all} cut short");
 }
 
-/// The bound is admissible on real graphs: with it and without it the cheapest plan on the graph
-/// costs the same, and with it no more nodes are expanded. An encounter with every length times a
-/// factor and every speed as it is.
+/// Scales every length of an encounter by a factor and keeps the speeds. The bound is admissible on
+/// real graphs: with it, the graph's cheapest plan costs the same and no more nodes are expanded.
 fn larger(scenario: &Scenario, factor: f64) -> Planned {
     let own = &scenario.own_ship;
     let polygon = |set: &ConvexPolygon, factor: f64| {
@@ -599,9 +598,9 @@ fn larger(scenario: &Scenario, factor: f64) -> Planned {
     planned
 }
 
-/// Plans of small scenes are alike to the last digit where sizes are powers of two apart. Larger
-/// than planned, where what is brought back is held to a tenth of a micrometre, they are not: up to
-/// 5 % dearer or cheaper.
+/// Tests plans of scaled scenes. For powers of two, small scenes give plans equal to the last
+/// digit. Larger scenes do not, because corrections have a tolerance of a tenth of a micrometre;
+/// their cost differs by up to 5 %.
 #[test]
 fn plans_of_another_size_are_the_same_plans() {
     for kind in EncounterKind::ALL {
@@ -633,12 +632,13 @@ fn plans_of_another_size_are_the_same_plans() {
     }
 }
 
-/// How many times the cheapest the graph's plan may cost among several targets, where the search
-/// makes haste: in the median, in nine of ten scenes, and ever, where weights allow 4. Measured:
-/// 1.05, 1.16 and 1.36.
+/// Maximum cost of the graph's plan relative to the optimum for several targets under a weighted
+/// search: median, 90th percentile and maximum. The weights permit 4. Measured: 1.05, 1.16 and
+/// 1.36.
 const HASTE: [f64; 3] = [1.1, 1.3, 1.7];
 
-/// The same cost with one target; among several, where the search is in haste, a little more.
+/// Tests that the cost is equal for one target, and slightly higher for several under a weighted
+/// search.
 #[test]
 fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
     let alone = EncounterKind::ALL.into_iter().flat_map(|kind| {
@@ -676,7 +676,7 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
                     equal += 1;
                 }
             }
-            // haste may find what the reference has no budget for
+            // the weighted search may find a plan that exceeds the reference's budget
             [Some(_), None] => assert_eq!(name, "traffic"),
             other => assert_eq!(other[0], other[1], "{name} {seed}"),
         }
@@ -693,8 +693,8 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
     assert!(within, "{found:?}, at most {HASTE:?}");
 }
 
-/// On the four scenarios together A* expands at most half as many nodes as Dijkstra, on each fewer,
-/// and finds the same cost.
+/// Tests A* against Dijkstra on the four scenarios. The cost is equal. A* expands fewer nodes on
+/// each, and at most half as many in total.
 #[test]
 fn a_star_expands_half_of_dijkstra_on_the_four_scenarios() {
     let (mut expanded, mut blind) = (0, 0);
@@ -760,9 +760,8 @@ fn petgraph_finds_the_cost_of_the_graph() {
     assert!(compared >= 80, "{compared}");
 }
 
-/// Moved, turned, mirrored, larger, smaller, slower: the plan is the same. All 300 scenes: `cargo
-/// run --release --no-default-features
-/// --example invariance`.
+/// Tests that the plan is invariant to translation, rotation, reflection and scaling. For all 300
+/// scenes: `cargo run --release --no-default-features --example invariance`.
 #[test]
 fn a_scene_elsewhere_another_way_or_of_another_size_has_the_same_plan() {
     let scenes: Vec<u64> = (0..60).collect();
@@ -785,7 +784,7 @@ fn a_scene_elsewhere_another_way_or_of_another_size_has_the_same_plan() {
     assert!(compared > 50, "{compared} scenes have a conflict");
 }
 
-/// The costs of the plans of two files, the same scene twice.
+/// Costs of the plans of two files with the same scene.
 fn costs_of(files: [&str; 2]) -> [f64; 2] {
     files.map(|file| {
         let path = format!("tests/faults/{file}.toml");
@@ -794,8 +793,8 @@ fn costs_of(files: [&str; 2]) -> [f64; 2] {
     })
 }
 
-/// Coordinates of millions of metres, and a scene moved by 1.6 km: corners of the path are no full
-/// circles.
+/// Tests coordinates of millions of metres, and a scene moved by 1.6 km: corners of the path must
+/// not become full circles.
 #[test]
 fn the_same_scene_in_another_place_costs_the_same() {
     for files in [["utm-a", "utm-b"], ["dear-a", "dear-b"]] {
@@ -805,8 +804,8 @@ fn the_same_scene_in_another_place_costs_the_same() {
     }
 }
 
-/// Own ship a hair beside the path, before or behind its beginning, or turned a hair: nobody is
-/// there, and no circle is sailed.
+/// Tests starts slightly beside the path, before or behind its start, or slightly turned. Without
+/// targets, the plan contains no full circle.
 #[test]
 fn a_hair_beside_the_path_is_on_it() {
     let file = std::path::Path::new("tests/faults/offset-circle.toml");

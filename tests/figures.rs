@@ -1,4 +1,4 @@
-//! The figures: the same bytes every time, units on the axes, nothing that cannot be drawn.
+//! Tests of the figures: deterministic bytes, units on the axes, and only finite coordinates.
 
 use searoom::frame::{Pose, Vector};
 use searoom::geometry::{ConvexPolygon, Ellipse};
@@ -13,7 +13,7 @@ fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
     ConvexPolygon::from_vertices(&corners).expect("convex")
 }
 
-/// One of each kind.
+/// One target of each kind.
 fn targets() -> Vec<Obstacle> {
     let place = Vector::new(400.0, 100.0);
     let velocities = rectangle(Vector::new(-2.0, 0.0), 0.3, 0.2);
@@ -82,7 +82,7 @@ fn the_same_figure_is_the_same_bytes() {
     );
 }
 
-/// A title stands above the panels; one that is too long is cut, and says so.
+/// Tests that a title is above the panels, and that a long one is truncated visibly.
 #[test]
 fn a_title_is_drawn_and_fits() {
     let all = targets();
@@ -94,7 +94,7 @@ fn a_title_is_drawn_and_fits() {
     assert!(!figure(&all, 5.0, &[0.0]).svg().contains("Three"));
 }
 
-/// Names that would lie on one another stand on lines of their own.
+/// Tests that names that would overlap are on separate lines.
 #[test]
 fn names_do_not_lie_on_one_another() {
     let at = |name: &str, east: f64| -> Obstacle {
@@ -114,7 +114,7 @@ fn names_do_not_lie_on_one_another() {
     assert!((height(&svg, "first") - height(&svg, "second")).abs() < 1e-6);
 }
 
-/// From one to many panels, and situations at the edge of what there is.
+/// Tests one to many panels, and extreme situations.
 #[test]
 fn every_situation_can_be_drawn() {
     let all = targets();

@@ -1,4 +1,5 @@
-//! Foreign formats: real files, mutated ones, and targets that follow their declared tracks.
+//! Tests of imported formats: real files, mutated files, and targets that follow their declared
+//! tracks.
 
 use std::path::Path;
 
@@ -107,7 +108,8 @@ fn every_case_of_imazu_meets_where_it_is_said_to() {
     }
 }
 
-/// Every target of DNV's files is on a collision course: within 30 m of own ship undisturbed.
+/// Tests that every target of DNV's files is on a collision course: its nominal motion passes
+/// within 30 m of own ship.
 #[test]
 fn every_target_of_dnv_meets_own_ship() {
     let files = dnv_files();
@@ -177,7 +179,7 @@ fn dnv_01() -> Value {
     serde_json::from_str(include_str!("../scenarios/dnv/traffic_situation_01.json")).expect("JSON")
 }
 
-/// The same with one value replaced, or taken away.
+/// Returns the document with one value replaced or removed.
 fn with(pointer: &str, value: Option<Value>) -> String {
     let mut document = dnv_01();
     let (parent, key) = pointer.rsplit_once('/').expect("a path");
@@ -303,7 +305,7 @@ fn one_mistake_in_a_dnv_file_is_one_fault_with_its_place() {
     ] {
         let mut text = with(pointer, value);
         if path.ends_with("dimensions") && pointer.ends_with("width") {
-            // neither the whole nor its parts
+            // neither the whole document nor its parts
             let mut document: Value = serde_json::from_str(&text).expect("JSON");
             let dimensions = document
                 .pointer_mut("/ownShip/static/dimensions")
@@ -318,7 +320,7 @@ fn one_mistake_in_a_dnv_file_is_one_fault_with_its_place() {
         }
         assert_eq!(paths(&text, &Assumed::default()), [path], "{pointer}");
     }
-    // a ship without dimensions is as large as the user says
+    // a ship without dimensions has the size given by the user
     let sized = Assumed::default()
         .with(Assumption::Length, 80.0)
         .with(Assumption::Beam, 14.0);
@@ -416,7 +418,8 @@ fn keys_that_are_there_twice_and_json_that_is_none_are_refused() {
     }
 }
 
-/// Nothing a file can say may panic: every prefix, and every number replaced by a hostile one.
+/// Tests every prefix, and every number replaced by a hostile one: no file content may cause a
+/// panic.
 #[test]
 fn hostile_text_never_panics() {
     let try_all = |text: &str| {
@@ -448,7 +451,7 @@ fn paths_or_good(text: &str) -> usize {
     }
 }
 
-/// A target with these legs: metres east and north of her start, knots, turn radius in metres.
+/// Target with a route: metres east and north of its start, speeds in knots, turn radii in metres.
 struct Declared {
     points: Vec<Vector>,
     knots: Vec<f64>,
@@ -458,7 +461,7 @@ struct Declared {
 
 impl Declared {
     fn random(rng: &mut ChaCha8Rng) -> Self {
-        // so many that changes are left out
+        // so many that changes are omitted
         let many = rng.random_bool(0.2);
         let legs = if many { 30 } else { rng.random_range(2..6) };
         let lengths = if many { 400.0..900.0 } else { 1500.0..4000.0 };
@@ -487,7 +490,7 @@ impl Declared {
         }
     }
 
-    /// As a DNV file: degrees by the projection's inverse.
+    /// Converts to a DNV file; the inverse projection gives degrees.
     fn document(&self) -> String {
         let mut document = dnv_01();
         let origin = searoom::frame::Geographic {
@@ -521,8 +524,8 @@ impl Declared {
         document.to_string()
     }
 
-    /// Pieces of the declared way: length and heading as a function of the way made on it, and the
-    /// leg or the two legs.
+    /// Pieces of the declared route: length, heading as a function of the distance on the piece,
+    /// and its leg or two legs.
     fn pieces(&self, rounded: bool) -> Vec<Piece> {
         let mut pieces = Vec::new();
         let mut begun = 0.0;
@@ -533,7 +536,7 @@ impl Declared {
             let mut arc = None;
             if leg + 1 < self.knots.len() {
                 let turn = wrap(heading_of(self.points[leg + 2] - self.points[leg + 1]) - heading);
-                // 50 × 10 m: 125 m is what is assumed
+                // 125 m is assumed for a hull of 50 × 10 m
                 let radius = self.radii[leg + 1].unwrap_or(if rounded { 125.0 } else { 0.0 });
                 ends = radius * (0.5 * turn.abs()).tan();
                 arc = Some(Piece {
@@ -563,12 +566,12 @@ struct Piece {
     legs: [usize; 2],
 }
 
-/// Seconds by which instants are looked at within a step, so that rounding is none.
+/// Offset in seconds of the sampled instants within a step, to exclude rounding.
 const INSIDE: f64 = 1e-4;
 
-/// Targets that follow their routes within the spread, fast and slow, straying to either side, on
-/// sharp corners and on arcs, stay in the declared set at every instant, with their velocity and
-/// with their place, and by as much as hulls and margin ask for.
+/// Tests targets that follow their routes within the spread: fast and slow, with deviations to
+/// either side, on sharp corners and on arcs. At every instant their velocity and position are in
+/// the declared set, with the clearance that hulls and margin require.
 #[test]
 fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
@@ -580,7 +583,7 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
             match Contents::parse(&declared.document(), &Assumed::default()).expect("JSON") {
                 Contents::Situations { mut situations, .. } => match situations.remove(0) {
                     Ok(situation) => situation,
-                    // a turn that does not fit: refused
+                    // a turn that does not fit is refused
                     Err(faults) => {
                         assert!(faults[0].found.contains("turnRadius"), "{faults:?}");
                         continue;
@@ -603,12 +606,12 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
         let own = &scenario.own_ship;
         let hull = |length: f64, beam: f64| 0.5 * length.hypot(beam);
         let clearance = hull(50.0, 10.0) + hull(own.hull.length, own.hull.beam) + own.safety_margin;
-        // the place is dear to look at where there are many sets
+        // checking the position is expensive for many sets
         let many = declared.knots.len() > 6;
         let (runs, every) = if many { (6, 40) } else { (20, 1) };
         let mut steps = 0;
         for run in 0..runs {
-            // constant extremes first, then anything in between
+            // constant extremes first, then arbitrary values
             let extreme = [
                 (1.0, 0.0),
                 (-1.0, 0.0),
@@ -642,7 +645,7 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
                         .min((piece.length - made) / rate)
                         .min(piece.length / 8.0 / rate);
                     let velocity = direction(heading + error) * speed;
-                    // a step that rounding alone has left is none
+                    // skip steps produced by rounding
                     let ends = [time + INSIDE, time + step - INSIDE];
                     for moment in ends.into_iter().filter(|_| step > 2.0 * INSIDE) {
                         let now = spells
@@ -669,11 +672,12 @@ fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
         }
     }
     assert!(followed > 500, "{followed}");
-    // the sets are not so large that the test could not fail
+    // the sets are not so large that the test cannot fail
     assert!(deepest > -400.0, "{deepest}");
 }
 
-/// By how much a target at a place is nearer to the edge of her set than the clearance, metres.
+/// Clearance deficit in metres: by how much a target at a position is too near to the edge of its
+/// set.
 fn check(target: &Target, at: Vector, time: f64, clearance: f64) -> f64 {
     let set = target.outer_set_at(time).expect("explicit sets");
     set.signed_distance(at) + clearance
@@ -695,15 +699,15 @@ fn a_route_on_one_line_is_a_tracked_ship() {
             .expect("no faults")
             .scenario;
     let ship = scenario.targets[0].ship().expect("a ship");
-    // widened by what the middle point strays
+    // widened by the deviation of the middle point
     assert!(
         ship.course_spread >= 5.0_f64.to_radians() && ship.course_spread < 6.0_f64.to_radians()
     );
 }
 
-/// With half a metre per second and five degrees of every target unknown, Imazu's with 500 m
-/// between hulls of 100 × 20 m: every encounter has a verified plan, no target is left out, and no
-/// set is entered, not even at a risk.
+/// Tests the encounters with half a metre per second and five degrees of uncertainty for every
+/// target. Imazu's have 500 m between hulls of 100 × 20 m. Every encounter has a verified plan, no
+/// target is left out, and no set is entered, even at a risk.
 #[test]
 fn every_encounter_has_a_plan_clear_of_all_it_declares() {
     let mut planned = 0;
@@ -744,7 +748,8 @@ fn every_encounter_has_a_plan_clear_of_all_it_declares() {
     assert_eq!(planned, 50);
 }
 
-/// Another level, or none, would answer without this one: asserted is what this level alone gives.
+/// Tests each relaxation level by a result that only this level gives; another level, or none,
+/// would also give a plan.
 #[test]
 fn every_relaxation_level_answers_some_encounter() {
     let answer = |mut scenario: Scenario, compliance| {
@@ -774,7 +779,7 @@ fn every_relaxation_level_answers_some_encounter() {
         clear_of_hard_sets.level == RelaxationLevel::ReducedDomains
             && searched(&clear_of_hard_sets)
     );
-    // wide ways are no plans of the graph
+    // wide detours are not plans of the graph
     let around = answer(dnv("53"), Compliance::Shape);
     assert!(around.level == RelaxationLevel::ReducedDomains && !searched(&around));
     let crowd = random_traffic(10, 201, Placement::Origin).expect("drawn");

@@ -1,5 +1,5 @@
-//! Random traffic in the harbour of Trondheim: every plan keeps off land and targets, A* finds what
-//! Dijkstra finds.
+//! Tests with random traffic in the harbour of Trondheim: every plan stays clear of land and
+//! targets, and A* matches Dijkstra.
 //!
 //! `SEAROOM_HARBOUR` is the number of scenes (30 if not set).
 
@@ -25,7 +25,7 @@ use statistics::quantile;
 
 const TARGETS: usize = 3;
 
-/// Median, 90th percentile, largest.
+/// Median, 90th percentile and maximum.
 fn spread(values: &[f64]) -> String {
     let [half, most, all] = [0.5, 0.9, 1.0].map(|p| quantile(values, p));
     format!("median {half:.1}, 90 % {most:.1}, largest {all:.1}")
@@ -41,10 +41,10 @@ fn harbour() -> Arc<Map> {
     Arc::new(Map::read(&file, &earth).expect("a map"))
 }
 
-/// Where scenes lie, and the ship in them.
+/// Area of the scenes, and own ship there.
 struct Waters {
     name: &'static str,
-    /// Metres from land that some waypoint, or some place of the path, is within.
+    /// Maximum distance in metres from land of some waypoint or position of the path.
     near: f64,
     land_margin: f64,
     safety_margin: f64,
@@ -83,8 +83,7 @@ const QUAYS: Waters = Waters {
     legs: 120.0..350.0,
 };
 
-/// A path of two or three legs on water, not far from land, and targets that are near it at some
-/// time.
+/// Random path of two or three legs on water near land, with targets that approach it at some time.
 fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let land = Land {
@@ -173,7 +172,7 @@ fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
     }
 }
 
-/// A straight path through Munkholmen, which no file may ask for: a planner is asked all the same.
+/// Straight path through Munkholmen. Scenario files reject it, but the planners must handle it.
 fn across_the_island(map: &Arc<Map>, seed: u64) -> Option<Scenario> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut scenario = scene(map, &FJORD, seed);
@@ -203,7 +202,7 @@ fn scenes(waters: &Waters) -> Vec<Scenario> {
     (0..count()).map(|seed| scene(&map, waters, seed)).collect()
 }
 
-/// Plans scenes and holds what is claimed of every plan; prints what it took.
+/// Plans the scenes, checks every plan, and prints the time taken.
 fn hold(name: &str, scenes: &[Scenario]) {
     let (mut solved, mut near) = (0, 0);
     let (mut milliseconds, mut costs) = (Vec::new(), Vec::new());
@@ -245,11 +244,11 @@ fn an_island_in_the_way_is_sailed_round() {
     hold("across the island", &scenes);
 }
 
-/// How many times the cheapest the graph's plan may cost among several targets, where the search
-/// makes haste.
+/// Maximum cost of the graph's plan relative to the optimum for several targets under a weighted
+/// search.
 const HASTE: f64 = 1.5;
 
-/// The same graph without the bound.
+/// Tests the same graph without the bound.
 #[test]
 fn a_star_costs_what_dijkstra_costs_among_land() {
     let (mut compared, mut worst) = (0, 0.0_f64);

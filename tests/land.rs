@@ -1,4 +1,5 @@
-//! Land from the scenario file on: positions in degrees, maps, and what is not to be on land.
+//! Tests of land from the scenario file: positions in degrees, maps, and objects that must not be
+//! on land.
 
 use std::path::Path;
 
@@ -7,7 +8,7 @@ use searoom::pipeline;
 use searoom::planner::PlannerKind;
 use searoom::scenario::{Compliance, Scenario, ScenarioError};
 
-/// South-west of Munkholmen, in the middle of the fjord, in metres and on the map.
+/// Scenario south-west of Munkholmen, in the middle of the fjord, in metres and on the map.
 const SCENARIO: &str = r#"
 title = "past Munkholmen"
 horizon_s = 600
@@ -43,7 +44,7 @@ fn maps() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("maps")
 }
 
-/// A folder with the scenario and the harbour.
+/// Folder with the scenario and the harbour.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let map = maps().join("trondheim-harbour.geojson");
@@ -57,7 +58,7 @@ fn read(folder: &Path, text: &str) -> Result<Scenario, ScenarioError> {
     Scenario::read(&file)
 }
 
-/// `path: found; allowed` of every fault.
+/// Formats every fault as `path: found; allowed`.
 fn faults(folder: &Path, text: &str) -> Vec<String> {
     match read(folder, text) {
         Err(ScenarioError::Faults { faults, .. }) => faults.iter().map(|f| f.to_string()).collect(),
@@ -85,7 +86,7 @@ fn degrees_and_metres_are_one_plane_and_the_map_lies_on_it() {
     let land = scenario.land.expect("land");
     assert_eq!((land.margin, land.map.polygons().len()), (10.0, 27));
     assert!(land.map.contains(at(63.4512, 10.3833)), "Munkholmen");
-    // without a map nothing is known of land, and degrees do as well
+    // without a map there is no land, and positions in degrees are also valid
     let bare = read(folder.path(), &SCENARIO.replace("map =", "# map ="));
     assert!(bare.expect("valid").land.is_none());
 }
@@ -155,15 +156,15 @@ fn a_bad_map_is_named_with_its_file_its_feature_and_what_is_allowed() {
             .any(|f| f.contains("features[0]") && f.contains("km from the origin"))
     );
     assert!(found[0].contains("and so in 26 more polygons"), "{found:?}");
-    // positions are far too: all at once
+    // positions are also far: all faults at once
     assert!(
         found.iter().any(|f| f.contains("own_ship.position")),
         "{found:?}"
     );
 }
 
-/// Own hull lies free on both legs, and her bow would sweep to within a metre of an islet on the
-/// way from one course to the other.
+/// Tests a hull that is clear on both legs, but whose bow would sweep to within a metre of an islet
+/// during the turn between them.
 #[test]
 fn a_turn_on_the_spot_beside_an_islet_is_refused_and_judged() {
     let folder = folder();
@@ -209,19 +210,19 @@ mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 200, north_
     assert_eq!(found.len(), 1, "{found:?}");
     let expected = "mission.waypoints[1]: found a turn on the spot that takes own hull to 0.7 m from land; allowed: at least 2 m";
     assert!(found[0].contains(expected), "{found:?}");
-    // to the other side the bow sweeps over water; the stern does, too
+    // on the other side the bow sweeps over water, and so does the stern
     let south = "{ east_m = 200, north_m = -300 }";
     read(folder.path(), &text("path-time", 90.0, south)).expect("valid");
-    // back along the same leg: half a turn, to whichever side
+    // back along the same leg: half a turn to either side
     let back = "{ east_m = 100, north_m = 0 }";
     let found = faults(folder.path(), &text("path-time", 90.0, back));
     assert!(
         found[0].contains("waypoints[1]: found a turn on the spot"),
         "{found:?}"
     );
-    // who is planned around the corner turns on an arc
+    // the space-time planner turns on an arc around the corner
     let mut scenario = read(folder.path(), &text("space-time", 90.0, north)).expect("valid");
-    // a planner that is not told: the judge finds it
+    // for a planner without this check, the independent checker finds it
     scenario.planner = PlannerKind::PathTime;
     let wrong = pipeline::run(scenario)
         .evaluation
@@ -237,7 +238,7 @@ mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 200, north_
 #[test]
 fn a_start_and_a_path_on_land_are_named_together() {
     let folder = folder();
-    // the waypoint in the middle moved behind Munkholmen, the start onto the quay
+    // the middle waypoint moved behind Munkholmen, the start onto the quay
     let text = SCENARIO
         .replace(
             "{ east_m = 0, north_m = 780 }",
@@ -260,7 +261,7 @@ fn a_start_and_a_path_on_land_are_named_together() {
     );
     assert!(found[1].contains("m are missing at east ") && found[1].contains("(lat 63.45"));
     assert!(found[1].contains("at least 14.0 m from the leg to land"));
-    // near, not on it
+    // near land, not on it
     let near = SCENARIO.replace("land_margin_m = 10", "land_margin_m = 500");
     let found = faults(folder.path(), &near);
     assert!(
@@ -269,8 +270,8 @@ fn a_start_and_a_path_on_land_are_named_together() {
     );
 }
 
-/// The bends of the canal are tighter than own ship turns: no motion that follows its path is clear
-/// of land.
+/// Tests a canal whose bends are tighter than own ship's turning radius: no motion along its path
+/// is clear of land.
 #[test]
 fn a_path_that_cannot_be_sailed_clear_of_land_has_no_plan_rather_than_one_ashore() {
     let file = concat!(

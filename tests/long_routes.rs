@@ -1,14 +1,13 @@
-//! Conflicts far apart along a route of many legs.
+//! Tests of distant conflicts along a route of many legs.
 
 use searoom::pipeline;
 use searoom::planner::Outcome;
 use searoom::scenario::Scenario;
 
-/// Metres of a leg.
+/// Length of a leg in metres.
 const LEG: f64 = 500.0;
 
-/// A zigzag of `legs` legs at 5 m/s, and a ship across every fourth leg, when own ship is due
-/// there.
+/// A zigzag of `legs` legs at 5 m/s. A ship crosses every fourth leg when own ship is due there.
 fn scenario(legs: usize) -> Scenario {
     let mut points = vec![(0.0, 0.0)];
     for leg in 0..legs {
@@ -45,7 +44,8 @@ fn scenario(legs: usize) -> Scenario {
     Scenario::read(&file).expect("valid")
 }
 
-/// One manoeuvre around all of them would be hundreds of times as dear, or none would be found.
+/// Tests conflicts far apart. One manoeuvre around all of them would cost hundreds of times as
+/// much, or would not be found.
 #[test]
 fn conflicts_that_are_far_apart_are_left_and_met_one_after_another() {
     for legs in [8, 20, 40] {

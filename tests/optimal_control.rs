@@ -1,4 +1,4 @@
-//! The optimal-control planner from the scenario to the verdict, and what its judge finds.
+//! Tests of the optimal-control planner from scenario to verdict, and of its independent checker.
 
 mod optimal_control_scenes;
 
@@ -42,7 +42,7 @@ fn reason(run: &Run) -> &NoPlan {
     }
 }
 
-/// Figure 9 with other targets.
+/// Returns figure 9 with other targets.
 fn with_targets(targets: &str) -> String {
     let patient = FIGURE_9.replace("[planner]", "[planner]\ndeadline_s = 300.0");
     let own = patient.split("[[targets]]").next().expect("own ship first");
@@ -84,7 +84,7 @@ fn figure_9_is_solved_verified_and_written() {
     ] {
         assert!(nodes.iter().all(|n| n[key].is_number()), "{key}");
     }
-    // she turns to port first: against the clock, which is negative there
+    // own ship turns to port first: counter-clockwise, which is negative there
     assert!(nodes[1]["yaw_rate_deg_per_s"].as_f64().expect("a number") < 0.0);
     let back: PlanDocument = serde_json::from_str(&text).expect("reads back");
     let samples = back.trajectory.expect("a plan").samples;
@@ -122,7 +122,7 @@ fn words(found: &Evaluation) -> Vec<String> {
     words
 }
 
-/// The plan of figure 9 with something changed, judged anew.
+/// Re-evaluates the plan of figure 9 after a change.
 fn judged(run: &Run, change: impl Fn(&mut Vec<Node>)) -> Vec<String> {
     let plan = run.planned.outcome.plan().expect("a plan");
     let mut nodes = plan.trajectory.steered().expect("forces").nodes().to_vec();
@@ -137,20 +137,19 @@ fn every_way_to_spoil_a_plan_is_found() {
     assert_eq!(judged(&run, |_| ()), Vec::<String>::new());
     assert_eq!(judged(&run, |n| n[40].force.x = 2.1), ["surge", "the"]);
     assert_eq!(judged(&run, |n| n[40].moment = -1.6)[0], "yaw");
-    // a force of a thousandth of a newton more, and a millimetre beside the way
+    // an increased force, and a position a millimetre beside the path
     assert_eq!(judged(&run, |n| n[40].force.x += 1e-2), ["the"]);
     assert_eq!(judged(&run, |n| n[40].pose.position.y += 1e-3)[0], "the");
     assert_eq!(judged(&run, |n| n[40].yaw_rate += 1e-3)[0], "the");
     assert_eq!(judged(&run, |n| n[0].pose.position.y += 1e-5)[0], "start");
     assert_eq!(judged(&run, |n| n[0].velocity.x += 1e-6)[0], "start");
     assert_eq!(judged(&run, |n| n.truncate(60))[0], "end");
-    // everything a little aside: the ship still moves like that, but starts elsewhere and meets a
-    // set
+    // all nodes shifted: the dynamics still hold, but the start differs and a set is entered
     let aside = judged(&run, |n| {
         n.iter_mut().for_each(|n| n.pose.position.y -= 0.01)
     });
     assert_eq!(aside, ["start", "set"]);
-    // sets of a thousandth more, met between the nodes or at them
+    // sets larger by a thousandth, entered between the nodes or at them
     let mut wider = run.clone();
     for target in &mut wider.scenario.targets {
         if let searoom::target::Motion::Ellipses { initial, .. } = &mut target.motion {
@@ -172,7 +171,7 @@ fn every_way_to_spoil_a_plan_is_found() {
     );
 }
 
-/// The cheapest of the starts that need no other planner.
+/// Cheapest of the starts that need no other planner.
 fn best(task: &Task<CyberShip2>) -> Option<Attempt> {
     family(task)
         .into_iter()
@@ -181,12 +180,12 @@ fn best(task: &Task<CyberShip2>) -> Option<Attempt> {
         .min_by(|a, b| a.objective.total_cmp(&b.objective))
 }
 
-/// How many of something, where the variable does not say it.
+/// Reads a count from an environment variable, with a default.
 fn asked(variable: &str, default: usize) -> usize {
     std::env::var(variable).map_or(default, |text| text.parse().expect("a number"))
 }
 
-/// The least `g - 1` of any set along the cubics, looked at so often per interval.
+/// Least `g - 1` of any set along the cubics, with the given number of samples per interval.
 fn least_margin(motion: &Steered, keep_outs: &[KeepOut]) -> f64 {
     const LOOKS: usize = 300;
     let mut least = f64::INFINITY;
@@ -205,8 +204,8 @@ fn least_margin(motion: &Steered, keep_outs: &[KeepOut]) -> f64 {
     least
 }
 
-/// By how much the ship, from every node on with its forces, is off the next one: the most of any
-/// component, metres, radians, m/s and rad/s. Runge and Kutta's method with 500 steps.
+/// Largest defect of any component, in metres, radians, m/s and rad/s. Integrates the ship from
+/// every node to the next with the Runge–Kutta method in 500 steps.
 fn largest_defect(motion: &Steered) -> f64 {
     const STEPS: usize = 500;
     let ship = CyberShip2::EXACT;
@@ -239,8 +238,8 @@ fn largest_defect(motion: &Steered) -> f64 {
     largest
 }
 
-/// `SEAROOM_CONTROL` scenes with three ellipsoids and as many with six, every one aimed at own
-/// ship, through the whole planner.
+/// Runs `SEAROOM_CONTROL` scenes with three ellipsoids and as many with six through the whole
+/// planner. Every ellipsoid is directed at own ship.
 #[test]
 fn random_scenes_have_plans_that_are_the_ships_and_clear_between_the_nodes() {
     let desired = scenes::desired();
@@ -278,7 +277,7 @@ fn random_scenes_have_plans_that_are_the_ships_and_clear_between_the_nodes() {
     }
 }
 
-/// What a run was asked, for the smooth model of its ship, on the grid of its plan.
+/// Repeats the problem of a run for the smooth ship model, on the grid of its plan.
 fn objectives_of_wandering_starts<V: Manoeuvring>(
     run: &Run,
     vessel: &V,
@@ -313,7 +312,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
         .collect()
 }
 
-/// Every scenario in the tree whose planner is this one.
+/// Every scenario in the repository that uses this planner.
 fn shipped() -> Vec<(String, String)> {
     let mut folders = vec![std::path::PathBuf::from("scenarios")];
     let mut found = Vec::new();
@@ -334,7 +333,7 @@ fn shipped() -> Vec<(String, String)> {
     found
 }
 
-/// From `SEAROOM_STARTS` wandering starts on the plan's own grid.
+/// Tests `SEAROOM_STARTS` random starts on the plan's own grid.
 #[test]
 fn no_random_start_finds_a_cheaper_plan_of_any_shipped_scenario() {
     let starts = asked("SEAROOM_STARTS", 10);
@@ -356,7 +355,7 @@ fn no_random_start_finds_a_cheaper_plan_of_any_shipped_scenario() {
     }
 }
 
-/// A problem whose last state is drawn to a goal besides.
+/// Problem with an additional terminal cost toward a goal.
 struct Drawn<'a> {
     stages: Transcription<'a, CyberShip2>,
     goal: Vector,
@@ -407,8 +406,8 @@ impl StageProblem<6, 3> for Drawn<'_> {
     }
 }
 
-/// CasADi with IPOPT on the same transcription ends at 7.844853 or, passing otherwise, at 7.808142;
-/// the margin of the rows costs a ten-thousandth.
+/// Compares with CasADi and IPOPT on the same transcription. They reach 7.844853, or 7.808142 with
+/// another homotopy class. The margin of the constraints costs a ten-thousandth.
 #[test]
 fn another_solver_finds_the_same_optimum() {
     let desired = scenes::desired();
@@ -460,7 +459,7 @@ fn a_controller_goes_on_warm_and_stays_clear() {
         let plan = &horizon.plan().profile;
         let noise = StateVector::new(0.01, 0.01, 0.01, 0.005, 0.005, 0.002);
         let mut state = plan.states[1] + noise.map(|n| n * rng.random_range(-1.0..1.0));
-        // a measurement inside a set is for nobody to plan from
+        // no plan exists from a measurement inside a set
         let time = task.time(1);
         for keep in &keep_outs {
             while keep.at(time).level(Vector::new(state[0], state[1])) < 1.02 {
@@ -488,7 +487,7 @@ fn a_controller_goes_on_warm_and_stays_clear() {
 
 #[test]
 fn what_cannot_be_planned_is_said_with_the_place() {
-    // a set over the start
+    // a set that covers the start
     let over = with_targets(
         "[[targets]]\nname = \"over\"\n\
          initial_set = { center_m = [0.5, 0.0], shape_m2 = [[1.0, 0.0], [0.0, 1.0]] }\n\
@@ -499,7 +498,7 @@ fn what_cannot_be_planned_is_said_with_the_place() {
         panic!("{:?}", reason(&found));
     };
     assert!(target == "over" && (depth - 0.5).abs() < 1e-9);
-    // one that grows faster than she can flee
+    // a set that grows faster than own ship can leave it
     let growing = with_targets(
         "[[targets]]\nname = \"growing\"\n\
          initial_set = { center_m = [9.0, 0.0], shape_m2 = [[1.0, 0.0], [0.0, 1.0]] }\n\
@@ -517,7 +516,7 @@ fn what_cannot_be_planned_is_said_with_the_place() {
     };
     assert!(target == "growing" && *time > 5.0 && *depth > 1.0 && *starts > 5);
     assert!(found.evaluation.is_none());
-    // the goal inside a set for the whole horizon: as near as may be
+    // the goal is inside a set for the whole horizon: approach it as closely as possible
     let goal = with_targets(
         "[[targets]]\nname = \"on the goal\"\n\
          initial_set = { center_m = [20.0, 10.0], shape_m2 = [[4.0, 0.0], [0.0, 4.0]] }\n\
@@ -537,7 +536,8 @@ fn what_cannot_be_planned_is_said_with_the_place() {
     assert!(away > 2.9 && away < 4.5, "{away}");
 }
 
-/// Scenario files are read more strictly; the library is given anything.
+/// Tests settings that permit no plan. Scenario files are validated more strictly than library
+/// input.
 #[test]
 fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
     let (own, desired) = (scenes::own_ship(), scenes::desired());
@@ -571,8 +571,7 @@ fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
             other => panic!("{settings:?}: {other:?}"),
         }
     }
-    // nothing costs anything, or less than nothing: whatever comes of it, no plan that costs what
-    // is no number
+    // zero or negative weights: any result is allowed, except a plan with a NaN cost
     for weight in [0.0, -1.0, f64::NAN] {
         let settings = ControlSettings {
             state_weights: StateVector::repeat(weight),
@@ -595,8 +594,8 @@ fn a_budget_is_kept() {
     assert!(begun.elapsed() < Duration::from_secs(20));
 }
 
-/// A grid of 2,000 intervals takes some milliseconds for a step: the clock is read more often than
-/// the starts are made.
+/// Tests the budget on a grid of 2,000 intervals. One step takes some milliseconds, so the clock
+/// must be read within a start.
 #[test]
 fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
     let fine = FIGURE_9.replace("intervals = 50", "intervals = 2000");
@@ -608,7 +607,7 @@ fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
         "{:?}",
         found.plan_time
     );
-    // doubled until some starts end in time and others do not, whatever the machine
+    // doubled until some starts end in time and others do not, on any machine
     let mut budget = 0.1;
     let best = loop {
         let text = fine.replace("[planner]", &format!("[planner]\ndeadline_s = {budget}"));
@@ -616,7 +615,7 @@ fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
         if found.planned.outcome.plan().is_some() {
             break found;
         }
-        // nothing to bring to a finer grid: all of the budget goes into the starts
+        // no refinement to a finer grid: the starts use the whole budget
         assert!(found.plan_time >= Duration::from_secs_f64(budget));
         budget *= 1.3;
         assert!(budget < 300.0);
@@ -624,13 +623,13 @@ fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
     assert!(best.evaluation.as_ref().is_some_and(Evaluation::verified));
 }
 
-/// A step may need many trial points.
+/// Tests a step with many trial points.
 #[test]
 fn the_clock_is_read_between_the_trial_points_of_a_step() {
     let (desired, keep_outs) = (scenes::desired(), scenes::figure_9());
     let task = scenes::task(&desired, &keep_outs, 50);
     let problem = task.transcription();
-    // how often the clock was read, and how it ended, where it strikes at the n-th reading
+    // number of clock readings and result if the deadline strikes at the n-th reading
     let until = |guess: &Profile, strikes: usize| {
         let mut at = Iterate::guess(guess.states.clone(), guess.forces.clone());
         let mut work = Workspace::new(&problem);
@@ -643,7 +642,7 @@ fn the_clock_is_read_between_the_trial_points_of_a_step() {
         let report = solve(&problem, &mut at, &mut work, &settings, &keep_going);
         (readings.get(), report)
     };
-    // one reading a step, where the first trial point is always taken
+    // one reading per step if the first trial point is always accepted
     let guesses = family(&task).into_iter().map(|(_, guess)| guess);
     let (guess, all) = guesses
         .map(|guess| (until(&guess, usize::MAX), guess))
@@ -656,7 +655,8 @@ fn the_clock_is_read_between_the_trial_points_of_a_step() {
     }
 }
 
-/// Gauss–Newton steps get nowhere where hardly anything but the forces costs.
+/// Tests weights for which almost only the forces have a cost; Gauss–Newton steps do not progress
+/// there.
 #[test]
 fn weights_of_any_sizes_are_solved() {
     for weights in [
@@ -674,7 +674,7 @@ fn weights_of_any_sizes_are_solved() {
 
 #[test]
 fn what_is_not_solved_comes_with_what_may_help() {
-    // no step of half a million seconds is solved, nor the ship found that makes 20 m/s
+    // a step of half a million seconds cannot be solved, nor can the model reach 20 m/s
     let patient = FIGURE_9.replace("[planner]", "[planner]\ndeadline_s = 300.0");
     let long = run(&patient.replace("horizon_s = 100.0", "horizon_s = 1000000.0"));
     let NoPlan::Unsolved { starts, .. } = reason(&long) else {
@@ -713,7 +713,8 @@ fn free_water_one_interval_and_full_scale_are_planned() {
     assert!(report.start_intervals == 1 && report.intervals > 5);
     let said = plan_text(&coarse);
     assert!(said.contains("intervals, 1 were too coarse") && said.contains("on 1 intervals: "));
-    // 88 m, 8.37 times as slow: the same figure at 70 times its size, with the weights of the ship
+    // ship of 88 m, with times longer by 8.37: figure 9 at 70 times its size, with the weights of
+    // the ship
     let full = r#"
 title = "full scale"
 horizon_s = 836.66
@@ -734,7 +735,7 @@ velocity_set = { center_mps = [0.25, 0.17], shape_m2_per_s2 = [[0.016, 0.0], [0.
     let plan = full.planned.outcome.plan().expect("a plan");
     let motion = plan.trajectory.steered().expect("forces");
     let largest = |part: fn(&Node) -> f64| motion.nodes().iter().map(part).fold(0.0, f64::max);
-    // she is driven by what drives her: some tenths of her limits of 686 kN and 514 kN
+    // the forces are some tenths of the limits of 686 kN and 514 kN
     assert!(largest(|n| n.force.x) > 5e4, "{}", largest(|n| n.force.x));
     assert!(largest(|n| n.force.y.abs()) > 2e4);
     let axes = |run: &Run| plan_figure(run).svg();
@@ -754,9 +755,9 @@ velocity_set = { center_mps = [0.25, 0.17], shape_m2_per_s2 = [[0.016, 0.0], [0.
     }
 }
 
-/// By Froude's law a scene at another size is the same problem: lengths grow with the scale, times
-/// and speeds with its root, forces with its cube and moments with its fourth power, and the stage
-/// cost with the time.
+/// Tests Froude scaling, under which a scene of another size is the same problem. Lengths scale
+/// linearly, times and speeds with the square root, forces with the cube, moments with the fourth
+/// power, and the stage cost with the time.
 #[test]
 fn a_scaled_scene_has_the_scaled_plan() {
     let scale = 30.0 / 1.255;
@@ -786,8 +787,7 @@ fn a_scaled_scene_has_the_scaled_plan() {
              beam_m = {}, turning_radius_m = {}, safety_margin_m = 0 }}\n\
              mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = {}, north_m = {} }}], speed_mps = {} }}\n\
              [planner]\nkind = \"optimal-control\"\ndeadline_s = 300\n",
-            // before the desired trajectory ends, where rounding decides on which side of it an
-            // instant lies
+            // before the desired trajectory ends, where rounding decides the side of an instant
             97.0 * v,
             0.2 * v,
             1.255 * s,
@@ -846,7 +846,7 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
     let document = PlanDocument::of(&found);
     let control = document.optimal_control.as_ref().expect("forces");
     assert_eq!(control.enclosed_targets, ["box"]);
-    // clear of the box itself, too
+    // also clear of the box itself
     let plan = found.planned.outcome.plan().expect("a plan");
     for k in 0..=1000 {
         let time = 0.1 * f64::from(k);
@@ -857,7 +857,7 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
 
 #[test]
 fn a_judge_without_its_ship_knows_no_plan() {
-    // what the judge is given is what it uses: a ship of another size does not make this way
+    // the checker uses the given model: a ship of another size does not make this motion
     let run = run(FIGURE_9);
     let plan = run.planned.outcome.plan().expect("a plan");
     let full = VesselKind::CyberShip2.exact(88.0);

@@ -1,4 +1,4 @@
-//! By how much the outer ellipse is larger than the sum that it contains: the table in
+//! Measures the excess of the outer ellipse over the sum that it contains: the table in
 //! `docs/sets.md`.
 //!
 //! `cargo test --no-default-features --test outer_excess -- --nocapture` prints it.
@@ -37,7 +37,7 @@ fn rectangle(along: f64, across: f64) -> ConvexPolygon {
     ConvexPolygon::hull(&corners).expect("finite")
 }
 
-/// The smallest ellipses around two rectangles, against the polytope of the rectangles.
+/// Compares the smallest ellipses around two rectangles with the polytope of the rectangles.
 fn polytope(name: &str, initial: ConvexPolygon, velocity: ConvexPolygon) -> String {
     let inner = PolytopeObstacle::new(name, initial, velocity);
     let outer = EllipsoidObstacle::outer_of(&inner);

@@ -1,4 +1,4 @@
-//! The path-time planner against a fine grid, on random scenes: the least time is exact.
+//! Tests of the path-time planner against a fine grid on random scenes: the least time is exact.
 //!
 //! `SEAROOM_PATH_TIME` is the number of scenes (300 if not set).
 
@@ -20,7 +20,7 @@ use searoom::target::VelocitySpell;
 use searoom::trajectory::{DesiredTrajectory, PathNetwork, Segment};
 use searoom::vessel::{Hull, OwnShip};
 
-/// Kinds of obstacles that a scene may hold.
+/// Kinds of obstacles in a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kinds {
     Exact,
@@ -67,7 +67,7 @@ fn draw(seed: u64, kinds: Kinds) -> Drawn {
     let count = rng.random_range(1..7);
     let obstacles = (0..count)
         .map(|i| {
-            // met somewhere on the path, some time on
+            // the target meets a random point of the path at a random time
             let meeting = path.at(length * rng.random_range(0.05..1.0)).1;
             let time = horizon * rng.random_range(0.0..0.7);
             let fast = rng.random_range(0.0..8.0);
@@ -159,7 +159,7 @@ fn plan_within(
     })
 }
 
-/// Two hundred sets cross a path of five legs. Without time, only a few lines are tested and
+/// Tests two hundred sets across a path of five legs with no time: only a few lines are tested and
 /// reported.
 #[test]
 fn out_of_time_the_search_looks_at_few_lines() {
@@ -193,7 +193,8 @@ fn out_of_time_the_search_looks_at_few_lines() {
     assert!(explored.node_count() <= 100, "{}", explored.node_count());
 }
 
-/// Straight, along the path in order, not too fast, clear of every set.
+/// Checks that the plan is straight, follows the path in order, respects the speed limit, and is
+/// clear of every set.
 fn assert_sound(drawn: &Drawn, segments: &[Segment], seed: u64) {
     let mut run = 0.0;
     let mut time = 0.0;
@@ -331,7 +332,7 @@ fn the_least_space_time_error_is_about_that_of_a_fine_grid() {
         expanded[0] += planned.stats.expanded;
         expanded[1] += dijkstra.stats.expanded;
         if let Some(grid) = grid {
-            // a grid cannot follow the schedule: what a piece of lag costs is no merit of the plan
+            // a grid cannot follow the schedule: subtract the cost of the resulting lag
             let piece = path.length() / 400.0;
             ratios.push((
                 (found.cost + piece * piece) / (grid + piece * piece),
@@ -360,8 +361,8 @@ fn the_least_space_time_error_is_about_that_of_a_fine_grid() {
         "{} of {count} compared",
         ratios.len()
     );
-    // on one leg the graph has the best profile; over corners of the path the nearest leg changes
-    // and it may not
+    // on one leg the graph contains the best profile; across corners of the path it may not,
+    // because the nearest leg changes
     assert!(
         at(0.5) < 1.0 && at(0.95) < 1.001 && at(1.0) < 1.1,
         "{:?}",
@@ -369,7 +370,7 @@ fn the_least_space_time_error_is_about_that_of_a_fine_grid() {
     );
 }
 
-/// Who is outside the polygons is outside the ellipsoids.
+/// Tests ellipsoids: positions outside the outer polygons are outside the ellipsoids.
 #[test]
 fn plans_keep_clear_of_ellipsoids() {
     let (mut solved, mut compared, mut later) = (0, 0, 0);
@@ -437,7 +438,7 @@ fn a_start_that_is_swept_later_is_left_in_time() {
         20.0,
         Vector::new(0.0, 5.0),
     );
-    // and a gate on the path that opens at 40 s
+    // a gate on the path that opens at 40 s
     let gate = square(
         "gate",
         Vector::new(100.0, 0.0),
@@ -448,7 +449,7 @@ fn a_start_that_is_swept_later_is_left_in_time() {
     let planned = plan(&drawn, SearchKind::AStar, Objective::Time);
     let found = planned.outcome.plan().expect("a plan");
     assert_sound(&drawn, found.trajectory.segments(), 0);
-    // full speed from the gate's end on
+    // full speed from the end of the gate
     assert!(
         (found.trajectory.end_time() - (40.0 + 200.0 / 5.0 + 30.0 / 5.0)).abs() < 1e-6
             || found.trajectory.end_time() < 86.0 + 1e-6
@@ -490,7 +491,7 @@ fn who_bars_the_way_is_named_and_until_when() {
         found.contains("is there or ahead up to the horizon"),
         "{found}"
     );
-    // comes down the path: no way past her, and away she sails
+    // the target approaches along the path and leaves no way past it
     let found = reason(vec![square(
         "oncoming",
         at(290.0, 0.0),
@@ -501,7 +502,7 @@ fn who_bars_the_way_is_named_and_until_when() {
         found.contains("'oncoming'") && found.contains("until"),
         "{found}"
     );
-    // sails on ahead of her, slower than she has to be
+    // the target moves ahead on the path, slower than required
     let found = reason(vec![square("slower", at(60.0, 0.0), 15.0, at(1.0, 0.0))]);
     assert!(
         found.contains("'slower'") && found.contains("is there or ahead up to the horizon"),
@@ -529,7 +530,7 @@ fn who_bars_the_way_is_named_and_until_when() {
     );
 }
 
-/// Every way through a network that sails no leg twice, as waypoints.
+/// Lists every route through a network that uses no leg twice, as waypoints.
 fn ways(network: &PathNetwork) -> Vec<Vec<Vector>> {
     fn follow(
         n: &PathNetwork,
@@ -565,7 +566,7 @@ fn ways(network: &PathNetwork) -> Vec<Vec<Vector>> {
     out
 }
 
-/// One search over all paths finds what the best of every single way is.
+/// Tests that one search over all paths equals the best result of the single routes.
 #[test]
 fn alternatives_are_as_good_as_the_best_way_through_them() {
     let (mut switched, mut solved) = (0, 0);
@@ -575,7 +576,7 @@ fn alternatives_are_as_good_as_the_best_way_through_them() {
         drawn.path.points = [(0.0, 0.0), (150.0, 0.0), (300.0, 60.0), (450.0, 0.0)]
             .map(|(x, y)| Vector::new(x, y))
             .to_vec();
-        // met on the path that they were not drawn for as well as on others
+        // targets also meet alternative paths for which they were not drawn
         let mut aside = |x: f64| Vector::new(x, rng.random_range(-140.0..140.0));
         let main = drawn.path.points.clone();
         let alternatives = vec![
@@ -637,7 +638,7 @@ fn alternatives_are_as_good_as_the_best_way_through_them() {
     assert!(solved > 100 && switched > 30, "{solved} {switched}");
 }
 
-/// A short way past a ship that may come over it, and a long one around.
+/// A short path past a ship that may cross it, and a long path around.
 #[test]
 fn risk_is_weighed_against_length() {
     let points = [(0.0, 0.0), (300.0, 0.0)].map(|(x, y)| Vector::new(x, y));
@@ -647,7 +648,7 @@ fn risk_is_weighed_against_length() {
             .to_vec(),
     ];
     let longer = 2.0 * 150.0_f64.hypot(100.0) - 300.0;
-    // over the short way for good at every velocity but the middle one and those near it
+    // covers the short path permanently at every velocity except those near the middle
     let initial = ConvexPolygon::hull(&[Vector::new(140.0, -40.0), Vector::new(160.0, -40.0)]);
     let velocity = ConvexPolygon::hull(&[Vector::new(0.0, -1.0), Vector::new(0.0, 2.0)]);
     let wanderer: Obstacle = PolytopeObstacle::new(

@@ -1,6 +1,6 @@
-//! What the documents show is what the program does.
+//! Checks that the examples in the documentation match the program's output.
 //!
-//! The tables in the README are written anew by
+//! To rewrite the tables in the README:
 //!
 //! ```text
 //! SEAROOM_UPDATE_README=1 cargo test --release --no-default-features --test readme
@@ -34,7 +34,7 @@ fn read(name: &str) -> String {
     std::fs::read_to_string(file(name)).expect("a document of the project")
 }
 
-/// What the program prints.
+/// Output of the program.
 fn searoom(args: &[&str]) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_searoom"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
@@ -45,8 +45,7 @@ fn searoom(args: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The words of each line without rules and without the times, which are before the last two facts
-/// of a row.
+/// Words of each line without table rules and times; the times precede the last two columns.
 fn untimed(table: &str) -> Vec<Vec<&str>> {
     table
         .lines()
@@ -65,7 +64,7 @@ fn untimed(table: &str) -> Vec<Vec<&str>> {
         .collect()
 }
 
-/// The contents of the blocks of a language.
+/// Contents of the code blocks in a language.
 fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
     let fence = format!("```{language}\n");
     text.split(&fence)
@@ -119,7 +118,7 @@ fn the_scenarios_in_the_documents_are_sound() {
     assert_eq!(both.targets.len(), scenario.targets.len() + 3);
 }
 
-/// The README's example, line by line.
+/// Example of the README, line by line.
 fn example() -> Result<(), Box<dyn std::error::Error>> {
     let scenario = searoom::scenario::Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
     let run = searoom::pipeline::run(scenario);
@@ -138,7 +137,7 @@ fn the_example_in_the_readme_runs() {
     example().expect("a scenario without faults");
 }
 
-/// A key that is none, in every table of a scenario: the program answers with those that are.
+/// Unknown keys in every table of a scenario: the error lists the valid keys.
 const NO_KEYS: &str = r#"
 title = "A"
 horizon_s = 400.0
@@ -154,7 +153,7 @@ targets = [
 ]
 "#;
 
-/// Tables of a scenario, where a key that is none was put.
+/// Number of tables of a scenario with an unknown key.
 const TABLES: usize = 14;
 
 #[test]
@@ -166,7 +165,7 @@ fn the_guide_has_every_field_of_a_scenario() {
     for fault in unknown {
         let keys = fault.allowed.strip_prefix("one of ").expect("a list");
         for key in keys.split(", ") {
-            // the guide says once that knots may stand for metres per second
+            // the guide states once that knots may replace metres per second
             let key = &key.replace("_kn", "_mps");
             let is_word = |text: &str| {
                 let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
@@ -185,7 +184,7 @@ fn the_page_on_comparisons_has_every_column() {
     }
 }
 
-/// All the pictures that the documents show, bytes together.
+/// Maximum total size of all images in the documentation, in bytes.
 const PICTURES: u64 = 1_000_000;
 
 #[test]
@@ -201,7 +200,7 @@ fn the_gallery_is_small_and_shows_what_there_is() {
     assert!((1..PICTURES).contains(&bytes), "{bytes} bytes");
 }
 
-/// The README and all of docs.
+/// README and all pages in docs.
 fn pages() -> Vec<String> {
     let docs = std::fs::read_dir(file("docs")).expect("a folder");
     let names = docs.map(|e| {

@@ -1,5 +1,5 @@
-//! Ellipsoids, velocity sets one after another, ships that turn and accepted risk, through the
-//! whole pipeline.
+//! Tests of the whole pipeline with ellipsoids, consecutive velocity sets, turning ships and
+//! accepted risk.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use searoom::simulation::{EncounterKind, Placement, random_encounter, random_tra
 use searoom::target::{Motion, Representation};
 use searoom::tolerance;
 
-/// One change of a scenario, by name.
+/// Named change of a scenario.
 type Change = (&'static str, fn(&mut Scenario));
 
 fn turning(scenario: &mut Scenario) {
@@ -64,13 +64,13 @@ fn scenarios(each: u64) -> Vec<Scenario> {
         .collect()
 }
 
-/// The sets of which the obstacles of a run are the level sets.
+/// Whole sets of which the obstacles of a run are the level sets.
 fn whole_sets(run: &Run) -> Vec<&Obstacle> {
     run.whole.iter().collect()
 }
 
-/// Samples, so weaker than the judge, but by the obstacle's own answers: what is claimed along a
-/// plan.
+/// Checks the claims of a plan by the obstacles' own queries at samples. This is weaker than the
+/// independent checker.
 fn assert_claims(name: &str, run: &Run) {
     let Some(plan) = run.planned.outcome.plan() else {
         return;
@@ -129,11 +129,11 @@ fn every_plan_is_clear_of_its_sets_and_takes_no_more_risk_than_it_may() {
     }
 }
 
-/// How many times the cheapest the graph's plan may cost among several targets, where the search
-/// makes haste.
+/// Maximum cost of the graph's plan relative to the optimum for several targets under a weighted
+/// search.
 const HASTE: f64 = 1.5;
 
-/// The bound asks no more than the sets do, whatever they are made of.
+/// Tests that the bound is admissible for all kinds of sets.
 #[test]
 fn a_star_finds_the_cost_of_dijkstra() {
     let scenarios = scenarios(3);
@@ -170,7 +170,7 @@ fn a_star_finds_the_cost_of_dijkstra() {
                         1
                     }
                     (None, None) => 0,
-                    // Dijkstra may exhaust its expansions first
+                    // Dijkstra may exceed its expansions first
                     (Some(_), None) => 0,
                     (None, Some(b)) => panic!("{name}: A* found nothing, Dijkstra {b}"),
                 }
@@ -180,9 +180,9 @@ fn a_star_finds_the_cost_of_dijkstra() {
     }
 }
 
-/// A slab obstacle whose velocities never change, cut in two, is the polytope: the way around it
-/// costs the same in nearly all scenes. In a few the refinement begins from other manoeuvres and
-/// ends in another basin.
+/// Tests a slab obstacle with constant velocities, split in two: it equals the polytope. The cost
+/// is equal in nearly all scenes. In a few, the refinement starts from other manoeuvres and ends in
+/// another local minimum.
 #[test]
 fn cutting_time_hardly_changes_what_a_plan_costs() {
     use searoom::obstacle::SlabObstacle;
@@ -221,13 +221,12 @@ fn cutting_time_hardly_changes_what_a_plan_costs() {
     }
     changes.sort_by(f64::total_cmp);
     assert!(changes.len() > 5, "{changes:?}");
-    // measured: 0.2 % in the middle, 10 % at most
+    // measured: 0.2 % in the median, 10 % at most
     let (middle, most) = (changes[changes.len() / 2], changes[changes.len() - 1]);
     assert!(middle < 0.01 && most < 0.15, "{changes:?}");
 }
 
-/// Each larger than the other on the way to certain safety: the whole set, and the level sets by
-/// risk.
+/// Tests sets in increasing order: level sets by decreasing risk, then the whole set.
 #[test]
 fn a_plan_that_may_take_more_risk_costs_no_more() {
     let scenario = random_encounter(EncounterKind::HeadOn, 1, Placement::Origin)
@@ -250,7 +249,8 @@ fn a_plan_that_may_take_more_risk_costs_no_more() {
     }
 }
 
-/// Flat ones, a point that opens to a segment, a needle: nothing may panic, and plans are verified.
+/// Tests flat ellipses, a point that grows to a segment, and a needle: no panic, and plans are
+/// verified.
 #[test]
 fn degenerate_explicit_ellipses_are_planned_around() {
     let axes = |a: (f64, f64), b: (f64, f64)| [Vector::new(a.0, a.1), Vector::new(b.0, b.1)];

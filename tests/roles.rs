@@ -1,5 +1,4 @@
-//! The judgement of encounters against scenes drawn of a known kind, wherever they lie in the
-//! plane.
+//! Tests of encounter classification on scenes of a known kind anywhere in the plane.
 
 use searoom::colregs::Role;
 use searoom::pipeline::{TargetSets, sets};

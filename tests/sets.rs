@@ -1,5 +1,4 @@
-//! What every obstacle has to answer, held against slow definitions: one suite over all
-//! implementors.
+//! Tests of the common obstacle interface against slow definitions, for all implementors.
 
 mod set_generators;
 
@@ -13,7 +12,7 @@ use set_generators::{directions, ellipsoid, polytope, seeded, segment, slabs, ve
 
 type Draw<O> = fn(&mut ChaCha8Rng) -> O;
 
-/// A point near the section at a time, which is 0 now and then.
+/// Random point near the section at a time, which is sometimes 0.
 fn event<O: SpaceTimeObstacle>(o: &O, rng: &mut ChaCha8Rng) -> (Vector, f64) {
     let time = if rng.random_bool(0.15) {
         0.0
@@ -31,8 +30,8 @@ fn event<O: SpaceTimeObstacle>(o: &O, rng: &mut ChaCha8Rng) -> (Vector, f64) {
     (n * within(a, b) + across * within(c, d), time)
 }
 
-/// Definition: the largest signed distance from a supporting line, by refinement about the best of
-/// many.
+/// Definition: the largest signed distance from a supporting line, found by sampling and
+/// refinement.
 fn searched_distance<O: SpaceTimeObstacle>(o: &O, x: Vector, t: f64) -> f64 {
     let at = |n: Vector| n.dot(&x) - o.support(n, t).value;
     let turned = |n: Vector, by: f64| searoom::frame::direction(heading_of(n) + by);
@@ -66,7 +65,7 @@ fn distance_is_the_best_supporting_line<O: SpaceTimeObstacle + std::fmt::Debug>(
         let (x, t) = event(&o, &mut rng);
         let found = o.signed_distance(x, t);
         let slow = searched_distance(&o, x, t);
-        // the search may miss a narrow peak, never exceed the truth
+        // the search may miss a narrow peak, but never exceeds the true value
         assert!(
             found.distance >= slow - 1e-7,
             "{o:?} {x:?} {t} {slow} {found:?}"
@@ -96,7 +95,7 @@ fn distance_is_the_best_supporting_line<O: SpaceTimeObstacle + std::fmt::Debug>(
     assert!(inside > 100, "{inside}");
 }
 
-/// Definition: the least alpha whose set contains the point, by bisection.
+/// Definition: the least alpha whose set contains the point, found by bisection.
 fn searched_alpha<O: SpaceTimeObstacle>(o: &O, x: Vector, t: f64) -> Option<f64> {
     let contains = |alpha: f64| o.at_risk(1.0 - alpha).contains(x, t);
     if !contains(1.0) {
@@ -124,7 +123,7 @@ fn alpha_is_the_least_scaling<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw
         let o = draw(&mut rng);
         let (x, t) = event(&o, &mut rng);
         let (alpha, depth) = (o.alpha(x, t), o.signed_distance(x, t).distance);
-        // a set without interior has no digits to spare
+        // a set without interior has no margin for rounding
         if depth.abs() < 1e-6 {
             continue;
         }
@@ -164,7 +163,7 @@ fn contact_is_the_first_instant_inside<O: SpaceTimeObstacle + std::fmt::Debug>(d
         }
         if let Some(t) = found {
             assert!(t >= s.start_time && t <= s.end_time() + 1e-9);
-            // there, and not before
+            // inside from this time on, and not before
             assert!(at(t) <= 1e-6, "{o:?} {s:?} {depth} {t} {}", at(t));
             let before = (0..200).map(|i| s.start_time + (t - s.start_time) * f64::from(i) / 200.0);
             assert!(
@@ -192,7 +191,7 @@ fn peak_risk_is_the_largest_sample<O: SpaceTimeObstacle + std::fmt::Debug>(draw:
             sampled <= peak.risk + 1e-9,
             "{o:?} {s:?} {sampled} {peak:?}"
         );
-        // attained nearby, where the sets have an interior to be met in
+        // attained nearby, if the sets have an interior
         let near = directions(8)
             .map(|d| o.risk(s.pose_at(peak.time).position + d * 1e-6, peak.time))
             .fold(at(peak.time), f64::max);
@@ -233,7 +232,7 @@ fn approach_is_the_least_sample<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Dr
                 (there - found.distance).abs() < 1e-6 * (1.0 + 1e-3 * found.time),
                 "{o:?} {x:?} {v:?} {horizon} {found:?} {there}"
             );
-            // none earlier is as near
+            // no earlier sample is as near
             for (t, d) in dense.iter().filter(|(t, _)| *t < found.time - 1e-6) {
                 assert!(
                     *d > found.distance - 1e-7,
@@ -263,7 +262,7 @@ fn risk_levels_are_nested<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>)
             assert!(less <= more + 1e-9 && more <= all + 1e-9, "{o:?} {t}");
             assert!((all - o.support(n, t).value).abs() < 1e-9);
         }
-        // a level that is none accepts nothing
+        // an invalid level accepts no risk
         let all = o.support(Vector::new(1.0, 0.0), t).value;
         for odd in [f64::NAN, -1.0, 2.0] {
             assert_eq!(o.at_risk(odd).support(Vector::new(1.0, 0.0), t).value, all);
@@ -356,8 +355,8 @@ suite!(of_polytopes, polytope);
 suite!(of_ellipsoids, ellipsoid);
 suite!(of_slabs, slabs);
 
-/// Lines and arcs: within a contact the position is in the set, and just before and just after it
-/// is not; what lies between two contacts is outside too.
+/// Tests lines and arcs: during a contact the position is in the set, and just before and after it
+/// is not. Positions between two contacts are also outside.
 #[test]
 fn a_contact_begins_and_ends_where_the_set_does() {
     let mut rng = seeded(505);
@@ -411,8 +410,8 @@ fn a_contact_begins_and_ends_where_the_set_does() {
     );
 }
 
-/// From a time on a set is what it was by a clock that starts then: a polygon exactly, an ellipse
-/// at first exactly and never less.
+/// Tests the remainder of a set from a time on, with a clock that starts then. A polygon is exact.
+/// An ellipse is exact at first and never smaller.
 #[test]
 fn what_remains_of_a_set_goes_on_from_its_section() {
     let mut rng = seeded(506);

@@ -1,4 +1,4 @@
-//! What one kind of set promises beyond the common suite, held against its definition.
+//! Tests of specific set properties beyond the common suite against their definitions.
 
 mod set_generators;
 
@@ -82,7 +82,7 @@ fn alpha_of_a_polytope_is_the_linear_programme() {
 
 #[test]
 fn the_search_for_the_closest_approach_agrees_with_the_closed_form() {
-    // a polytope and the ellipsoid of two flat sets are one set, asked through two kinds
+    // a polytope and the ellipsoid of two flat sets describe the same set
     let mut rng = seeded(202);
     for _ in 0..500 {
         let (a, b) = (vector(&mut rng, 30.0), vector(&mut rng, 1.0));
@@ -107,7 +107,7 @@ fn the_search_for_the_closest_approach_agrees_with_the_closed_form() {
                 "{exact:?} {nearly:?} {a:?} {p:?} {v:?} {x:?} {own:?} {horizon}"
             );
             if exact.distance > 1.0 {
-                // the width rounds the ends off, by some centimetres of the way
+                // the width rounds the ends by some centimetres
                 assert!(
                     (exact.time - nearly.time).abs() < 0.5,
                     "{exact:?} {nearly:?}"
@@ -120,7 +120,7 @@ fn the_search_for_the_closest_approach_agrees_with_the_closed_form() {
 
 #[test]
 fn without_relative_motion_the_spread_alone_approaches() {
-    // the guess of the search is 0 / 0 here
+    // the initial guess of the search is 0 / 0 here
     let circle =
         |center, r: f64| Ellipse::new(center, Matrix2::identity() * r * r).expect("a shape");
     let v = Vector::new(1.0, 2.0);
@@ -136,14 +136,14 @@ fn without_relative_motion_the_spread_alone_approaches() {
         (near.distance - 40.0).abs() < 1e-9 && near.time == 100.0,
         "{near:?}"
     );
-    // from where the target starts, moving as it does
+    // start at the target's position and move with it
     let within = o.closest_approach(Vector::zeros(), v, 100.0);
     assert_eq!((within.distance, within.time), (0.0, 0.0));
 }
 
 #[test]
 fn a_distance_that_falls_for_ever_is_not_attained() {
-    // v on the boundary of V, moving off beside the target
+    // v on the boundary of V, moving away beside the target
     let circle =
         |center, r: f64| Ellipse::new(center, Matrix2::identity() * r * r).expect("a shape");
     let o = EllipsoidObstacle::new(
@@ -159,7 +159,8 @@ fn a_distance_that_falls_for_ever_is_not_attained() {
     assert!(limited.attained && limited.time == 50.0, "{limited:?}");
 }
 
-/// The derivative jumps where the nearest point rounds the end of a needle: chords alone crept.
+/// Tests a derivative that jumps where the nearest point rounds the end of a needle; chords alone
+/// converge too slowly.
 #[test]
 fn beside_the_end_of_a_needle_the_search_still_ends() {
     let a = Vector::new(-28.85, -16.73);
@@ -176,8 +177,8 @@ fn beside_the_end_of_a_needle_the_search_still_ends() {
     assert!(found.distance <= least + 1e-9, "{found:?} {least}");
 }
 
-/// Across a segment of velocities its spread is zero but for rounding, which must not steer the
-/// descent.
+/// Tests a segment of velocities, whose width is zero except for rounding; rounding must not
+/// determine the descent direction.
 #[test]
 fn the_largest_risk_over_a_segment_of_velocities() {
     let at = |x, y| Vector::new(x, y);
@@ -213,8 +214,8 @@ fn the_largest_risk_over_a_segment_of_velocities() {
     );
 }
 
-/// A long hull whose velocities lie along it: faces that alpha hardly moves stand beside one that
-/// it does not move. Against bisection over contacts.
+/// Tests a long hull with velocities along it, against bisection over contacts. Faces that alpha
+/// hardly moves are adjacent to a face that it does not move.
 #[test]
 fn the_largest_risk_where_the_velocities_lie_along_a_face() {
     let mut rng = seeded(231);
@@ -227,7 +228,7 @@ fn the_largest_risk_where_the_velocities_lie_along_a_face() {
             .map(|(x, y): (f64, f64)| ahead * (x * long) + abeam * (y * wide));
         let disc = Ellipse::new(Vector::zeros(), Matrix2::identity() * 1600.0).expect("a shape");
         let initial = hull(&corners).minkowski_sum(&disc.outer_polygon(16));
-        // a course that misses the hull's by what rounding leaves of nothing, and more
+        // a course that differs from the hull's by rounding, and by more
         let course = heading + 10_f64.powf(rng.random_range(-17.0..-8.0));
         let fastest = direction(course) * rng.random_range(5.0..40.0);
         let velocities = hull(&[fastest * 0.01, fastest]);
@@ -270,7 +271,7 @@ fn of_a_flat_minimum_the_earliest_instant_is_told() {
         (past.distance - 5.0).abs() < 1e-12 && (past.time - 18.0).abs() < 1e-12,
         "{past:?}"
     );
-    // and alongside from the start, at the same speed
+    // alongside from the start, at the same speed
     let still = o.closest_approach(Vector::new(0.0, 15.0), Vector::zeros(), 100.0);
     assert!(
         still.time == 0.0 && (still.distance - 5.0).abs() < 1e-12,
@@ -342,7 +343,7 @@ fn every_sum_of_points_is_in_the_outer_ellipse_and_few_others_are_in_the_sum() {
                 }
             }
         }
-        // the sum by its support function, and the outer set contains it
+        // the sum by its support function, contained in the outer set
         let x = o.center(t) + vector(&mut rng, 60.0 + 2.0 * t);
         let excess = directions(2000)
             .map(|n| n.dot(&x) - o.sum_support(n, t))
@@ -350,7 +351,7 @@ fn every_sum_of_points_is_in_the_outer_ellipse_and_few_others_are_in_the_sum() {
         if excess > 1e-6 {
             assert!(!o.sum_contains(x, t), "{o:?} {x:?} {t} {excess}");
         } else if excess < -1.0 {
-            // so much may lie between two of the directions
+            // maximum deviation between two of the directions
             assert!(o.sum_contains(x, t), "{o:?} {x:?} {t} {excess}");
             assert!(o.contains(x, t));
         }
@@ -376,7 +377,7 @@ fn the_area_of_the_sum_is_that_of_its_support_function() {
     for _ in 0..30 {
         let o = ellipsoid(&mut rng);
         let t = rng.random_range(0.0..60.0);
-        // a polygon of tangents, from outside
+        // an outer polygon of tangents
         let n: Vec<Vector> = directions(40_000).collect();
         let h = |i: usize| o.sum_support(n[i % 40_000], t) - n[i % 40_000].dot(&o.center(t));
         let half = (std::f64::consts::TAU / 80_000.0).tan();
@@ -386,7 +387,7 @@ fn the_area_of_the_sum_is_that_of_its_support_function() {
         };
         let slow: f64 = (0..40_000).map(corner).sum();
         let found = o.sum_area(t);
-        // tangents 0.009 degrees apart do not see the width of a needle
+        // tangents 0.009 degrees apart do not resolve the width of a needle
         let reach = (0..40_000).map(h).fold(0.0, f64::max);
         let needle = if slow < 0.3 * reach * reach {
             reach * reach
@@ -542,7 +543,7 @@ fn one_slab_is_the_polytope_and_so_are_slabs_of_one_set() {
     }
 }
 
-/// At t = 0 the cubic is zero all along the line of a segment, and around a point everywhere.
+/// Tests t = 0, where the cubic is zero along the line of a segment and everywhere around a point.
 #[test]
 fn on_the_line_of_a_flat_set_contact_begins_when_it_is_reached() {
     let segment_shape = Matrix2::new(100.0, 0.0, 0.0, 0.0);
@@ -582,7 +583,7 @@ fn numbers_that_overflow_are_contact() {
         ..segment(&mut rng, true)
     };
     assert!(lost.is_valid() && o.first_contact(&lost, 0.0).is_some());
-    // a circle of a metre, run through more often than the digits of the time can tell
+    // a circle of one metre, traversed more often than the resolution of the time
     let whirl = Segment {
         start_time: 10.0,
         speed: 1e30,
@@ -645,7 +646,7 @@ fn velocity_sets_out_of_order_are_refused() {
     );
 }
 
-/// A target that turns as it likes, within its rate, stays in the sets built for that.
+/// Tests a target with arbitrary turns within its rate: it stays in the sets.
 #[test]
 fn a_target_that_turns_stays_in_its_slabs() {
     use searoom::frame::Pose;
@@ -730,8 +731,8 @@ fn degenerate_motion_of_degenerate_sets_is_answered() {
 fn an_arc_against_the_outer_ellipse_errs_early_by_a_hundredth_of_a_micrometre() {
     let circle = Ellipse::new(Vector::zeros(), Matrix2::identity() * 100.0).expect("a shape");
     let o = EllipsoidObstacle::new("x", circle, Ellipse::point(Vector::zeros()));
-    // a circle of 20 m about (30, 0) comes as near as 10 m to the origin: it touches, and a hair
-    // more does not
+    // a circle of 20 m about (30, 0) approaches the origin to 10 m: it touches, and slightly
+    // farther it does not
     for (shift, meets) in [(0.0, true), (-1e-7, true), (1e-7, false)] {
         let arc = Segment {
             start: searoom::frame::Pose::new(Vector::new(30.0 + shift, 20.0), std::f64::consts::PI),

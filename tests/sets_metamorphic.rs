@@ -1,5 +1,5 @@
-//! What must not change, or change in a known way, when the question does: translation, rotation,
-//! mirror, scale, current, time, order of vertices, larger sets.
+//! Metamorphic tests: invariance or known change under translation, rotation, reflection, scaling,
+//! current, time shift, vertex order and larger sets.
 
 mod set_generators;
 
@@ -13,8 +13,8 @@ use searoom::target::VelocitySpell;
 use searoom::trajectory::Segment;
 use set_generators::{ellipsoid, points, polytope, seeded, segment, slabs, vector};
 
-/// `x' = L x + shift + current t'`, `t' = stretch t`, with `L` a rotation or a mirror times a
-/// scale.
+/// Map `x' = L x + shift + current t'`, `t' = stretch t`, with `L` a rotation or a reflection times
+/// a scale.
 #[derive(Debug, Clone, Copy)]
 struct Map {
     linear: Matrix2<f64>,
@@ -54,7 +54,7 @@ impl Map {
         self.linear * v / self.stretch + self.current
     }
 
-    /// Of a segment, where there is no current.
+    /// Maps a segment, without current.
     fn segment(&self, s: &Segment) -> Segment {
         Segment {
             start: Pose::new(
@@ -128,7 +128,7 @@ impl Mapped for SlabObstacle {
     }
 }
 
-/// Asks both the same, and compares; `digits` is what the change of coordinates costs, metres.
+/// Compares both answers; `digits` is the rounding error of the coordinate change in metres.
 fn compare<O: Mapped>(o: &O, map: &Map, rng: &mut ChaCha8Rng, digits: f64) {
     let other = o.mapped(map);
     let (x, t) = (vector(rng, 150.0), rng.random_range(0.0..50.0));
@@ -144,7 +144,7 @@ fn compare<O: Mapped>(o: &O, map: &Map, rng: &mut ChaCha8Rng, digits: f64) {
             other.contains(mx, mt),
             "{o:?} {map:?} {x:?} {t}"
         );
-        // far inside or outside of a set that is not thin, risks are well conditioned
+        // far from the boundary of a set that is not thin, risks are well conditioned
         if o.signed_distance(x, t).distance < -1.0 && t > 5.0 {
             let (a, b) = (o.risk(x, t), other.risk(mx, mt));
             assert!(
@@ -165,7 +165,7 @@ fn compare<O: Mapped>(o: &O, map: &Map, rng: &mut ChaCha8Rng, digits: f64) {
         "{o:?} {map:?} {x:?} {v:?} {p:?} {q:?}"
     );
     if p.distance > 1.0 {
-        // the time by what it does: either is as near as the other says
+        // compare times by their effect: each gives the distance of the other
         let (there, then) = map.event(x + v * p.time, p.time);
         let there = other.signed_distance(there, then).distance;
         assert!(
@@ -185,7 +185,7 @@ fn compare<O: Mapped>(o: &O, map: &Map, rng: &mut ChaCha8Rng, digits: f64) {
             other.first_contact(&map.segment(&s), depth * map.scale),
         );
         if a.is_some() != b.is_some() {
-            // grazing: a hair less deep, both are met
+            // grazing contact: at slightly less depth, both have a contact
             let (a, b) = (
                 o.first_contact(&s, depth - 1e-4),
                 other.first_contact(&map.segment(&s), (depth - 1e-4) * map.scale),
@@ -201,7 +201,7 @@ fn all_kinds(seed: u64, count: usize, digits: f64, draw: impl Fn(&mut ChaCha8Rng
         let map = draw(&mut rng);
         compare(&polytope(&mut rng), &map, &mut rng, digits);
         compare(&slabs(&mut rng), &map, &mut rng, digits);
-        // a shape matrix keeps the width of a needle to the root of the last digit only
+        // a shape matrix represents the width of a needle only to the square root of the precision
         let o = ellipsoid(&mut rng);
         let needle = |e: &Ellipse| e.semi_axes()[1].norm() < 1e-2 * e.semi_axes()[0].norm();
         if !needle(o.initial()) && !needle(o.velocity()) {
@@ -236,7 +236,7 @@ fn relation_2_rotation() {
 
 #[test]
 fn relation_3_time_shift() {
-    // what is true t after t_0 is true t after the section of t_0
+    // properties t after t_0 hold t after the section of t_0
     let mut rng = seeded(304);
     for _ in 0..400 {
         let o = polytope(&mut rng);
@@ -260,7 +260,7 @@ fn relation_3_time_shift() {
             (Some(a), Some(b)) => assert!((a - start - b).abs() < 1e-5, "{o:?} {s:?}"),
             (None, None) => {}
             other => {
-                // grazing
+                // grazing contact
                 let deep = later.first_contact(&s, 1e-3 + 1e-6).is_some();
                 assert!(!deep, "{o:?} {s:?} {other:?}");
             }
@@ -275,7 +275,7 @@ fn relation_4_scaling() {
         Map {
             linear: Matrix2::identity() * scale,
             scale,
-            // lengths and speeds, or lengths and times, or times alone
+            // lengths and speeds, lengths and times, or times alone
             stretch: [1.0, scale, 0.1][rng.random_range(0..3)],
             ..Map::NONE
         }
@@ -296,7 +296,7 @@ fn relation_6_mirror() {
         linear: Matrix2::new(1.0, 0.0, 0.0, -1.0),
         ..Map::NONE
     });
-    // exactly, where only signs change
+    // exact if only signs change
     let mut rng = seeded(308);
     let mirror = Map {
         linear: Matrix2::new(1.0, 0.0, 0.0, -1.0),
@@ -390,7 +390,7 @@ fn relation_14_larger_sets_contain_and_endanger_more() {
             large.closest_approach(x, v, 100.0),
         );
         assert!(b.distance <= a.distance + 1e-9, "{small:?} {large:?}");
-        // the centre of the velocities stays where only the places grow
+        // the centre of the velocities is fixed if only the positions grow
         assert!(
             wider.risk(x, t) >= small.risk(x, t) - 1e-9,
             "{small:?} {wider:?} {x:?} {t}"
@@ -408,7 +408,7 @@ fn relation_16_the_area_is_that_of_minkowski() {
     let mut rng = seeded(311);
     for _ in 0..300 {
         let o = polytope(&mut rng);
-        // a quadratic in t: |O_0| + 2 t V(O_0, V) + t² |V|
+        // quadratic in t: |O_0| + 2 t V(O_0, V) + t² |V|
         let area = |t: f64| o.section(t).area();
         let mixed = 0.5 * (area(1.0) - o.initial().area() - o.velocity().area());
         for t in [0.5, 3.0, 40.0] {
@@ -452,13 +452,13 @@ fn relation_21_a_disc_without_spread_is_the_textbook() {
         );
         assert!(p.distance <= e.distance + 1e-9 && p.distance >= e.distance - 0.02 * radius);
         if distance > 1e-6 {
-            // what the root of a derivative leaves of a flat minimum
+            // accuracy of a flat minimum from the root of its derivative
             assert!((e.time - time).abs() < 1e-6 * (1.0 + time), "{e:?} {time}");
             assert!(!exact.in_velocity_obstacle(x, v, f64::INFINITY));
         } else if distance < -1e-6 {
             assert!(exact.in_velocity_obstacle(x, v, f64::INFINITY));
             assert!(polygon.in_velocity_obstacle(x, v, f64::INFINITY));
-            // the circle is entered where the quadratic says
+            // the quadratic gives the time of entry into the circle
             let (a, b, c) = (
                 relative.norm_squared(),
                 apart.dot(&relative),

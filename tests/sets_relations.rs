@@ -1,5 +1,5 @@
-//! Relations of the sets that no slow definition is needed for: nesting by alpha, ellipses around
-//! sums, Dubins paths.
+//! Tests of set relations that need no slow definition: nesting by alpha, ellipses around sums, and
+//! Dubins paths.
 
 mod set_generators;
 
@@ -9,12 +9,12 @@ use searoom::obstacle::{EllipsoidObstacle, SpaceTimeObstacle};
 use searoom::vessel::dubins;
 use set_generators::{directions, ellipse, ellipsoid, polytope, seeded, slabs, vector};
 
-/// Asks one obstacle, its centre velocity near `drift`.
+/// Checks one obstacle whose centre velocity is near `drift`.
 fn nested<O: SpaceTimeObstacle>(o: &O, x: Vector, time: f64, levels: [f64; 2]) -> bool {
     let [less, more] = levels;
     let (inner, outer) = (o.at_risk(1.0 - less), o.at_risk(1.0 - more));
     let alpha = o.alpha(x, time);
-    // nested, and in each exactly where alpha says so
+    // nested, and contained exactly according to alpha
     assert!(!inner.contains(x, time) || outer.contains(x, time));
     for (level, set) in [(less, &inner), (more, &outer)] {
         if (alpha - level).abs() > 1e-6 {
@@ -36,7 +36,7 @@ fn relation_15_sets_are_nested_by_alpha_which_is_one_at_their_edge() {
         let (p, e, s) = (polytope(&mut rng), ellipsoid(&mut rng), slabs(&mut rng));
         let time = rng.random_range(1.0..60.0);
         let n = direction(rng.random_range(-3.2..3.2));
-        // on a ray from the middle outward, so that every level is met
+        // on a ray from the centre outward, which crosses every level
         let at = |inner: f64, outer: f64, share: f64| inner + (outer - inner) * share;
         let share = rng.random_range(0.0..1.3);
         let mut place = |o: &dyn SpaceTimeObstacle| {
@@ -75,7 +75,7 @@ fn relation_22_the_outer_ellipse_holds_the_sum_and_is_the_one_of_least_trace() {
                 );
             }
         }
-        // of (1 + 1/c) Q_o + (1 + c) t² Q_v the one of the c that a search finds
+        // the minimum over c of (1 + 1/c) Q_o + (1 + c) t² Q_v, by search
         let trace = |shape: nalgebra::Matrix2<f64>| shape.trace();
         let (q, v) = (
             trace(o.initial().shape()),
@@ -119,10 +119,10 @@ fn relation_23_dubins_paths_are_reversible_short_and_steady() {
         }
         let back = |p: &Pose| Pose::new(p.position, wrap(p.heading + std::f64::consts::PI));
         assert!((length(&back(&to), &back(&from), radius) - best).abs() < 1e-6);
-        // a turn that needs no room: the chord alone
+        // a turn without radius: the chord alone
         let turns = 3.0 * std::f64::consts::TAU;
         assert!(length(&from, &to, 1e-6) - chord < 1e-6 * turns + 1e-9);
-        // a little elsewhere, a little longer or shorter, but where the shortest word changes
+        // a small displacement changes the length little, unless the shortest word changes
         let moved = Pose::new(to.position + vector(&mut rng, 1e-6), to.heading);
         all += 1;
         steady += usize::from((length(&from, &moved, radius) - best).abs() < 1e-5);

@@ -1,4 +1,4 @@
-//! The interior-point iteration allocates nothing.
+//! Tests that the interior-point iteration does not allocate.
 
 mod optimal_control_scenes;
 
@@ -19,17 +19,17 @@ fn count() -> usize {
     COUNT.with(Cell::get)
 }
 
-// SAFETY: hands everything on to the system's allocator
+// SAFETY: forwards all calls to the system allocator
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // a thread that ends has no count any more
+        // an ending thread has no counter
         let _ = COUNT.try_with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller's
+        // SAFETY: guaranteed by the caller
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller's
+        // SAFETY: guaranteed by the caller
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -37,7 +37,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Of its own thread: the harness allocates when it likes.
+/// Runs on a separate thread, because the test harness may allocate at any time.
 #[test]
 fn steps_allocate_nothing() {
     let desired = scenes::desired();
@@ -60,7 +60,7 @@ fn steps_allocate_nothing() {
         steps.push(report.iterations);
     }
     assert!(steps[2] > 25 && steps[0] == 1, "{steps:?}");
-    // the multipliers at the start, however many steps follow
+    // multipliers at the start, independent of the number of steps
     assert_eq!(counts[0], counts[2], "{counts:?} in {steps:?} steps");
     assert_eq!(counts[0], counts[1]);
     assert!(counts[0] <= 4, "{counts:?}");

@@ -1,10 +1,11 @@
-//! The check of plan documents: what the planners wrote passes, and whatever is altered in it is
-//! caught.
+//! Tests of the plan document check: documents from the planners pass, and every alteration is
+//! detected.
 //!
-//! More wild scenes than the few that are always looked at:
+//! To check more random scenes than the default:
 //!
 //! ```sh
-//! SEAROOM_WILD=2000 cargo test --release --no-default-features --test verification wild -- --nocapture
+//! SEAROOM_WILD=2000 cargo test --release --no-default-features \
+//!     --test verification wild -- --nocapture
 //! ```
 
 mod unsound;
@@ -36,7 +37,7 @@ fn scenario(path: &str) -> Scenario {
 fn document(scenario: Scenario) -> Value {
     let run = pipeline::run(scenario);
     assert!(run.evaluation.as_ref().is_some_and(|e| e.verified()));
-    // through text, as a file would be
+    // serialise and parse, as for a file
     let text = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
     serde_json::from_str(&text).expect("JSON")
 }
@@ -52,7 +53,7 @@ fn stand_on() -> Value {
     document(scenario)
 }
 
-/// Own ship starts within the set of a ship that she is to keep clear of, and leaves it.
+/// Own ship starts inside the set of a ship that it must avoid, and leaves it.
 fn inside() -> Value {
     let text = std::fs::read_to_string(file("colregs/head-on.toml")).expect("a scenario");
     let mut scenario = Scenario::parse(&text).expect("a scenario");
@@ -66,8 +67,8 @@ fn inside() -> Value {
     document(scenario)
 }
 
-/// The end is taken: own ship stops before it at an accepted risk, and passes a ship that may cross
-/// early or late.
+/// The end is blocked: own ship stops before it at an accepted risk. It passes a ship that may
+/// cross early or late.
 fn barred() -> Value {
     let text = r#"
         title = "barred"
@@ -88,8 +89,8 @@ fn barred() -> Value {
     document(Scenario::parse(text).expect("a scenario"))
 }
 
-/// One of every kind: space-time, with land, with slabs, with ellipses, at an accepted risk,
-/// path-time, forces, stand-on, from within a set.
+/// One document of each kind: space-time, land, slabs, ellipses, accepted risk, path-time, forces,
+/// stand-on, and a start inside a set.
 fn documents() -> Vec<(&'static str, Value)> {
     let mut risky = scenario("colregs/give-way.toml");
     risky.max_risk = 0.4;
@@ -139,8 +140,8 @@ fn what_was_planned_passes() {
         assert!(found.verified(), "{name}: {:#?}", found.violations);
     }
 }
-/// Eleven days and a half at a plan's greatest length: samples are farther apart, few enough for a
-/// file, and no farther.
+/// Checks a plan of a million seconds (11.5 days), the maximum length. The sample interval grows
+/// just enough to limit the file size.
 #[test]
 fn a_plan_of_a_million_seconds_is_written_and_checked() {
     let text = r#"title = "long"
@@ -165,8 +166,8 @@ fn a_plan_of_a_million_seconds_is_written_and_checked() {
     );
 }
 
-/// Level sets that are millions of times smaller than the sets, and sets that hardly spread at all:
-/// risk is made of the last digits there, and the document may say no less than the check finds.
+/// Checks level sets millions of times smaller than the sets, and sets that hardly spread. The risk
+/// depends on the last digits there, and the document must not report less than the check finds.
 #[test]
 fn plans_at_a_risk_pass_however_small_the_level_sets() {
     let plan = |max_risk: f64, target: &str| {
@@ -186,7 +187,7 @@ fn plans_at_a_risk_pass_however_small_the_level_sets() {
         assert!(found.violations.is_empty(), "{:?}", found.violations);
         written["cost"]["max_risk"].as_f64().expect("a number")
     };
-    // from standing still to twice her speed, along her hull
+    // velocities from rest to twice the speed, along the hull
     let risk = plan(
         0.999999,
         r#"position = { east_m = 750.0, north_m = 0.0 }
@@ -198,7 +199,7 @@ fn plans_at_a_risk_pass_however_small_the_level_sets() {
         domain = "hull""#,
     );
     assert!((risk - 0.059130838).abs() < 1e-6, "{risk}");
-    // sets of a nanometre a second
+    // sets that grow by a nanometre per second
     let risk = plan(
         0.5,
         r#"initial_set = { vertices_m = [[1399.7335538893385, -100.26644611066152], [1600.2664461106615, -100.26644611066152],
@@ -209,7 +210,7 @@ fn plans_at_a_risk_pass_however_small_the_level_sets() {
     assert!(risk <= 0.5, "{risk}");
 }
 
-/// Every number below `value`, as JSON pointers.
+/// Collects every number below `value` as JSON pointers.
 fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
     match value {
         Value::Number(_) => found.push(at.to_owned()),
@@ -227,8 +228,8 @@ fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// What no proof rests on: how the plan was found, what it was weighed with, and what belongs to
-/// the map or the run.
+/// True for values on which no proof depends: search statistics, weights, and properties of the map
+/// or the run.
 fn is_said_only(pointer: &str) -> bool {
     [
         "/search_stats",
@@ -251,19 +252,19 @@ fn is_said_only(pointer: &str) -> bool {
         "/horizon_s",
         "/max_risk",
         "/risk_weight_m",
-        // what the ship lies clear of for longer it lies clear of for less
+        // clear for a longer hold implies clear for a shorter one
         "/cost/arrival_hold_s",
     ]
     .iter()
     .any(|part| pointer.starts_with(part))
-        // the largest risk may last
+        // the largest risk may persist for a time interval
         || pointer.contains("max_risk_t_s")
         || ["roles", "scores", "breaches", "monitors"]
             .iter()
             .any(|judged| pointer.contains(&format!("/{judged}")))
 }
 
-/// The hull is nearest in the midst of a turn on the spot, on a heading between two legs.
+/// Tests a hull that is nearest during a turn on the spot, on a heading between two legs.
 #[test]
 fn a_closest_approach_in_a_turn_on_the_spot_passes() {
     let text = r#"
@@ -301,33 +302,32 @@ fn a_closest_approach_in_a_turn_on_the_spot_passes() {
     assert!(is_caught(&document));
 }
 
-/// Numbers altered per document; all of them where `SEAROOM_MUTATIONS` is set.
+/// Number of altered values per document; all of them if `SEAROOM_MUTATIONS` is set.
 const ALTERED: usize = 120;
 
-/// The motion, its samples, its costs, its encounters, the mission: no number in these can be moved
-/// by a thousandth without being caught.
+/// Alters the numbers of the motion, its samples, costs, encounters and mission by a thousandth.
+/// Every alteration must be detected.
 #[test]
 fn every_number_of_the_motion_and_its_figures_is_held() {
     let all = std::env::var_os("SEAROOM_MUTATIONS").is_some();
     for (name, document) in documents() {
         let forces = document["optimal_control"].is_object();
         let is_held = |pointer: &String| {
-            // nearer land may lie beyond the document
+            // nearer land may lie outside the document
             let one_sided = pointer == "/cost/min_land_distance_m";
-            // forces are held to what the dynamics forgive
+            // forces are checked to the tolerance of the dynamics
             let loose = forces
                 && ["surge_n", "sway_n", "yaw_nm"]
                     .iter()
                     .any(|k| pointer.ends_with(k));
-            // the barge is touched for a while: any time of that while is one of the closest
-            // approach
+            // the barge is touched for a time interval; any time in it is a closest approach
             let lasting = (name == "canal" && pointer == "/encounters/0/tcpa_s")
                 || pointer.ends_with("/undisturbed_tcpa_s");
-            // by how much a shape was drawn back
+            // relaxed amount of a ship domain
             let drawn = pointer.strip_suffix("/amount").is_some_and(|given_up| {
                 document.pointer(&format!("{given_up}/kind")) != Some(&json!("risk"))
             });
-            // who waits is where she is at any time of the while
+            // a waiting ship has the same position at any time of the interval
             let waiting = pointer.strip_suffix("/t_s").is_some_and(|sample| {
                 sample.starts_with("/trajectory/samples/")
                     && document.pointer(&format!("{sample}/speed_mps")) == Some(&json!(0.0))
@@ -337,7 +337,7 @@ fn every_number_of_the_motion_and_its_figures_is_held() {
         let mut pointers = Vec::new();
         numbers(&document, "", &mut pointers);
         pointers.retain(is_held);
-        // an odd stride meets every column of the samples
+        // an odd stride covers every column of the samples
         let stride = if all {
             1
         } else {
@@ -349,7 +349,7 @@ fn every_number_of_the_motion_and_its_figures_is_held() {
                 .pointer(pointer)
                 .and_then(Value::as_f64)
                 .expect("a number");
-            // of a state under forces, angles are held to what the dynamics forgive
+            // angles of a state under forces are checked to the tolerance of the dynamics
             let angle = forces
                 && ["heading_deg", "yaw_rate_deg_per_s"]
                     .iter()
@@ -394,14 +394,15 @@ fn scale(number: &mut Value, factor: f64) {
     *number = json!(number.as_f64().expect("a number") * factor);
 }
 
-/// Alters the segments alone: the samples and figures stay, so what catches is looked at besides.
+/// Segments of the document. Samples and figures stay unchanged, so the test states which check
+/// detects the alteration.
 fn segments(document: &mut Value) -> &mut Vec<Value> {
     list(document, "/trajectory/segments")
 }
 
 type Alteration = (&'static str, fn(&mut Value), &'static str);
 
-/// What is done to the segments, and a word of the violation that has to be among those found.
+/// Alterations of the segments, each with a word of an expected violation.
 const SEGMENTS: &[Alteration] = &[
     (
         "all moved",
@@ -511,7 +512,7 @@ const SEGMENTS: &[Alteration] = &[
             for s in segments(d) {
                 scale(&mut s["turn_rate_deg_per_s"], -1.0);
             }
-            // where nothing turns, this is what a corner cut short looks like
+            // without any turn, this resembles a cut corner
             add(&mut segments(d)[0]["turn_rate_deg_per_s"], 1e-3);
         },
         "",
@@ -570,7 +571,7 @@ fn every_altered_motion_is_caught() {
             let found = checked(&document);
             assert!(!found.verified(), "{name}, {what}");
             let along_paths = document["path_time"].is_object();
-            // own ship on paths is told so in other words
+            // path-time plans report it in other words
             let told = found.violations.iter().any(|v| v.what.contains(word));
             assert!(
                 told || along_paths,
@@ -583,7 +584,7 @@ fn every_altered_motion_is_caught() {
     assert!(altered >= 11 * SEGMENTS.len(), "{altered}");
 }
 
-/// A motion that runs through the target, told without a contradiction: the sets alone catch it.
+/// Tests a motion through the target in an otherwise consistent document: only the sets detect it.
 #[test]
 fn a_consistent_run_through_a_target_is_caught_by_her_set_and_her_hull() {
     let mut document = document(scenario("colregs/head-on.toml"));
@@ -599,7 +600,7 @@ fn a_consistent_run_through_a_target_is_caught_by_her_set_and_her_hull() {
     }
     let times: Vec<f64> = found.violations.iter().map(|v| v.time).collect();
     assert!(times.is_sorted(), "{times:?}");
-    // nor does a set that is made small save it: she has to be in it
+    // a smaller set does not help, because it must contain the target
     for v in list(&mut document, "/obstacles/0/initial_set/vertices_m") {
         scale(&mut v[1], 1e-3);
     }
@@ -612,7 +613,7 @@ fn a_consistent_run_through_a_target_is_caught_by_her_set_and_her_hull() {
     );
 }
 
-/// What is done to the setting, toward harm.
+/// Alterations of the setting that increase the danger.
 const SETTING: &[Alteration] = &[
     ("a set less", |d| drop(list(d, "/obstacles").remove(0)), ""),
     (
@@ -814,7 +815,7 @@ fn every_altered_setting_is_caught() {
     }
 }
 
-/// Slabs, ellipses, level sets of risk, forces and land have ways of their own to be altered.
+/// Alters slabs, ellipses, level sets of risk, forces and land.
 #[test]
 fn what_only_some_plans_have_is_held_too() {
     let mut turning = document(scenario("uncertainty/turning.toml"));
@@ -1079,14 +1080,14 @@ fn what_only_some_plans_have_is_held_too() {
                     let told = found.violations.iter().any(|v| v.what.contains(word));
                     assert!(told, "{name}, {what}: {:#?}", found.violations);
                 }
-                // a corner that is no longer one makes the set no convex polygon
+                // without this corner, the set is no longer a convex polygon
                 Err(error) => assert!(word.is_empty(), "{name}, {what}: {error}"),
             }
         }
     }
 }
 
-/// The hold of a ship that stands on, what ends it, and what follows.
+/// Checks the hold of a stand-on ship, the end of the hold, and the subsequent manoeuvre.
 #[test]
 fn an_escape_is_what_it_is_said_to_be() {
     let original = stand_on();
@@ -1196,7 +1197,7 @@ fn an_escape_is_what_it_is_said_to_be() {
             found.violations
         );
     }
-    // as little as a turn of a tenth of a degree to either side and back within the hold
+    // even turns of a tenth of a degree to both sides within the hold count
     let mut swerving = original.clone();
     segments(&mut swerving)[0]["turn_rate_deg_per_s"] = json!(1e-3);
     let found = checked(&swerving);
@@ -1207,7 +1208,7 @@ fn an_escape_is_what_it_is_said_to_be() {
     );
 }
 
-/// A risk told alike wherever it stands, but told wrongly: the level sets tell.
+/// Tests a consistent but wrong largest risk: the level sets detect it.
 #[test]
 fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
     let risky = documents().swap_remove(1).1;
@@ -1244,7 +1245,7 @@ fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
             *at(&mut document, "/cost/max_risk") = json!(most);
             document
         };
-        // of no risk there is no other to be told
+        // a risk of zero has no other value to replace it
         if said == 0.0 {
             continue;
         }
@@ -1273,8 +1274,7 @@ fn a_largest_risk_is_neither_more_nor_less_nor_at_another_time() {
     assert!(told >= 3, "{told}");
 }
 
-/// What is said of a risk, told without a contradiction: that it was accepted, and that it has a
-/// time, is held by itself.
+/// Tests consistent but wrong statements on a risk: it must be accepted, and must have a time.
 #[test]
 fn a_risk_is_within_what_was_accepted_and_has_a_time() {
     let mut risky = documents().swap_remove(1).1;
@@ -1284,7 +1284,7 @@ fn a_risk_is_within_what_was_accepted_and_has_a_time() {
     let mut accepting = scenario("colregs/head-on.toml");
     accepting.max_risk = 0.4;
     accepting.targets[0].motion = {
-        // far off the way
+        // far from the path
         let Motion::Ship(mut ship) = accepting.targets[0].motion.clone() else {
             panic!("a ship");
         };
@@ -1354,8 +1354,8 @@ fn give_up(document: &mut Value, kind: &str, target: &str, amount: f64) {
     list(document, "/relaxations").push(given_up);
 }
 
-/// What the words of a document say agrees with what is in it, and figures that no motion bears on
-/// are computed too.
+/// Checks that the words of a document agree with its content, and that figures independent of the
+/// motion are recomputed.
 #[test]
 fn every_claim_of_a_document_is_held() {
     let clear = document(scenario("colregs/head-on.toml"));
@@ -1571,8 +1571,7 @@ fn every_claim_of_a_document_is_held() {
     }
 }
 
-/// A ship at rest on the last waypoint lies neither to port nor to starboard of one that arrives
-/// there.
+/// A ship at rest on the last waypoint is neither to port nor to starboard of an arriving own ship.
 #[test]
 fn a_ship_on_the_last_waypoint_may_lie_on_either_side() {
     let rules = r#"
@@ -1724,7 +1723,7 @@ fn what_is_no_plan_document_is_named() {
         assert!(error.contains(expected), "{error}");
     }
     assert!(verify("").is_err() && verify("[1, 2]").is_err() && verify("{} x").is_err());
-    // nothing that a file can hold may panic
+    // no file content may cause a panic
     let text = original.to_string();
     for end in (0..text.len()).step_by(997) {
         assert!(verify(text.get(..end).unwrap_or("")).is_err());
@@ -1756,7 +1755,7 @@ fn a_document_without_a_plan_is_not_verified_and_not_refused() {
     assert!(!found.verified() && found.evaluation.is_none() && found.violations.is_empty());
 }
 
-/// Sets that hold what is known where it is looked at first, and not what is claimed.
+/// Tests sets that contain the required region in the first directions checked, but not everywhere.
 #[test]
 fn sets_that_only_seem_large_enough_are_too_small() {
     let said = |document: &Value, expected: &str| {
@@ -1764,7 +1763,7 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         let told = found.iter().any(|v| v.what.contains(expected));
         assert!(told, "{expected}: {found:?}");
     };
-    // an ellipse far longer than the true one, and a hair wide, between two directions
+    // an ellipse much longer than the true one and very thin, between two directions
     let mut needle = document(scenario("uncertainty/ellipse.toml"));
     let (sin, cos) = 0.0043_f64.sin_cos();
     let length: f64 = 1e10;
@@ -1773,8 +1772,8 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         [length * cos * sin, length * sin * sin]
     ]);
     said(&needle, "too small for the initial set");
-    // velocities to one side: scaled back about their centre they hold all, but not those of half
-    // the risk
+    // one-sided velocities: scaled about their centre they contain all, but not those of half the
+    // risk
     let text = std::fs::read_to_string(file("colregs/give-way.toml")).expect("a scenario");
     let mut scenario = Scenario::parse(&text).expect("a scenario");
     scenario.max_risk = 0.5;
@@ -1786,7 +1785,7 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         [0, 1].map(|k| corners.iter().map(|c| c[k]).reduce(pick).expect("some"))
     });
     let middle = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
-    // of the whole set, twice that of the level
+    // of the whole set, twice that of the level set
     let reach = (high[0] - low[0]).max(high[1] - low[1]);
     let (east, half) = (middle[0] + 1.6 * reach, 1.4 * reach);
     *at(&mut lopsided, "/obstacles/0/velocity_set/vertices_mps") = json!([
@@ -1801,9 +1800,8 @@ fn sets_that_only_seem_large_enough_are_too_small() {
     said(&lopsided, "the velocities at the accepted risk");
 }
 
-/// Words beside the motion: what was minimised, and what was given up first.
-/// Sets around the hull on the heading that is expected, and for a ship that turns on those of her
-/// course spread at the start: as she takes another course, her bow is beyond them.
+/// Tests sets around the hull on the expected heading, and for a turning ship on those of its
+/// course spread at the start. On another course, its bow is outside them.
 #[test]
 fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
     let around = |ship: &ShipTrack, hull: ConvexPolygon| {
@@ -1883,8 +1881,8 @@ fn an_objective_that_is_not_the_planners_and_another_relaxation_are_rejected() {
     );
 }
 
-/// What a planner says of its plan holds of the document, and every plan is verified. The counts
-/// are printed.
+/// Verifies every plan of random scenes, and compares the planner's statements with the document.
+/// Prints the counts.
 #[test]
 fn plans_of_wild_scenes_are_verified_by_their_documents() {
     let text = std::env::var("SEAROOM_WILD").unwrap_or_default();

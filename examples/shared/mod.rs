@@ -1,4 +1,4 @@
-//! The two obstacles of the paper's figures 1 and 2, and where a figure goes.
+//! Obstacles of the paper's figures 1 and 2, and output of figures.
 #![allow(dead_code, reason = "every figure uses a part")]
 
 use std::path::PathBuf;
@@ -35,22 +35,22 @@ fn ellipsoid() -> EllipsoidObstacle {
     )
 }
 
-/// Paper eqs. (10) and (11).
+/// Obstacle of paper eqs. (10) and (11).
 pub fn figure_1() -> Obstacle {
     polytope().into()
 }
 
-/// The velocities of eq. (11), m/s.
+/// Velocity set of eq. (11), m/s.
 pub fn figure_1_velocities() -> ConvexSet {
     ConvexSet::Polygon(polytope().velocity().clone())
 }
 
-/// Paper eqs. (20) and (21).
+/// Obstacle of paper eqs. (20) and (21).
 pub fn figure_2() -> Obstacle {
     ellipsoid().into()
 }
 
-/// The velocities of eq. (21), m/s.
+/// Velocity set of eq. (21), m/s.
 pub fn figure_2_velocities() -> ConvexSet {
     ConvexSet::Ellipse(*ellipsoid().velocity())
 }

@@ -1,5 +1,5 @@
-//! Random scenes, and the same scenes moved, turned, mirrored, and of another size: to be planned
-//! alike.
+//! Random scenes and their translated, rotated, reflected and scaled copies, which must have equal
+//! plans.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -11,21 +11,21 @@ use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip, VesselKind};
 
-/// m². Costs that are nearer than a millionth of this are equal where a cost is less.
+/// Cost in m². Smaller costs are equal if their difference is below a millionth of this.
 pub const LEAST_COST: f64 = 1.0;
 
-/// Where and how large a scene is made.
+/// Placement and size of a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Placing {
-    /// In words.
+    /// Description.
     pub name: &'static str,
-    /// Metres.
+    /// Translation in metres.
     pub moved: Vector,
-    /// Radians.
+    /// Rotation in radians.
     pub turned: f64,
-    /// Port and starboard change places.
+    /// True if port and starboard are exchanged.
     pub mirrored: bool,
-    /// Lengths and times are multiplied by these.
+    /// Factors of lengths and times.
     pub length: f64,
     pub time: f64,
 }
@@ -39,7 +39,7 @@ const AS_IT_IS: Placing = Placing {
     time: 1.0,
 };
 
-/// What must not change a plan.
+/// Placements that must not change a plan.
 pub const PLACINGS: [Placing; 9] = [
     Placing {
         name: "moved by 1.6 km",
@@ -114,7 +114,7 @@ impl Placing {
         }
     }
 
-    /// A scene placed so.
+    /// Returns the scene with this placement.
     pub fn of(&self, scene: &Scenario) -> Scenario {
         let speed = self.length / self.time;
         let own = &scene.own_ship;
@@ -159,14 +159,13 @@ impl Placing {
         }
     }
 
-    /// The cost of the plan of a scene placed so, at the size of the scene, m²; `None` without a
-    /// plan.
+    /// Plan cost of the placed scene at the original size, in m²; `None` without a plan.
     pub fn cost(&self, scene: &Scenario) -> Option<f64> {
         Some(cost(self.of(scene))? / (self.length * self.length))
     }
 }
 
-/// The cost of the plan of a scene, m²; `None` without a plan that keeps all that was asked.
+/// Plan cost of a scene in m²; `None` without an unrelaxed plan.
 pub fn cost(scene: Scenario) -> Option<f64> {
     let run = pipeline::run(scene);
     let judged = run.evaluation.as_ref()?;
@@ -180,8 +179,8 @@ pub fn cost(scene: Scenario) -> Option<f64> {
     run.relaxations.is_empty().then_some(plan.cost)
 }
 
-/// A path of one to three legs and one to four targets, each of which would meet own ship somewhere
-/// on it.
+/// Random path of one to three legs and one to four targets, each of which would meet own ship on
+/// it.
 pub fn scene(seed: u64) -> Scenario {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let speed = rng.random_range(4.0..8.0);
@@ -255,7 +254,7 @@ pub fn scene(seed: u64) -> Scenario {
     }
 }
 
-/// How far two costs are apart, relative: 1 where only one is there.
+/// Relative difference of two costs; 1 if only one exists.
 pub fn apart(a: Option<f64>, b: Option<f64>) -> f64 {
     match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() / a.max(b).max(LEAST_COST),

@@ -1,5 +1,5 @@
-//! The traffic of New York harbour as scenes: each vessel under way in turn is own ship, all others
-//! are targets.
+//! Scenes from the traffic of New York harbour. Each vessel under way in turn is own ship; all
+//! others are targets.
 
 use searoom::frame::{
     Geographic, Georeference, KNOT_MPS, Pose, Vector, direction, heading_from_course_deg,
@@ -10,27 +10,27 @@ use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
 use searoom::vessel::{Hull, OwnShip};
 
-/// Knots. A vessel that is slower is at rest.
+/// Speed in knots below which a vessel is at rest.
 const AT_REST_KN: f64 = 1.0;
-/// Metres, of a vessel that gives no length; and length over beam of one that gives no beam.
+/// Default length in metres, and default ratio of length to beam.
 const LENGTH_M: f64 = 60.0;
 const SLENDERNESS: f64 = 5.0;
-/// m/s, radians and metres of standard deviation: what is not known of a vessel under way.
+/// Standard deviations of a vessel under way in m/s, radians and metres.
 const SPEED_SPREAD: f64 = 0.5;
 const COURSE_SPREAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 const POSITION_STD: f64 = 5.0;
-/// Metres between the hulls.
+/// Safety margin between the hulls in metres.
 const MARGIN_M: f64 = 20.0;
-/// Seconds that own ship means to hold her course and speed, and of which the horizon is twice as
-/// many.
+/// Time in seconds for which own ship intends to hold course and speed; the horizon is twice as
+/// long.
 const AHEAD_S: f64 = 600.0;
-/// Lengths of own ship in her smallest turning radius.
+/// Minimum turning radius in lengths of own ship.
 const RADIUS_LENGTHS: f64 = 4.0;
 
-/// Metres from one copy of the traffic to the next.
+/// Distance in metres between copies of the traffic.
 const FAR_AWAY_M: f64 = 100_000.0;
 
-/// One scene per vessel under way.
+/// Builds one scene per vessel under way.
 pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
     let file = concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -58,7 +58,7 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
             speed_spread: if at_rest { 0.0 } else { SPEED_SPREAD },
             course_spread: if at_rest { 0.0 } else { COURSE_SPREAD },
             turn_rate: 0.0,
-            // one that is moored has no bow to keep clear of
+            // a moored vessel needs no ship domain
             domain: if at_rest {
                 DomainKind::Hull
             } else {
@@ -66,13 +66,13 @@ pub fn scenes() -> Result<Vec<Scenario>, Box<dyn std::error::Error>> {
             },
         });
     }
-    // settings that have nothing to do with who is where
+    // settings independent of the positions
     let settings = random_encounter(EncounterKind::HeadOn, 0, Placement::Origin)?.scenario;
     let under_way = (0..ships.len()).filter(|i| ships[*i].speed > 0.0);
     under_way.map(|own| scene(&settings, &ships, own)).collect()
 }
 
-/// The same with nine times as many targets more, so far away that they do not matter.
+/// Adds nine times as many targets, so far away that they do not matter.
 #[allow(dead_code, reason = "the leaderboard has no use for it")]
 pub fn with_more_far_away(scenario: &Scenario) -> Scenario {
     let mut crowded = scenario.clone();
@@ -100,7 +100,7 @@ fn scene(
     own: usize,
 ) -> Result<Scenario, Box<dyn std::error::Error>> {
     let ship = &ships[own];
-    // about own ship: near the origin no digit is lost
+    // relative to own ship: no precision is lost near the origin
     let place = |p: Vector| p - ship.pose.position;
     let pose = Pose::new(Vector::zeros(), ship.pose.heading);
     let end = direction(pose.heading) * (ship.speed * AHEAD_S);

@@ -143,7 +143,7 @@ pub struct ImportArgs {
     mut_arg("planner", |arg| arg.help("Only this planner, beside the baselines: space-time, path-time, optimal-control")),
     mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra")),
     mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder")),
-    mut_arg("figure", |arg| arg.value_name("FILE").help("Draw ways, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
+    mut_arg("figure", |arg| arg.value_name("FILE").help("Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
 )]
 pub struct CompareArgs {
     /// Scenario files, or folders of them

@@ -1,4 +1,4 @@
-//! `searoom assess`: risk, closest approach and velocity obstacle, no planning.
+//! `searoom assess`: risk, closest approach and velocity obstacle, without planning.
 
 use searoom::frame::Vector;
 use searoom::obstacle::Obstacle;
@@ -26,7 +26,7 @@ pub fn assess(args: &AssessArgs, output: &Output) -> Status {
         ));
         return Status::BadInput;
     }
-    // before anything is computed
+    // before any computation
     if let Some(path) = &args.figure
         && let Err(error) = prepare_figure(path)
     {
@@ -54,7 +54,7 @@ pub fn assess(args: &AssessArgs, output: &Output) -> Status {
     }
 }
 
-/// Every file that is asked for; what is wrong with any of them.
+/// Reads all requested files, and returns all errors.
 fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<String>> {
     let mut errors = Vec::new();
     let scenario = scenario_file(&args.scenario).map_err(|e| errors.push(e));

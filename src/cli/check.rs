@@ -1,11 +1,11 @@
-//! `searoom check`: reads and checks, plans nothing.
+//! `searoom check`: reads and checks scenarios without planning.
 
 use super::args::CheckArgs;
 use super::input::{files, scenes};
 use super::output::Output;
 use super::output::status::Status;
 
-/// One line for each good scenario, with what was assumed; every fault of the others.
+/// Prints one line per valid scenario with its assumptions, and every fault of the others.
 pub fn check(args: &CheckArgs, output: &Output) -> Status {
     let mut status = Status::Good;
     let assumed = args.assumed.assumed();

@@ -1,4 +1,4 @@
-//! `searoom compare`: every planner that applies and two baselines, side by side.
+//! `searoom compare`: every applicable planner and two baselines.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ use super::output::products::{Failure, Products, ScenarioCompared, Wanted, prepa
 use super::output::status::Status;
 use super::runner::guarded;
 
-/// A scenario with its candidates, or why there is none.
+/// Scenario with its candidates, or the error.
 struct Asked {
     file: String,
     stem: String,
@@ -34,17 +34,16 @@ struct Asked {
     inapplicable: Vec<Inapplicable>,
 }
 
-/// A scenario with its entries and the faults of the program.
+/// Scenario with its entries and internal faults.
 struct Compared {
     asked: Asked,
     entries: Vec<Entry>,
     faults: Vec<String>,
 }
 
-/// Compares every scenario. Candidates of all of them run at the same time, and are shown in a
-/// fixed order.
+/// Compares all scenarios. Candidates run in parallel and are shown in a fixed order.
 pub fn compare(args: &CompareArgs, output: &Output) -> Status {
-    // before anything is computed
+    // before any computation
     if let Some(path) = &args.written.figure
         && let Err(error) = prepare_figure(path)
     {
@@ -54,7 +53,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
     let all = files::find(&args.paths, &files::SCENARIOS, output);
     note_foreign(&args.paths, output);
     let found: Vec<Found> = all.iter().flatten().cloned().collect();
-    // one figure, of all scenarios
+    // one figure of all scenarios
     let wanted = Wanted {
         figures: None,
         ..args.written.wanted()
@@ -163,7 +162,7 @@ fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     }
 }
 
-/// Runs all candidates of all scenarios at once.
+/// Runs all candidates of all scenarios in parallel.
 fn run(asked: Vec<Asked>, output: &Output) -> Vec<Compared> {
     let jobs: Vec<(usize, &Scenario, Candidate)> = asked
         .iter()
@@ -200,7 +199,7 @@ fn run(asked: Vec<Asked>, output: &Output) -> Vec<Compared> {
 }
 
 impl Compared {
-    /// The document's part about this scenario.
+    /// Builds this scenario's part of the document.
     fn document(&self) -> ScenarioComparisonDocument {
         let file = self.asked.file.clone();
         match &self.asked.scenario {
@@ -214,8 +213,8 @@ impl Compared {
         }
     }
 
-    /// Good when some planner has a plan that is clear; a plan that fails its check is a fault of
-    /// the program.
+    /// Good if some planner has a clear plan. A plan that fails its verification is an internal
+    /// fault.
     fn status(&self) -> Status {
         if self.asked.scenario.is_err() {
             return Status::BadInput;
@@ -239,7 +238,7 @@ impl Compared {
     }
 }
 
-/// Writes what was asked for.
+/// Writes the requested files.
 fn write(
     args: &CompareArgs,
     compared: &[Compared],
@@ -268,7 +267,7 @@ fn write(
     Ok(Status::Good)
 }
 
-/// The report of all scenarios, those that are none among them.
+/// Builds the report of all scenarios, including unreadable ones.
 fn report(
     compared: &[Compared],
     documents: &[ScenarioComparisonDocument],

@@ -13,7 +13,7 @@ use super::input::{files, scenes};
 use super::output::Output;
 use super::output::status::Status;
 
-/// Writes one scenario file per situation. A scenario file is left as it is.
+/// Writes one scenario file per situation. Scenario files are not changed.
 pub fn import(args: &ImportArgs, output: &Output) -> Status {
     let assumed = args.assumed.assumed();
     let found = files::find(&args.files, &files::ANY_FORMAT, output);

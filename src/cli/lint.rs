@@ -1,4 +1,4 @@
-//! `searoom suite --lint`: faults of scenarios, without planning.
+//! `searoom suite --lint`: scenario faults without planning.
 
 use searoom::document::{LintDocument, LintScenarioDocument};
 use searoom::report::lint_text;
@@ -12,13 +12,13 @@ use super::output::Output;
 use super::output::status::Status;
 use super::runner::guarded;
 
-/// A scenario that was read, with its findings.
+/// Scenario with its findings.
 struct Checked {
     scenario: Scenario,
     document: LintScenarioDocument,
 }
 
-/// Checks every scene; good unless one cannot be read.
+/// Checks every scene; good unless one is unreadable.
 pub fn suite(
     scenes: Vec<Result<Scene, Unread>>,
     args: &SuiteArgs,
@@ -74,7 +74,7 @@ fn check(scene: &Scene, assumed: &Assumed) -> Result<Checked, Unread> {
     })
 }
 
-/// Adds findings about repeated scenarios.
+/// Adds findings on repeated scenarios.
 fn compare(all: &mut [Result<Checked, Unread>]) {
     let read: Vec<&Scenario> = all
         .iter()

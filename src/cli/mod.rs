@@ -1,4 +1,4 @@
-//! The command line: one file per command; `output` is the only place that prints.
+//! Command line: one file per command. Only `output` prints.
 
 mod args;
 mod assess;

@@ -1,4 +1,4 @@
-//! `searoom plan`: one scenario.
+//! `searoom plan`: plans one scenario.
 
 use searoom::document::PlanDocument;
 use searoom::pipeline::{NoReturn, Run};

@@ -1,4 +1,4 @@
-//! Runs one scenario, so that a fault of the program stops that scenario alone.
+//! Runs one scenario and isolates internal faults to it.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -17,23 +17,23 @@ thread_local! {
     static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// The result of one file.
+/// Result of one file.
 #[expect(
     clippy::large_enum_variant,
     reason = "one per file, and nearly always the large one"
 )]
 pub enum Attempt {
-    /// A run, with or without a plan, and what was assumed or not used of its file.
+    /// Run, with or without a plan, and notes on assumptions and unused parts of its file.
     Run(Run, Vec<String>),
-    /// No scenario in it.
+    /// The file contains no scenario.
     Unreadable(ScenarioError),
-    /// A valid scenario, by its title, that cannot be used as asked, and why.
+    /// Title of a valid scenario that is not supported as requested, with the reason.
     NotApplicable(String, ScenarioError),
-    /// The program failed; says where.
+    /// Internal fault with its location.
     Fault(String),
 }
 
-/// From here on a panic is a value of [`guarded`], not a text on standard error.
+/// Suppresses panic messages on standard error; [`guarded`] returns them instead.
 pub fn keep_panics_quiet() {
     std::panic::set_hook(Box::new(|info| {
         let place = |at: &Location| format!("{}:{}", below_src(at.file()), at.line());
@@ -41,7 +41,7 @@ pub fn keep_panics_quiet() {
     }));
 }
 
-/// Runs `work`; a panic in it becomes a sentence.
+/// Runs `work` and converts a panic to a message.
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
         let place = PLACE
@@ -51,21 +51,21 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// [`guarded`] on a thread of its own; `None` where it takes longer than `time`. The thread then
-/// runs on until the program ends.
+/// Runs [`guarded`] on a separate thread; `None` if it exceeds `time`. The thread continues until
+/// the program ends.
 pub fn guarded_within<T: Send + 'static>(
     time: Duration,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Option<Result<T, String>> {
     let begun = Instant::now();
     let (done, result) = mpsc::channel();
-    // the receiver is gone when the time is over
+    // the receiver no longer exists after the time limit
     std::thread::spawn(move || drop(done.send(guarded(work))));
     let found = result.recv_timeout(time).ok();
     found.filter(|_| begun.elapsed() <= time)
 }
 
-/// A source file without the folders of the machine that it was built on.
+/// Path of a source file without the folders of the build machine.
 fn below_src(file: &str) -> String {
     let parts: Vec<&str> = file.split(['/', '\\']).collect();
     let (name, folders) = parts.split_last().unwrap_or((&file, &[]));

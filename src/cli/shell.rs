@@ -1,5 +1,4 @@
-//! `searoom completions` and `searoom man`: what shells and readers of manuals need, from the
-//! arguments themselves.
+//! `searoom completions` and `searoom man`, generated from the argument definitions.
 
 use clap::CommandFactory;
 use clap_complete::generate;
@@ -18,7 +17,7 @@ pub fn completions(args: &CompletionsArgs, output: &Output) -> Status {
     print(text, output)
 }
 
-/// Prints the manual: the program, then each of its commands.
+/// Prints the manual of the program and of each command.
 pub fn man(output: &Output) -> Status {
     let mut command = Arguments::command();
     command.build();
@@ -39,7 +38,7 @@ pub fn man(output: &Output) -> Status {
         })
     });
     match written {
-        // no command has a page of its own
+        // commands have no separate pages
         Ok(()) => print(one_page(text), output),
         Err(error) => {
             output.error(&format_args!("the manual cannot be written: {error}"));
@@ -48,7 +47,7 @@ pub fn man(output: &Output) -> Status {
     }
 }
 
-/// References to pages of the commands become the names of the commands.
+/// Replaces references to command pages by the command names.
 fn one_page(text: Vec<u8>) -> Vec<u8> {
     let text = String::from_utf8_lossy(&text);
     let lines = text.lines().map(|line| {

@@ -18,7 +18,7 @@ use super::output::products::{Products, Wanted};
 use super::output::status::Status;
 use super::runner::{Attempt, attempt};
 
-/// Entries of the document and the messages so far, in the order of the files.
+/// Document entries and messages so far, in the order of the files.
 #[derive(Default)]
 struct Tally {
     runs: Vec<SuiteRunDocument>,
@@ -32,7 +32,7 @@ impl Tally {
         self.status = self.status.max(Some(status));
     }
 
-    /// A scenario without fault that the planner or the rules asked for cannot use.
+    /// Adds a valid scenario that the requested planner or rules do not support.
     fn not_applicable(&mut self, file: &Path, title: String, reason: String) {
         self.fail(file, NOT_APPLICABLE, &reason);
         let file = file.display().to_string();
@@ -60,7 +60,7 @@ impl Tally {
     }
 }
 
-/// Runs every scenario below the paths, one after another, so that each is timed alone.
+/// Runs every scenario below the paths sequentially, so that each is timed alone.
 pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
     let assumed = args.assumed.assumed();
     let files = files::find(&args.paths, &files::ANY_FORMAT, output);

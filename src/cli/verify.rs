@@ -1,4 +1,4 @@
-//! `searoom verify`: plan documents, checked again from themselves alone.
+//! `searoom verify`: independent check of plan documents from their own content.
 
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
@@ -14,10 +14,10 @@ use super::output::Output;
 use super::output::status::Status;
 use super::runner::guarded_within;
 
-/// Bytes, 64 MiB: a plan among a hundred targets has less than one.
+/// Maximum file size, 64 MiB; a plan with a hundred targets needs less than 1 MiB.
 const FILE_BYTES: u64 = 1 << 26;
 
-/// Checks every file; one that cannot be read does not stop the others.
+/// Checks every file; an unreadable one does not stop the others.
 pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
     let mut status = Status::Good;
     let mut documents = Vec::new();
@@ -47,7 +47,7 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
             }
             Some(Ok(Err(error))) => {
                 let error = format!("{error:#}");
-                // a recording's reader names the file already
+                // the recording reader's message already includes the file
                 let error = match error.strip_prefix(&format!("{name}: ")) {
                     Some(_) => error,
                     None => format!("{name}: {error}"),
@@ -75,7 +75,7 @@ fn one(file: &Path) -> anyhow::Result<Verification> {
     } else {
         document(file)?
     };
-    // the message names its field already
+    // the message already includes its field
     check(&text).map_err(|error| anyhow!("{error}"))
 }
 
@@ -94,7 +94,7 @@ fn recorded(_: &Path) -> anyhow::Result<String> {
 /// The text of a plan document.
 fn document(file: &Path) -> anyhow::Result<String> {
     let unread = "cannot be read";
-    // a pipe would be waited for, a device read for ever
+    // a pipe would block, and a device may never end
     if !std::fs::metadata(file).context(unread)?.is_file() {
         let error = Error::new(ErrorKind::InvalidInput, "not a regular file");
         return Err(error).context(unread);

@@ -1,28 +1,28 @@
-//! Alterations of course of a motion.
+//! Course alterations of a motion.
 
 use crate::frame::{Side, deg_from_radians, wrap};
 use crate::trajectory::Trajectory;
 
-/// Degrees. A smaller alteration of lines and arcs is no turn: nobody would see it.
+/// Angle in degrees below which an alteration is not visible and does not count as a turn.
 const LEAST_TURN_DEG: f64 = 0.5;
 
-/// An alteration of course to one side.
+/// Alteration of course to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Turn {
     pub side: Side,
-    /// Positive.
+    /// Angle in degrees, positive.
     pub degrees: f64,
-    /// Seconds.
+    /// Start time in seconds.
     pub start: f64,
 }
 
-/// The first alteration of course. Corners of a path are no alterations.
+/// First alteration of course. Corners of a path do not count.
 pub(crate) fn first_alteration(trajectory: &Trajectory) -> Option<Turn> {
     turns(trajectory, None).into_iter().next()
 }
 
-/// The largest alteration of course to one side. Corners of the path count, and so does the turn
-/// at the start from the course `before`, radians.
+/// Largest alteration of course to one side. Corners of the path count, and so does the initial
+/// turn from the course `before`, in radians.
 pub(crate) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option<Turn> {
     let all = turns(trajectory, Some(before)).into_iter();
     all.reduce(|most, turn| {
@@ -34,9 +34,9 @@ pub(crate) fn largest_alteration(trajectory: &Trajectory, before: f64) -> Option
     })
 }
 
-/// All visible turns in order of time. Arcs that follow each other to one side are one turn; a
-/// straight segment ends it. Under forces, these are the swings of the heading. Corners between
-/// segments count where a course `before` the start is given.
+/// Lists all visible turns in order of time. Consecutive arcs to one side form one turn; a straight
+/// segment ends it. Under forces, turns are swings of the heading. Corners between segments count
+/// if a course `before` the start is given.
 fn turns(trajectory: &Trajectory, before: Option<f64>) -> Vec<Turn> {
     if let Some(motion) = trajectory.steered() {
         let swings = motion.swings().into_iter();
@@ -48,7 +48,7 @@ fn turns(trajectory: &Trajectory, before: Option<f64>) -> Vec<Turn> {
     let mut heading = before;
     for segment in trajectory.segments() {
         let corner = heading.map_or(0.0, |heading| wrap(segment.start.heading - heading));
-        // rounding at a joint is no corner
+        // rounding at a joint is not a corner
         if corner.abs() > crate::tolerance::JOINT_RAD {
             changes.push((segment.start_time, corner));
         }
@@ -72,7 +72,7 @@ fn turns(trajectory: &Trajectory, before: Option<f64>) -> Vec<Turn> {
     turns
 }
 
-/// A change of the heading, radians, as a turn; `None` for one that nobody would see.
+/// Converts a heading change in radians to a turn; `None` if it is not visible.
 fn visible(turned: f64, start: f64) -> Option<Turn> {
     let degrees = deg_from_radians(turned.abs());
     let side = Side::of_turn(turned)?;
@@ -89,7 +89,7 @@ mod tests {
     use crate::frame::{Pose, Vector};
     use crate::trajectory::{Node, Segment, Steered};
 
-    /// Degrees to starboard per segment of ten seconds.
+    /// Builds ten-second segments with the given turns in degrees to starboard.
     fn arcs(turns: &[f64]) -> Trajectory {
         let mut start = Pose::new(Vector::zeros(), 0.3);
         let mut segments = Vec::new();
@@ -148,7 +148,7 @@ mod tests {
                 Some((Starboard, 32.0)),
                 Some((Starboard, 32.0)),
             ),
-            // a swing back by four degrees ends no turn
+            // a swing back by four degrees does not end a turn
             (
                 vec![0.0, -10.0, -6.0, -40.0, 20.0, 0.0],
                 Some((Port, 40.0)),
@@ -194,7 +194,7 @@ mod tests {
         };
         let t = chain(&[0.1, 0.0, -0.2, -0.3, 0.0, 0.4]);
         assert_eq!(degrees(&t, 0.2), Some((Side::Starboard, 28.6)));
-        // from a course of 0.9 before: 0.7 to starboard at once
+        // initial course 0.9: a turn of 0.7 to starboard at once
         assert_eq!(degrees(&t, 0.9), Some((Side::Starboard, 40.1)));
         assert_eq!(degrees(&chain(&[0.0, 0.001]), 0.2), None);
         let mut corner = chain(&[0.0]).segments().to_vec();

@@ -1,8 +1,8 @@
-//! The assessment document: docs/documents.md.
+//! Assessment document, see docs/documents.md.
 
 use serde::{Deserialize, Serialize};
 
-/// The answers of `assess`.
+/// Results of `assess`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AssessmentDocument {
     pub scenario: String,
@@ -16,7 +16,7 @@ pub struct AssessmentDocument {
     pub velocities: Vec<VelocityDocument>,
 }
 
-/// The sets of possible positions of a target.
+/// Sets of possible positions of a target.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetSectionsDocument {
     pub name: String,
@@ -24,13 +24,13 @@ pub struct TargetSectionsDocument {
     pub sections: Vec<SectionDocument>,
 }
 
-/// A set of possible positions at one time, `[east, north]`.
+/// Set of possible positions at one time, `[east, north]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum SectionDocument {
-    /// Counter-clockwise.
+    /// Polygon with counter-clockwise vertices.
     Polygon { t_s: f64, vertices_m: Vec<[f64; 2]> },
-    /// Centre and shape matrix.
+    /// Ellipse with centre and shape matrix.
     Ellipse {
         t_s: f64,
         center_m: [f64; 2],
@@ -38,7 +38,7 @@ pub enum SectionDocument {
     },
 }
 
-/// One point.
+/// Risk at one point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointDocument {
     pub east_m: f64,
@@ -47,23 +47,23 @@ pub struct PointDocument {
     pub targets: Vec<PointRiskDocument>,
 }
 
-/// One point and one target.
+/// Risk of one target at one point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointRiskDocument {
     pub name: String,
     pub inside: bool,
-    /// Null where no scaling reaches.
+    /// Scaling factor; null if no scaling reaches the point.
     pub alpha: Option<f64>,
     pub risk: f64,
 }
 
-/// The result of holding course and speed.
+/// Result of constant course and speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HoldCourseDocument {
     pub targets: Vec<HeldDocument>,
 }
 
-/// The result of holding course and speed with one target.
+/// Result of constant course and speed for one target.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HeldDocument {
     pub name: String,
@@ -72,7 +72,7 @@ pub struct HeldDocument {
     pub max_risk: f64,
 }
 
-/// The least alterations that leave every velocity obstacle; null where none does.
+/// Least alterations that leave every velocity obstacle; null if none does.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AlterationDocument {
     pub starboard_deg: Option<f64>,
@@ -81,7 +81,7 @@ pub struct AlterationDocument {
     pub speed_mps: Option<f64>,
 }
 
-/// One velocity.
+/// Closest approaches for one velocity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VelocityDocument {
     pub east_mps: f64,
@@ -89,7 +89,7 @@ pub struct VelocityDocument {
     pub targets: Vec<ApproachDocument>,
 }
 
-/// One velocity and one target.
+/// Closest approach of one target for one velocity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ApproachDocument {
     pub name: String,

@@ -1,4 +1,4 @@
-//! The comparison document: the candidates of every scenario side by side.
+//! Comparison document: the candidates of every scenario.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,18 +10,18 @@ use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, EntryResult, Inapplicable};
 
-/// Seconds between two positions of a track, and how many steps there are at most. The steps of a
-/// longer motion are longer.
+/// Time step of a track in seconds, and the maximum number of steps. Longer motions use longer
+/// steps.
 const TRACK_STEP: f64 = 5.0;
 const MOST_STEPS: f64 = 1000.0;
 
-/// Every scenario that was compared, in order.
+/// All compared scenarios, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ComparisonDocument {
     pub comparisons: Vec<ScenarioComparisonDocument>,
 }
 
-/// One scenario. Where it could not be read `error` says why, and the rest is empty.
+/// One scenario. For an unreadable file, `error` gives the reason and the rest is empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioComparisonDocument {
     pub file: String,
@@ -31,35 +31,35 @@ pub struct ScenarioComparisonDocument {
     pub inapplicable: Vec<InapplicableDocument>,
 }
 
-/// One candidate.
+/// Result of one candidate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EntryDocument {
     pub method: String,
     pub max_risk: f64,
-    /// Null for a baseline.
+    /// Objective; null for a baseline.
     pub objective: Option<String>,
     pub outcome: String,
-    /// The outcome in the word that people see.
+    /// Outcome in words for the reader.
     pub verdict: String,
     pub reason: Option<String>,
-    /// For a baseline: clear of sets, hulls and land.
+    /// Verification result; for a baseline, true if clear of sets, hulls and land.
     pub verified: bool,
-    /// No hard set, hull or land is entered.
+    /// True if no hard set, hull or land is entered.
     pub safe: bool,
     pub cost: Option<CostDocument>,
-    /// Positive.
+    /// Angle, positive.
     pub largest_turn_deg: Option<f64>,
     pub largest_turn_side: Option<String>,
-    /// Rules and monitors; null without a motion and without ships.
+    /// Violated rules and monitors; null without a motion and without ships.
     pub breaks: Option<Vec<String>>,
     pub search_stats: Option<SearchStatsDocument>,
     pub timing: Option<TimingDocument>,
-    /// Every five seconds, or every thousandth part of a motion of more than 5000 s, and at the
-    /// end.
+    /// Positions every five seconds and at the end. Motions longer than 5000 s have a thousand
+    /// steps.
     pub track: Vec<TrackPointDocument>,
 }
 
-/// A place at a time.
+/// Position at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrackPointDocument {
     pub t_s: f64,
@@ -67,7 +67,7 @@ pub struct TrackPointDocument {
     pub position: PositionDocument,
 }
 
-/// A method that does not apply to the scenario.
+/// Method that does not apply to the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InapplicableDocument {
     pub method: String,
@@ -75,7 +75,7 @@ pub struct InapplicableDocument {
 }
 
 impl ScenarioComparisonDocument {
-    /// The document of a scenario that was compared.
+    /// Builds the document of a compared scenario.
     pub fn of(
         file: String,
         scenario: &Scenario,
@@ -98,7 +98,7 @@ impl ScenarioComparisonDocument {
         }
     }
 
-    /// The entry of a file that gave no comparison.
+    /// Builds the entry of a file that yields no comparison.
     pub fn failed(file: String, error: String) -> Self {
         Self {
             file,
@@ -155,7 +155,7 @@ impl EntryDocument {
             verified,
             safe: entry.safety() == Some(Safety::Safe),
             cost: trajectory.zip(entry.evaluation()).map(|(motion, found)| {
-                // a baseline minimises nothing else
+                // a baseline has no other objective
                 let objective = plan.map_or(found.space_time_error, |plan| plan.cost);
                 let mut cost = cost_of(motion, found, objective, entry.arrived(), entry.risks());
                 cost.delay_s = cost.delay_s.filter(|_| cost.arrived);

@@ -1,31 +1,31 @@
-//! How a plan of forces was found.
+//! Record of the optimal-control solution.
 
 use serde::{Deserialize, Serialize};
 
 use crate::pipeline::Run;
 
-/// Ship, weights and grid; the result of every initial guess; the homotopy classes.
+/// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ControlDocument {
     pub vessel: String,
     pub force_limits: ForceLimitsDocument,
     pub state_weights: [f64; 6],
     pub control_weights: [f64; 3],
-    /// As asked for: starts and homotopy classes are on that grid.
+    /// Requested number of intervals; starts and homotopy classes use this grid.
     pub start_intervals: usize,
-    /// Of the plan; more than asked for where those were too coarse.
+    /// Number of intervals of the plan; larger than requested if that grid was too coarse.
     pub intervals: usize,
-    /// The largest deviation at the end of an interval, in the ship's units; null where no start
-    /// led to a plan.
+    /// Largest defect at the end of an interval, in the ship's units; null if no start led to a
+    /// plan.
     pub defect: Option<f64>,
-    /// Targets whose set is replaced by an ellipsoid around it.
+    /// Targets whose set is replaced by an enclosing ellipsoid.
     pub enclosed_targets: Vec<String>,
     pub starts: Vec<StartAttemptDocument>,
-    /// The cheapest first.
+    /// Homotopy classes, cheapest first.
     pub homotopy_classes: Vec<HomotopyClassDocument>,
 }
 
-/// To either side of zero.
+/// Force limits, symmetric about zero.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ForceLimitsDocument {
     pub surge_n: f64,
@@ -33,7 +33,7 @@ pub struct ForceLimitsDocument {
     pub yaw_nm: f64,
 }
 
-/// The result of one initial guess.
+/// Result of one initial guess.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StartAttemptDocument {
     pub start: String,
@@ -46,13 +46,13 @@ pub struct StartAttemptDocument {
 /// Plans that pass every set on the same side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HomotopyClassDocument {
-    /// For each target the side on which it is passed; null where it stays far away.
+    /// Passing side for each target; null if it stays far away.
     pub sides: Vec<Option<String>>,
     pub objective: f64,
     pub starts: usize,
 }
 
-/// `None` for another planner.
+/// Builds the record; `None` for other planners.
 pub(super) fn control(run: &Run) -> Option<ControlDocument> {
     let (report, settings) = (run.control.as_ref()?, &run.scenario.control);
     let finite = |value: f64| value.is_finite().then_some(value);

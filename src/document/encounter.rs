@@ -1,4 +1,4 @@
-//! How each target is met, and how own ship complies with the rules toward it.
+//! Encounter with each target and own ship's compliance with the rules toward it.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,11 @@ use crate::pipeline::Run;
 use crate::target::{ShipTrack, Target};
 use crate::trajectory::Trajectory;
 
-/// Seconds between the positions among which the crossing of a track is sought.
+/// Time step in seconds for the search of a track crossing.
 const CROSSING_STEP: f64 = 1.0;
 const MOST_CROSSINGS: u32 = 1_000_000;
 
-/// How a target is met. Figures of the plan are null without one.
+/// Encounter with a target. Without a plan, its figures are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EncounterDocument {
     pub target: String,
@@ -26,19 +26,19 @@ pub struct EncounterDocument {
     pub undisturbed_dcpa_m: Option<f64>,
     pub undisturbed_tcpa_s: Option<f64>,
     pub passing_side: Option<String>,
-    /// In a crossing, whether own ship crosses the target's track astern of it; null elsewhere.
+    /// In a crossing, true if own ship crosses the target's track astern of it; null otherwise.
     #[serde(default)]
     pub crosses_astern: Option<bool>,
-    /// The largest risk along the plan.
+    /// Largest risk along the plan.
     pub max_risk: Option<f64>,
-    /// When; null where the risk is 0.
+    /// Time of the largest risk; null if the risk is 0.
     pub max_risk_t_s: Option<f64>,
-    /// Compliance with the rules; absent without a plan and where the target is no ship.
+    /// Compliance with the rules; absent without a plan and if the target is not a ship.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub conduct: Option<ConductDocument>,
 }
 
-/// A role and when own ship has it along the plan.
+/// Role of own ship and its time interval along the plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RoleDocument {
     pub role: String,
@@ -46,7 +46,7 @@ pub struct RoleDocument {
     pub until_s: f64,
 }
 
-/// A rule violation.
+/// Rule violation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BreachDocument {
     pub rule: String,
@@ -54,7 +54,7 @@ pub struct BreachDocument {
     pub t_s: f64,
 }
 
-/// The verdict of a compliance monitor.
+/// Verdict of a compliance monitor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MonitorDocument {
     pub monitor: String,
@@ -73,7 +73,7 @@ pub struct ConductDocument {
     pub monitors: Vec<MonitorDocument>,
 }
 
-/// Every target of a run, in the order of the scenario. O(targets × seconds of the plan).
+/// Lists every target of a run, in the order of the scenario. O(targets × seconds of the plan).
 pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
     let passages = run.evaluation.as_ref().map(|e| e.passages.as_slice());
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
@@ -110,7 +110,7 @@ fn is_crossing(role: Role) -> bool {
 }
 
 /// True when own ship crosses the nominal target's centre line abaft its centre, false when ahead.
-/// Among several crossings the one nearest in time to `tcpa` counts.
+/// Of several crossings, the one nearest in time to `tcpa` counts.
 fn crosses_astern(trajectory: &Trajectory, target: &Target, tcpa: f64) -> Option<bool> {
     let ship = target.ship()?;
     let relative = |ship: &ShipTrack, time: f64| {
@@ -135,7 +135,7 @@ fn crosses_astern(trajectory: &Trajectory, target: &Target, tcpa: f64) -> Option
 }
 
 impl ConductDocument {
-    /// Angles in degrees.
+    /// Converts a compliance report; angles are in degrees.
     fn of(conduct: &ComplianceReport) -> Self {
         let roles = conduct.roles.iter().map(|interval| RoleDocument {
             role: interval.role.name().to_owned(),

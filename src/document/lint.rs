@@ -1,15 +1,15 @@
-//! The document of `suite --lint`, `docs/formats.md`.
+//! Document of `suite --lint`, see docs/formats.md.
 
 use serde::{Deserialize, Serialize};
 
-/// Many scenarios, checked without planning.
+/// Findings for many scenarios, without planning.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LintDocument {
     pub scenarios: Vec<LintScenarioDocument>,
     pub summary: LintSummaryDocument,
 }
 
-/// One of them; of an unreadable file `error` says why.
+/// Findings for one scenario. For an unreadable file, `error` gives the reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LintScenarioDocument {
     pub file: String,
@@ -20,7 +20,7 @@ pub struct LintScenarioDocument {
     pub notes: Vec<String>,
 }
 
-/// One target, undisturbed.
+/// One target on its nominal motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LintTargetDocument {
     pub name: String,
@@ -31,7 +31,7 @@ pub struct LintTargetDocument {
     pub matters: String,
 }
 
-/// Counts.
+/// Summary counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LintSummaryDocument {
     pub scenarios: usize,
@@ -41,7 +41,7 @@ pub struct LintSummaryDocument {
 }
 
 impl LintDocument {
-    /// Adds the counts.
+    /// Builds the document and its counts.
     pub fn of(scenarios: Vec<LintScenarioDocument>) -> Self {
         let summary = LintSummaryDocument {
             scenarios: scenarios.len(),
@@ -54,7 +54,7 @@ impl LintDocument {
 }
 
 impl LintScenarioDocument {
-    /// The entry of a file without a scenario.
+    /// Builds the entry of a file without a scenario.
     pub fn failed(file: String, error: String) -> Self {
         Self {
             file,

@@ -1,7 +1,7 @@
-//! The published JSON documents: the one description of a result. Text, pages and `inspect` render
+//! Published JSON documents, the single description of a result. Text, pages and `inspect` render
 //! them, and `verify` checks a [`PlanDocument`] alone.
 //!
-//! A number that is not finite is written as null.
+//! Non-finite numbers are written as null.
 #![expect(missing_docs, reason = "docs/documents.md says what each key means")]
 
 mod alteration;

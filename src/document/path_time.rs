@@ -1,4 +1,4 @@
-//! The diagram of a path-time plan: docs/documents.md.
+//! Diagram of a path-time plan, see docs/documents.md.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,28 +7,28 @@ use crate::obstacle::{PathTime, SpaceTimeObstacle};
 use crate::pipeline::Run;
 use crate::planner::path_time::PathTimeDiagram;
 
-/// Distance along the path and time; points are `[s_m, t_s]`.
+/// Path-time diagram; points are `[s_m, t_s]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathTimeDocument {
-    /// `"main"`, `"alternative 1"` …; where own ship changes, one after another.
+    /// Paths in order of use: `"main"`, `"alternative 1"`, ….
     pub path: String,
     pub legs: Vec<PathLegDocument>,
     pub obstacles: Vec<PathObstacleDocument>,
     pub corners: Vec<PathCornerDocument>,
-    /// Without a plan the start alone.
+    /// Profile; without a plan, the start alone.
     pub profile: Vec<[f64; 2]>,
 }
 
-/// A leg of the planned path.
+/// Leg of the planned path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathLegDocument {
     pub start_m: f64,
     pub end_m: f64,
-    /// The path that it belongs to.
+    /// Path that contains the leg.
     pub path: String,
 }
 
-/// An obstacle on a leg, clipped to the leg and the horizon.
+/// Obstacle on a leg, clipped to the leg and the horizon.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathObstacleDocument {
     pub target: String,
@@ -36,17 +36,17 @@ pub struct PathObstacleDocument {
     pub vertices: Vec<[f64; 2]>,
 }
 
-/// A corner of the path: exempt from the turning radius, the hull over both headings there.
+/// Corner of the path, exempt from the turning radius. The hull covers both headings there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PathCornerDocument {
     pub s_m: f64,
-    /// To starboard positive.
+    /// Course change, positive to starboard.
     pub turn_deg: f64,
 }
 
-/// The diagram of a run.
+/// Builds the diagram of a run.
 pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTimeDocument {
-    // +0.0 turns a negative zero into zero
+    // adding +0.0 converts a negative zero to zero
     let plain = |p: &PathTime| [p.distance + 0.0, p.time + 0.0];
     PathTimeDocument {
         path: paths(diagram),
@@ -80,7 +80,7 @@ pub(super) fn path_time_document(run: &Run, diagram: &PathTimeDiagram) -> PathTi
     }
 }
 
-/// The name of a path: 0 is the main one.
+/// Name of a path; 0 is the main one.
 fn path(index: usize) -> String {
     match index {
         0 => "main".to_owned(),
@@ -88,7 +88,7 @@ fn path(index: usize) -> String {
     }
 }
 
-/// The paths of a plan in order.
+/// Names of the paths of a plan in order.
 pub(crate) fn paths(diagram: &PathTimeDiagram) -> String {
     let mut paths: Vec<usize> = diagram.legs.iter().map(|leg| leg.path).collect();
     paths.dedup();

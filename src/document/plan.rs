@@ -1,4 +1,4 @@
-//! The plan document: docs/documents.md.
+//! Plan document, see docs/documents.md.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,14 +25,15 @@ use crate::scenario::Scenario;
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
 
-/// The name of the plan document's format.
+/// Format name of the plan document.
 pub const PLAN_FORMAT: &str = "searoom-plan/1";
 
-/// Seconds between two samples of a trajectory, and how many there are at most beside its joints.
+/// Time step of a sampled trajectory in seconds, and the maximum number of samples besides its
+/// joints.
 const SAMPLE_STEP: f64 = 1.0;
 const MOST_SAMPLES: u32 = 20_000;
 
-/// One plan, alone: everything that is needed to check it again.
+/// Self-contained plan: everything needed to verify it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanDocument {
     pub format: String,
@@ -40,58 +41,58 @@ pub struct PlanDocument {
     pub planner: String,
     pub search: String,
     pub compliance: String,
-    /// The name of the thresholds of rule compliance.
+    /// Name of the thresholds of rule compliance.
     #[serde(default)]
     pub thresholds: String,
     pub objective: String,
-    /// Weight of the objective with risk; absent elsewhere.
+    /// Risk weight of the objective; absent for objectives without risk.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub risk_weight_m: Option<f64>,
     pub time_weight_m2_per_s2: f64,
-    /// The risk that the plan may accept: `obstacles` are the level sets of it.
+    /// Accepted risk; `obstacles` are the level sets at this risk.
     pub max_risk: f64,
     pub horizon_s: f64,
     pub own_ship: OwnShipDocument,
     pub mission: MissionDocument,
     pub land: Vec<Vec<[f64; 2]>>,
     pub outcome: String,
-    /// The outcome in the word that people see, by what happens to hulls.
+    /// Outcome in words for the reader, by the effect on hulls.
     pub verdict: String,
-    /// Why there is no plan, or one that is unfinished or relaxed.
+    /// Reason for an absent, unfinished or relaxed plan.
     pub reason: Option<String>,
     pub relaxation: Option<RelaxationDocument>,
     /// All relaxations, the most important first.
     pub relaxations: Vec<RelaxationDocument>,
     pub verified: bool,
-    /// No hard set, hull or land is entered from start to arrival.
+    /// True if no hard set, hull or land is entered from start to arrival.
     pub safe: bool,
-    /// Absent unless asked for. Null where nothing is met, or no clear plan exists even at the
-    /// start.
+    /// Time of no return; absent unless requested. Null if there is no conflict, or no clear plan
+    /// even at the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_of_no_return_s: Option<Option<f64>>,
-    /// Found by the independent checker.
+    /// Violations found by the independent checker.
     pub violations: Vec<ViolationDocument>,
     pub cost: Option<CostDocument>,
     pub search_stats: SearchStatsDocument,
     pub timing: TimingDocument,
     pub trajectory: Option<TrajectoryDocument>,
-    /// Absent where own ship does not stand on.
+    /// Escape; absent unless own ship stands on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub escape: Option<EscapeDocument>,
-    /// As in the scenario: `obstacles` have to contain them.
+    /// Targets as in the scenario; `obstacles` must contain them.
     pub targets: Vec<TargetDocument>,
     pub obstacles: Vec<ObstacleDocument>,
     pub encounters: Vec<EncounterDocument>,
-    /// Absent for other planners.
+    /// Path-time diagram; absent for other planners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path_time: Option<PathTimeDocument>,
-    /// Absent for other planners.
+    /// Optimal-control record; absent for other planners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimal_control: Option<ControlDocument>,
 }
 
 impl PlanDocument {
-    /// The document of a run.
+    /// Builds the document of a run.
     pub fn of(run: &Run) -> Self {
         let scenario = &run.scenario;
         let verdict = Verdict::of(run);
@@ -151,7 +152,7 @@ impl PlanDocument {
     }
 }
 
-/// The word for what the planner minimises.
+/// Name of the planner's objective.
 pub(super) fn objective(scenario: &Scenario) -> &'static str {
     match scenario.planner {
         PlannerKind::OptimalControl => "stage-cost",
@@ -168,7 +169,7 @@ fn verified(run: &Run) -> bool {
 }
 
 pub(crate) fn finite(value: f64) -> Option<f64> {
-    // +0.0 turns a negative zero into zero
+    // adding +0.0 converts a negative zero to zero
     value.is_finite().then_some(value + 0.0)
 }
 
@@ -275,7 +276,7 @@ fn cost(run: &Run) -> Option<CostDocument> {
     ))
 }
 
-/// The figures of any motion.
+/// Costs of any motion.
 pub(super) fn cost_of(
     trajectory: &Trajectory,
     evaluation: &Evaluation,
@@ -354,7 +355,7 @@ fn trajectory(trajectory: &Trajectory) -> TrajectoryDocument {
     }
 }
 
-/// The node at exactly this time.
+/// Node at exactly this time.
 fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
     let node = motion.node_at(time);
     (node.time == time).then(|| NodeDocument {
@@ -368,7 +369,7 @@ fn node(motion: &Steered, time: f64) -> Option<NodeDocument> {
     })
 }
 
-/// The direction of motion over ground, radians; the heading where there is no motion.
+/// Course over ground in radians; the heading if there is no motion.
 fn course(motion: &Steered, time: f64) -> f64 {
     let piece = motion.piece_at(time);
     let velocity = piece.velocity(piece.part(time));
@@ -379,8 +380,9 @@ fn course(motion: &Steered, time: f64) -> f64 {
     }
 }
 
-/// One entry, or one per slab: its initial set is the section at its start, and its time counts
-/// from there. A set that the plan enters appears from when the plan has left it.
+/// Exports a set as one entry, or one per slab. The initial set of a slab is the section at its
+/// start, and its time counts from there. A set that the plan enters appears after the plan has
+/// left it.
 fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
     let from = from.min(horizon);
     let set = &set.remainder(from);
@@ -422,7 +424,7 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
 }
 
 pub(super) fn plain(p: Vector) -> [f64; 2] {
-    // +0.0 turns a negative zero into zero
+    // adding +0.0 converts a negative zero to zero
     [p.x + 0.0, p.y + 0.0]
 }
 

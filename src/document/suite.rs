@@ -1,4 +1,4 @@
-//! The suite document: docs/documents.md.
+//! Suite document, see docs/documents.md.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,13 +8,13 @@ use super::plan::PlanDocument;
 use crate::evaluation::outcome_word;
 use crate::pipeline::Verdict;
 
-/// The outcome of a file that is no scenario.
+/// Outcome of a file that is not a scenario.
 pub const UNREADABLE: &str = "unreadable";
 
-/// The outcome of a run that ended in a fault of the program.
+/// Outcome of a run that ended in an internal fault.
 pub const INTERNAL_FAULT: &str = "internal-fault";
 
-/// The outcome of a valid scenario that the planner or the rules asked for cannot use.
+/// Outcome of a valid scenario that the requested planner or rules do not support.
 pub const NOT_APPLICABLE: &str = "not-applicable";
 
 /// Many runs in one document.
@@ -25,14 +25,14 @@ pub struct SuiteDocument {
 }
 
 /// One run of a suite. Without a run, `outcome` is [`UNREADABLE`] or [`INTERNAL_FAULT`] with an
-/// `error`, or [`NOT_APPLICABLE`] with a `reason`; keys without meaning are null.
+/// `error`, or [`NOT_APPLICABLE`] with a `reason`. Keys without meaning are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SuiteRunDocument {
     pub file: String,
     pub scenario: Option<String>,
     pub planner: Option<String>,
     pub outcome: String,
-    /// The outcome in the word that people see.
+    /// Outcome in words for the reader.
     pub verdict: String,
     pub error: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -51,26 +51,26 @@ pub struct SuiteRunDocument {
     pub notes: Vec<String>,
 }
 
-/// Counts.
+/// Summary counts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SuiteSummaryDocument {
-    /// All of them: the sum of the seven outcomes below.
+    /// All scenarios: the sum of the seven outcomes below.
     pub scenarios: usize,
-    /// Plans that give up nothing.
+    /// Plans without relaxation.
     pub solved: usize,
-    /// Plans that give something up.
+    /// Plans with a relaxation.
     pub relaxed: usize,
-    /// No plan.
+    /// Scenarios without a plan.
     pub infeasible: usize,
-    /// Budget ran out.
+    /// Scenarios that exceeded the time budget.
     pub deadline: usize,
-    /// Valid scenarios that the planner or the rules asked for cannot use.
+    /// Valid scenarios that the requested planner or rules do not support.
     pub not_applicable: usize,
-    /// Files that are no scenario.
+    /// Files that are not scenarios.
     pub unreadable: usize,
-    /// Runs that ended in a fault of the program.
+    /// Runs that ended in an internal fault.
     pub internal_faults: usize,
-    /// Plans in which the independent checker found nothing wrong.
+    /// Plans without violations found by the independent checker.
     pub verified: usize,
     /// Plans that enter no hard set, hull or land.
     pub safe: usize,
@@ -79,7 +79,7 @@ pub struct SuiteSummaryDocument {
 }
 
 impl SuiteDocument {
-    /// The document of these runs, with their summary.
+    /// Builds the document of these runs with a summary.
     pub fn of(runs: Vec<SuiteRunDocument>) -> Self {
         let ended = |word: &str| runs.iter().filter(|run| run.outcome == word).count();
         let is_relaxed = |run: &SuiteRunDocument| run.outcome == Verdict::Relaxed.word();
@@ -129,7 +129,7 @@ impl std::fmt::Display for SuiteSummaryDocument {
 }
 
 impl SuiteRunDocument {
-    /// The entry of a plan. The notes say what was assumed or not used of an imported file.
+    /// Builds the entry of a plan. The notes list assumptions and unused parts of an imported file.
     pub fn of(file: String, plan: &PlanDocument, notes: Vec<String>) -> Self {
         Self {
             file,
@@ -151,7 +151,7 @@ impl SuiteRunDocument {
         }
     }
 
-    /// The entry of a valid scenario that cannot be used as asked.
+    /// Builds the entry of a valid scenario that is not supported as requested.
     pub fn not_applicable(file: String, title: String, reason: String) -> Self {
         Self {
             scenario: Some(title),
@@ -161,7 +161,7 @@ impl SuiteRunDocument {
         }
     }
 
-    /// The entry of a file that gave no run.
+    /// Builds the entry of a file that yields no run.
     pub fn failed(file: String, outcome: &str, error: String) -> Self {
         Self {
             file,

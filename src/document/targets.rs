@@ -1,4 +1,4 @@
-//! The targets of a plan: with these a document can be checked alone.
+//! Targets of a plan, required to verify a document alone.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,25 +8,25 @@ use crate::frame::{clockwise_deg_per_s, course_deg_from_heading, deg_from_radian
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::{Motion, Representation, ShipTrack, Target};
 
-/// A tracked ship, or the sets of an explicit target, as the scenario gives them.
+/// Tracked ship, or the sets of an explicit target as given by the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetDocument {
-    /// Unique within a document.
+    /// Name, unique within a document.
     pub name: String,
     /// `"polytope"` or `"ellipsoid"`.
     pub representation: String,
-    /// Absent where the sets are given.
+    /// Tracked ship; absent for explicit sets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ship: Option<ShipDocument>,
-    /// Absent for a ship.
+    /// Initial set; absent for a ship.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub initial_set: Option<InitialSetDocument>,
-    /// One after another; absent for a ship.
+    /// Consecutive velocity sets; absent for a ship.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity_sets: Vec<SpellDocument>,
 }
 
-/// A tracked ship, in the keys of the scenario file.
+/// Tracked ship, with the keys of the scenario file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShipDocument {
     pub position: PositionDocument,
@@ -40,17 +40,17 @@ pub struct ShipDocument {
     pub turn_rate_deg_per_s: f64,
 }
 
-/// A set of velocities and until when it holds.
+/// Velocity set with the end of its time interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpellDocument {
-    /// Null for the last.
+    /// End of the time interval; null for the last.
     pub until_s: Option<f64>,
-    /// The set.
+    /// Velocity set.
     #[serde(flatten)]
     pub set: VelocitySetDocument,
 }
 
-/// The document of a target.
+/// Builds the document of a target.
 pub(super) fn target(target: &Target) -> TargetDocument {
     let polygon = |set: &ConvexPolygon| InitialSetDocument::Polygon {
         vertices_m: vertices(set),

@@ -6,12 +6,12 @@ use super::parts::ViolationDocument;
 use super::plan::finite;
 use crate::verification::Verification;
 
-/// The outcome of a file that is no plan document.
+/// Outcome of a file that is not a plan document.
 const UNREADABLE: &str = "unreadable";
-/// The outcome of a document that was not checked in time.
+/// Outcome of a document whose check exceeded the time limit.
 const UNPROVEN: &str = "unproven";
 
-/// Every document that was asked for, in order.
+/// All requested documents, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VerificationDocument {
     pub plans: Vec<VerifiedPlanDocument>,
@@ -19,7 +19,7 @@ pub struct VerificationDocument {
     pub safe: usize,
 }
 
-/// One document. Unknown figures of an unreadable or unproven one are null.
+/// One document. Unknown values of an unreadable or unproven one are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VerifiedPlanDocument {
     pub file: String,
@@ -28,7 +28,7 @@ pub struct VerifiedPlanDocument {
     pub outcome: String,
     pub error: Option<String>,
     pub verified: bool,
-    /// No hard set, hull or land is entered from start to arrival.
+    /// True if no hard set, hull or land is entered from start to arrival.
     pub safe: bool,
     pub violations: Vec<ViolationDocument>,
     pub targets: Vec<MarginDocument>,
@@ -37,27 +37,27 @@ pub struct VerifiedPlanDocument {
     pub min_land_distance_t_s: Option<f64>,
 }
 
-/// The margins to one target.
+/// Margins to one target.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MarginDocument {
-    /// The name of the target.
+    /// Name of the target.
     pub target: String,
-    /// The plan enters the set before this time and claims nothing of it; 0 where all is claimed.
+    /// Time from which the set is claimed; 0 if always. The plan enters the set before this time.
     pub claimed_from_s: f64,
     /// Least signed distance to the set.
     pub min_margin_m: Option<f64>,
-    /// The time of the value before.
+    /// Time of the least margin.
     pub min_margin_t_s: Option<f64>,
     /// Least distance to any hull that the target may have.
     pub min_clearance_m: Option<f64>,
     /// Least distance to its hull on the nominal motion.
     pub dcpa_m: Option<f64>,
-    /// The time of the value before.
+    /// Time of this least distance.
     pub tcpa_s: Option<f64>,
 }
 
 impl VerificationDocument {
-    /// The document of these.
+    /// Builds the document with its summary.
     pub fn of(plans: Vec<VerifiedPlanDocument>) -> Self {
         let verified = plans.iter().filter(|plan| plan.verified).count();
         let safe = plans.iter().filter(|plan| plan.safe).count();
@@ -70,7 +70,7 @@ impl VerificationDocument {
 }
 
 impl VerifiedPlanDocument {
-    /// The entry of a document that was checked.
+    /// Builds the entry of a checked document.
     pub fn of(file: String, checked: &Verification) -> Self {
         let evaluation = checked.evaluation.as_ref();
         let passages = evaluation.map_or(&[][..], |e| &e.passages);
@@ -106,7 +106,7 @@ impl VerifiedPlanDocument {
         }
     }
 
-    /// The entry of a file whose check was not done within its time.
+    /// Builds the entry of a file whose check exceeded its time limit.
     pub fn unproven(file: String, error: String) -> Self {
         Self {
             outcome: UNPROVEN.to_owned(),
@@ -114,7 +114,7 @@ impl VerifiedPlanDocument {
         }
     }
 
-    /// The entry of a file that is no plan document.
+    /// Builds the entry of a file that is not a plan document.
     pub fn unreadable(file: String, error: String) -> Self {
         Self {
             file,

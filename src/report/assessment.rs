@@ -1,12 +1,12 @@
-//! An assessment as text.
+//! Text of an assessment.
 
 use super::table::{Grid, plain, tenths};
 use crate::document::{AssessmentDocument, SectionDocument};
 use crate::frame::course_deg_from_heading;
 use crate::study::assess::Situation;
 
-/// The title and the sets, holding course, the least alteration, and a table for every other
-/// question.
+/// Formats the title and the sets, holding course, the least alteration, and a table for each
+/// further question.
 pub fn assessment_text(situation: &Situation, assessment: &AssessmentDocument) -> String {
     let count = assessment.targets.len();
     let plural = if count == 1 { "" } else { "s" };
@@ -37,7 +37,7 @@ pub fn assessment_text(situation: &Situation, assessment: &AssessmentDocument) -
 }
 
 fn course(heading: f64) -> String {
-    // 359.96 would be written as 360
+    // 359.96 would round to 360
     let tenths = (course_deg_from_heading(heading) * 10.0).round() as u32 % 3600;
     format!("{:03}.{}°", tenths / 10, tenths % 10)
 }
@@ -85,7 +85,7 @@ fn alteration(situation: &Situation, assessment: &AssessmentDocument) -> String 
     format!("{alone}{}", ways.join("; "))
 }
 
-/// Rounded up to hundredths, so that the printed value is still clear.
+/// Rounds up to hundredths, so that the printed value is still clear.
 fn up(value: f64) -> f64 {
     (value * 100.0 - 1e-6).ceil() / 100.0
 }
@@ -161,7 +161,7 @@ fn sections(assessment: &AssessmentDocument) -> String {
     format!("Sections and their extents\n{}", table(&header, 1..6, rows))
 }
 
-/// Time, intervals east and north, and kind of a section.
+/// Time, east and north intervals, and kind of a section.
 fn extent(section: &SectionDocument) -> (f64, [[f64; 2]; 2], String) {
     match section {
         SectionDocument::Polygon { t_s, vertices_m } => {
@@ -192,12 +192,12 @@ fn yes(value: bool) -> String {
     if value { "yes" } else { "no" }.to_owned()
 }
 
-/// Without a negative zero.
+/// Formats a number without a negative zero.
 fn number(value: f64) -> String {
     (value + 0.0).to_string()
 }
 
-/// A table without colours.
+/// Formats a table without colours.
 fn table(
     header: &[&'static str],
     numbers: std::ops::Range<usize>,

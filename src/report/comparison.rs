@@ -1,4 +1,4 @@
-//! Planners side by side: a table for a terminal or as markdown, and rows of a CSV file.
+//! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
 use super::plan::TIME_COLUMN;
 use super::table::{
@@ -8,12 +8,12 @@ use super::table::{
 use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
 
-/// True where several risks were accepted.
+/// True if several risk levels were requested.
 fn is_sweep(entries: &[EntryDocument]) -> bool {
     entries.iter().any(|e| e.max_risk != entries[0].max_risk)
 }
 
-/// The table of one scenario, and the methods that do not apply. Colour only when `colour`.
+/// Formats the table of one scenario and the methods that do not apply. Colour only when `colour`.
 pub fn comparison_table(compared: &ScenarioComparisonDocument, colour: bool) -> String {
     let table = comparison_grid(&compared.entries).text(colour);
     let title = compared.scenario.as_deref().unwrap_or(&compared.file);
@@ -22,7 +22,7 @@ pub fn comparison_table(compared: &ScenarioComparisonDocument, colour: bool) -> 
     lines.join("\n")
 }
 
-/// The table as markdown, without the time that planning took.
+/// Formats the table as markdown, without the planning time.
 pub fn comparison_markdown(compared: &ScenarioComparisonDocument) -> String {
     let grid = comparison_grid(&compared.entries).without(TIME_COLUMN);
     let title = compared.scenario.as_deref().unwrap_or(&compared.file);
@@ -36,7 +36,7 @@ pub fn comparison_markdown(compared: &ScenarioComparisonDocument) -> String {
     lines.join("\n")
 }
 
-/// One row per entry; in a sweep with the accepted risk.
+/// Builds one row per entry; in a sweep, with the accepted risk.
 pub(super) fn comparison_grid(entries: &[EntryDocument]) -> Grid {
     let mut grid = Grid {
         header: vec![
@@ -103,7 +103,7 @@ fn row(entry: &EntryDocument) -> Vec<Styled> {
     ]
 }
 
-/// `S 39°` or `P 12°`.
+/// Formats the largest turn, for example `S 39°` or `P 12°`.
 fn largest_turn(entry: &EntryDocument) -> String {
     match (&entry.largest_turn_side, entry.largest_turn_deg) {
         (Some(side), Some(degrees)) => {
@@ -114,8 +114,8 @@ fn largest_turn(entry: &EntryDocument) -> String {
     }
 }
 
-/// Until when J is counted, why there is no motion, and which methods do not apply: a sentence
-/// each.
+/// Remarks, one sentence each: the end of the interval of J, reasons for missing motions, and
+/// methods that do not apply.
 pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
     let entries = &compared.entries;
     let mut lines = Vec::new();
@@ -145,7 +145,7 @@ pub(super) fn remarks(compared: &ScenarioComparisonDocument) -> Vec<String> {
     lines
 }
 
-/// The columns of [`comparison_csv`].
+/// Columns of [`comparison_csv`].
 pub const COMPARISON_COLUMNS: [&str; 22] = [
     "file",
     "scenario",
@@ -171,7 +171,7 @@ pub const COMPARISON_COLUMNS: [&str; 22] = [
     "reason",
 ];
 
-/// A row of values in the order of [`COMPARISON_COLUMNS`]; empty where there is none.
+/// Builds a row of values in the order of [`COMPARISON_COLUMNS`]; missing values are empty.
 pub fn comparison_csv(
     compared: &ScenarioComparisonDocument,
     entry: &EntryDocument,

@@ -1,9 +1,9 @@
-//! Faults of scenarios as text.
+//! Text of scenario faults.
 
 use super::table::{Grid, or_dash, plain, tenths};
 use crate::document::LintDocument;
 
-/// One row per target, then every finding and a summary.
+/// Formats one row per target, then every finding and a summary.
 pub fn lint_text(document: &LintDocument, colour: bool) -> String {
     let mut grid = Grid {
         header: vec![

@@ -1,5 +1,5 @@
-//! Documents for people: text and tables, an HTML page, figures. Units are nautical here: degrees
-//! clockwise, starboard positive.
+//! Reports: text and tables, an HTML page, and figures. Units are nautical: degrees clockwise,
+//! starboard positive.
 
 mod assessment;
 mod comparison;

@@ -1,4 +1,4 @@
-//! Plan documents as text: one plan in aligned lines, and a table with a row per plan.
+//! Text of plan documents: one plan in aligned lines, and a table with a row per plan.
 
 use super::table::{
     Grid, Styled, or_dash, plain, signed, square_metres, tenths, verdict, verified, yes_or_no,
@@ -12,14 +12,14 @@ use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
 use crate::planner::PlannerKind;
 use crate::text::printable;
 
-/// Targets, or ways to pass them, that are listed; the rest is counted.
+/// Maximum number of targets, or of passing sides, that are listed; the rest is counted.
 const LISTED: usize = 3;
 
-/// The column, and the name of the line, of the time that planning took.
+/// Column and line name of the planning time.
 pub(super) const TIME_COLUMN: &str = "time\n[ms]";
 pub(super) const TIME_LINE: &str = "time";
 
-/// A table with one row per scenario. Colour only when `colour`.
+/// Formats a table with one row per scenario. Colour only when `colour`.
 pub fn suite_table(runs: &[SuiteRunDocument], colour: bool) -> String {
     suite_grid(runs).text(colour)
 }
@@ -60,7 +60,7 @@ fn suite_row(run: &SuiteRunDocument) -> Vec<Styled> {
     };
     let roles = per_target(&|e| e.role.clone());
     vec![
-        // a file that gave no scenario has no other name
+        // a file without a scenario has no other name
         plain(match &run.error {
             None if run.search_stats.is_some() => run.scenario.as_deref().unwrap_or_default(),
             _ => &run.file,
@@ -83,7 +83,7 @@ fn suite_row(run: &SuiteRunDocument) -> Vec<Styled> {
     ]
 }
 
-/// The targets toward which own ship has a role, in order of undisturbed closest approach.
+/// Targets toward which own ship has a role, in order of nominal closest approach.
 fn met(encounters: &[EncounterDocument]) -> Vec<&EncounterDocument> {
     let mut met: Vec<_> = encounters.iter().filter(|e| e.role != "none").collect();
     let time = |e: &EncounterDocument| e.undisturbed_tcpa_s.unwrap_or(f64::INFINITY);
@@ -98,8 +98,8 @@ fn turn(cost: &CostDocument) -> String {
     }
 }
 
-/// The side of own ship on which the target lies at the closest approach, and in a crossing
-/// whether own ship crosses ahead or astern of it.
+/// Side of own ship on which the target lies at the closest approach. In a crossing, it also states
+/// whether own ship crosses ahead or astern.
 fn passing(encounter: &EncounterDocument) -> String {
     match (&encounter.passing_side, encounter.crosses_astern) {
         (None, _) => "–".to_owned(),
@@ -109,12 +109,12 @@ fn passing(encounter: &EncounterDocument) -> String {
     }
 }
 
-/// The verdict and the costs of a run in aligned lines.
+/// Formats the verdict and the costs of a run in aligned lines.
 pub fn plan_text(run: &Run) -> String {
     plan_document_text(&PlanDocument::of(run))
 }
 
-/// [`plan_text`] of a document.
+/// [`plan_text`] for a document.
 pub fn plan_document_text(plan: &PlanDocument) -> String {
     let lines = plan_lines(plan).into_iter();
     let aligned = lines.map(|(name, value)| format!("  {name:<13}{value}"));
@@ -122,7 +122,7 @@ pub fn plan_document_text(plan: &PlanDocument) -> String {
     all.join("\n")
 }
 
-/// The title, the outcome, and whether the plan is verified and safe.
+/// Title, outcome, and whether the plan is verified and safe.
 pub(super) fn headline(plan: &PlanDocument) -> String {
     let facts = match plan.trajectory {
         Some(_) => format!(" ({})", facts(plan.verified, plan.safe)),
@@ -131,7 +131,7 @@ pub(super) fn headline(plan: &PlanDocument) -> String {
     printable(&format!("{}: {}{facts}", plan.scenario, plan.verdict))
 }
 
-/// The lines of a plan with their names. A line without a name continues the one before.
+/// Named lines of a plan. A line without a name continues the previous one.
 pub(super) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     let mut add = |name: &'static str, value: String| lines.push((name, printable(&value)));
@@ -169,7 +169,7 @@ pub(super) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// The relaxation as a sentence, and the name of its line.
+/// Relaxation as a sentence, and the name of its line.
 fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static str, String) {
     let RelaxationDocument { target, amount, .. } = relaxation;
     let text = match relaxation.kind.as_str() {
@@ -193,7 +193,7 @@ fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static st
     ("relaxes", text)
 }
 
-/// Until when own ship holds course and speed, and what follows.
+/// Time until which own ship holds course and speed, and the subsequent manoeuvre.
 fn stand_on(escape: &EscapeDocument) -> String {
     let EscapeDocument {
         latest_s,
@@ -254,7 +254,7 @@ fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, Strin
             add("", format!("violates {rule} at {time:.0} s: {what}"));
         }
         for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {
-            // a difference has no negative zero
+            // avoids a negative zero
             let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
             let short = match monitor.unit.as_str() {
                 "m" => format!("{short:.1} m"),
@@ -314,7 +314,7 @@ fn cost_lines(
     }
 }
 
-/// The largest risk, and with which targets and when.
+/// Largest risk, with its targets and time.
 fn risk(plan: &PlanDocument, largest: f64) -> String {
     let mut text = format!("{largest:.3} at most");
     if plan.max_risk > 0.0 {
@@ -329,7 +329,7 @@ fn risk(plan: &PlanDocument, largest: f64) -> String {
     text
 }
 
-/// How a plan of forces was found.
+/// Lines on the solution of a plan under forces.
 fn control_lines(
     plan: &PlanDocument,
     control: &ControlDocument,
@@ -388,7 +388,7 @@ fn control_lines(
     }
 }
 
-/// With four decimals where they are significant.
+/// Formats four decimals if they are significant.
 fn stage_cost(value: f64) -> String {
     if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
         format!("{value:.4}")
@@ -397,7 +397,7 @@ fn stage_cost(value: f64) -> String {
     }
 }
 
-/// The line of a plan's text for the time of no return.
+/// Formats the line for the time of no return.
 pub fn no_return_line(found: NoReturn) -> String {
     let text = match found {
         NoReturn::Never => "none: nothing is met on the desired trajectory".to_owned(),
@@ -412,7 +412,7 @@ pub fn no_return_line(found: NoReturn) -> String {
     format!("  {:<13}{text}", "no return")
 }
 
-/// Why [`Run::no_return`] gives nothing.
+/// Explains why [`Run::no_return`] returns nothing.
 pub fn no_return_reason(run: &Run) -> String {
     let reason = match run.scenario.planner {
         PlannerKind::SpaceTime => "the desired trajectory cannot be followed".to_owned(),

@@ -1,10 +1,10 @@
-//! Tables for a terminal, and numbers as tables show them.
+//! Tables for a terminal, and number formats of tables.
 
 use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, Table, presets};
 
 use crate::text::printable_lines;
 
-/// Whether a cell is good, bad or neither.
+/// Rating of a cell: good, bad or neither.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tone {
     Plain,
@@ -13,20 +13,20 @@ pub(super) enum Tone {
     Bad,
 }
 
-/// A text and its tone.
+/// Text with its rating.
 pub(super) type Styled = (String, Tone);
 
 /// Rows under named columns.
 pub(super) struct Grid {
-    /// Units stand on a second line, so that the table fits a terminal.
+    /// Column names. Units are on a second line, to fit a terminal.
     pub header: Vec<&'static str>,
-    /// Columns with numbers.
+    /// Range of numeric columns.
     pub numbers: std::ops::Range<usize>,
     pub rows: Vec<Vec<Styled>>,
 }
 
 impl Grid {
-    /// Without one column with numbers.
+    /// Removes one numeric column.
     pub fn without(mut self, name: &str) -> Self {
         if let Some(column) = self.header.iter().position(|n| *n == name) {
             self.header.remove(column);
@@ -38,7 +38,7 @@ impl Grid {
         self
     }
 
-    /// For a terminal. Colour only when `colour`.
+    /// Formats the table for a terminal. Colour only when `colour`.
     pub fn text(&self, colour: bool) -> String {
         let mut table = Table::new();
         table
@@ -62,7 +62,7 @@ impl Grid {
         table.trim_fmt()
     }
 
-    /// As markdown.
+    /// Formats the table as markdown.
     pub fn markdown(&self) -> String {
         let line = |cells: Vec<String>| format!("| {} |", cells.join(" | "));
         let mut lines = vec![
@@ -75,12 +75,12 @@ impl Grid {
     }
 }
 
-/// A text that stays in its markdown cell.
+/// Escapes a text for a markdown cell.
 pub(super) fn in_cell(text: &str) -> String {
     text.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
 
-/// A cell in its colour, without control characters.
+/// Creates a coloured cell without control characters.
 fn cell((text, tone): &Styled) -> Cell {
     let cell = Cell::new(printable_lines(text));
     match tone {
@@ -91,17 +91,17 @@ fn cell((text, tone): &Styled) -> Cell {
     }
 }
 
-/// Without a tone.
+/// Text without a rating.
 pub(super) fn plain(text: impl Into<String>) -> Styled {
     (text.into(), Tone::Plain)
 }
 
-/// A text, or a dash where there is none.
+/// Text, or a dash if there is none.
 pub(super) fn or_dash(text: Option<String>) -> Styled {
     plain(text.unwrap_or_else(|| "–".to_owned()))
 }
 
-/// The word that people see for an outcome, with its tone.
+/// Outcome in words for the reader, with its rating.
 pub(super) fn verdict(word: &str) -> Styled {
     let tone = match word {
         _ if word.contains("deadline") => Tone::Bad,
@@ -114,7 +114,7 @@ pub(super) fn verdict(word: &str) -> Styled {
     (word.to_owned(), tone)
 }
 
-/// The result of the independent check; a plan that is not safe gets no good tone.
+/// Result of the independent checker. A plan that is not safe is never rated good.
 pub(super) fn verified(verified: Option<bool>, safe: Option<bool>) -> Styled {
     match yes_or_no(verified) {
         (word, Tone::Good) if safe != Some(true) => (word, Tone::Plain),
@@ -130,7 +130,7 @@ pub(super) fn yes_or_no(fact: Option<bool>) -> Styled {
     }
 }
 
-/// A space-time error: with one decimal where it is small.
+/// Formats a space-time error; small values have one decimal.
 pub(super) fn square_metres(value: f64) -> String {
     if value.is_nan() {
         "undefined".to_owned()
@@ -141,12 +141,12 @@ pub(super) fn square_metres(value: f64) -> String {
     }
 }
 
-/// With one decimal; what rounds to zero has no sign.
+/// Formats one decimal; values that round to zero have no sign.
 pub(super) fn tenths(value: f64) -> String {
     format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
 }
 
-/// With a sign and one decimal; what rounds to zero is `+0.0`.
+/// Formats one decimal with a sign; values that round to zero give `+0.0`.
 pub(super) fn signed(value: f64) -> String {
     format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
 }

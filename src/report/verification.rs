@@ -1,14 +1,14 @@
-//! The check of a plan document as text.
+//! Text of a plan document's verification.
 
 use super::table::{Grid, Tone, or_dash, plain, tenths};
 use crate::evaluation::{facts, outcome_word};
 use crate::text::printable;
 use crate::verification::Verification;
 
-/// Violations that are listed; the rest is counted.
+/// Maximum number of violations listed; the rest is counted.
 const LISTED: usize = 20;
 
-/// The verdict, the least margin to every target and when, and everything that is wrong.
+/// Formats the verdict, the least margin to every target with its time, and all violations.
 pub fn verification_text(checked: &Verification, colour: bool) -> String {
     let verdict = match (&checked.evaluation, checked.violations.len()) {
         (None, _) => format!(
@@ -123,7 +123,7 @@ fn margins(checked: &Verification, colour: bool) -> String {
     grid.text(colour)
 }
 
-/// With three decimals; what rounds to zero has no sign.
+/// Formats three decimals; values that round to zero have no sign.
 fn millimetres(value: f64) -> String {
     format!("{:.3}", (value * 1000.0).round() / 1000.0 + 0.0)
 }

@@ -1,22 +1,22 @@
-//! Files that are whole or not there.
+//! Atomic file writes.
 
 use std::path::{Path, PathBuf};
 
 use crate::output::write_whole;
 
-/// A file that could not be written.
+/// File that could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: cannot be written: {source}", file.display())]
 pub struct WriteError {
-    /// The file.
+    /// File path.
     pub file: PathBuf,
-    /// The system's answer.
+    /// Operating system error.
     pub source: std::io::Error,
 }
 
-/// Writes `contents` under a temporary name beside `file` and renames it, so that a crash leaves
-/// the old file or the new one, never half of it. The folder must exist. A link stays one, and what
-/// it leads to is replaced; a device or a pipe is written to and never replaced.
+/// Writes `contents` to a temporary file beside `file` and renames it. After a crash, either the
+/// old or the new file exists, never a part of it. The folder must exist. Symbolic links are
+/// preserved: their target is replaced. Devices and pipes are written to and never replaced.
 pub fn write_atomically(file: &Path, contents: &[u8]) -> Result<(), WriteError> {
     write_whole(file, contents).map_err(|source| WriteError {
         file: file.to_owned(),

@@ -1,5 +1,5 @@
-//! Studies of a scenario: questions about its obstacles, comparison of planners, and faults of the
-//! scenario itself.
+//! Studies of a scenario: assessment of its obstacles, comparison of planners, and faults of the
+//! scenario.
 
 pub mod assess;
 pub mod compare;

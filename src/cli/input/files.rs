@@ -1,4 +1,4 @@
-//! The scenario files at the paths of a command, and the names of their results.
+//! Scenario files at the paths of a command, and the names of their results.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,19 +8,18 @@ use anyhow::{Context, bail};
 
 use super::super::output::Output;
 
-/// A scenario file that was asked for.
+/// Requested scenario file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// The file.
+    /// File path.
     pub file: PathBuf,
-    /// Name of what is written for it, without an ending: its path relative to the argument with
-    /// "/" as "__".
+    /// Name of its outputs without extension: the path relative to the argument with "/" as "__".
     pub stem: String,
-    /// True when a folder was asked for, not this file.
+    /// True if the argument was a folder, not this file.
     pub in_folder: bool,
 }
 
-/// Which files of a folder are meant, by their endings.
+/// File kinds in a folder, selected by extension.
 #[derive(Debug)]
 pub struct Kinds {
     endings: &'static [&'static str],
@@ -33,13 +32,13 @@ pub const SCENARIOS: Kinds = Kinds {
     text: ".toml",
 };
 
-/// Scenario files and files of other formats.
+/// Scenario files and imported formats.
 pub const ANY_FORMAT: Kinds = Kinds {
     endings: &["toml", "json", "xml"],
     text: ".toml, .json or .xml",
 };
 
-/// Files of other formats alone.
+/// Imported formats alone.
 pub const FOREIGN: Kinds = Kinds {
     endings: &["json", "xml"],
     text: ".json or .xml",
@@ -52,8 +51,8 @@ impl Kinds {
     }
 }
 
-/// The scenario files at `paths`, in the order of the arguments and sorted within each folder. A
-/// folder that cannot be searched gives the reason. A repeated file is taken once, with a note.
+/// Lists the scenario files at `paths`, in the order of the arguments and sorted within each
+/// folder. An unreadable folder gives an error. A repeated file is listed once, with a note.
 pub fn find(
     paths: &[PathBuf],
     kinds: &Kinds,
@@ -62,7 +61,7 @@ pub fn find(
     let mut known = BTreeSet::new();
     let mut all = Vec::new();
     for found in meant(paths, kinds) {
-        // what cannot be found is reported when it is read
+        // missing files are reported on reading
         let place = found.as_ref().ok().and_then(|f| f.file.canonicalize().ok());
         let again = place.is_some_and(|place| !known.insert(place));
         if let (Ok(found), true) = (&found, again) {
@@ -79,7 +78,7 @@ fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow
     let mut all = Vec::new();
     for path in paths {
         if !path.is_dir() {
-            // a missing file is reported when it is read
+            // a missing file is reported on reading
             all.push(Ok(Found {
                 file: path.clone(),
                 stem: stem(path.file_name().map(Path::new).unwrap_or(path)),
@@ -111,8 +110,8 @@ fn meant(paths: &[PathBuf], kinds: &Kinds) -> Vec<Result<Found, (PathBuf, anyhow
     all
 }
 
-/// The name of a file on a page: as it was given, but an absolute path is shortened to the part
-/// below the current folder, or to the name.
+/// Name of a file on a page: as given, but an absolute path is shortened to the part below the
+/// current folder, or to the file name.
 pub fn shown(file: &Path) -> String {
     if !file.is_absolute() {
         return file.display().to_string();
@@ -134,7 +133,7 @@ fn stem(relative: &Path) -> String {
     parts.join("__")
 }
 
-/// The files of these kinds below a folder; none of one that cannot be searched.
+/// Files of these kinds below a folder; empty if the folder is unreadable.
 pub fn below(folder: &Path, kinds: &Kinds) -> Vec<PathBuf> {
     let mut files = Vec::new();
     match walk(folder, kinds, &mut files) {
@@ -143,8 +142,8 @@ pub fn below(folder: &Path, kinds: &Kinds) -> Vec<PathBuf> {
     }
 }
 
-/// Files of these kinds, depth first in order of names. Hidden entries are left out; links to
-/// folders are not followed, so that a loop ends.
+/// Collects files of these kinds, depth first in order of names. Hidden entries are skipped. Links
+/// to folders are not followed, which prevents loops.
 fn walk(folder: &Path, kinds: &Kinds, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     let unread = || format!("{}: cannot be read", folder.display());
     let mut entries = fs::read_dir(folder)
@@ -165,7 +164,7 @@ fn walk(folder: &Path, kinds: &Kinds, files: &mut Vec<PathBuf>) -> anyhow::Resul
     Ok(())
 }
 
-/// Fails when two scenarios would be written under one name.
+/// Fails if two scenarios would have the same output name.
 pub fn refuse_clashes(found: &[Found]) -> anyhow::Result<()> {
     for (index, later) in found.iter().enumerate() {
         if let Some(earlier) = found[..index].iter().find(|f| f.stem == later.stem) {

@@ -1,4 +1,4 @@
-//! Scenarios and rows of numbers that a command reads.
+//! Input of commands: scenarios and rows of numbers.
 
 pub mod files;
 pub mod rows;

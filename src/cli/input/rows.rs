@@ -7,13 +7,13 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use searoom::scenario::{Fault, ScenarioError};
 
-/// Bytes of a CSV file.
+/// Maximum size of a CSV file in bytes.
 const FILE_BYTES: u64 = 16 * 1024 * 1024;
 
-/// Faults of a file that are reported; the rest is counted.
+/// Maximum number of faults reported per file; the rest is counted.
 const REPORTED: usize = 20;
 
-/// A column: its name, which carries the unit, and what it may hold.
+/// Column: its name, which includes the unit, and its valid range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Column {
     name: &'static str,
@@ -30,34 +30,34 @@ impl Column {
         format!("a number from {} to {}", self.low, self.high)
     }
 
-    /// The number in a text, or what was found instead.
+    /// Parses a number; the error describes the text found.
     fn number(&self, text: &str) -> Result<f64, String> {
         if text.is_empty() {
             return Err("nothing".to_owned());
         }
         match text.parse::<f64>() {
             Ok(number) if number >= self.low && number <= self.high => Ok(number),
-            // as short as it can be: 1e308 has 309 figures
+            // shortest form: 1e308 has 309 digits
             Ok(number) => Err(format!("{number:?}").trim_end_matches(".0").to_owned()),
             Err(_) => Err(format!("the text {}", quoted(text))),
         }
     }
 }
 
-/// Where and when.
+/// Position and time.
 pub const POINT: [Column; 3] = [
     Column::new("east_m", -1e7, 1e7),
     Column::new("north_m", -1e7, 1e7),
     Column::new("t_s", 0.0, 1e6),
 ];
 
-/// A velocity of own ship.
+/// Velocity of own ship.
 pub const VELOCITY: [Column; 2] = [
     Column::new("east_mps", -100.0, 100.0),
     Column::new("north_mps", -100.0, 100.0),
 ];
 
-/// A time.
+/// Time.
 pub const TIME: [Column; 1] = [Column::new("t_s", 0.0, 1e6)];
 
 fn values(count: usize) -> String {
@@ -65,7 +65,7 @@ fn values(count: usize) -> String {
     format!("{count} value{plural}")
 }
 
-/// The numbers of one option, with commas between them.
+/// Parses the comma-separated numbers of one option.
 pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64; N], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     if parts.len() != N {
@@ -88,8 +88,8 @@ pub fn option<const N: usize>(text: &str, columns: &[Column; N]) -> Result<[f64;
     Ok(row)
 }
 
-/// The rows of a CSV file with a header line, at least one; its columns may be in any order. Every
-/// fault of the file is in the error, each with its line and its field.
+/// Reads the rows of a CSV file with a header line. At least one row is required; the columns may
+/// be in any order. The error lists every fault with its line and field.
 pub fn read<const N: usize>(
     file: &Path,
     columns: &[Column; N],
@@ -118,7 +118,7 @@ fn bytes(file: &Path) -> Result<Vec<u8>, ScenarioError> {
         source,
     };
     let invalid = |what: &str| std::io::Error::new(std::io::ErrorKind::InvalidInput, what);
-    // a pipe would be waited for, a device read for ever
+    // a pipe would block, and a device may never end
     if !std::fs::metadata(file).map_err(unread)?.is_file() {
         return Err(unread(invalid("not a regular file")));
     }
@@ -206,7 +206,7 @@ fn rows<const N: usize>(
     rows
 }
 
-/// Counts lines, from 1, up to where the reader stands.
+/// Counts lines from 1 up to the reader's position.
 struct Lines<'a> {
     bytes: &'a [u8],
     read: usize,
@@ -214,7 +214,7 @@ struct Lines<'a> {
 }
 
 impl Lines<'_> {
-    /// The line on which the record that was read last ends.
+    /// Line on which the last record ends.
     fn reach(&mut self, reader: &csv::Reader<&[u8]>) -> usize {
         let end = (reader.position().byte() as usize).min(self.bytes.len());
         let text = self.bytes[self.read..end].trim_ascii_end();
@@ -229,7 +229,7 @@ fn newlines(bytes: &[u8]) -> usize {
     bytes.iter().filter(|b| **b == b'\n').count()
 }
 
-/// Where each column stands in the file.
+/// Finds the position of each column in the file.
 fn columns_of<const N: usize>(
     found: &StringRecord,
     columns: &[Column; N],
@@ -265,7 +265,7 @@ fn header<const N: usize>(columns: &[Column; N]) -> String {
     columns.map(|c| c.name).join(",")
 }
 
-/// At most 40 characters of a text, in quotes.
+/// Quotes at most 40 characters of a text.
 fn quoted(text: &str) -> String {
     let short: String = text.chars().take(40).collect();
     let more = if text.chars().count() > 40 { "…" } else { "" };
@@ -324,7 +324,7 @@ mod tests {
         assert_eq!(faults(b"east_m,north_m,t_s\n1,2,3\n\xff,1,2\n").len(), 1);
     }
 
-    /// Nothing that a file can hold may panic.
+    /// Checks that no file content causes a panic.
     #[test]
     fn hostile_text_never_panics() {
         let text = b"east_m,north_m,t_s\n\"1\",nan,-0\n\"\"\",1\r3,,\n";

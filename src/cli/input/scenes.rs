@@ -1,4 +1,4 @@
-//! The scenarios in files: one in a scenario file, one or many in an imported one.
+//! Scenarios in files: one per scenario file, one or more per imported file.
 
 use std::path::{Path, PathBuf};
 
@@ -8,41 +8,41 @@ use searoom::scenario::{Scenario, ScenarioError};
 use super::super::output::Output;
 use super::files::{self, Found};
 
-/// A scenario that is not read in full yet.
+/// Scenario that is not yet fully read.
 #[derive(Debug)]
 pub struct Scene {
-    /// Its file, and the name of its results.
+    /// File and output name.
     pub found: Found,
     source: Source,
 }
 
 #[derive(Debug)]
 enum Source {
-    /// A scenario file.
+    /// Scenario file.
     File,
-    /// A situation of an imported file.
+    /// Situation of an imported file.
     Situation(Box<Situation>),
 }
 
-/// A file, or a part of it, in which there is no scenario.
+/// File, or a part of it, without a scenario.
 #[derive(Debug)]
 pub struct Unread {
-    /// The file.
+    /// File path.
     pub file: PathBuf,
-    /// Why, the file named.
+    /// Error that includes the file name.
     pub error: String,
 }
 
-/// A scenario with notes.
+/// Scenario with notes.
 #[derive(Debug)]
 pub struct Made {
     pub scenario: Scenario,
-    /// Assumptions, and parts of the file that are not used.
+    /// Assumptions, and unused parts of the file.
     pub notes: Vec<String>,
 }
 
 impl Scene {
-    /// The scenario, with assumptions where an imported file gives no value.
+    /// Builds the scenario, with assumptions for values missing from an imported file.
     pub fn scenario(&self, assumed: &Assumed) -> Result<Made, ScenarioError> {
         match self.imported(assumed) {
             Some(imported) => imported.map(|imported| Made {
@@ -56,7 +56,7 @@ impl Scene {
         }
     }
 
-    /// The scenario of an imported file, with its text; `None` for a scenario file.
+    /// Builds the scenario of an imported file with its text; `None` for a scenario file.
     pub fn imported(&self, assumed: &Assumed) -> Option<Result<Imported, ScenarioError>> {
         match &self.source {
             Source::File => None,
@@ -76,7 +76,7 @@ impl Scene {
         }
     }
 
-    /// The file, and the situation where there may be several in it.
+    /// Name of the file, with the situation if the file may contain several.
     pub fn label(&self) -> String {
         let file = self.found.file.display();
         match &self.source {
@@ -88,7 +88,7 @@ impl Scene {
     }
 }
 
-/// Opens files: every scene in their order. Documents and maps in a folder are left out with a
+/// Opens files and lists their scenes in order. Documents and maps in a folder are skipped with a
 /// note.
 pub fn open(
     found: Vec<Result<Found, (PathBuf, anyhow::Error)>>,
@@ -149,7 +149,8 @@ fn of_file(
     }
 }
 
-/// The scenario of a command that takes scenario files alone, or why there is none, the file named.
+/// Reads a scenario for a command that accepts scenario files only. The error includes the file
+/// name.
 pub fn scenario_file(file: &Path) -> Result<Scenario, String> {
     let read = Contents::read(file, &Assumed::default()).map_err(|error| error.to_string())?;
     let is = match read {
@@ -168,7 +169,7 @@ pub fn scenario_file(file: &Path) -> Result<Scenario, String> {
     Err(format!("{}: {is}", file.display()))
 }
 
-/// Notes how many files of other formats a folder holds that this command leaves out.
+/// Notes how many files of imported formats in a folder this command skips.
 pub fn note_foreign(paths: &[PathBuf], output: &Output) {
     for folder in paths.iter().filter(|path| path.is_dir()) {
         let is_foreign = |file: &PathBuf| {
@@ -186,7 +187,7 @@ pub fn note_foreign(paths: &[PathBuf], output: &Output) {
     }
 }
 
-/// Outputs of one of several situations are called after it, in the folder of its file.
+/// Names the outputs of one of several situations after it, in the folder of its file.
 fn named(found: &Found, situation: &Situation) -> Found {
     let Some(id) = situation.id() else {
         return found.clone();
@@ -209,5 +210,5 @@ fn named(found: &Found, situation: &Situation) -> Found {
     }
 }
 
-/// Replaces "/" in the names of results.
+/// Replacement of "/" in output names.
 const SEPARATOR: &str = "__";

@@ -1,4 +1,4 @@
-//! The differences of two recordings.
+//! Differences between two recordings.
 
 use std::path::Path;
 
@@ -11,27 +11,27 @@ use super::super::output::Output;
 use super::super::output::status::Status;
 use super::read;
 
-/// Differences of two plan documents that are listed; the rest is counted.
+/// Maximum number of plan document differences listed; the rest is counted.
 const LISTED: usize = 20;
 
-/// Entities that are not compared row by row: the title, and the documents, which are compared
-/// field by field without the time that planning took.
+/// Entities excluded from the row-by-row comparison: the title and the documents. Documents are
+/// compared field by field, without the planning time.
 const APART: [&str; 3] = ["/__properties", "/plan_document", "/comparison_document"];
 
-/// The differences of two recordings.
+/// Differences between two recordings.
 #[derive(Debug, Default, Serialize)]
 struct Difference {
     files: Vec<String>,
     equal: bool,
-    /// Fields in which the plan documents differ, timing aside.
+    /// Fields in which the plan documents differ, except timing.
     plan: Vec<PlanDifference>,
-    /// In the first alone.
+    /// Entities only in the first recording.
     only_first: Vec<String>,
-    /// In the second alone.
+    /// Entities only in the second recording.
     only_second: Vec<String>,
-    /// In both, with other rows.
+    /// Entities in both recordings with different rows.
     changed: Vec<String>,
-    /// In both, alike.
+    /// Number of equal entities.
     same: usize,
 }
 
@@ -42,7 +42,7 @@ struct PlanDifference {
     second: Value,
 }
 
-/// Compares plan documents, the time of planning aside, and the contents of every entity.
+/// Compares the plan documents, except the planning time, and the contents of every entity.
 pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<Status> {
     let (first, second) = (read(&args.recording)?, read(other)?);
     let mut found = Difference {
@@ -83,7 +83,7 @@ pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<
     } else {
         output.result(&found.text())
     };
-    // as programs that compare do
+    // exit status as in other comparison tools
     let status = if found.equal {
         Status::Good
     } else {
@@ -92,7 +92,7 @@ pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<
     Ok(shown.max(status))
 }
 
-/// Leaves out the time that planning took, wherever it stands.
+/// Removes the planning times at any depth.
 fn forget_times(value: &mut Value) {
     match value {
         Value::Object(fields) => {
@@ -104,7 +104,7 @@ fn forget_times(value: &mut Value) {
     }
 }
 
-/// Where two documents differ, field by field; lists of different lengths at once.
+/// Lists the fields in which two documents differ. Lists of different lengths differ as a whole.
 fn differences(first: &Value, second: &Value, at: &str, found: &mut Vec<PlanDifference>) {
     match (first, second) {
         (Value::Object(a), Value::Object(b)) => {

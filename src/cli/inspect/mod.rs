@@ -1,4 +1,4 @@
-//! `searoom inspect`: the contents of a recording.
+//! `searoom inspect`: contents of a recording.
 
 mod difference;
 
@@ -18,7 +18,7 @@ use super::output::status::Status;
 use super::runner::guarded;
 use difference::two;
 
-/// Entities of a similar name that are offered for one that is not there.
+/// Maximum number of similar entity names suggested for a missing one.
 const OFFERED: usize = 3;
 
 /// Shows one recording, a part of it, or the differences of two.
@@ -40,16 +40,16 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
     }
 }
 
-/// Reads a recording. A panic of the decoder is a fault of the file.
+/// Reads a recording. A panic of the decoder counts as an invalid file.
 pub fn read(path: &Path) -> anyhow::Result<Recorded> {
     match guarded(|| Recorded::read(path)) {
-        // the message names its cause already
+        // the message already includes its cause
         Ok(read) => read.map_err(|error| anyhow!("{error}")),
         Err(fault) => bail!("{}: damaged: its decoder gave up ({fault})", path.display()),
     }
 }
 
-/// The plan document of a recording.
+/// Reads the plan document of a recording.
 pub fn plan_document(path: &Path) -> anyhow::Result<String> {
     document_of(&read(path)?, path)
 }
@@ -125,7 +125,7 @@ fn csv(table: &EntityTable) -> anyhow::Result<String> {
     Ok(String::from_utf8(bytes)?)
 }
 
-/// One entity, with its values as they are.
+/// One entity with its values.
 #[derive(Debug, Serialize)]
 struct EntityDocument {
     entity: String,
@@ -134,7 +134,7 @@ struct EntityDocument {
     rows: Vec<RowDocument>,
 }
 
-/// Times by timeline, null where the row has none, and values by component.
+/// Times by timeline, null if the row has none, and values by component.
 #[derive(Debug, Serialize)]
 struct RowDocument {
     times: Vec<Option<f64>>,
@@ -158,14 +158,14 @@ impl EntityDocument {
     }
 }
 
-/// The contents of a recording.
+/// Contents of a recording.
 #[derive(Debug, Serialize)]
 struct Contents {
     file: String,
     bytes: u64,
     application: &'static str,
     rerun_version: Option<String>,
-    /// This and the next ones are from the plan document; null without one.
+    /// Fields from the plan document; null without one.
     scenario: Value,
     planner: Value,
     search: Value,
@@ -174,10 +174,10 @@ struct Contents {
     safe: Value,
     cost: Value,
     search_stats: Value,
-    /// Where own ship stands on; else null.
+    /// Escape; null unless own ship stands on.
     escape: Value,
     targets: Vec<Value>,
-    /// The entry of `compare --json`; null for a plan.
+    /// Entry of `compare --json`; null for a plan.
     comparison: Value,
     #[serde(skip)]
     plan: Option<PlanDocument>,
@@ -187,7 +187,7 @@ struct Contents {
     entities: Vec<ContentsDocument>,
 }
 
-/// An entity in a list.
+/// Entity in a list.
 #[derive(Debug, Serialize)]
 struct ContentsDocument {
     entity: String,
@@ -196,7 +196,7 @@ struct ContentsDocument {
     timelines: Vec<TimelineDocument>,
 }
 
-/// A timeline and its range.
+/// Timeline and its range.
 #[derive(Debug, Serialize)]
 struct TimelineDocument {
     name: String,

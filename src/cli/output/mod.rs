@@ -1,4 +1,4 @@
-//! The only place that prints: results to standard output, everything else to standard error.
+//! Output of the program: results to standard output, everything else to standard error.
 
 pub mod products;
 pub mod status;
@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use status::Status;
 
-/// Red, green, yellow, and the end of each, as tables have them.
+/// Escape codes of red, green, yellow, and their ends, as used in tables.
 const COLOURS: [&str; 5] = [
     "\u{1b}[38;5;9m",
     "\u{1b}[38;5;10m",
@@ -26,12 +26,12 @@ const COLOURS: [&str; 5] = [
 /// Standard output and standard error.
 #[derive(Debug)]
 pub struct Output {
-    /// True when results may be coloured.
+    /// True if results may be coloured.
     pub colour: bool,
 }
 
 impl Output {
-    /// Colour only on a terminal, and not when `NO_COLOR` says no.
+    /// Enables colour on a terminal, unless `NO_COLOR` forbids it.
     pub fn new() -> Self {
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
         Self {
@@ -39,8 +39,7 @@ impl Output {
         }
     }
 
-    /// Prints a result. The status is bad when it cannot be printed; a reader that went away is no
-    /// fault of ours.
+    /// Prints a result. Reports a bad status if printing fails; a closed pipe is not an error.
     pub fn result(&self, text: &str) -> Status {
         let mut stdout = std::io::stdout().lock();
         let text = self.shown(text);
@@ -54,8 +53,8 @@ impl Output {
         }
     }
 
-    /// Escapes control characters, except the colours of tables. Coloured tables have escaped their
-    /// texts before.
+    /// Escapes control characters, except the colour codes of tables. Coloured tables are already
+    /// escaped.
     fn shown(&self, text: &str) -> String {
         if !self.colour {
             return printable_lines(text);
@@ -100,7 +99,7 @@ impl Output {
         let _ = writeln!(std::io::stderr(), "note: {note}");
     }
 
-    /// A bar on standard error; hidden when that is no terminal.
+    /// Creates a progress bar on standard error; hidden unless that is a terminal.
     pub fn progress(&self, steps: usize) -> ProgressBar {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());
         match ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
@@ -110,7 +109,7 @@ impl Output {
     }
 }
 
-/// A document as text.
+/// Serialises a document to JSON.
 pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
     let mut text =
         serde_json::to_string_pretty(document).context("a document cannot be written")?;
@@ -118,7 +117,7 @@ pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// Prints help, the version or what is wrong with the arguments.
+/// Prints help, the version, or an argument error.
 pub fn usage(error: &clap::Error) -> ExitCode {
     // an error of this stream cannot be reported
     let _ = error.print();

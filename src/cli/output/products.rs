@@ -1,4 +1,4 @@
-//! The files that a command writes: recordings, figures and plan documents.
+//! Output files of a command: recordings, figures and plan documents.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use super::super::runner::guarded;
 use super::json;
 use super::status::Status;
 
-/// Where recordings, figures and plans go.
+/// Destinations of recordings, figures and plans.
 #[derive(Debug)]
 pub struct Products {
     recordings: Option<Place>,
@@ -26,7 +26,7 @@ pub struct Products {
     report: Option<PathBuf>,
 }
 
-/// The paths asked for.
+/// Requested paths.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted<'a> {
     pub recordings: Option<&'a Path>,
@@ -42,9 +42,9 @@ enum Place {
 }
 
 impl Products {
-    /// Makes the folders, before anything is planned. A path is a file where its name has such an
-    /// ending and no folder has it. A new folder whose name has another ending needs a slash at its
-    /// end.
+    /// Creates the folders before planning. A path is a file if its name has the matching extension
+    /// and no folder of that name exists. A new folder with another extension requires a trailing
+    /// slash.
     pub fn prepare(found: &[Found], wanted: Wanted) -> anyhow::Result<Self> {
         let Wanted {
             recordings,
@@ -99,7 +99,7 @@ impl Products {
         })
     }
 
-    /// Writes the recording, the figure and the plan document, where asked for.
+    /// Writes the requested recording, figure and plan document.
     pub fn write(&self, stem: &str, run: &Run, plan: &PlanDocument) -> Result<(), Failure> {
         attempt(|| {
             if let Some(place) = &self.recordings {
@@ -116,14 +116,14 @@ impl Products {
         })
     }
 
-    /// Names and links of a scenario in a report. Call it when all other results are written.
+    /// Names and links of a scenario in a report. Call it after all other results are written.
     pub fn subject(&self, stem: &str, file: String) -> Subject {
         let recording = self.recordings.as_ref().map(|p| p.file(stem, "rrd"));
         let plan = self.plans.as_ref().map(|f| f.join(format!("{stem}.json")));
         let written = [("recording", recording), ("plan document", plan)];
         let folder = self.report.as_deref().unwrap_or(Path::new("."));
         let links = written.into_iter().filter_map(|(name, file)| {
-            // a link to what could not be written would lead nowhere
+            // omit links to files that could not be written
             let file = file.filter(|f| f.is_file())?;
             Some((name.to_owned(), link_from(folder, &file)))
         });
@@ -134,12 +134,12 @@ impl Products {
         }
     }
 
-    /// True when a report is asked for.
+    /// True if a report is requested.
     pub fn wants_report(&self) -> bool {
         self.report.is_some()
     }
 
-    /// Writes the report, if one was asked for.
+    /// Writes the report, if requested.
     pub fn write_report(&self, report: &Report, title: &str, lead: &str) -> Result<(), Failure> {
         let Some(folder) = &self.report else {
             return Ok(());
@@ -148,19 +148,19 @@ impl Products {
     }
 }
 
-/// The status and the reason of what could not be written.
+/// Status and reason of a failed write.
 pub type Failure = (Status, String);
 
 fn attempt(work: impl FnOnce() -> anyhow::Result<()>) -> Result<(), Failure> {
     match guarded(work) {
         Ok(Ok(())) => Ok(()),
-        // the message of each error names its cause already
+        // each error message already includes its cause
         Ok(Err(error)) => Err((Status::BadInput, error.to_string())),
         Err(fault) => Err((Status::InternalFault, fault)),
     }
 }
 
-/// Refuses the name of a figure in another format, and makes its folder.
+/// Rejects a figure name with another extension, and creates its folder.
 pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
     if FigureFormat::of(path).is_none() {
         let file = path.to_owned();
@@ -175,7 +175,7 @@ pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
     }
 }
 
-/// A comparison of one scenario, as it is written.
+/// Comparison of one scenario, ready for output.
 #[cfg_attr(
     not(feature = "recording"),
     expect(dead_code, reason = "recordings alone are written of it")
@@ -188,7 +188,7 @@ pub struct ScenarioCompared<'a> {
 }
 
 impl Products {
-    /// Writes the recording of a comparison, if one was asked for.
+    /// Writes the recording of a comparison, if requested.
     pub fn write_comparison(&self, stem: &str, side: &ScenarioCompared) -> Result<(), Failure> {
         let Some(place) = &self.recordings else {
             return Ok(());
@@ -198,7 +198,7 @@ impl Products {
 }
 
 impl Place {
-    /// `file` says that the path's name is one of such a file.
+    /// Prepares one output path; `file` is true if its name has the extension of such a file.
     fn prepare(option: &str, path: &Path, file: bool, scenarios: usize) -> anyhow::Result<Self> {
         if !file || path.is_dir() {
             make(path)?;
@@ -224,7 +224,7 @@ impl Place {
     }
 }
 
-/// A name with an ending that is no folder, nor asks for one with a slash.
+/// True for a name with an extension that is neither a folder nor ends with a slash.
 fn is_another_file(path: &Path) -> bool {
     let asks = path.to_string_lossy().ends_with(std::path::is_separator);
     path.extension().is_some() && !path.is_dir() && !asks

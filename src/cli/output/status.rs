@@ -1,24 +1,24 @@
-//! The exit status.
+//! Exit status.
 
 use std::process::ExitCode;
 
 use searoom::pipeline::{Relaxation, Run};
 
-/// The highest of a run wins.
+/// Status; the highest of a run is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
-    /// All planned and verified.
+    /// All plans are found and verified.
     Good,
-    /// A scenario without a plan that is clear of all sets and arrives.
+    /// A scenario has no plan that is clear of all sets and arrives.
     NoPlan,
     /// Bad input or usage, or a result that cannot be written.
     BadInput,
-    /// A fault of the program, a plan that fails its own verification included.
+    /// Internal fault, including a plan that fails its own verification.
     InternalFault,
 }
 
 impl Status {
-    /// The status of one run.
+    /// Status of one run.
     pub fn of(run: &Run) -> Self {
         match (run.planned.outcome.plan(), &run.evaluation) {
             (None, _) => Self::NoPlan,
@@ -38,7 +38,7 @@ impl Status {
 }
 
 impl Status {
-    /// The exit status of the process.
+    /// Exit code of the process.
     fn code(self) -> u8 {
         match self {
             Self::Good => 0,
@@ -64,7 +64,7 @@ mod tests {
 
     use super::*;
 
-    /// No planner is known to make such a plan, so a sound one is spoilt.
+    /// Modifies a valid plan, because no planner is known to produce such a plan.
     #[test]
     fn a_plan_that_fails_its_own_verification_ends_with_status_3() {
         let file = concat!(
@@ -88,7 +88,7 @@ mod tests {
         none.planned.outcome = Outcome::Infeasible(NoPlan::NoRoute);
         assert_eq!(Status::of(&none).code(), 1);
         assert_eq!(Status::BadInput.code(), 2);
-        // the highest of several runs wins
+        // the highest of several runs is reported
         let all = [Status::InternalFault, Status::Good, Status::BadInput];
         assert_eq!(all.into_iter().max(), Some(Status::InternalFault));
     }

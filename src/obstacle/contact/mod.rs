@@ -29,8 +29,8 @@ pub(in crate::obstacle) const CHORD_RAD: f64 = 0.4;
 
 /// The first time at which the segment is at least `depth` metres inside the obstacle, or `None`.
 ///
-/// A segment or depth that is not finite is in contact at once. Obstacles exist from t = 0 on. O(n
-/// + m) on a line; O((n + m)(1 + turn/pi)) root findings on an arc that comes near.
+/// A segment or depth that is not finite is in contact at once. Obstacles exist from t = 0 on.
+/// O(n + m) on a line; O((n + m)(1 + turn/pi)) root findings on an arc that comes near.
 pub fn first_contact(obstacle: &PolytopeObstacle, segment: &Segment, depth: f64) -> Option<f64> {
     if !(segment.is_valid() && depth.is_finite()) {
         return Some(segment.start_time);

@@ -1,19 +1,19 @@
-//! The desired trajectory on one leg: due at its start, then on at a speed.
+//! Desired trajectory on one leg: a start time and a constant speed.
 
 use crate::obstacle::PathTime;
 use crate::trajectory::{DesiredTrajectory, NetworkLeg};
 
-/// See the head of the file.
+/// Desired trajectory on one leg.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Due {
-    /// Seconds at which the leg is to be begun.
+    /// Time in seconds at which own ship should enter the leg.
     pub start: f64,
-    /// m/s.
+    /// Desired speed in m/s.
     pub speed: f64,
 }
 
 impl Due {
-    /// `None` on alternatives.
+    /// Returns the schedule of a leg; `None` for a leg of an alternative path.
     pub(crate) fn on(desired: &DesiredTrajectory, leg: &NetworkLeg) -> Option<Self> {
         if leg.path > 0 {
             return None;
@@ -31,7 +31,7 @@ impl Due {
         })
     }
 
-    /// Metres that own ship is behind; negative ahead.
+    /// Lag behind the schedule in metres; negative when ahead.
     pub(crate) fn lag(&self, at: PathTime) -> f64 {
         (at.time - self.start) * self.speed - at.distance
     }

@@ -1,4 +1,4 @@
-//! The graph of constant-speed lines, given by its successors.
+//! Implicit graph of constant-speed lines, defined by its successor function.
 
 use std::cell::Cell;
 
@@ -11,31 +11,31 @@ use crate::planner::clock::Clock;
 use crate::search::Space;
 use crate::tolerance;
 
-/// Relative. A line may be this much faster than the greatest speed: rounding of its ends.
+/// Relative excess over the maximum speed that a line may have, to absorb rounding of its ends.
 const FASTER: f64 = 1e-11;
 
-/// Lines that are looked at even when the clock is up.
+/// Minimum number of lines examined, even after the deadline.
 const FEW_LINES: usize = 1_000;
 
-/// A node and the line that leads to it.
+/// Node together with the line that leads to it.
 #[derive(Debug, Clone)]
 pub(crate) struct State {
-    /// Index into the nodes of the graph.
+    /// Index of the node in the graph.
     pub node: usize,
-    /// The node that the line comes from; itself at the start.
+    /// Index of the node at the start of the line; the node itself at the root.
     pub from: usize,
-    /// The leg that the line is on; `None` for a wait at a point.
+    /// Leg of the line; `None` for a wait at a point.
     pub leg: Option<usize>,
-    /// Where the line bends: at full speed before and at rest after, or the other way round.
+    /// Bend of the line: full speed before and rest after, or the reverse.
     pub via: Option<PathTime>,
-    /// The obstacle that the line meets, once that is known.
+    /// Obstacle that the line intersects, once known.
     pub met: Cell<Option<usize>>,
-    /// True once the line was tested.
+    /// True after the line was tested.
     pub tested: Cell<bool>,
 }
 
-/// See the head of the file. Lines never leave a leg: arrivals at the end of a leg at full speed
-/// are nodes, made as the search asks for them.
+/// Implicit search graph. Lines never leave a leg. Full-speed arrivals at the end of a leg become
+/// nodes when the search requests them.
 #[derive(Debug)]
 pub(crate) struct Graph<'a> {
     pub scene: &'a Scene<'a>,
@@ -46,9 +46,9 @@ pub(crate) struct Graph<'a> {
     /// Indices of the known nodes per leg and per point, in order of time.
     on: Vec<Vec<usize>>,
     at: Vec<Vec<usize>>,
-    /// Per point when it was reached.
+    /// Times at which each point was reached.
     reached: Vec<Vec<f64>>,
-    /// Lines that were looked at.
+    /// Number of lines examined.
     lines: usize,
     clock: Clock,
 }
@@ -73,7 +73,7 @@ impl<'a> Graph<'a> {
         Self {
             scene,
             measure,
-            // the bound decides which end is the best where own ship need not arrive
+            // the bound selects the best end if own ship need not arrive
             informed: search == SearchKind::AStar || scene.aim == Aim::Last,
             settled: vec![false; nodes.len()],
             nodes,
@@ -97,7 +97,7 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// The lines of a leg, from a place on it.
+    /// Generates the lines on a leg from a node on it.
     fn along(&mut self, from: usize, leg: usize, out: &mut Vec<(State, f64)>) {
         let scene = self.scene;
         let Some(here) = self.nodes[from].on(scene, leg) else {
@@ -148,7 +148,7 @@ impl<'a> Graph<'a> {
             distance: length,
             time: arrival,
         };
-        // as far as she gets
+        // farthest position that own ship reaches before the horizon
         if scene.aim == Aim::Last && arrival > scene.horizon {
             there = PathTime {
                 distance: here.distance + (scene.horizon - here.time) * scene.max_speed,
@@ -174,7 +174,7 @@ impl<'a> Graph<'a> {
         way >= 0.0 && time > 0.0 && way <= self.scene.max_speed * time * (1.0 + FASTER)
     }
 
-    /// Lines from node to node: their ends, and where they bend.
+    /// Adds the line between two nodes, with an optional bend, to the successors.
     fn offer(
         &self,
         from: usize,
@@ -187,7 +187,7 @@ impl<'a> Graph<'a> {
             leg,
             distance: 0.0,
         });
-        // an integral takes longer than a test
+        // collision test first: the cost integral is more expensive
         if let (false, Some(leg)) = (self.measure.waits_are_free(), leg)
             && line
                 .windows(2)
@@ -210,8 +210,8 @@ impl<'a> Graph<'a> {
         out.push((state, step));
     }
 
-    /// True when own ship, having been at the place before, could as well have waited there: on a
-    /// path from which all may be sailed that may be from here.
+    /// True if an earlier arrival at the same position dominates this one by waiting. The earlier
+    /// path must offer every leg that this point offers.
     fn waited_for(&self, point: usize, time: f64) -> bool {
         let within = self.measure.as_good_within();
         let network = self.scene.network;
@@ -226,13 +226,14 @@ impl<'a> Graph<'a> {
         })
     }
 
-    /// True at the end of the way; a round trip begins where it ends.
+    /// True at the end of the path. A round trip starts at its end, so at least one leg is
+    /// required.
     pub(crate) fn has_arrived(&self, state: &State) -> bool {
         let place = self.nodes[state.node].place;
         state.leg.is_some() && matches!(place, Place::At(point) if self.scene.network.is_end(point))
     }
 
-    /// What the line into a state meets.
+    /// Returns the obstacle that the line into a state intersects.
     fn barrier(&self, state: &State) -> Option<usize> {
         let (from, to) = (&self.nodes[state.from], &self.nodes[state.node]);
         match (state.leg, from.place) {

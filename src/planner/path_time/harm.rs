@@ -1,12 +1,15 @@
-//! Where no motion along the paths is clear of every set: the one that does least harm.
+//! Least-harm motion, used when no motion along the paths is clear of every set.
 //!
-//! Candidates: own ship stays where she is, or sails along a path at a share of her greatest speed
-//! to some place and stays there, or sails on to the end. The harm of each is what she does inside
-//! sets: metres sailed, and seconds at a tenth of her greatest speed, each weighed by the risk. So
-//! to stop and be passed by is better than to run through, and to leave a set is better than to
-//! stay in it. Of those that do about the least harm she takes the one from which she still
-//! arrives, or gets farthest; of these the one that sails least, at the least speed. From when it
-//! is clear for good, the planner goes on.
+//! Candidates: own ship waits at the start, or follows a path at a fraction of its maximum speed.
+//! It then stops somewhere on the path, or continues to the end.
+//!
+//! The harm of a candidate counts its motion inside sets: metres travelled, plus seconds at a tenth
+//! of the maximum speed, each weighted by the risk. Stopping to let a target pass is therefore
+//! better than passing through its set, and leaving a set is better than staying in it.
+//!
+//! Among candidates of nearly the least harm, the planner selects the one that still arrives or
+//! gets farthest. It breaks ties by the shortest distance, then by the lowest speed. After the
+//! candidate is permanently clear, the regular planner continues the motion.
 
 use std::time::Instant;
 
@@ -17,23 +20,23 @@ use crate::obstacle::{Obstacle, PathTime, SpaceTimeObstacle};
 use crate::planner::{Outcome, Planned, Problem};
 use crate::trajectory::PathNetwork;
 
-/// Of the greatest speed.
+/// Candidate speeds as fractions of the maximum speed.
 const SPEEDS: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
 
-/// Places along a path at which she may stop.
+/// Number of candidate stop positions along a path.
 const STOPS: usize = 16;
 
-/// Risks whose level sets the harm is the mean over: so it is weighed by the risk.
+/// Risk levels. The harm is the mean over their level sets, which weights it by the risk.
 const LEVELS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
-/// Of the greatest speed: metres that a second inside a set weighs as much as.
+/// Weight of one second inside a set, as a fraction of the distance covered at maximum speed.
 const SECOND: f64 = 0.1;
 
-/// Times the least harm is about the least.
+/// Candidates with at most this multiple of the least harm count as equally harmful.
 const ABOUT: f64 = 1.1;
 
-/// See the head of the file. The obstacles are the whole sets. `None` where the paths are none.
-/// Some milliseconds.
+/// Plans the least-harm motion against the whole sets; `None` for invalid paths. Takes some
+/// milliseconds.
 pub fn least_harm(problem: &Problem) -> Option<Planned> {
     let started = Instant::now();
     let network = PathNetwork::new(&problem.desired.waypoints(), problem.alternatives).ok()?;
@@ -83,14 +86,14 @@ pub fn least_harm(problem: &Problem) -> Option<Planned> {
     })
 }
 
-/// A candidate.
+/// Evaluated candidate.
 struct Judged {
     profile: Profile,
-    /// Metres.
+    /// Harm in metres.
     harm: f64,
-    /// Seconds, from when on it is clear of every set; `None` where it is so all along.
+    /// Time in seconds after which it is clear of every set; `None` if it is always clear.
     clear_from: Option<f64>,
-    /// Metres to the end that are left at the horizon if nobody is in the way after that.
+    /// Distance to the end in metres at the horizon, if nothing obstructs the rest.
     left: f64,
 }
 
@@ -109,7 +112,7 @@ impl Judged {
                     };
                     harm += weight * (leave - enter);
                     if level == 0 {
-                        // until the very edge
+                        // up to the exact edge
                         let leave = seen.body.inside(from, to, 0.0).map_or(leave, |[_, l]| l);
                         let left = from.time + leave * time;
                         clear_from = Some(clear_from.map_or(left, |time| time.max(left)));
@@ -129,7 +132,7 @@ impl Judged {
     }
 }
 
-/// From the one that sails least on.
+/// Generates the candidates in order of increasing distance.
 fn candidates(scene: &Scene) -> Vec<Profile> {
     let network = scene.network;
     let mut all = vec![along(scene, &[], 0.0, 0.0)];
@@ -150,21 +153,21 @@ fn candidates(scene: &Scene) -> Vec<Profile> {
             let reach = length.min(speed * scene.horizon);
             let stops = (1..=STOPS).map(|k| reach * k as f64 / STOPS as f64);
             let ends = stops.map(|stop| along(scene, &way, speed, stop));
-            // from the last piece of a path that leads nowhere there is no way on
+            // the last part of a dead-end path has no continuation
             all.extend(ends.filter(|profile| profile.to_go(scene).is_finite()));
         }
     }
     all
 }
 
-/// Along legs at a speed for some metres, and there until the horizon; at the last waypoint the
-/// end.
+/// Profile along legs at constant speed for `stop` metres, followed by a wait until the horizon. It
+/// ends at the last waypoint without a wait.
 fn along(scene: &Scene, way: &[usize], speed: f64, stop: f64) -> Profile {
     let mut profile = Profile::new();
     let (mut time, mut left) = (0.0, stop);
     for leg in way {
         let length = scene.tracks[*leg].length;
-        // what rounding leaves is no way
+        // ignore remainders of the size of rounding errors
         let sailed = if left >= length - TOUCH_M {
             length
         } else {

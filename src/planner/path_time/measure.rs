@@ -1,4 +1,4 @@
-//! What is minimised over the graph.
+//! Cost function of the graph search.
 
 use super::due::Due;
 use super::nodes::{Mark, Node, Place};
@@ -11,14 +11,14 @@ use crate::planner::{Objective, Problem, SearchKind};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
-/// Metres per second. Of ways of one length the earliest is the best: a thousand seconds weigh a
-/// millimetre.
+/// Tie-break in metres per second: of paths of equal length, the earliest wins. A thousand seconds
+/// weigh one millimetre.
 const METRES_PER_SECOND: f64 = 1e-6;
 
-/// Of the horizon. Arrivals at a place on a network so soon after another are not followed.
+/// Fraction of the horizon. On a network, later arrivals at a position within this time are pruned.
 const ALIKE: f64 = 2e-3;
 
-/// See the head of the file.
+/// Cost function and its lower bound.
 #[derive(Debug, Clone)]
 pub(crate) struct Measure<'a> {
     problem: &'a Problem<'a>,
@@ -35,7 +35,7 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// The cost of a line: seconds, metres or m².
+    /// Returns the cost of a line in seconds, metres or m².
     pub(crate) fn of(&self, scene: &Scene, place: Place, from: PathTime, to: PathTime) -> f64 {
         let (way, time) = (to.distance - from.distance, to.time - from.time);
         match self.problem.objective {
@@ -67,7 +67,7 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// At most the cost of the way to the end, of which so many metres are left at a time.
+    /// Lower bound of the cost to the end, given the remaining metres and the current time.
     pub(crate) fn bound(&self, scene: &Scene, to_go: f64, now: f64) -> f64 {
         let time = to_go / scene.max_speed;
         match self.problem.objective {
@@ -80,7 +80,7 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// True when to arrive at a place before another way does, and wait, is never worse.
+    /// True if an earlier arrival followed by a wait is never worse than a later arrival.
     pub(crate) fn waits_are_free(&self) -> bool {
         match self.problem.objective {
             Objective::Time | Objective::Length | Objective::LengthRisk { .. } => true,
@@ -88,9 +88,9 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// Seconds within which to arrive at a place after another way did, which costs less so far, is
-    /// taken for worse. Of the space-time error that is so where own ship could wait meanwhile, but
-    /// for what the wait costs; on a network the ways would be too many without it.
+    /// Time in seconds within which a cheaper earlier arrival dominates a later one. For the
+    /// space-time error, dominance holds if own ship could wait meanwhile, except for the cost of
+    /// the wait. Without this pruning, a network would have too many paths.
     pub(crate) fn as_good_within(&self) -> f64 {
         if self.waits_are_free() {
             f64::INFINITY
@@ -101,9 +101,9 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// True when a line between two nodes of a leg may be part of a best profile: of least time or
-    /// length any may; of least space-time error those at an extreme speed, on schedule, along an
-    /// edge, and those that end at a corner.
+    /// True if a line between two nodes of a leg may belong to an optimal profile. For time and
+    /// length, every line may. For the space-time error, only lines at an extreme speed, on
+    /// schedule, along an edge, or ending at a corner may.
     pub(crate) fn joins(
         &self,
         scene: &Scene,
@@ -123,9 +123,9 @@ impl<'a> Measure<'a> {
             || (before.on_edge_of.is_some() && before.on_edge_of == after.on_edge_of)
     }
 
-    /// Where the way to a corner that keeps nearest to the schedule bends: at full speed first
-    /// while behind it, at rest first while ahead. `None` where that would cross the schedule, or
-    /// nothing is won.
+    /// Returns the bend of the line to a corner that stays closest to the schedule. The line starts
+    /// with full speed while behind schedule, and with rest while ahead. `None` if it would cross
+    /// the schedule or gain nothing.
     pub(crate) fn bend(
         &self,
         scene: &Scene,
@@ -140,7 +140,7 @@ impl<'a> Measure<'a> {
         let due = scene.dues[leg].as_ref()?;
         let sailing = (at.distance - from.distance) / scene.max_speed;
         let idle = at.time - from.time - sailing;
-        // negated on purpose: a NaN is no time
+        // negated on purpose: rejects NaN
         if !(sailing > tolerance::TIME_S && idle > tolerance::TIME_S) {
             return None;
         }

@@ -1,12 +1,12 @@
-//! The path-time planner: own ship keeps to given paths and chooses her speed, paper section III.B.
+//! Path-time planner: own ship follows given paths and chooses its speed, paper section III.B.
 //!
 //! ```text
-//! network of legs ─► obstacles along each leg ─► graph over their corners (A*) ─► taut profile ─► plan
+//! path legs ─► obstacles along each leg ─► graph over their corners (A*) ─► taut profile ─► plan
 //! ```
 //!
-//! A motion is a curve in distance and time, `0 <= speed <= max`; an obstacle is a convex polygon
-//! on each leg. The least time is exact for these polygons; docs/path-time-planner.md has the
-//! proof.
+//! A motion is a curve in distance and time with `0 <= speed <= max`. An obstacle is a convex
+//! polygon on each leg. The least time is exact for these polygons; docs/path-time-planner.md
+//! contains the proof.
 
 mod diagram;
 mod due;
@@ -43,31 +43,33 @@ use nodes::{Known, Mark, Node, Place};
 use profile::Profile;
 use scene::{Aim, Scene};
 
-/// Expansions between two looks at whether the search takes long.
+/// Expansions between two checks of the search budget.
 const SLICE: usize = 50;
 
-/// Nodes that are told of a search even when the clock is up.
+/// Minimum number of explored nodes reported, even after the deadline.
 const FEW: usize = 100;
 
-/// Expansions after which a search takes long, and lines after which it is given up.
+/// Expansions after which the time-optimal search starts, and lines after which the search stops.
 const HARD: usize = 2_000;
 const MOST_LINES: usize = 500_000;
 
-/// Plans one problem along its desired path and the alternatives to it.
+/// Plans one problem along its desired path and the alternative paths.
 ///
-/// The plan begins at the first waypoint at t = 0, keeps to the paths, goes forward at no more than
-/// the greatest speed or waits, is clear of every obstacle to rounding (deeper than 1e-7 m
-/// nowhere), and ends at the last waypoint before the horizon. At corners of the path own ship
-/// turns on the spot. For the objectives of time and of length it is the best of all such motions
-/// along the paths; the space-time error is the least on the graph. The same problem gives the same
-/// plan unless the deadline strikes.
+/// The plan starts at the first waypoint at t = 0 and ends at the last waypoint before the horizon.
+/// It follows the paths and moves forward up to the maximum speed, or waits. It is clear of every
+/// obstacle up to rounding: no penetration exceeds 1e-7 m. Own ship turns on the spot at corners of
+/// the path.
+///
+/// For time and length, the plan is optimal among all such motions along the paths. For the
+/// space-time error, it is optimal on the graph. The result is deterministic unless the deadline
+/// strikes.
 pub fn plan(problem: &Problem) -> Planned {
     planned(problem, Aim::Arrive, 0.0)
 }
 
-/// The same where own ship cannot arrive in time: the motion that is clear of every obstacle up to
-/// the horizon and has the least way left then, whatever the objective. `risk` is that of the
-/// obstacles.
+/// Plans a motion that stays clear of every obstacle up to the horizon, if own ship cannot arrive
+/// in time. It minimises the remaining distance, whatever the objective. `risk` is the risk level
+/// of the obstacles.
 pub fn stay_clear(problem: &Problem, risk: f64) -> Planned {
     planned(problem, Aim::Last, risk)
 }
@@ -76,7 +78,7 @@ fn planned(problem: &Problem, aim: Aim, risk: f64) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let first = problem.desired.legs()[0].start;
     let away = (problem.own.pose.position - first).norm();
-    // negated on purpose: a NaN is away
+    // negated on purpose: a NaN is off the path
     if !(away <= tolerance::JOINT_M) {
         return refuse(NoPlan::OffPath { away });
     }
@@ -102,20 +104,20 @@ fn planned(problem: &Problem, aim: Aim, risk: f64) -> Planned {
     search(problem, &scene, &Profile::new(), risk)
 }
 
-/// The best motion that begins with a profile, as far as it goes, and is clear of every obstacle
-/// after that.
+/// Finds the best motion that starts with the profile `begun` and then stays clear of every
+/// obstacle.
 fn search(problem: &Problem, scene: &Scene, begun: &Profile, risk: f64) -> Planned {
     let objective = match scene.aim {
         Aim::Arrive => problem.objective,
-        // the time to the horizon and from there on: the least way left
+        // the time to the horizon, followed by the shortest remaining distance
         Aim::Last => Objective::Time,
     };
     search_for(objective, problem, scene, begun, risk)
 }
 
-/// The same for another objective. Where the least space-time error takes long to find, that of
-/// least time is found meanwhile: it shows whether there is a plan at all, and is the answer where
-/// the better one is not found.
+/// Runs `search` with an explicit objective. If a search for the least space-time error is long,
+/// a search for the least time runs meanwhile. It decides whether a plan exists, and is the
+/// fallback result.
 fn search_for(
     objective: Objective,
     problem: &Problem,
@@ -134,7 +136,7 @@ fn search_for(
         place: begun.place(scene),
         time: begins.time,
         on_edge_of: None,
-        // the desired trajectory begins at the start, at t = 0
+        // the desired trajectory starts at the first waypoint at t = 0
         due: begun.knots.len() == 1,
         mark: Mark::Start,
     };
@@ -243,15 +245,15 @@ fn search_for(
     }
 }
 
-/// A profile that is one of the answer.
+/// Profile of a solution.
 struct Found {
     profile: Profile,
-    /// Metres to the last waypoint that are left at its end.
+    /// Remaining distance in metres to the last waypoint.
     to_go: f64,
     graph_cost: Option<f64>,
 }
 
-/// The motion of a profile, and what it costs at a risk.
+/// Converts a profile into a plan with its cost at the given risk.
 fn finished(problem: &Problem, scene: &Scene, found: &Found, risk: f64) -> Option<Plan> {
     let trajectory = found.profile.trajectory(scene, problem.own.pose)?;
     let error = |s| space_time_error(problem.desired, s, problem.time_weight);
@@ -269,10 +271,10 @@ fn finished(problem: &Problem, scene: &Scene, found: &Found, risk: f64) -> Optio
     })
 }
 
-/// The place of a node at the end of a line on a leg.
+/// Position of a node at the end of a line on a leg.
 fn ahead(scene: &Scene, node: &nodes::Node, leg: usize) -> Option<PathTime> {
     match node.place {
-        // of a leg that ends where it begins, the end
+        // on a closed leg, choose the end
         Place::At(_) => Some(PathTime {
             distance: scene.tracks[leg].length,
             time: node.time,
@@ -281,7 +283,7 @@ fn ahead(scene: &Scene, node: &nodes::Node, leg: usize) -> Option<PathTime> {
     }
 }
 
-/// Why there is no plan when own ship is inside a set at t = 0.
+/// Explains why there is no plan if own ship is inside a set at t = 0.
 fn starts_inside(problem: &Problem, scene: &Scene) -> Option<NoPlan> {
     let point = scene.network.start();
     let obstacle = scene.barrier_at(point, 0.0, tolerance::TIME_S)?;
@@ -303,7 +305,7 @@ fn finite(time: f64) -> Option<f64> {
     time.is_finite().then_some(time)
 }
 
-/// What stands in the way where the search came nearest to the end.
+/// Returns the obstacle that blocks the search node closest to the end.
 fn farthest(problem: &Problem, graph: &Graph, search: &Search<State>) -> NoPlan {
     let scene = graph.scene;
     let nearest = search
@@ -346,7 +348,7 @@ fn farthest(problem: &Problem, graph: &Graph, search: &Search<State>) -> NoPlan 
     })
 }
 
-/// Whose set is met first on the shortest way at the greatest speed.
+/// First obstacle on the shortest path at maximum speed.
 fn first_met(scene: &Scene) -> Option<usize> {
     let network = scene.network;
     let (mut point, mut time) = (network.start(), 0.0);
@@ -369,7 +371,7 @@ fn first_met(scene: &Scene) -> Option<usize> {
     None
 }
 
-/// The lines into a state as motions.
+/// Converts the line into a state to segments.
 fn lines(scene: &Scene, graph: &Graph, state: &State, heading: f64) -> Vec<Segment> {
     let (from, to) = (&graph.nodes[state.from], &graph.nodes[state.node]);
     let still = |time| PathTime {
@@ -408,7 +410,7 @@ fn lines(scene: &Scene, graph: &Graph, state: &State, heading: f64) -> Vec<Segme
         .collect()
 }
 
-/// The nodes and the lines that were tested; of more than a few, what there is time for.
+/// Exports the nodes and tested lines; after the first `FEW` nodes, until the deadline.
 fn explored(graph: &Graph, search: Search<State>, clock: Clock) -> ExploredGraph {
     let scene = graph.scene;
     let nodes = search.into_nodes();

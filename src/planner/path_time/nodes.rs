@@ -1,21 +1,21 @@
-//! The places of the diagram at which a profile may bend.
+//! Nodes of the diagram at which a profile may bend.
 
 use super::TOUCH_M;
 use super::scene::Scene;
 use crate::obstacle::PathTime;
 use crate::tolerance;
 
-/// Where own ship is on the network.
+/// Position of own ship on the network.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Place {
-    /// Between the ends of a leg, at a distance from its start, metres.
+    /// Position between the ends of a leg, at a distance in metres from its start.
     On { leg: usize, distance: f64 },
-    /// At a point of the network.
+    /// Point of the network.
     At(usize),
 }
 
 impl Place {
-    /// Metres of the shortest way to the end; infinite where there is none.
+    /// Shortest distance to the end in metres; infinite if there is no path.
     pub(crate) fn to_go(self, scene: &Scene) -> f64 {
         match self {
             Self::On { leg, distance } => {
@@ -27,28 +27,28 @@ impl Place {
     }
 }
 
-/// What a node is.
+/// Kind of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Mark {
     /// Own ship at t = 0.
     Start,
-    /// A corner of an obstacle.
+    /// Corner of an obstacle.
     Corner,
-    /// On the desired trajectory.
+    /// Point on the desired trajectory.
     Due,
-    /// Passed at an extreme speed.
+    /// End of a ray at an extreme speed.
     Passed,
-    /// The end of a leg, made as the search asks for it.
+    /// Full-speed arrival at the end of a leg, created on demand by the search.
     Arrival,
 }
 
-/// A place and a time.
+/// Position at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Node {
     pub place: Place,
-    /// Seconds.
+    /// Time in seconds.
     pub time: f64,
-    /// The obstacle on whose edge it is.
+    /// Obstacle whose edge contains the node.
     pub on_edge_of: Option<usize>,
     /// True on the desired trajectory.
     pub due: bool,
@@ -56,7 +56,7 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    /// Its distance on a leg, if it is there.
+    /// Coordinates on a leg; `None` if the node is not on it.
     pub(crate) fn on(&self, scene: &Scene, leg: usize) -> Option<PathTime> {
         let ends = scene.network.legs()[leg].ends;
         let distance = match self.place {
@@ -73,24 +73,24 @@ impl Node {
         })
     }
 
-    /// Metres of the shortest way to the end.
+    /// Shortest distance to the end in metres.
     pub(crate) fn left(&self, scene: &Scene) -> f64 {
         self.place.to_go(scene)
     }
 }
 
-/// Nodes that are known before the search, by place and in order of time.
+/// Nodes known before the search, by position and in order of time.
 #[derive(Debug)]
 pub(crate) struct Known {
-    /// Per leg, between its ends.
+    /// Nodes in the interior of each leg.
     pub on: Vec<Vec<Node>>,
-    /// Per point.
+    /// Nodes at each point.
     pub at: Vec<Vec<Node>>,
 }
 
 impl Known {
-    /// The corners of the obstacles at which a shortest way may bend, that can be reached and left
-    /// in time, and that no other obstacle covers.
+    /// Collects the obstacle corners at which a shortest path may bend. They must be reachable,
+    /// leave enough time to arrive, and lie outside every other obstacle.
     pub(crate) fn corners(scene: &Scene) -> Self {
         let mut known = Self {
             on: vec![Vec::new(); scene.tracks.len()],
@@ -115,8 +115,8 @@ impl Known {
         known
     }
 
-    /// Adds the places at which a motion may stay until the horizon: the ends of legs, and where it
-    /// begins.
+    /// Adds the positions where a motion may wait until the horizon: the ends of legs, and its
+    /// start.
     pub(crate) fn add_last(&mut self, scene: &Scene, root: &Node) {
         let mut add = |leg: usize, distance: f64| {
             let time = scene.horizon;
@@ -132,7 +132,7 @@ impl Known {
         self.in_order();
     }
 
-    /// Adds a place on a leg, unless it is of no use.
+    /// Adds a node on a leg, unless it cannot be part of a solution.
     pub(crate) fn add(
         &mut self,
         scene: &Scene,
@@ -172,8 +172,8 @@ impl Known {
         }
     }
 
-    /// Gives the nodes of each point to every other point at its place, too: own ship may be there
-    /// on any of the paths.
+    /// Copies the nodes of each point to all other points at the same position, because own ship
+    /// may be there on any of the paths.
     pub(crate) fn share(&mut self, scene: &Scene) {
         let own: Vec<usize> = self.at.iter().map(Vec::len).collect();
         for point in 0..self.at.len() {
@@ -186,7 +186,7 @@ impl Known {
         self.in_order();
     }
 
-    /// In order of time and place, each once.
+    /// Sorts the nodes by time and position and removes duplicates.
     pub(crate) fn in_order(&mut self) {
         let along = |node: &Node| match node.place {
             Place::On { distance, .. } => distance,
@@ -213,14 +213,14 @@ impl Known {
     }
 }
 
-/// True where a line at a speed from 0 to the greatest may touch a polygon at a corner without
-/// entering it: only there a taut profile bends. `before`, `at`, `after` are in the order of the
-/// polygon, either way round.
+/// True if a line with a speed between 0 and `max_speed` can touch a polygon at a corner without
+/// entering it. A taut profile bends only at such corners. `before`, `at` and `after` follow the
+/// polygon in either orientation.
 fn bends(before: PathTime, at: PathTime, after: PathTime, max_speed: f64) -> bool {
-    // on which side of the line at a speed a neighbour is: linear in the speed
+    // side of a neighbour relative to the line at a speed: linear in the speed
     let side = |p: PathTime, speed: f64| (p.distance - at.distance) - speed * (p.time - at.time);
     let [slow, fast] = [0.0, max_speed].map(|u| [side(before, u), side(after, u)]);
-    // both on one side at an extreme speed, or one of them on the line at a speed between
+    // both on one side at an extreme speed, or one of them on the line at an intermediate speed
     let together = |[a, b]: [f64; 2]| a * b >= -TOUCH_M * (a.abs() + b.abs());
     together(slow) || together(fast) || slow[0] * fast[0] <= 0.0 || slow[1] * fast[1] <= 0.0
 }

@@ -1,4 +1,4 @@
-//! A profile of constant speeds along the legs that are sailed, and the motion that it is.
+//! Piecewise constant speed profile along legs, and its conversion to a trajectory.
 
 use super::TOUCH_M;
 use super::diagram::{DiagramCorner, DiagramLeg, DiagramObstacle, PathTimeDiagram};
@@ -9,22 +9,22 @@ use crate::obstacle::PathTime;
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
-/// Seconds. Bends no further apart than this are one: she moves some micrometres meanwhile.
+/// Time in seconds below which two bends count as one; own ship moves some micrometres meanwhile.
 const INSTANT_S: f64 = 1e-6;
 
-/// Legs one after another, and where own ship is on them when.
+/// Sequence of legs and the distance along them as a function of time.
 #[derive(Debug, Clone)]
 pub(crate) struct Profile {
     /// Indices of the legs.
     pub legs: Vec<usize>,
-    /// Metres from the start at which each leg begins.
+    /// Distance from the start to the start of each leg, in metres.
     pub begins: Vec<f64>,
-    /// From the start to the end; distances from the start.
+    /// Knots from start to end; distances count from the start.
     pub knots: Vec<PathTime>,
 }
 
 impl Profile {
-    /// A profile that has not left the start.
+    /// Creates a profile that stays at the start.
     pub(crate) fn new() -> Self {
         let start = PathTime {
             distance: 0.0,
@@ -37,12 +37,12 @@ impl Profile {
         }
     }
 
-    /// Where and when it ends, from the start.
+    /// Last knot.
     pub(crate) fn end(&self) -> PathTime {
         self.knots[self.knots.len() - 1]
     }
 
-    /// Where it ends.
+    /// Position of the last knot on the network.
     pub(crate) fn place(&self, scene: &Scene) -> Place {
         let (Some(leg), Some(begin)) = (self.legs.last(), self.begins.last()) else {
             return Place::At(scene.network.start());
@@ -58,7 +58,7 @@ impl Profile {
         }
     }
 
-    /// Metres of the shortest way from its end to the last waypoint.
+    /// Shortest distance in metres from the end of the profile to the last waypoint.
     pub(crate) fn to_go(&self, scene: &Scene) -> f64 {
         match self.place(scene) {
             Place::At(point) if !self.legs.is_empty() && scene.network.is_end(point) => 0.0,
@@ -66,7 +66,7 @@ impl Profile {
         }
     }
 
-    /// Its beginning, until a time.
+    /// Returns the part of the profile before a time.
     pub(crate) fn until(&self, scene: &Scene, time: f64) -> Self {
         let mut begun = Self::new();
         for (leg, from, to) in self.lines(scene) {
@@ -87,7 +87,7 @@ impl Profile {
         begun
     }
 
-    /// Its lines, leg by leg; of a wait where legs join, on one of them.
+    /// Splits the profile into lines per leg. A wait at a joint belongs to one of its legs.
     pub(crate) fn lines(&self, scene: &Scene) -> Vec<(usize, PathTime, PathTime)> {
         let mut lines = Vec::new();
         for pair in self.knots.windows(2) {
@@ -102,7 +102,7 @@ impl Profile {
         lines
     }
 
-    /// Metres of the legs so far.
+    /// Total length of the legs so far, in metres.
     fn length(&self, scene: &Scene) -> f64 {
         match (self.legs.last(), self.begins.last()) {
             (Some(leg), Some(begin)) => begin + scene.tracks[*leg].length,
@@ -110,7 +110,7 @@ impl Profile {
         }
     }
 
-    /// Goes on along a leg, the same as before or the next, until a place on it.
+    /// Appends motion along the current or the next leg, up to a position on it.
     pub(crate) fn sail(&mut self, scene: &Scene, leg: usize, from: PathTime, to: PathTime) {
         if self.legs.last() != Some(&leg) || from.distance == 0.0 {
             let begin = self.length(scene);
@@ -121,13 +121,13 @@ impl Profile {
         self.push(begin + to.distance, to.time);
     }
 
-    /// Goes on along the same leg.
+    /// Appends motion along the current leg.
     pub(crate) fn sail_on(&mut self, from: PathTime, to: PathTime) {
         let last = self.knots[self.knots.len() - 1];
         self.push(last.distance + (to.distance - from.distance), to.time);
     }
 
-    /// Waits where it is.
+    /// Appends a wait at the current position.
     pub(crate) fn wait(&mut self, until: f64) {
         let last = self.knots[self.knots.len() - 1];
         self.push(last.distance, until);
@@ -141,7 +141,7 @@ impl Profile {
         }
     }
 
-    /// The pieces of a line, leg by leg; of a wait where legs join, on each of them.
+    /// Splits a line at the joints of legs. A wait at a joint is repeated for each of its legs.
     fn pieces(
         &self,
         scene: &Scene,
@@ -154,7 +154,7 @@ impl Profile {
             from.time + (to.time - from.time) * share
         };
         let mut pieces = Vec::new();
-        // who has not left the start is on whichever leg begins there
+        // at the start, use any leg that starts there
         if let ([], Some(leg)) = (
             &self.legs[..],
             scene.network.onward(scene.network.start()).first(),
@@ -187,8 +187,8 @@ impl Profile {
             .all(|(leg, a, b)| scene.barrier(leg, a, b).is_none())
     }
 
-    /// Pulls the profile taut: from each knot on straight to the last one that can be reached at
-    /// one speed. The end, and when it is reached, stay what they are.
+    /// Pulls the profile taut: connects each knot to the last one reachable at constant speed. The
+    /// end point and the arrival time do not change.
     pub(crate) fn pull_taut(&mut self, scene: &Scene) {
         let mut taut = vec![self.knots[0]];
         let mut at = 0;
@@ -203,8 +203,8 @@ impl Profile {
         self.knots = taut;
     }
 
-    /// Leaves out bends that are no more than an instant from the next, where the line without them
-    /// is free: a place against an edge is beside the corner of the edge.
+    /// Removes bends within `INSTANT_S` of a neighbour if the line without them is free. Such
+    /// bends occur next to a corner, where a position on an edge is also a node.
     pub(crate) fn tidy(&mut self, scene: &Scene) {
         let mut k = 1;
         while k + 1 < self.knots.len() {
@@ -218,11 +218,12 @@ impl Profile {
         }
     }
 
-    /// The motion, from a pose at the start: she turns on the spot where legs join.
+    /// Converts the profile to a trajectory from a pose. Own ship turns on the spot at joints of
+    /// legs.
     pub(crate) fn trajectory(&self, scene: &Scene, start: Pose) -> Option<Trajectory> {
         let mut segments = Vec::new();
         let heading = |leg: usize| heading_of(scene.tracks[leg].direction);
-        // she turns as she moves off
+        // own ship turns when it moves off
         let mut facing = start.heading;
         let still = Segment {
             start,
@@ -234,7 +235,7 @@ impl Profile {
         for pair in self.knots.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let way = to.distance - from.distance;
-            // what is no way is a wait; of a short piece rounding may make more than the greatest
+            // a negligible distance is a wait; rounding of a short piece may exceed the maximum
             // speed
             let speed = if way > TOUCH_M {
                 (way / (to.time - from.time)).min(scene.max_speed)
@@ -242,7 +243,7 @@ impl Profile {
                 0.0
             };
             let pieces = self.pieces(scene, from, to);
-            // a wait where legs join is one wait
+            // a wait at a joint of legs yields one segment
             let count = if speed > 0.0 { pieces.len() } else { 1 };
             for (leg, a, b) in pieces.into_iter().take(count) {
                 if speed > 0.0 {
@@ -267,7 +268,7 @@ impl Profile {
         Trajectory::with_corners(segments).ok()
     }
 
-    /// The diagram of the legs that are sailed; where none are, of the main path.
+    /// Diagram of the planned legs; without any, of the main path.
     pub(crate) fn diagram(&self, scene: &Scene, start: Pose) -> PathTimeDiagram {
         if self.legs.is_empty() {
             let legs = scene.network.legs().iter().enumerate();
@@ -317,7 +318,7 @@ impl Profile {
     }
 }
 
-/// Corners that fall together left out, distances from the start of the path.
+/// Removes coincident corners and converts distances to count from the start of the path.
 fn outline(corners: &[PathTime], begin: f64) -> Vec<PathTime> {
     let apart = |a: &PathTime, b: &PathTime| {
         (a.distance - b.distance).abs() > TOUCH_M || (a.time - b.time).abs() > tolerance::TIME_S

@@ -1,10 +1,10 @@
-//! Places where a profile of least space-time error may bend besides the corners: where it joins or
-//! leaves the desired trajectory, or an obstacle's edge.
+//! Additional nodes at which a profile of least space-time error may bend. There it joins or leaves
+//! the desired trajectory or an edge of an obstacle.
 //!
-//! While own ship is behind her schedule, or ahead of it, nothing is won by a speed in between: she
-//! waits or sails at full speed, or slides along an edge. So from every corner rays are drawn at
-//! both extreme speeds, forward and backward in time, toward the schedule, until they reach it or
-//! meet an obstacle.
+//! While own ship is behind or ahead of schedule, no intermediate speed is optimal. It waits, moves
+//! at full speed, or slides along an edge. Rays therefore start at every corner at both extreme
+//! speeds, forward and backward in time, toward the schedule. They end at the schedule or at an
+//! obstacle.
 
 use super::due::Due;
 use super::nodes::{Known, Mark, Node, Place};
@@ -12,18 +12,18 @@ use super::scene::Scene;
 use crate::obstacle::PathTime;
 use crate::tolerance;
 
-/// Rays go on over leg after leg; at most so many pieces of one.
+/// Maximum number of pieces of one ray over consecutive legs.
 const MAX_PIECES: usize = 100;
 
-/// Adds to the corners where the schedule meets legs' ends and obstacles' edges, and where the rays
-/// end.
+/// Adds the intersections of the schedule with leg ends and obstacle edges, and the ends of the
+/// rays.
 pub(crate) fn add_rays(scene: &Scene, known: &mut Known, root: &Node) {
     for (leg, due) in scene.dues.iter().enumerate() {
         if let Some(due) = due {
             schedule(scene, leg, due, known);
         }
     }
-    // the latest arrival: a schedule that is later is left for it
+    // latest arrival: a profile leaves a later schedule for it
     for (leg, ends) in scene.network.legs().iter().map(|leg| leg.ends).enumerate() {
         if scene.network.is_end(ends[1]) {
             let last = PathTime {
@@ -42,7 +42,8 @@ pub(crate) fn add_rays(scene: &Scene, known: &mut Known, root: &Node) {
     known.in_order();
 }
 
-/// The corners, each with a leg that it is on; those at points with every leg there. And the root.
+/// Lists the corners with a leg that contains each, and the root. A corner at a point is listed
+/// with every leg there.
 fn sources(scene: &Scene, known: &Known, root: &Node) -> Vec<(usize, PathTime)> {
     let nodes = known.on.iter().chain(&known.at).flatten();
     let mut sources = Vec::new();
@@ -77,7 +78,7 @@ fn sources(scene: &Scene, known: &Known, root: &Node) -> Vec<(usize, PathTime)> 
     sources
 }
 
-/// Where own ship is due at the ends of a leg, and where the schedule meets obstacles.
+/// Adds the schedule at the ends of a leg and its intersections with obstacles.
 fn schedule(scene: &Scene, leg: usize, due: &Due, known: &mut Known) {
     let length = scene.tracks[leg].length;
     let from = PathTime {
@@ -88,7 +89,7 @@ fn schedule(scene: &Scene, leg: usize, due: &Due, known: &mut Known) {
         distance: length,
         time: due.start + length / due.speed,
     };
-    // a schedule that is faster than own ship cannot be followed
+    // own ship cannot follow a schedule above its maximum speed
     if due.speed > scene.max_speed * (1.0 + tolerance::LIMIT) {
         return;
     }
@@ -112,8 +113,8 @@ struct Ray<'a> {
 }
 
 impl Ray<'_> {
-    /// A ray toward the schedule: at full speed to catch up and at rest to let it catch up,
-    /// forward; backward the other way round. Where there is no schedule, at full speed.
+    /// Casts a ray toward the schedule. Forward, full speed reduces a lag and rest reduces a lead;
+    /// backward is the reverse. Without a schedule, the ray has full speed.
     fn cast(&self, leg: usize, at: PathTime, forward: bool, known: &mut Known) {
         let Some(due) = self.scene.dues[leg] else {
             self.run(leg, at, forward, None, known);
@@ -126,7 +127,7 @@ impl Ray<'_> {
         if (behind > 0.0) == forward {
             self.run(leg, at, forward, Some(behind > 0.0), known);
         } else {
-            // at rest until it is on schedule
+            // rest until on schedule
             let time = due.start + at.distance / due.speed;
             let to = PathTime {
                 distance: at.distance,
@@ -136,8 +137,8 @@ impl Ray<'_> {
         }
     }
 
-    /// At full speed over the legs, until on schedule, against an obstacle, or at the end of what
-    /// there is.
+    /// Casts a full-speed ray over the legs until it meets the schedule, an obstacle, or the last
+    /// leg.
     fn run(
         &self,
         leg: usize,
@@ -196,7 +197,8 @@ impl Ray<'_> {
         }
     }
 
-    /// Adds where a line ends or meets an obstacle. True when nothing is met.
+    /// Adds the end of a line, or its first intersection with an obstacle. True without an
+    /// intersection.
     fn end(
         &self,
         leg: usize,

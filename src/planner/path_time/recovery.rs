@@ -1,37 +1,40 @@
-//! At most the space-time error of the way to the end: what cannot be caught up with, obstacles or
-//! not.
+//! Lower bound of the space-time error to the end: the lag that own ship cannot recover, even
+//! without obstacles.
 //!
-//! Let `s` be metres along the path, `d(t)` where own ship is due, `c` at most `|x(s) - x(r)| / |s
-//! - r|` for any two places of the path, `u` the fastest desired speed. Then for every `r`: `|x(s)
-//! - x_d(r)| >= c |s - r|` and `|t - t_d(r)| >= |d(t) - r| / u`, and the least over `r` of the sum
-//! of squares is `e² >= k (d(t) - s)²`, `k = c² q / (q + c² u²)`. The lag `d(t) - s` falls no
-//! faster than greatest less slowest desired speed, and a lead no faster than `u`; the motion lasts
-//!   no less than the way left at the greatest speed. The integral of the least that is left of the
-//!   lag meanwhile is the bound. It follows the lag of any motion from below, so it is consistent.
+//! Let `s` be the distance along the path, `d(t)` the desired distance, and `u` the maximum desired
+//! speed. Let `c` be a lower bound of `|x(s) - x(r)| / |s - r|` over all pairs of positions on the
+//! path. Then for every `r`: `|x(s) - x_d(r)| >= c |s - r|` and `|t - t_d(r)| >= |d(t) - r| / u`.
+//! Minimising the sum of squares over `r` gives `e² >= k (d(t) - s)²` with
+//! `k = c² q / (q + c² u²)`.
+//!
+//! The lag `d(t) - s` decreases at most at the maximum speed minus the minimum desired speed. A
+//! lead decreases at most at `u`. The motion takes at least the remaining distance over the maximum
+//! speed. The bound is the integral of the least remaining lag over this time. It follows the lag
+//! of any motion from below, so it is consistent.
 
 use crate::frame::Vector;
 use crate::planner::Problem;
 use crate::trajectory::DesiredTrajectory;
 
-/// Relative. Rounding of a bound that is attained.
+/// Relative margin for rounding of a tight bound.
 const ROUNDING: f64 = 1e-9;
 
-/// See the head of the file.
+/// Lower bound of the space-time error to the end.
 #[derive(Debug, Clone)]
 pub(crate) struct Recovery<'a> {
     desired: &'a DesiredTrajectory,
-    /// `k`, over the duration of the desired trajectory.
+    /// `k` divided by the duration of the desired trajectory.
     weight: f64,
-    /// m/s by which a lag shrinks at most, and a lead.
+    /// Maximum rates in m/s at which a lag and a lead decrease.
     catching: f64,
     falling: f64,
     max_speed: f64,
 }
 
 impl<'a> Recovery<'a> {
-    /// `None` where nothing better than zero is known: with alternatives, on which the way along
-    /// the path says nothing of the distance from the schedule, and on a path that comes back to
-    /// itself.
+    /// Returns `None` if no bound above zero is known. This holds with alternatives, where distance
+    /// along the path does not bound the distance from the schedule, and on self-intersecting
+    /// paths.
     pub(crate) fn new(problem: &Problem<'a>) -> Option<Self> {
         if !problem.alternatives.is_empty() {
             return None;
@@ -53,8 +56,8 @@ impl<'a> Recovery<'a> {
         })
     }
 
-    /// Metres along the path at which own ship is due; on at the fastest desired speed after the
-    /// end.
+    /// Desired distance along the path in metres; beyond the end, it grows at the maximum desired
+    /// speed.
     fn due(&self, time: f64) -> f64 {
         let legs = self.desired.legs();
         let late = time - self.desired.duration();
@@ -65,7 +68,7 @@ impl<'a> Recovery<'a> {
         legs[index].start_distance + (time - legs[index].start_time) * legs[index].speed
     }
 
-    /// m², from a time at which so many metres are left to the end.
+    /// Lower bound in m², given the remaining distance and the current time.
     pub(crate) fn bound(&self, to_go: f64, time: f64) -> f64 {
         let lag = self.due(time) - (self.desired.length() - to_go);
         let rate = if lag > 0.0 {
@@ -85,14 +88,13 @@ impl<'a> Recovery<'a> {
     }
 }
 
-/// Looks at pairs of pieces of a path before its straightness is given up.
+/// Pairs of pieces examined before the straightness is reported as 0.
 const MAX_PAIRS: usize = 20_000;
 
-/// A piece is far enough from another when the bound of the two is this share of the least that was
-/// seen.
+/// Bisection stops if the bound of a pair is at least this fraction of the smallest ratio found.
 const SETTLED: f64 = 0.6;
 
-/// A piece of a path between two distances along it, on the legs from one to another.
+/// Piece of a path between two distances, with its first and last leg.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     from: f64,
@@ -101,10 +103,10 @@ struct Piece {
     last: usize,
 }
 
-/// At most the least of `|x(s) - x(r)| / |s - r|` over a path, from 0 to 1: 1 on a straight one,
-/// the cosine of half the turn about one corner, 0 where the path comes back to a place of its own,
-/// or where this takes too long to find. Pairs of pieces are halved: no place of a piece is farther
-/// than half its length from its middle.
+/// Lower bound in [0, 1] of `|x(s) - x(r)| / |s - r|` over a path. It is 1 on a straight path and
+/// the cosine of half the turn at a single corner. It is 0 if the path intersects itself, or if the
+/// search exceeds `MAX_PAIRS`. Branch and bound over pairs of pieces: every point of a piece lies
+/// within half its length of its midpoint.
 fn straightness(desired: &DesiredTrajectory) -> f64 {
     let legs = desired.legs();
     let at = |distance: f64, leg: usize| -> Vector {
@@ -165,7 +167,7 @@ fn straightness(desired: &DesiredTrajectory) -> f64 {
         let Some((a, b)) = open.pop() else {
             return least;
         };
-        // one leg, or two that join: known already
+        // one leg or two adjacent legs: already bounded
         if b.last <= a.first + 1 {
             continue;
         }
@@ -239,9 +241,8 @@ mod tests {
         }
     }
 
-    /// Motions along random paths, from anywhere at any time to the end: none costs less than the
-    /// bound of where it begins, and waiting first until on schedule, or sailing at full speed
-    /// until then, attains it on a straight path.
+    /// Checks the bound against random motions to the end: none costs less. On a straight path, the
+    /// bound is attained by waiting, or moving at full speed, until on schedule.
     #[test]
     fn no_motion_costs_less_than_the_bound() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
@@ -304,7 +305,7 @@ mod tests {
                 } else if step % 20 == 0 {
                     speed = rng.random_range(0.0..max_speed);
                 }
-                // to the end of a leg at most
+                // at most to the end of the leg
                 let leg = desired
                     .legs()
                     .iter()

@@ -1,4 +1,4 @@
-//! The obstacles as they are seen along every leg, and what is free of them.
+//! Obstacles projected onto every leg, and collision queries against them.
 
 use super::TOUCH_M;
 use super::due::Due;
@@ -12,34 +12,34 @@ use crate::planner::space_time::piece::{Body, Piece, pieces};
 use crate::tolerance;
 use crate::trajectory::PathNetwork;
 
-/// Where a motion may end.
+/// Goal of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Aim {
-    /// At the last waypoint, before the horizon.
+    /// At the last waypoint before the horizon.
     Arrive,
-    /// There, or anywhere at the horizon.
+    /// At the last waypoint, or anywhere at the horizon.
     Last,
 }
 
-/// An obstacle on one leg.
+/// Obstacle on one leg.
 #[derive(Debug, Clone)]
 pub(crate) struct Seen {
     /// Index of the obstacle.
     pub obstacle: usize,
-    /// Distances from the start of the leg.
+    /// Projection; distances count from the start of the leg.
     pub body: PathTimeObstacle,
 }
 
-/// See the head of the file.
+/// Network with its projected obstacles and schedule.
 #[derive(Debug)]
 pub(crate) struct Scene<'a> {
     pub network: &'a PathNetwork,
     pub tracks: Vec<Track>,
-    /// Per leg, by the time at which they begin.
+    /// Obstacles per leg, sorted by start time.
     pub seen: Vec<Vec<Seen>>,
-    /// Per point the legs that begin or end at its place, with the distance at which they do.
+    /// Legs that start or end at the position of each point, with the distance of that end.
     touching: Vec<Vec<(usize, f64)>>,
-    /// Per leg where own ship is meant to be; `None` on alternatives.
+    /// Schedule per leg; `None` on alternatives.
     pub dues: Vec<Option<Due>>,
     pub max_speed: f64,
     pub horizon: f64,
@@ -47,8 +47,8 @@ pub(crate) struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// Projects every part of every obstacle onto every leg that its positions up to the horizon
-    /// come near. Sets without interior are widened, ellipsoids replaced by outer polytopes.
+    /// Projects every convex piece of every obstacle onto the legs that it may approach before the
+    /// horizon. Sets without interior are widened. Ellipsoids are replaced by outer polytopes.
     pub(crate) fn new(problem: &Problem, network: &'a PathNetwork, aim: Aim) -> Self {
         let tracks: Vec<Track> = network
             .legs()
@@ -121,25 +121,25 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// True where own ship may be at a time with so many metres to the end left.
+    /// True if the remaining distance can be covered before the horizon.
     pub(crate) fn in_time(&self, to_go: f64, time: f64) -> bool {
         let needed = match self.aim {
             Aim::Arrive => to_go / self.max_speed,
-            // a path that leads nowhere is no way
+            // a dead end is not a valid end
             Aim::Last if to_go.is_finite() => 0.0,
             Aim::Last => f64::INFINITY,
         };
         time + needed <= self.horizon + tolerance::TIME_S
     }
 
-    /// The legs that begin or end at the place of a point, with the distance at which they do.
+    /// Legs that start or end at the position of a point, with the distance of that end.
     pub(crate) fn touching(&self, point: usize) -> &[(usize, f64)] {
         &self.touching[point]
     }
 
-    /// The obstacle that a line on a leg, sailed from its beginning or back from its end, meets
-    /// first, and the share of the line at which it does: half as deep as a line may go, so that
-    /// the place itself is free.
+    /// Returns the first obstacle along a line on a leg, and the fraction of the line at entry.
+    /// `forward` selects the direction of travel. Half the permitted depth is used, so the position
+    /// itself is free.
     pub(crate) fn nearest_barrier(
         &self,
         leg: usize,
@@ -160,8 +160,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// What bars a line on a leg: of the obstacles that it meets the one that begins first.
-    /// O(obstacles on the leg), most of them by their extent.
+    /// Returns the obstacle with the earliest start time that a line on a leg intersects.
+    /// O(obstacles on the leg); most are rejected by their extent.
     pub(crate) fn barrier(&self, leg: usize, from: PathTime, to: PathTime) -> Option<usize> {
         self.seen[leg]
             .iter()
@@ -170,7 +170,7 @@ impl<'a> Scene<'a> {
             .map(|seen| seen.obstacle)
     }
 
-    /// What bars waiting at a point.
+    /// Returns the obstacle that blocks waiting at a point.
     pub(crate) fn barrier_at(&self, point: usize, from: f64, to: f64) -> Option<usize> {
         self.touching[point].iter().find_map(|&(leg, distance)| {
             let at = |time| PathTime { distance, time };
@@ -178,8 +178,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Until when an obstacle that is met at a place of a leg is there, or ahead on the leg;
-    /// infinite where that is up to the horizon.
+    /// Time until which an obstacle covers a position or lies ahead on the leg; infinite if until
+    /// the horizon.
     pub(crate) fn bars_until(&self, leg: usize, obstacle: usize, at: PathTime) -> f64 {
         let seen = self.seen[leg].iter().filter(|s| s.obstacle == obstacle);
         let ahead = seen
@@ -193,15 +193,15 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Until when, waiting from `time` on at a place of a leg, an obstacle that covers it then goes
-    /// on to; infinite when it does up to the horizon.
+    /// Time until which an obstacle keeps covering a position at which own ship waits; infinite if
+    /// until the horizon.
     pub(crate) fn covered_until(&self, leg: usize, obstacle: usize, at: PathTime) -> f64 {
         let end = PathTime {
             time: self.horizon,
             ..at
         };
         let mut until = at.time;
-        // slabs follow one another
+        // slabs are consecutive in time
         for seen in self.seen[leg].iter().filter(|s| s.obstacle == obstacle) {
             if let Some([enter, leave]) = seen.body.inside(at, end, 0.0) {
                 let span = self.horizon - at.time;
@@ -218,7 +218,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// A rectangle of the plane.
+/// Axis-aligned bounding box.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
     low: Vector,
@@ -238,7 +238,7 @@ impl Extent {
     }
 
     fn meets(&self, other: &Self) -> bool {
-        // negated on purpose: a NaN is near
+        // negated on purpose: a NaN counts as near
         !(self.low.x > other.high.x
             || self.low.y > other.high.y
             || self.high.x < other.low.x
@@ -246,7 +246,7 @@ impl Extent {
     }
 }
 
-/// A rectangle around every position of a part within `duration` seconds from its clock's start.
+/// Bounding box of all positions of a piece during `duration` seconds from its start.
 fn covered(part: &Piece, duration: f64) -> Extent {
     let reach = |normal: Vector| match &part.body {
         // linear in time
@@ -254,7 +254,7 @@ fn covered(part: &Piece, duration: f64) -> Extent {
             let (initial, velocity): (&ConvexPolygon, _) = (o.initial(), o.velocity());
             initial.support(normal) + (velocity.support(normal) * duration).max(0.0)
         }
-        // concave in time: below its tangents at both ends
+        // concave in time: below the tangents at both ends
         Body::Ellipsoid(o) => {
             let (first, last) = (
                 o.exact.support(normal, 0.0),
@@ -262,7 +262,7 @@ fn covered(part: &Piece, duration: f64) -> Extent {
             );
             let rise = (first.rate * duration).max(0.0);
             let back = (-last.rate * duration).max(0.0);
-            // where a tangent has no slope, the growth of the sets alone bounds it
+            // without a tangent slope, the growth of the sets alone bounds it
             let bound = (first.value + rise).min(last.value + back);
             if bound.is_finite() {
                 bound

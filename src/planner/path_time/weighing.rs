@@ -1,14 +1,14 @@
-//! Length against risk: how much risk is a shorter way worth?
+//! Trade-off between path length and accepted risk.
 
 use super::plan;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::planner::clock::Clock;
 use crate::planner::{Objective, Outcome, Planned, Problem};
 
-/// Dimensionless. The least risk that a way takes is found to this.
+/// Resolution of the accepted risk, dimensionless.
 const RISK_STEP: f64 = 1e-4;
 
-/// A level of risk, what was planned at it, and the metres of the way.
+/// Risk level, its plan, and the path length in metres.
 struct Level {
     risk: f64,
     planned: Planned,
@@ -22,11 +22,10 @@ impl Level {
     }
 }
 
-/// Plans for the least of length plus `weight` metres times the accepted risk, over risks from 0 to
-/// `max_risk`: the obstacles of `problem` are the whole sets. The level sets shrink as the risk
-/// grows, so the shortest way is never longer at a greater risk, and takes few lengths: between two
-/// risks of different lengths the step is closed in on by halves, to 1e-4. Where no way exists at
-/// `max_risk`, the answer is that of `max_risk`.
+/// Minimises length plus `weight` metres times the accepted risk, over risks from 0 to `max_risk`.
+/// The obstacles of `problem` are the whole sets. Level sets shrink as the risk grows, so the
+/// shortest length is non-increasing in the risk and takes few values. Bisection locates each step
+/// to 1e-4. Without a path at `max_risk`, the result is that of `max_risk`.
 pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Planned {
     let clock = Clock::new(problem.deadline);
     let at = |risk: f64| {
@@ -60,7 +59,7 @@ pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Plan
             best = greatest;
         }
     }
-    // where the way shortens, between a risk and a greater one
+    // intervals of risk in which the path shortens
     while let Some((low, before, high, after)) = steps.pop() {
         let shortens = before.is_none_or(|before| before > after + 1e-6);
         if !shortens || high - low <= RISK_STEP || after + weight * low >= best.cost(weight) {

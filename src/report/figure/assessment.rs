@@ -1,4 +1,4 @@
-//! The figure of an assessment.
+//! Figure of an assessment.
 
 use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
 use super::outline::{Stroke, curve, mark};
@@ -9,25 +9,25 @@ use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::study::assess::Situation;
 
-/// Velocities are shown up to this multiple of the greatest speed.
+/// Limit of the velocity panel as a multiple of the maximum speed.
 const FASTEST: f64 = 1.3;
 
-/// Own ship's track.
+/// Stroke of own ship's track.
 const OWN: Stroke = Stroke {
     colour: "#000000",
     width: 1.6,
     dashed: false,
 };
 
-/// Pixels between a set and the base line of its name, from line to line, and of a letter's width.
+/// Sizes in pixels: gap between a set and the base line of its name, line height, and letter width.
 const GAP: f64 = 5.0;
 const LINE: f64 = 14.0;
 const LETTER: f64 = 6.6;
 
-/// Panels beside one another.
+/// Number of panels in a row.
 const COLUMNS: usize = 2;
 
-/// Sections at `times`, seconds, dCPA over the velocities, and the risk at each of the times.
+/// Draws the sections at `times` in seconds, dCPA over the velocities, and the risk at each time.
 /// Without times: the start, a third, two thirds and the end of the horizon.
 pub fn assessment_figure(situation: &Situation, times: &[f64]) -> Figure {
     let thirds: Vec<f64> = (0..4)
@@ -70,14 +70,14 @@ pub fn assessment_figure(situation: &Situation, times: &[f64]) -> Figure {
     Figure::new(COLUMNS, panels)
 }
 
-/// On a dark field.
+/// Stroke on a dark field.
 const OWN_ON_FIELD: Stroke = Stroke {
     colour: field::OWN,
     ..OWN
 };
 
-/// The targets' names above their first sections. A name that would overlap one before stands a
-/// line higher, or below its set where the panel ends.
+/// Writes the targets' names above their first sections. A name that would overlap an earlier one
+/// moves up a line, or below its set at the edge of the panel.
 fn name(panel: &mut Panel, situation: &Situation) {
     let window = panel.window();
     let pixel = window.size().x / AREA[0];

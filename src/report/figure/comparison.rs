@@ -1,4 +1,5 @@
-//! Candidates side by side: where they go, how near they come, and in a sweep what a risk buys.
+//! Figure of a comparison: tracks, distances to targets, and in a sweep the cost over accepted
+//! risk.
 
 use super::outline::{SYMBOLS, Stroke, area, curve, sampled_boundary, symbols};
 use super::path_time::{ProfileLine, path_time_panel};
@@ -12,23 +13,23 @@ use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
 use crate::study::compare::{Entry, EntryResult, LineStyle, Method};
 
-/// The colour of the targets' sets.
+/// Colour of the targets' sets.
 const SETS: &str = "#888888";
 
-/// Instants at which the sets are drawn, the start among them.
+/// Number of instants at which the sets are drawn, including the start.
 const MOMENTS: usize = 4;
 
-/// Seconds between two points of a curve.
+/// Time step of a curve in seconds.
 const STEP: f64 = 2.0;
 
-/// Distances are shown up to this multiple of the largest least distance.
+/// Maximum of the distance axis as a multiple of the largest minimum distance.
 const SHOWN: f64 = 4.0;
 
-/// Pixels of the smallest symbol.
+/// Size of the smallest symbol in pixels.
 const LEAST_SYMBOL: f64 = 3.4;
 
-/// One row of panels per scenario: the chart, the distance from the nearest target over time, and
-/// in a sweep the cost over the accepted risk.
+/// Draws one row of panels per scenario: the chart, the distance to the nearest target over time,
+/// and in a sweep the cost over the accepted risk.
 pub fn comparison_figure(compared: &[(&Scenario, &[Entry])]) -> Figure {
     let sweep = compared.iter().any(|(_, entries)| is_sweep(entries));
     let rows = compared
@@ -37,7 +38,8 @@ pub fn comparison_figure(compared: &[(&Scenario, &[Entry])]) -> Figure {
     Figure::new(if sweep { 3 } else { 2 }, rows.collect())
 }
 
-/// Chart, distance from the nearest target over time, and in a sweep cost over risk.
+/// Builds the chart, the distance to the nearest target over time, and in a sweep the cost over
+/// risk.
 pub fn comparison_panels(scenario: &Scenario, entries: &[Entry], sweep: bool) -> Vec<Panel> {
     let mut panels = vec![chart(scenario, entries), distances(scenario, entries)];
     if sweep {
@@ -46,7 +48,7 @@ pub fn comparison_panels(scenario: &Scenario, entries: &[Entry], sweep: bool) ->
     panels
 }
 
-/// The path-time diagrams of the candidates that have one.
+/// Builds the path-time diagrams of the candidates that have one.
 pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
     entries
         .iter()
@@ -109,7 +111,7 @@ fn keys(panel: &mut Panel, entries: &[Entry]) {
     }
 }
 
-/// A method, with its worst result where one of its motions is not safe.
+/// Name of a method, with its worst result if one of its motions is not safe.
 fn named(method: Method, entries: &[Entry]) -> String {
     let own = entries.iter().filter(|e| e.candidate.method == method);
     let risk = |e: &Entry| e.risks().iter().map(|peak| peak.risk).fold(0.0, f64::max);
@@ -123,8 +125,8 @@ fn named(method: Method, entries: &[Entry]) -> String {
     }
 }
 
-/// All motions, the desired trajectory, and at some instants the sets of the first candidate with a
-/// motion.
+/// Draws all motions, the desired trajectory, and the sets of the first candidate with a motion at
+/// some instants.
 fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let ways: Vec<(Stroke, Vec<Vector>)> = entries
         .iter()
@@ -136,7 +138,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
         .collect();
     let waypoints = scenario.desired.waypoints();
     let end = scenario.desired.duration();
-    // a motion that goes on to the horizon would make all others small
+    // a motion that continues to the horizon would shrink all others
     let reach = Window::around(waypoints.iter().copied(), 0.35);
     let within = |p: &Vector| {
         p.x > reach.low.x && p.x < reach.high.x && p.y > reach.low.y && p.y < reach.high.y
@@ -155,7 +157,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
             }
         }
     }
-    let title = format!("{}: ways", scenario.title);
+    let title = format!("{}: trajectories", scenario.title);
     let mut panel = Panel::plan(title, PLAN, Window::around(shown, 0.06));
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
@@ -189,8 +191,8 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     panel
 }
 
-/// Distance to the nearest target on its nominal motion: between the hulls, or from own position to
-/// the set.
+/// Draws the distance to the nearest target on its nominal motion: between the hulls, or from own
+/// position to the set.
 fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let own = &scenario.own_ship.hull;
     let lines: Vec<(Stroke, Vec<Vector>)> = entries
@@ -233,7 +235,7 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
     panel
 }
 
-/// The stretches of a line that are below a height, cut where they cross it.
+/// Clips a polyline to the parts below a height.
 fn parts_below(line: &[Vector], top: f64) -> Vec<Vec<Vector>> {
     let mut parts: Vec<Vec<Vector>> = vec![Vec::new()];
     let clamp = |p: &Vector| Vector::new(p.x, p.y.max(0.0));
@@ -257,8 +259,8 @@ fn parts_below(line: &[Vector], top: f64) -> Vec<Vec<Vector>> {
     parts
 }
 
-/// Cost over accepted risk, one line per planner. The baselines are left out: their costs would
-/// flatten the lines. A plan that exceeds the risk has no point.
+/// Draws the cost over accepted risk, one line per planner. Baselines are omitted because their
+/// costs would flatten the lines. A plan that exceeds the accepted risk has no point.
 fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let mut lines: Vec<(Method, Vec<Vector>)> = Vec::new();
     let is_planned = |e: &&Entry| matches!(e.candidate.method, Method::Planner { .. });
@@ -301,12 +303,12 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
             panel.line_key(&format!("{method}: none within the risk"), stroke(*method));
             continue;
         };
-        // costs, as lines may lie on one another
+        // show the costs, because lines may coincide
         let label = format!("{method}: {:.0} to {:.0} m²", first.y, last.y);
         let symbol = SYMBOLS[index % SYMBOLS.len()];
         panel.symbol_key(&label, symbol, stroke(*method).colour);
     }
-    // those that often lie under others are wide, and have larger symbols
+    // lines that are often covered are wide and have larger symbols
     for (index, (method, line)) in lines.iter().enumerate().rev() {
         let stroke = stroke(*method);
         let symbol = SYMBOLS[index % SYMBOLS.len()];
@@ -317,7 +319,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
     panel
 }
 
-/// The cost of a verified plan that keeps to the accepted risk and arrives.
+/// Cost of a verified plan that respects the accepted risk and arrives.
 fn cost_within_risk(entry: &Entry) -> Option<f64> {
     let EntryResult::Planned(run) = &entry.result else {
         return None;
@@ -342,7 +344,7 @@ mod tests {
     use crate::study::compare::Candidate;
     use crate::target::Representation;
 
-    /// Head-on there is no way along the path, whatever may be risked.
+    /// In the head-on scenario no path is clear at any accepted risk.
     #[test]
     fn what_goes_beyond_the_risk_has_no_point() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -364,7 +366,7 @@ mod tests {
             panic!("{costs:?}");
         };
         assert!(clear > risked && costs[2..] == [None, None], "{costs:?}");
-        // a plan that does not arrive has none either
+        // a plan that does not arrive has no point either
         let forces = Scenario::read(&root.join("scenarios/forces/give-way.toml")).expect("valid");
         let along = Candidate {
             max_risk: 0.2,
@@ -373,7 +375,7 @@ mod tests {
         assert_eq!(cost_within_risk(&along.run(&forces)), None);
         let svg = comparison_figure(&[(&scenario, &entries)]).svg();
         assert!(svg.contains("path-time: none within the risk"));
-        // from the least risk on, whatever the order that was asked for
+        // sorted from the least risk, independent of the requested order
         assert!(svg.contains(&format!("space-time, A*: {clear:.0} to {risked:.0} m²")));
     }
 }

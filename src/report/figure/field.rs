@@ -1,6 +1,6 @@
-//! Fields: risk over the sea at a time, dCPA over the velocities. In bands, each of which is a set
-//! that is known outright: where the risk is at least a value is a section, the velocities that
-//! come within a distance are the velocity obstacle of a wider set.
+//! Fields: risk over position at a time, and dCPA over velocities. They are drawn as bands, each of
+//! which is an explicit set. A section is the region with at least a given risk. The velocities
+//! within a distance form the velocity obstacle of a wider set.
 
 use kuva::plot::{ColorMap, ContourPlot};
 use kuva::render::plots::Plot;
@@ -14,40 +14,40 @@ use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
-/// Bands of a field of risk.
+/// Number of bands of a risk field.
 const RISK_BANDS: usize = 20;
 
-/// Bands of a field of distances, at most.
+/// Maximum number of bands of a distance field.
 const DISTANCE_BANDS: f64 = 20.0;
 
-/// The boundary of a set over a field.
+/// Boundary of a set over a field.
 const BOUNDARY: Stroke = Stroke {
     colour: "#ffffff",
     width: 1.6,
     dashed: false,
 };
 
-/// The boundary of a velocity obstacle, which is white.
+/// Boundary of a velocity obstacle, which is white.
 const VELOCITY_OBSTACLE: Stroke = Stroke {
     colour: "#000000",
     width: 1.6,
     dashed: false,
 };
 
-/// Own ship, on dark and on light.
+/// Colour of own ship on dark and light backgrounds.
 pub(super) const OWN: &str = "#d55e00";
 
-/// The velocities that a panel shows, and own ship's.
+/// Velocities shown by a panel, and own velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VelocityWindow {
-    /// m/s.
+    /// Window in m/s.
     pub window: Window,
-    /// Own velocity, m/s, where it is to be marked.
+    /// Own velocity in m/s, if it is marked.
     pub own: Option<Vector>,
 }
 
-/// The largest risk of any target at `time`, seconds, in twentieths, with the boundaries of the
-/// sections. The colours go from risk 0 to risk 1 in every panel.
+/// Draws the largest risk of any target at `time` in seconds, in steps of 1/20, with the boundaries
+/// of the sections. The colour scale always covers risk 0 to 1.
 pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: Window) -> Panel {
     let mut panel = Panel::plan(title.to_owned(), PLAN, window);
     panel.plots.push(scale(panel.window(), 1.0, "risk"));
@@ -75,8 +75,8 @@ pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: Window) 
     panel
 }
 
-/// The least dCPA to any target for every velocity kept from `position` over `[0, horizon]`
-/// seconds, with the velocity obstacles in white.
+/// Draws the least dCPA to any target for every velocity held from `position` over `[0, horizon]`
+/// seconds. Velocity obstacles are white.
 pub fn dcpa_panel(
     title: &str,
     targets: &[Obstacle],
@@ -101,7 +101,7 @@ pub fn dcpa_panel(
 fn bands(panel: &mut Panel, targets: &[Obstacle], approach: &Approaching) {
     let window = panel.window();
     let limit = 2.0 * window.low.amax().max(window.high.amax());
-    // nowhere farther than at the start
+    // dCPA is at most the distance at the start
     let most = targets
         .iter()
         .map(|t| t.signed_distance(approach.position, 0.0).distance)
@@ -130,7 +130,7 @@ fn bands(panel: &mut Panel, targets: &[Obstacle], approach: &Approaching) {
     }
 }
 
-/// The colours from 0 to `top` as a bar, and the window in the first of them.
+/// Colour bar from 0 to `top`, with the window filled in its first colour.
 fn scale(window: Window, top: f64, name: &str) -> Plot {
     let Window { low, high } = window;
     let corners = ContourPlot::new()
@@ -139,7 +139,7 @@ fn scale(window: Window, top: f64, name: &str) -> Plot {
             vec![low.x, high.x],
             vec![low.y, high.y],
         )
-        // above every corner, so that nothing but the ground is drawn
+        // above every corner, so that only the background is drawn
         .with_levels(&[2.0 * top])
         .with_filled()
         .with_colormap(ColorMap::Viridis)
@@ -147,7 +147,7 @@ fn scale(window: Window, top: f64, name: &str) -> Plot {
     Plot::Contour(corners)
 }
 
-/// The next of 1, 2, 5, 10, 20, … from `least` on.
+/// Next of 1, 2, 5, 10, 20, … that is at least `least`.
 fn round_step(least: f64) -> f64 {
     if !(least > 0.0 && least.is_finite()) {
         return 1.0;

@@ -1,4 +1,4 @@
-//! Velocities and forces of a plan under forces, over time.
+//! Velocities and forces over time of a plan under forces.
 
 use super::outline::{Stroke, curve};
 use super::{Panel, Window};
@@ -16,13 +16,13 @@ const SURGE: &str = "#0072b2";
 const SWAY: &str = "#009e73";
 const YAW: &str = "#d55e00";
 
-/// Least span of a panel, as a fraction of the greatest speed or of the force limit.
+/// Minimum span of a panel, as a fraction of the maximum speed or of the force limit.
 const LEAST_SPAN: f64 = 0.02;
 
-/// Least span of the panel of turn rates, degrees per second.
+/// Minimum span of the turn rate panel, in degrees per second.
 const LEAST_TURN_DEG_PER_S: f64 = 0.05;
 
-/// Numbers from here on are written in thousands.
+/// Threshold above which numbers are written in thousands.
 const LONG: f64 = 1e4;
 
 /// One quantity over time.
@@ -36,13 +36,13 @@ struct Curve {
 struct Quantities<'a> {
     title: &'a str,
     unit: &'a str,
-    /// In the unit.
+    /// Minimum span in this unit.
     least_span: f64,
     curves: Vec<Curve>,
 }
 
-/// One panel each for speeds, turn rate, forces and moment, as their units differ. Starboard and
-/// clockwise are positive.
+/// Builds panels for speeds, turn rate, forces and moment, because their units differ. Starboard
+/// and clockwise are positive.
 pub(super) fn force_panels(motion: &Steered, limits: &ForceVector) -> Vec<Panel> {
     let states = |value: fn(&Node) -> f64| -> Vec<Vector> {
         let nodes = motion.nodes().iter();
@@ -101,7 +101,8 @@ fn largest(curves: &[Curve]) -> f64 {
     values.fold(0.0, |most, v| most.max(v.y.abs()))
 }
 
-/// In that one of three units, each a thousand times the one before, which gives short numbers.
+/// Selects the unit prefix that gives short numbers; the three units differ by factors of a
+/// thousand.
 fn prefixed<'a>(
     title: &'a str,
     units: [&'a str; 3],

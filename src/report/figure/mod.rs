@@ -1,7 +1,7 @@
-//! Figures: panels in a grid, drawn as SVG or PNG. The same panels give the same bytes.
+//! Figures: panels in a grid, drawn as SVG or PNG. Equal panels give equal bytes.
 //!
-//! Charts have equal axes, and every axis has its unit. Fields are coloured by viridis, whose
-//! lightness rises with the value, so that it survives print in grey.
+//! Charts have equal axes, and every axis has its unit. Fields use the viridis palette. Its
+//! lightness increases with the value, so fields remain readable in greyscale print.
 
 mod assessment;
 mod comparison;

@@ -1,4 +1,4 @@
-//! Sets as curves and areas that can be drawn.
+//! Drawable curves and areas of sets.
 
 use kuva::plot::{BandPlot, LinePlot, MarkerShape, ScatterPlot};
 use kuva::render::plots::Plot;
@@ -7,25 +7,24 @@ use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::obstacle::{Obstacle, PolytopeObstacle};
 
-/// Points of an ellipse's boundary.
+/// Number of points on the boundary of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
 
-/// Distance of a drawn velocity obstacle of ellipses from the exact one, as a fraction of the
-/// limit.
+/// Accuracy of a drawn velocity obstacle of ellipses, as a fraction of the limit.
 const FINENESS: f64 = 5e-4;
 
-/// How a curve is drawn.
+/// Stroke of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
-    /// `#rrggbb`.
+    /// Colour as `#rrggbb`.
     pub colour: &'static str,
-    /// Pixels.
+    /// Width in pixels.
     pub width: f64,
-    /// Dashes.
+    /// True for a dashed curve.
     pub dashed: bool,
 }
 
-/// The boundary of a section, counter-clockwise; of an ellipse some points of it.
+/// Boundary of a section, counter-clockwise; ellipses are sampled.
 pub fn sampled_boundary(section: &ConvexSet) -> Vec<Vector> {
     match section {
         ConvexSet::Polygon(polygon) => polygon.vertices().to_vec(),
@@ -33,7 +32,7 @@ pub fn sampled_boundary(section: &ConvexSet) -> Vec<Vector> {
     }
 }
 
-/// A curve, closed where asked.
+/// Draws a polyline, closed on request.
 pub fn curve(points: &[Vector], closed: bool, stroke: Stroke) -> Plot {
     let first = points.first().filter(|_| closed);
     let all = points.iter().chain(first).map(|p| (p.x, p.y));
@@ -48,13 +47,13 @@ pub fn curve(points: &[Vector], closed: bool, stroke: Stroke) -> Plot {
     })
 }
 
-/// A point.
+/// Draws a point.
 pub fn mark(at: Vector, colour: &str) -> Plot {
     let point = ScatterPlot::new().with_data([(at.x, at.y)]);
     Plot::Scatter(point.with_color(colour).with_size(4.5))
 }
 
-/// Symbols that distinguish the points of curves that lie in one place.
+/// Symbols that distinguish coincident points of different curves.
 pub(super) const SYMBOLS: [MarkerShape; 8] = [
     MarkerShape::Circle,
     MarkerShape::Square,
@@ -66,15 +65,15 @@ pub(super) const SYMBOLS: [MarkerShape; 8] = [
     MarkerShape::Plus,
 ];
 
-/// Points with a symbol each, `size` pixels from its centre to its edge.
+/// Draws points with one symbol; `size` is the distance in pixels from its centre to its edge.
 pub(super) fn symbols(at: &[Vector], symbol: MarkerShape, size: f64, colour: &str) -> Plot {
     let points = ScatterPlot::new().with_data(at.iter().map(|p| (p.x, p.y)));
     let points = points.with_color(colour).with_size(size);
     Plot::Scatter(points.with_marker(symbol))
 }
 
-/// A filled convex polygon: the band between its lower and its upper chain. `None` where it has no
-/// area.
+/// Draws a filled convex polygon as the band between its lower and upper chain. `None` if its area
+/// is zero.
 pub fn area(polygon: &ConvexPolygon, colour: &str, opacity: f64) -> Option<Plot> {
     let vertices = polygon.vertices();
     let mut xs: Vec<f64> = vertices.iter().map(|v| v.x).collect();
@@ -115,9 +114,9 @@ pub fn area(polygon: &ConvexPolygon, colour: &str, opacity: f64) -> Option<Plot>
     Some(Plot::Band(band))
 }
 
-/// The velocities that come within `distance` metres of a target, as convex polygons up to `limit`
-/// m/s east and north. At distance 0 this is the velocity obstacle. Polygons are exact at distance
-/// 0 and otherwise widened by a disc of 64 sides, 0.1 % too large; ellipses are outer
+/// Velocities that come within `distance` metres of a target, as convex polygons up to `limit` m/s
+/// east and north. At distance 0, this is the velocity obstacle. Polygons are exact at distance 0.
+/// At other distances they are widened by a disc of 64 sides, 0.1 % too large. Ellipses are outer
 /// approximations to [`FINENESS`] of `limit`.
 pub fn outer_velocities_within(
     target: &Obstacle,
@@ -151,12 +150,12 @@ pub fn outer_velocities_within(
     regions.iter().filter_map(|r| r.clipped(limit)).collect()
 }
 
-/// Own ship's position at t = 0 and how long it holds its velocity.
+/// Own ship's position at t = 0 and the time for which it holds its velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approaching {
-    /// Metres.
+    /// Position in metres.
     pub position: Vector,
-    /// Seconds.
+    /// Time in seconds.
     pub horizon: f64,
 }
 
@@ -165,7 +164,7 @@ fn disc(radius: f64) -> ConvexPolygon {
     Ellipse::from_axes(Vector::zeros(), axes).outer_polygon(64)
 }
 
-/// Every velocity within `limit` east and north.
+/// Square of all velocities within `limit` east and north.
 pub fn square(limit: f64) -> ConvexPolygon {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     ConvexPolygon::from_ccw(corners.map(|(x, y)| Vector::new(x, y) * limit).to_vec())
@@ -183,7 +182,7 @@ mod tests {
         ConvexPolygon::from_ccw(corners.to_vec())
     }
 
-    /// The drawn regions against the closest approach itself.
+    /// Compares the drawn regions with the exact closest approach.
     #[test]
     fn the_velocities_drawn_are_those_that_come_so_near() {
         let (place, way) = (Vector::new(300.0, 80.0), Vector::new(-2.0, -0.5));

@@ -1,4 +1,4 @@
-//! One pair of axes.
+//! Panel: one pair of axes.
 
 use kuva::plot::MarkerShape;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
@@ -10,29 +10,29 @@ use super::Window;
 use super::outline::Stroke;
 use crate::frame::Vector;
 
-/// Pixels of the area between the axes.
+/// Size in pixels of the area between the axes.
 pub(super) const AREA: [f64; 2] = [400.0, 330.0];
 
-/// Pixels around it: left, right, top; below come the legend's lines.
+/// Margins in pixels: left, right, top. The legend is below.
 pub(super) const MARGIN: [f64; 3] = [74.0, 106.0, 44.0];
 
-/// Pixels to the right of an area without a colour scale, of a panel that has no others beside it.
+/// Right margin in pixels of a single panel without a colour scale.
 const ALONE: f64 = 18.0;
 
-/// Pixels for the numbers and the name of the lower axis.
+/// Height in pixels of the numbers and the label of the lower axis.
 const AXIS: f64 = 64.0;
 
-/// Pixels by which the name of the lower axis is raised.
+/// Offset in pixels by which the label of the lower axis is raised.
 const LIFT: f64 = 16.0;
 
-/// Pixels of a line of the legend, and around them.
+/// Height in pixels of a legend line, and its padding.
 const LEGEND_LINE: f64 = 20.0;
 const LEGEND_FRAME: f64 = 26.0;
 
-/// Pixels of a note's letters.
+/// Font size of a note in pixels.
 const NOTE_SIZE: u32 = 11;
 
-/// One pair of axes with what is drawn between them.
+/// One pair of axes and its content.
 pub struct Panel {
     title: String,
     axes: [String; 2],
@@ -44,7 +44,7 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A plan with equal axes: the window is widened until it fills the panel. `axes` carry their
+    /// Creates a panel with equal axes. The window is widened to fill the panel. `axes` include
     /// units.
     pub(super) fn plan(title: String, axes: [&str; 2], window: Window) -> Self {
         Self {
@@ -54,7 +54,7 @@ impl Panel {
         }
     }
 
-    /// Axes of different units.
+    /// Creates a panel whose axes have different units.
     pub(super) fn free(title: String, axes: [&str; 2], window: Window) -> Self {
         Self {
             title,
@@ -67,12 +67,12 @@ impl Panel {
         }
     }
 
-    /// The title.
+    /// Title.
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// The part of the plane that it shows.
+    /// Visible part of the plane.
     pub fn window(&self) -> Window {
         self.window
     }
@@ -95,7 +95,7 @@ impl Panel {
         });
     }
 
-    /// A symbol of [`super::outline::symbols`].
+    /// Adds a legend entry for a symbol of [`super::outline::symbols`].
     pub(super) fn symbol_key(&mut self, label: &str, symbol: MarkerShape, colour: &str) {
         self.legend.push(LegendEntry {
             label: label.to_owned(),
@@ -105,13 +105,13 @@ impl Panel {
         });
     }
 
-    /// A word at a place.
+    /// Adds a text at a position.
     pub(super) fn note(&mut self, text: &str, at: Vector) {
         let note = TextAnnotation::new(text, at.x, at.y).with_font_size(NOTE_SIZE);
         self.notes.push(note);
     }
 
-    /// Pixels below the area for a legend with this many lines.
+    /// Height in pixels below the area for a legend with this many lines.
     pub(super) fn below(lines: usize) -> f64 {
         AXIS + if lines == 0 {
             0.0
@@ -124,7 +124,7 @@ impl Panel {
         self.legend.len()
     }
 
-    /// Pixels to the right of the area that it needs, alone.
+    /// Width in pixels that a single panel needs to the right of its area.
     pub(super) fn right(&self) -> f64 {
         if self.plots.iter().any(|p| p.colorbar_info(false).is_some()) {
             MARGIN[1]
@@ -133,7 +133,7 @@ impl Panel {
         }
     }
 
-    /// The layout in a cell, with the pixels to the right of the area and below it.
+    /// Layout in a cell, with the pixels to the right of the area and below it.
     pub(super) fn layout(&self, right: f64, below: f64) -> Layout {
         let Window { low, high } = self.window;
         let [left, _, top] = MARGIN;
@@ -155,7 +155,7 @@ impl Panel {
             .with_force_margins(left, right)
             .with_force_margins_y(top, below);
         layout.show_colorbar = self.plots.iter().any(|p| p.colorbar_info(false).is_some());
-        // the name of the axis belongs to it, above the legend
+        // place the axis label next to its axis, above the legend
         layout = layout.with_x_label_offset(0.0, AXIS - below - LIFT);
         if self.equal {
             layout = layout.with_equal_aspect();

@@ -1,4 +1,5 @@
-//! The path-time diagram: distance along the path across, time up, paper figures 5b and 6b.
+//! Path-time diagram: distance along the path horizontally, time vertically, paper figures 5b and
+//! 6b.
 
 use super::outline::{Stroke, area, curve};
 use super::{Panel, Window};
@@ -7,41 +8,41 @@ use crate::geometry::ConvexPolygon;
 use crate::obstacle::PathTime;
 use crate::planner::path_time::PathTimeDiagram;
 
-/// Where legs join.
+/// Stroke at joints of legs.
 const JOINT: Stroke = Stroke {
     colour: "#bbbbbb",
     width: 0.8,
     dashed: true,
 };
 
-/// Colours of successive targets; they differ in lightness, too.
+/// Colours of successive targets; they also differ in lightness.
 const COLOURS: [&str; 7] = [
     "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31",
 ];
 
-/// Time shown after what is to be seen, as a share of it.
+/// Time shown after the content, as a fraction of its duration.
 const AFTER: f64 = 0.08;
 
-/// How much longer than the last arrival an obstacle may last to be shown whole, as a fraction.
+/// Fraction by which an obstacle may outlast the last arrival and still be shown in full.
 const MUCH: f64 = 0.5;
 
-/// The colour of a target by its index.
+/// Colour of a target by its index.
 pub(super) fn target_colour(index: usize) -> &'static str {
     COLOURS[index % COLOURS.len()]
 }
 
-/// A profile to be drawn.
+/// Profile to draw.
 pub struct ProfileLine<'a> {
-    /// In the legend.
+    /// Label in the legend.
     pub label: String,
-    /// The diagram that it was planned in.
+    /// Diagram in which the profile was planned.
     pub diagram: &'a PathTimeDiagram,
-    /// How it is drawn.
+    /// Stroke of the profile.
     pub stroke: Stroke,
 }
 
-/// The obstacles of the first diagram, filled, and the profiles of all; `names` are those of the
-/// obstacles, by their index. Without a plan up to the horizon.
+/// Draws the obstacles of the first diagram, filled, and all profiles. `names` are the obstacle
+/// names by index. Without a plan, the time axis extends to the horizon.
 pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) -> Panel {
     let point = |p: &PathTime| Vector::new(p.distance, p.time);
     let arrival = profiles
@@ -52,7 +53,7 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
         .fold(0.0, f64::max);
     let diagram = profiles.first().map(|line| line.diagram);
     let horizon = diagram.map_or(1.0, |d| d.horizon);
-    // what begins before the last arrival is shown whole, unless it lasts for much longer
+    // show obstacles that start before the last arrival in full, unless they last much longer
     let whole = diagram
         .iter()
         .flat_map(|d| &d.obstacles)

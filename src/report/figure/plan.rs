@@ -1,4 +1,4 @@
-//! The figure of a plan: the chart, the diagram of a path-time plan, the forces of a plan under
+//! Figure of a plan: the chart, the diagram of a path-time plan, and the forces of a plan under
 //! forces.
 
 use kuva::render::plots::Plot;
@@ -18,53 +18,53 @@ use crate::planner::EdgeVerdict;
 use crate::scenario::Land;
 use crate::trajectory::Trajectory;
 
-/// The desired trajectory.
+/// Stroke of the desired trajectory.
 pub(super) const DESIRED: Stroke = Stroke {
     colour: "#777777",
     width: 1.4,
     dashed: true,
 };
 
-/// The planned way.
+/// Stroke of the planned trajectory.
 pub(super) const PLANNED: Stroke = Stroke {
     colour: "#000000",
     width: 2.4,
     dashed: false,
 };
 
-/// Other paths.
+/// Stroke of alternative paths.
 const ALTERNATIVE: Stroke = Stroke {
     colour: "#b0b0b0",
     width: 1.4,
     dashed: false,
 };
 
-/// Motions that a search found.
+/// Stroke of motions found by a search.
 const FOUND: Stroke = Stroke {
     colour: "#009e73",
     width: 0.8,
     dashed: false,
 };
 
-/// The colour of land.
+/// Colour of land.
 pub(super) const LAND: &str = "#d9cba3";
 
-/// Around pieces of land.
+/// Outline of land.
 const SHORE: Stroke = Stroke {
     colour: LAND,
     width: 0.8,
     dashed: false,
 };
 
-/// Instants at which the sets are drawn, the start among them.
+/// Number of instants at which the sets are drawn, including the start.
 const MOMENTS: usize = 4;
 
-/// Seconds between two points of a curve, and how many there are at most beside its joints.
+/// Time step of a curve in seconds, and the maximum number of points besides its joints.
 const STEP: f64 = 1.0;
 const MOST_POINTS: u32 = 5_000;
 
-/// The chart of a run with its path-time diagram, or its velocities and forces, where it has such.
-/// The title is the scenario's; for a plan that is not safe, it says so.
+/// Draws the chart of a run, with its path-time diagram or its velocities and forces if present.
+/// The title is that of the scenario; it marks a plan that is not safe.
 pub fn plan_figure(run: &Run) -> Figure {
     let title = match run.safety() {
         None | Some(Safety::Safe) => run.scenario.title.clone(),
@@ -73,7 +73,7 @@ pub fn plan_figure(run: &Run) -> Figure {
     Figure::new(2, plan_panels(run)).titled(&title)
 }
 
-/// The panels of [`plan_figure`].
+/// Panels of [`plan_figure`].
 pub fn plan_panels(run: &Run) -> Vec<Panel> {
     let scenario = &run.scenario;
     let plan = run.planned.outcome.plan();
@@ -101,7 +101,7 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
     panels
 }
 
-/// Sections of obstacles at `times`, seconds, and a path, waypoints in metres.
+/// Draws sections of obstacles at `times` in seconds, and a path with waypoints in metres.
 pub fn path_panel(title: &str, obstacles: &[Obstacle], times: &[f64], path: &[Vector]) -> Panel {
     let mut panel = sections_beside(title, obstacles, times, path);
     panel.plots.push(curve(path, false, PLANNED));
@@ -109,13 +109,13 @@ pub fn path_panel(title: &str, obstacles: &[Obstacle], times: &[f64], path: &[Ve
     panel
 }
 
-/// Desired and planned way, the sets at some times of the plan, each with own ship's place at that
-/// time.
+/// Draws the desired and the planned trajectory. Sets are drawn at several times, with own ship's
+/// position at the same time.
 pub fn chart_panel(title: &str, run: &Run) -> Panel {
     chart(title, run, Vec::new())
 }
 
-/// The chart with `others` drawn above the sets and below the plan.
+/// Draws the chart with `others` above the sets and below the plan.
 fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let scenario = &run.scenario;
     let trajectory = run.planned.outcome.plan().map(|plan| &plan.trajectory);
@@ -136,7 +136,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     let paths = scenario.alternatives.iter().flatten();
     let mut shown: Vec<Vector> = waypoints.iter().chain(&way).chain(paths).copied().collect();
     let reach = Window::around(shown.iter().copied(), 0.3);
-    // sets that go far away are cut off
+    // distant sets are clipped
     let within = |p: &Vector| reach.contains(*p);
     let mut sets: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
     for (index, obstacle) in run.obstacles.iter().enumerate() {
@@ -203,8 +203,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
     panel
 }
 
-/// The chart of a run of the space-time planner with every motion that its search found clear of
-/// all sets.
+/// Chart of a run of the space-time planner with every collision-free motion found by its search.
 pub fn explored_panel(title: &str, run: &Run) -> Panel {
     let edges = run.planned.explored.edge_weights();
     let free = edges.filter(|edge| edge.verdict == EdgeVerdict::Free);
@@ -219,8 +218,8 @@ pub fn explored_panel(title: &str, run: &Run) -> Panel {
     panel
 }
 
-/// The land within a window, filled, piece by piece. Each has an outline too: without one the water
-/// would shine through where two meet.
+/// Filled land within a window, piece by piece. Each piece has an outline, to hide gaps between
+/// adjacent pieces.
 pub(super) fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
     let window = geometry::Window {
         low: shown.low,

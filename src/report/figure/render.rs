@@ -1,4 +1,4 @@
-//! Panels in a grid, as bytes.
+//! Rendering of panels in a grid to bytes.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,27 +11,27 @@ use super::Panel;
 use super::panel::{AREA, MARGIN};
 use crate::report::{WriteError, write_atomically};
 
-/// Pixels of a PNG for one of the SVG.
+/// PNG pixels per SVG pixel.
 const PNG_SCALE: f32 = 2.0;
 
-/// Pixels of a title's letters, and how many of them stand above one panel.
+/// Font size of a title in pixels, and the number of letters that fit above one panel.
 const TITLE_SIZE: u32 = 18;
 const LETTERS: usize = 54;
 
-/// The name of clip paths in the drawing library, before a number that counts on through a process.
+/// Prefix of clip path names in the drawing library. A process-wide counter follows it.
 const CLIP: &str = "kuva-clip-";
 
-/// The format of a figure.
+/// Format of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigureFormat {
-    /// Scalable, the text kept as text.
+    /// Scalable vector graphics; text stays text.
     Svg,
-    /// Two pixels for one of the SVG.
+    /// Raster image with two pixels per SVG pixel.
     Png,
 }
 
 impl FigureFormat {
-    /// By the ending of a file's name, `.svg` or `.png`.
+    /// Selects the format by the file extension, `.svg` or `.png`.
     pub fn of(file: &Path) -> Option<Self> {
         let ending = file.extension()?.to_str()?;
         if ending.eq_ignore_ascii_case("svg") {
@@ -44,24 +44,24 @@ impl FigureFormat {
     }
 }
 
-/// Why a figure is not written.
+/// Reason why a figure was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
-    /// Neither ending.
+    /// Unsupported file extension.
     #[error("{}: found a name that ends neither in .svg nor in .png; allowed: one of the two", file.display())]
     Format {
-        /// The file.
+        /// File path.
         file: PathBuf,
     },
-    /// The picture cannot be made.
+    /// Rendering failed.
     #[error("the figure cannot be drawn: {0}")]
     Draw(String),
-    /// The file cannot be written.
+    /// Writing failed.
     #[error(transparent)]
     Write(#[from] WriteError),
 }
 
-/// Panels in rows of `columns`, under a title.
+/// Panels in rows of `columns`, with an optional title.
 pub struct Figure {
     title: Option<String>,
     columns: usize,
@@ -69,7 +69,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// Panels, row by row.
+    /// Creates a figure; panels are in row-major order.
     pub fn new(columns: usize, panels: Vec<Panel>) -> Self {
         let columns = columns.clamp(1, panels.len().max(1));
         Self {
@@ -79,7 +79,7 @@ impl Figure {
         }
     }
 
-    /// With a title above all panels, shortened to their width.
+    /// Sets a title above all panels, shortened to their width.
     pub fn titled(self, title: &str) -> Self {
         let fits = self.columns.max(1) * LETTERS;
         let title = if title.chars().count() > fits {
@@ -128,12 +128,12 @@ impl Figure {
         canvas.render()
     }
 
-    /// As the text of an SVG file.
+    /// Renders SVG text.
     pub fn svg(self) -> String {
         numbered_anew(&SvgBackend::new().render_scene(&self.scene()))
     }
 
-    /// As the bytes of a PNG file.
+    /// Renders PNG bytes.
     pub fn png(self) -> Result<Vec<u8>, FigureError> {
         PngBackend::new()
             .with_scale(PNG_SCALE)
@@ -141,7 +141,7 @@ impl Figure {
             .map_err(FigureError::Draw)
     }
 
-    /// Writes the file, whole or not at all, in the format of its ending.
+    /// Writes the file atomically in the format of its extension.
     pub fn write(self, file: &Path) -> Result<(), FigureError> {
         let bytes = match FigureFormat::of(file) {
             Some(FigureFormat::Svg) => self.svg().into_bytes(),
@@ -155,7 +155,7 @@ impl Figure {
     }
 }
 
-/// Counts the clip paths from 0 in every figure: the same figure, the same bytes.
+/// Renumbers the clip paths from 0, so that equal figures give equal bytes.
 fn numbered_anew(svg: &str) -> String {
     let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
     let mut parts = svg.split(CLIP);

@@ -1,4 +1,4 @@
-//! Where targets may be: their two sets, and sections over time.
+//! Figures of target sets: the two sets, and sections over time.
 
 use super::outline::{Stroke, area, curve, sampled_boundary};
 use super::{Panel, Window};
@@ -6,41 +6,41 @@ use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::obstacle::Obstacle;
 
-/// The names of a plan's axes.
+/// Axis labels of a chart.
 pub(super) const PLAN: [&str; 2] = ["East [m]", "North [m]"];
 
-/// The first section.
+/// Stroke of the first section.
 pub(super) const INITIAL: Stroke = Stroke {
     colour: "#0072b2",
     width: 2.4,
     dashed: false,
 };
 
-/// Every later one.
+/// Stroke of later sections.
 pub(super) const LATER: Stroke = Stroke {
     colour: "#009e73",
     width: 1.4,
     dashed: false,
 };
 
-/// Everything that the sections cover.
+/// Stroke of the area covered by the sections.
 const COVERED: Stroke = Stroke {
     colour: "#d55e00",
     width: 1.6,
     dashed: true,
 };
 
-/// Sections that the covered part of ellipses is drawn from; between them its sides are all but
-/// straight.
+/// Number of sections used to draw the area covered by ellipses; its sides are nearly straight
+/// between them.
 const SWEEP: usize = 12;
 
-/// Pieces of a side of the space-time body; dashes need some length.
+/// Number of pieces of a side of the space-time body; dashes need a minimum length.
 const SIDE: usize = 25;
 
-/// Margin as a fraction of the greater side: room for a name.
+/// Margin as a fraction of the longer side, for a name.
 const MARGIN: f64 = 0.1;
 
-/// One set alone: `O_0` or `V`, with its unit in `axes`.
+/// Draws one set, `O_0` or `V`, with its unit in `axes`.
 pub fn set_panel(title: &str, axes: [&str; 2], set: &ConvexSet) -> Panel {
     let boundary = sampled_boundary(set);
     let window = Window::around(boundary.iter().copied(), 0.25);
@@ -54,13 +54,13 @@ pub fn set_panel(title: &str, axes: [&str; 2], set: &ConvexSet) -> Panel {
     panel
 }
 
-/// Sections of all targets at `times`, seconds, the first in its own style. Dashed is the area
-/// covered until the last; for slabs it is drawn as the hull of each slab.
+/// Draws the sections of all targets at `times` in seconds; the first has its own style. The dashed
+/// curve is the area covered until the last time, drawn as the hull of each slab.
 pub fn sections_panel(title: &str, targets: &[Obstacle], times: &[f64]) -> Panel {
     sections_beside(title, targets, times, &[])
 }
 
-/// [`sections_panel`] in a window that holds `others`, too.
+/// Draws [`sections_panel`] in a window that also contains `others`.
 pub(super) fn sections_beside(
     title: &str,
     targets: &[Obstacle],
@@ -94,8 +94,8 @@ pub(super) fn sections_beside(
     panel
 }
 
-/// How far the sections reach east over time, until `end` seconds: the space-time body from the
-/// side.
+/// Draws the eastward extent of the sections over time, until `end` seconds: the side view of the
+/// space-time body.
 pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> Panel {
     let reach = |time: f64| {
         let section = target.section(time);
@@ -132,7 +132,7 @@ pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> 
     panel
 }
 
-/// The area that a target covers from 0 to `end` seconds, as boundaries of convex sets.
+/// Area that a target covers from 0 to `end` seconds, as boundaries of convex sets.
 fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
     let hull = |from: f64, to: f64, steps: usize| {
         let points: Vec<Vector> = (0..=steps)
@@ -143,7 +143,7 @@ fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
         hull.map(|hull| hull.vertices().to_vec())
     };
     match target {
-        // straight between the ends
+        // linear between the ends
         Obstacle::Polytope(_) => hull(0.0, end, 1).into_iter().collect(),
         Obstacle::Ellipsoid(_) => hull(0.0, end, SWEEP).into_iter().collect(),
         Obstacle::Slabs(obstacle) => obstacle
@@ -155,7 +155,7 @@ fn covered(target: &Obstacle, end: f64) -> Vec<Vec<Vector>> {
     }
 }
 
-/// Seconds, rounded to a tenth.
+/// Formats seconds, rounded to a tenth.
 pub(super) fn seconds(time: f64) -> String {
     ((time * 10.0).round() / 10.0).to_string()
 }

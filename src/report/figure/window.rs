@@ -1,19 +1,19 @@
-//! The part of a plane that a panel shows.
+//! Visible part of a panel's plane.
 
 use crate::frame::Vector;
 
-/// A rectangle of the plane, in the units of the panel.
+/// Rectangle in the units of the panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// The corner with the least coordinates.
+    /// Corner with the least coordinates.
     pub low: Vector,
-    /// The corner with the greatest coordinates.
+    /// Corner with the greatest coordinates.
     pub high: Vector,
 }
 
 impl Window {
-    /// Around points, with a margin of `share` of the greater side; a window of 1 around the origin
-    /// without any point that is a number.
+    /// Bounding box of points, with a margin of `share` of its longer side. Without finite points,
+    /// a window of size 1 around the origin.
     pub fn around(points: impl IntoIterator<Item = Vector>, share: f64) -> Self {
         let (mut low, mut high) = (
             Vector::repeat(f64::INFINITY),
@@ -34,17 +34,17 @@ impl Window {
         }
     }
 
-    /// `high - low`.
+    /// Size, `high - low`.
     pub fn size(&self) -> Vector {
         self.high - self.low
     }
 
-    /// True for a point of the rectangle; false for one that is no number.
+    /// True for a point inside the rectangle; false for NaN.
     pub fn contains(&self, p: Vector) -> bool {
         p.x >= self.low.x && p.x <= self.high.x && p.y >= self.low.y && p.y <= self.high.y
     }
 
-    /// Widened about its middle until width over height is `ratio`.
+    /// Widens the window about its centre until width over height is `ratio`.
     pub fn with_ratio(&self, ratio: f64) -> Self {
         let (middle, size) = ((self.low + self.high) * 0.5, self.size());
         let half = Vector::new(size.x.max(size.y * ratio), size.y.max(size.x / ratio)) * 0.5;

@@ -1,10 +1,10 @@
-//! Addresses of files on a page.
+//! URLs of files on a page.
 
 use std::path::Path;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
-/// Characters that are not escaped in an address.
+/// Characters that are not percent-encoded.
 const PLAIN: AsciiSet = NON_ALPHANUMERIC
     .remove(b'-')
     .remove(b'_')
@@ -12,14 +12,14 @@ const PLAIN: AsciiSet = NON_ALPHANUMERIC
     .remove(b'~')
     .remove(b'/');
 
-/// The address of a file beside the page.
+/// URL of a file in the folder of the page.
 pub(super) fn address(name: &str) -> String {
-    // a name that begins like a scheme is none behind "./"
+    // the prefix "./" prevents a name from being parsed as a scheme
     format!("./{}", utf8_percent_encode(name, &PLAIN))
 }
 
-/// The relative address of `file` for a page in `folder`. Both have to exist; otherwise, or where
-/// there is no relative path, it is the file's own path.
+/// Relative URL of `file` for a page in `folder`. Both must exist. Otherwise, or without a relative
+/// path, the result is the path of the file.
 pub fn link_from(folder: &Path, file: &Path) -> String {
     let both = folder
         .canonicalize()

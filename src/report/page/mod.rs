@@ -1,6 +1,6 @@
-//! A report as a folder for a browser: one page and its figures, without network and script.
+//! HTML report in a folder: one page and its figures, without network access and scripts.
 //!
-//! No clock is in it: the same runs give the same bytes.
+//! The page contains no timestamps: equal runs give equal bytes.
 
 mod link;
 
@@ -21,39 +21,39 @@ use crate::study::compare::Entry;
 
 pub use link::link_from;
 
-/// The page.
+/// File name of the page.
 const INDEX: &str = "index.html";
 
-/// Its style sheet.
+/// Style sheet.
 const STYLE: &str = include_str!("style.css");
 
-/// One scenario of a report: the names of its files and links to other results.
+/// One scenario of a report: its file names and links to other results.
 #[derive(Debug, Clone, Default)]
 pub struct Subject {
-    /// Begins the names of its figures.
+    /// Prefix of the figure names.
     pub stem: String,
-    /// The scenario file.
+    /// Scenario file.
     pub file: String,
-    /// Names and addresses of linked files: a recording, a plan document.
+    /// Names and URLs of linked files, such as a recording or a plan document.
     pub links: Vec<(String, String)>,
 }
 
-/// A report that grows scenario by scenario.
+/// Report, built scenario by scenario.
 #[derive(Debug, Default)]
 pub struct Report {
-    /// The rows of the table over all plans: row i belongs to section i.
+    /// Rows of the table over all plans; row i belongs to section i.
     runs: Vec<SuiteRunDocument>,
     sections: Vec<Markup>,
     figures: Vec<(String, String)>,
 }
 
 impl Report {
-    /// A report without anything in it.
+    /// Creates an empty report.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a plan: a row of the table, its verdict and costs, its chart and diagram.
+    /// Adds a plan: a table row, its verdict and costs, its chart and diagram.
     pub fn add_run(&mut self, subject: &Subject, plan: &PlanDocument, run: &Run) {
         let file = subject.file.clone();
         self.runs.push(SuiteRunDocument::of(file, plan, Vec::new()));
@@ -70,7 +70,7 @@ impl Report {
         });
     }
 
-    /// Adds a file that gave no plan: a row, and why.
+    /// Adds a file without a plan: a table row and the reason.
     pub fn add_failure(&mut self, file: &str, outcome: &str, error: &str) {
         let failed = SuiteRunDocument::failed(file.to_owned(), outcome, error.to_owned());
         let (word, tone) = verdict(&failed.verdict);
@@ -81,7 +81,7 @@ impl Report {
         });
     }
 
-    /// Adds a comparison: its table, its charts and the diagrams of plans along paths.
+    /// Adds a comparison: its table, its charts, and the diagrams of path-time plans.
     pub fn add_comparison(
         &mut self,
         subject: &Subject,
@@ -110,7 +110,7 @@ impl Report {
         self.sections.push(html! { section id=(id) { (contents) } });
     }
 
-    /// Keeps the panels as figures of their own, and shows them.
+    /// Stores the panels as separate figures and embeds them.
     fn draw(&mut self, subject: &Subject, panels: Vec<Panel>) -> Markup {
         let mut shown = Vec::new();
         for (index, panel) in panels.into_iter().enumerate() {
@@ -126,7 +126,7 @@ impl Report {
         html! { div.figures { @for figure in &shown { (figure) } } }
     }
 
-    /// The page.
+    /// Renders the page.
     pub fn html(&self, title: &str, lead: &str) -> String {
         let page = html! {
             (DOCTYPE)
@@ -149,8 +149,8 @@ impl Report {
         page.into_string()
     }
 
-    /// Writes the figures and then the page into `folder`, which is made. Each file is whole or
-    /// absent, and the page never shows a missing figure. Files of an earlier report stay.
+    /// Creates `folder` and writes the figures, then the page. Each file is written atomically, and
+    /// the page never shows a missing figure. Files of an earlier report are not deleted.
     pub fn write(&self, folder: &Path, title: &str, lead: &str) -> Result<(), WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError {
             file: folder.to_owned(),
@@ -164,7 +164,7 @@ impl Report {
     }
 }
 
-/// The file of a scenario, and links to other results.
+/// Scenario file and links to other results.
 fn origin(subject: &Subject) -> Markup {
     html! {
         p.quiet {
@@ -176,10 +176,10 @@ fn origin(subject: &Subject) -> Markup {
     }
 }
 
-/// A table that may be wider than the page. The first cell of a row names it, and leads to its
-/// section where `linked`. Narrow pages show the columns' names in every row.
+/// Renders a table that may be wider than the page. The first cell names the row; if `linked`, it
+/// links to its section. Narrow pages repeat the column names in every row.
 fn table(grid: Grid, linked: bool) -> Markup {
-    // no clock is on the page
+    // the page contains no timestamps
     let Grid {
         header,
         numbers,

@@ -37,7 +37,8 @@ fn add(report: &mut Report, stem: &str, kind: &str) {
     report.add_run(&subject(stem), &PlanDocument::of(&run), &run);
 }
 
-/// Texts are escaped, every figure on the page exists, and nothing is loaded from elsewhere.
+/// Checks that texts are escaped, every figure on the page exists, and nothing is loaded from
+/// elsewhere.
 fn assert_sound(report: &Report, page: &str) {
     assert!(!page.contains("<script") && !page.contains("alert(\"x\")"));
     assert!(page.contains("&lt;script&gt;"));
@@ -80,7 +81,7 @@ fn a_report_of_plans_has_rows_sections_and_figures() {
     assert!(report.figures[2].1.contains("Distance along the path"));
     assert_eq!(page.matches("<h2>").count(), 3);
     assert!(page.contains("href=\"./a%20%22b%22%23%3F.rrd\""));
-    // no clock is in it
+    // no timestamps
     let again = build();
     assert_eq!(page, again.html(NASTY, "3 scenarios"));
     assert_eq!(report.figures, again.figures);

@@ -1,7 +1,8 @@
 //! Import of files of other programs. The contents of a file tell its format, not its name. Each
 //! format is read into a [`Situation`], and every situation becomes a scenario in one way.
 //!
-//! A new format needs a file here that makes a [`Situation`], and its case in [`Contents::parse`].
+//! A new format needs a file here that makes a [`Situation`], a variant of [`Format`] with its
+//! detection in [`Contents::parse`], and its name in `cli/input/scenes.rs`.
 
 mod assumed;
 mod commonocean;

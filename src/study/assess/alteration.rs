@@ -1,9 +1,9 @@
-//! The least alteration of course or speed that leaves every velocity obstacle.
+//! Least alteration of course or speed that leaves every velocity obstacle.
 //!
-//! On the circle of velocities at own speed, and on the ray of velocities on own course, every
-//! velocity obstacle covers closed arcs and intervals. From own velocity on, the first of them that
-//! covers it is followed to its end; where that end is covered by another one, that is followed,
-//! until nothing covers it.
+//! Every velocity obstacle covers closed arcs of the circle of velocities at own speed, and closed
+//! intervals of the ray of velocities on own course. The algorithm starts at own velocity and
+//! follows the first arc or interval that covers it to its end. If another one covers that end, the
+//! algorithm follows that one, until nothing covers the current velocity.
 
 use std::f64::consts::{FRAC_PI_8, PI};
 
@@ -12,32 +12,33 @@ use crate::frame::{Side, Vector, heading_of, wrap, wrap_positive};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle, VelocityObstacle};
 use crate::tolerance;
 
-/// Most ends of arcs that are followed; each obstacle has a few.
+/// Maximum number of arc ends followed; each obstacle has a few.
 const MAX_ENDS: usize = 100_000;
 
-/// The least alterations, each alone. Zero where own velocity is out of every velocity obstacle
-/// already.
+/// Least alterations of course and of speed, each alone. All are zero if own velocity lies outside
+/// every velocity obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Alteration {
     /// Turn to starboard at own speed, radians, in `[0, pi]`; `None` when no turn helps.
     pub starboard: Option<f64>,
     /// Turn to port at own speed, radians, in `[0, pi]`; `None` when no turn helps.
     pub port: Option<f64>,
-    /// Change of speed on own course, m/s: negative is slower. The smaller of the two, the slower
-    /// one of two equal ones; the new speed is in `[0, max_speed]`. `None` when no speed helps.
+    /// Change of speed on own course, m/s; negative is slower. It is the smaller of the two
+    /// changes; of equal ones, the slower. The new speed is in `[0, max_speed]`. `None` when no
+    /// speed helps.
     pub speed: Option<f64>,
 }
 
-/// The least turn to either side at own speed and the least change of speed on own course after
-/// which own ship, on a straight line from t = 0, meets no obstacle within the horizon. Turns and
-/// changes take no time.
+/// Computes the least turn to either side at own speed, and the least change of speed on own
+/// course, that avoids every obstacle. Own ship moves on a straight line from t = 0 and meets no
+/// obstacle within the horizon. Turns and speed changes are instantaneous.
 ///
-/// Found on the regions themselves: for half-planes by the angles and speeds at which a boundary is
-/// crossed, for ellipses by halving arcs, of which one is known to be covered whole when the
-/// region, which is convex, holds the corners of a triangle around it. The answer is out of the
-/// closed sets: beyond the boundary by [`tolerance::ALTERATION_RAD`] or
-/// [`tolerance::ALTERATION_MPS`], a few of them for ellipses. Gaps narrower than that are none.
-/// O(half-planes) per arc; some hundred memberships per arc for ellipses.
+/// For half-planes, the solution is the angle or speed at which a boundary is crossed. For
+/// ellipses, arcs are bisected: an arc is covered if the convex region contains the corners of a
+/// triangle around it. The result lies outside the closed sets, beyond the boundary by
+/// [`tolerance::ALTERATION_RAD`] or [`tolerance::ALTERATION_MPS`]; for ellipses, by a few of them.
+/// Narrower gaps are ignored. Cost: O(half-planes) per arc; some hundred membership tests per arc
+/// for ellipses.
 ///
 /// Source: velocity obstacles, paper eq. (26).
 pub fn least_alteration(situation: &Situation) -> Alteration {
@@ -57,10 +58,10 @@ pub fn least_alteration(situation: &Situation) -> Alteration {
     }
 }
 
-/// The velocities that one target forbids.
+/// Velocities excluded by one target.
 struct Cover<'a> {
     target: &'a Obstacle,
-    /// `None`: one convex region, known by membership.
+    /// `None` for a single convex region given by its membership test.
     regions: Option<Vec<VelocityObstacle>>,
 }
 
@@ -94,7 +95,7 @@ impl Search<'_> {
                 return Some(turn);
             };
             let end = match &cover.regions {
-                // a region that does not hold it holds it but for rounding
+                // a region that does not contain the velocity differs by rounding only
                 Some(regions) => regions.iter().find(|r| r.contains(velocity(turn))).map_or(
                     Some(turn),
                     |region| {
@@ -131,7 +132,7 @@ impl Search<'_> {
         }
     }
 
-    /// The first free speed from own speed towards `limit`.
+    /// First free speed from own speed towards `limit`.
     fn speed(&self, limit: f64) -> Option<f64> {
         let Situation { pose, speed, .. } = *self.situation;
         let ahead = pose.ahead();
@@ -162,8 +163,8 @@ impl Search<'_> {
         None
     }
 
-    /// Where a convex region that holds `at` ends towards `limit`: bisection is exact on an
-    /// interval.
+    /// End of the interval that contains `at`, towards `limit`. Bisection is exact on the interval
+    /// of a convex region.
     fn end_of_interval(&self, cover: &Cover, ahead: Vector, at: f64, limit: f64) -> Option<f64> {
         if self.covered_by(cover, ahead * limit) {
             return None;
@@ -181,8 +182,8 @@ impl Search<'_> {
     }
 }
 
-/// The first turn from `turn` on at which one of the half-planes excludes the velocity. `turned`
-/// gives the turn of a heading.
+/// First turn from `turn` on at which one of the half-planes excludes the velocity. `turned` maps a
+/// heading to a turn.
 fn turn_out_of(
     region: &VelocityObstacle,
     turned: impl Fn(f64) -> f64,
@@ -208,7 +209,7 @@ fn turn_out_of(
     first
 }
 
-/// The first speed from `at` on, upwards or downwards, at which one of the half-planes excludes the
+/// First speed from `at` on, upwards or downwards, at which one of the half-planes excludes the
 /// velocity.
 fn speed_out_of(region: &VelocityObstacle, ahead: Vector, way: f64, at: f64) -> Option<f64> {
     region
@@ -220,8 +221,8 @@ fn speed_out_of(region: &VelocityObstacle, ahead: Vector, way: f64, at: f64) -> 
         .filter(|speed| *speed >= 0.0)
 }
 
-/// The first turn from `turn` on at which a convex region is left. `on_circle` gives the velocity
-/// after a turn, times a factor.
+/// First turn from `turn` on at which the velocity leaves a convex region. `on_circle` returns the
+/// scaled velocity after a turn.
 fn first_out(
     on_circle: &impl Fn(f64, f64) -> Vector,
     inside: &impl Fn(Vector) -> bool,
@@ -239,8 +240,8 @@ fn first_out(
     None
 }
 
-/// [`first_out`] on an arc of less than half a turn. Two tangents meet beyond its middle, and the
-/// triangle of that corner and the ends contains the arc.
+/// [`first_out`] on an arc of less than half a turn. The tangents at its ends meet beyond its
+/// middle. The triangle of that corner and the ends contains the arc.
 fn first_out_within(
     on_circle: &impl Fn(f64, f64) -> Vector,
     inside: &impl Fn(Vector) -> bool,

@@ -9,29 +9,29 @@ use crate::frame::{Vector, deg_from_radians};
 use crate::geometry::ConvexSet;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 
-/// A position at a time.
+/// Position at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpaceTimePoint {
-    /// Metres.
+    /// Position in metres.
     pub position: Vector,
-    /// Seconds from the scenario's start.
+    /// Time in seconds from the scenario's start.
     pub time: f64,
 }
 
-/// Questions beside holding course and the least alteration.
+/// Questions in addition to the risk of holding course and the least alteration.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Query {
-    /// Times of the sections, seconds, not negative.
+    /// Times of the sections in seconds, non-negative.
     pub sections: Vec<f64>,
-    /// Points at which the risk is asked.
+    /// Points at which the risk is evaluated.
     pub points: Vec<SpaceTimePoint>,
-    /// Own ship's velocities from t = 0 on, m/s.
+    /// Velocities of own ship from t = 0, m/s.
     pub velocities: Vec<Vector>,
 }
 
-/// Answers a query about the scenario `title`. `sets` is `"hard"` or `"shaped"`. Per target: a
-/// point O(n + m), a velocity O(n + m), the largest risk of holding course O((n + m)²) at worst;
-/// for the alteration see [`least_alteration`].
+/// Answers a query about the scenario `title`. `sets` is `"hard"` or `"shaped"`. Cost per target:
+/// O(n + m) per point and per velocity; O((n + m)²) at worst for the largest risk of holding
+/// course. For the alteration see [`least_alteration`].
 pub fn assess(title: &str, sets: &str, situation: &Situation, query: &Query) -> AssessmentDocument {
     let obstacles = situation.obstacles;
     let held = situation.held();

@@ -1,8 +1,8 @@
-//! Questions about the sets without planning: possible positions of targets, risk at a point,
-//! closest approach of a velocity, and the least alteration that leaves every velocity obstacle.
+//! Assessment of a situation without planning: possible target positions, risk at a point, closest
+//! approach of a velocity, and the least alteration that leaves every velocity obstacle.
 //!
 //! ```text
-//! Situation (own ship, obstacles, horizon) + Query (times, points, velocities) ─► AssessmentDocument
+//! Situation (ship, obstacles, horizon) + Query (times, points, velocities) ─► AssessmentDocument
 //! ```
 
 mod alteration;

@@ -1,4 +1,4 @@
-//! Own ship among the obstacles at t = 0.
+//! Situation: own ship among the obstacles at t = 0.
 
 use crate::frame::{Pose, Vector, direction};
 use crate::obstacle::Obstacle;
@@ -9,29 +9,29 @@ use crate::trajectory::Segment;
 pub struct Situation<'a> {
     /// Position, metres, and heading, radians; the course is the heading.
     pub pose: Pose,
-    /// m/s, not negative.
+    /// Speed in m/s, non-negative.
     pub speed: f64,
-    /// The greatest speed of an alteration, m/s; at least `speed` is used.
+    /// Maximum speed of an alteration, m/s; at least `speed` is used.
     pub max_speed: f64,
-    /// The interval is `[0, horizon]`, seconds. It may be infinite except for the risk of holding
-    /// course.
+    /// End of the time interval `[0, horizon]` in seconds. It may be infinite except for the risk
+    /// of holding course.
     pub horizon: f64,
-    /// They include own ship's footprint.
+    /// Obstacles, including own ship's footprint.
     pub obstacles: &'a [Obstacle],
 }
 
 impl Situation<'_> {
-    /// The velocity if course and speed are held, m/s.
+    /// Velocity at constant course and speed, m/s.
     pub fn velocity(&self) -> Vector {
         self.velocity_on(self.pose.heading, self.speed)
     }
 
-    /// The velocity on a heading, radians, at a speed, m/s.
+    /// Velocity for a heading in radians and a speed in m/s.
     pub(super) fn velocity_on(&self, heading: f64, speed: f64) -> Vector {
         direction(heading) * speed
     }
 
-    /// Course and speed held over the horizon.
+    /// Motion at constant course and speed over the horizon.
     pub fn held(&self) -> Segment {
         Segment {
             start: self.pose,

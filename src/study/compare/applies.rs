@@ -1,30 +1,30 @@
-//! The methods that apply to a scenario.
+//! Selection of the methods that apply to a scenario.
 
 use super::Method;
 use crate::planner::{PlannerKind, SearchKind};
 use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, Target};
 
-/// A method that does not apply.
+/// Method that does not apply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inapplicable {
-    /// Which.
+    /// The method.
     pub method: Method,
-    /// In words.
+    /// Reason in words.
     pub reason: String,
 }
 
-/// The methods of a scenario, in the order of the rows.
+/// Methods of a scenario, in the order of the rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Methods {
-    /// These can be run.
+    /// Methods that can be run.
     pub methods: Vec<Method>,
-    /// These cannot, and why.
+    /// Methods that cannot be run, with the reason.
     pub inapplicable: Vec<Inapplicable>,
 }
 
-/// Sorts every method into those that apply and those that do not. Polytopes and ellipsoids are two
-/// methods where a target can be given as either.
+/// Sorts every method into those that apply and those that do not. If a target can be given as
+/// polytopes or ellipsoids, the two representations are separate methods.
 pub fn methods(scenario: &Scenario) -> Methods {
     let representations: &[Option<Representation>] = if scenario.targets.iter().any(has_choice) {
         &[
@@ -52,7 +52,7 @@ pub fn methods(scenario: &Scenario) -> Methods {
             representation,
         ));
     }
-    // its sets are ellipsoids, whatever they are made from
+    // the obstacles are ellipsoids for every representation
     all.push(planner(
         PlannerKind::OptimalControl,
         SearchKind::AStar,
@@ -72,7 +72,7 @@ pub fn methods(scenario: &Scenario) -> Methods {
     found
 }
 
-/// True for targets that are given neither as ellipses nor by several velocity sets.
+/// True unless a target is given as ellipses or by several velocity sets.
 fn has_choice(target: &Target) -> bool {
     match &target.motion {
         Motion::Ship(ship) => ship.turn_rate == 0.0,

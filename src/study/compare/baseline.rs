@@ -1,5 +1,5 @@
-//! Two baselines without a planner: hold course, and one constant velocity outside every velocity
-//! obstacle.
+//! Two baselines without a planner: constant course and speed, and one constant velocity outside
+//! every velocity obstacle.
 
 use crate::evaluation::Evaluation;
 use crate::frame::{Pose, direction};
@@ -10,35 +10,37 @@ use crate::study::assess::{Situation, least_alteration};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
-/// One velocity from t = 0, to the last waypoint where it leads there, else to the horizon.
+/// Constant velocity from t = 0, up to the last waypoint if it leads there, else to the horizon.
 #[derive(Debug, Clone)]
 pub struct Baseline {
-    /// The motion: one segment.
+    /// Motion with a single segment.
     pub trajectory: Trajectory,
     /// Level sets of the accepted risk, in the order of the targets.
     pub obstacles: Vec<Obstacle>,
-    /// Sets, hulls and land are checked. Own limits are not: the velocity changes at once.
+    /// Evaluation against sets, hulls and land. Own limits are not checked, because the velocity
+    /// changes at once.
     pub evaluation: Evaluation,
-    /// The largest risk, per target.
+    /// Largest risk per target.
     pub risks: Vec<PeakRisk>,
-    /// True when it ends at the last waypoint.
+    /// True if the motion ends at the last waypoint.
     pub arrived: bool,
 }
 
-/// Own course and speed, whatever is in the way.
+/// Baseline with own course and speed, regardless of obstacles.
 pub fn hold_course(scenario: &Scenario) -> Baseline {
     let own = &scenario.own_ship;
     baseline(scenario, &Sets::of(scenario), own.pose.heading, own.speed)
 }
 
-/// The constant velocity with the least space-time error of those that meet no set within the
+/// Selects the constant velocity with the least space-time error that meets no set within the
 /// horizon.
 ///
-/// Candidates are, at each of own ship's speeds and the speed at t = 0, the least turns out of
-/// every velocity obstacle to either side, and on its course the least change of speed; these are
-/// exact to [`tolerance::ALTERATION_RAD`]. Turns start from the course to the last waypoint as well
-/// as from own course, so that a mission off the course is not missed. `None` when no such velocity
-/// exists, as from inside a set. Velocities that run aground are chosen only where all do.
+/// The candidates use own ship's speeds and the speed at t = 0. At each speed they are the least
+/// turns out of every velocity obstacle to either side, and on own course the least change of
+/// speed. They are exact to [`tolerance::ALTERATION_RAD`]. Turns start from own course and from the
+/// course to the last waypoint, to cover missions off the course. Returns `None` when no such
+/// velocity exists, for example inside a set. A velocity that runs aground is selected only if all
+/// do.
 pub fn constant_velocity(scenario: &Scenario) -> Option<Baseline> {
     let own = &scenario.own_ship;
     let sets = Sets::of(scenario);
@@ -71,7 +73,7 @@ pub fn constant_velocity(scenario: &Scenario) -> Option<Baseline> {
         .into_iter()
         .map(|(heading, speed)| baseline(scenario, &sets, heading, speed))
         .filter(|b| b.evaluation.space_time_error.is_finite())
-        // of equal ones the first: own course before others, starboard before port
+        // first of equal candidates: own course before others, starboard before port
         .min_by(|a, b| {
             let cost = |b: &Baseline| b.evaluation.space_time_error;
             let bad = |b: &Baseline| !b.evaluation.verified();
@@ -79,8 +81,7 @@ pub fn constant_velocity(scenario: &Scenario) -> Option<Baseline> {
         })
 }
 
-/// What a planner would keep out of, at the accepted risk and whole: risk is measured against
-/// these.
+/// Obstacles at the accepted risk, and the whole sets that define the risk.
 pub(super) struct Sets {
     level: Vec<Obstacle>,
     whole: Vec<Obstacle>,
@@ -103,7 +104,7 @@ impl Sets {
     }
 }
 
-/// A velocity held from t = 0, judged.
+/// Evaluates a velocity held from t = 0.
 pub(super) fn baseline(scenario: &Scenario, sets: &Sets, heading: f64, speed: f64) -> Baseline {
     let own = &scenario.own_ship;
     let along = direction(heading).dot(&(scenario.desired.end() - own.pose.position));

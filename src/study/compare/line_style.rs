@@ -1,32 +1,32 @@
-//! The line style of a method, in figures and in recordings.
+//! Line style of each method in figures and recordings.
 
 use super::Method;
 use crate::planner::{PlannerKind, SearchKind};
 use crate::target::Representation;
 
-/// The line of a method. Any two differ in lightness, in width or in dashes, so that they stay
-/// apart without colour. All are visible on white and on the dark chart of a recording.
+/// Line style of a method. Any two styles differ in lightness, width or dashes, so they are
+/// distinguishable without colour. All are visible on white and on the dark chart of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineStyle {
-    /// `#rrggbb`.
+    /// Colour as `#rrggbb`.
     pub colour: &'static str,
-    /// Pixels of a figure.
+    /// Width in pixels of a figure.
     pub width: f64,
-    /// For baselines.
+    /// True for baselines.
     pub dashed: bool,
 }
 
-/// Pixels.
+/// Width in pixels.
 const THIN: f64 = 1.6;
 
-/// Pixels.
+/// Width in pixels.
 const STRONG: f64 = 2.6;
 
-/// Pixels. A line that often lies under another one is wide and pale.
+/// Width in pixels of a pale line that is often covered by another one.
 const WIDE: f64 = 6.0;
 
 impl LineStyle {
-    /// The same for each method, whatever others are shown.
+    /// Returns the style of a method, independent of the other methods shown.
     pub fn of(method: Method) -> Self {
         let (colour, width, dashed) = match method {
             Method::Planner {
@@ -59,13 +59,13 @@ impl LineStyle {
         }
     }
 
-    /// True for a line that often lies under another.
+    /// True for a line that is often covered by another one.
     #[cfg(feature = "recording")]
     pub fn is_wide(&self) -> bool {
         self.width >= WIDE
     }
 
-    /// Red, green and blue.
+    /// Colour as red, green and blue.
     #[cfg(feature = "recording")]
     pub fn rgb(&self) -> [u8; 3] {
         [1, 3, 5].map(|at| {

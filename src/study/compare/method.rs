@@ -1,31 +1,31 @@
-//! The methods of a comparison and their names.
+//! Methods of a comparison and their names.
 
 use crate::planner::{Objective, PlannerKind, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::Representation;
 
-/// A planner with its settings, or a baseline.
+/// Planner with its settings, or a baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// A planner.
+    /// Planner.
     Planner {
-        /// Which.
+        /// Kind of planner.
         kind: PlannerKind,
-        /// The search over its graph; without effect on optimal control.
+        /// Graph search; without effect on optimal control.
         search: SearchKind,
-        /// The representation of the sets; `None` where the targets determine it.
+        /// Representation of the sets; `None` if the targets determine it.
         representation: Option<Representation>,
     },
-    /// Own course and speed from t = 0.
+    /// Constant own course and speed from t = 0.
     HoldCourse,
-    /// The best constant velocity outside every velocity obstacle.
+    /// Best constant velocity outside every velocity obstacle.
     ConstantVelocity,
 }
 
 impl Method {
-    /// The scenario with the settings of this method. Planners other than the space-time planner
-    /// cannot filter by rules and use ship domains alone. Only the path-time planner keeps the
-    /// objective and the alternative paths.
+    /// Returns the scenario with the settings of this method. Only the space-time planner filters
+    /// by rules; the others use ship domains alone. Only the path-time planner uses the objective
+    /// and the alternative paths.
     pub fn asked(self, scenario: &Scenario) -> Scenario {
         let mut asked = scenario.clone();
         if let Self::Planner {

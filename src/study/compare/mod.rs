@@ -1,4 +1,4 @@
-//! Every planner that applies and two baselines on one scenario.
+//! Comparison of every applicable planner and two baselines on one scenario.
 //!
 //! ```text
 //! Scenario + accepted risks ─► candidates ─► Entry, Entry, … (same targets, same figures)
@@ -23,37 +23,37 @@ use crate::planner::PlannerKind;
 use crate::scenario::Scenario;
 use crate::trajectory::Trajectory;
 
-/// One method at one accepted risk, before it is run.
+/// Method at one accepted risk, before it is run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// The planner or baseline.
+    /// Planner or baseline.
     pub method: Method,
-    /// The accepted risk of eq. (25), in `[0, 1)`.
+    /// Accepted risk of eq. (25), in `[0, 1)`.
     pub max_risk: f64,
 }
 
-/// The result of one candidate.
+/// Result of one candidate.
 #[derive(Debug, Clone)]
 pub struct Entry {
-    /// The method and the accepted risk.
+    /// Method and accepted risk.
     pub candidate: Candidate,
-    /// Its result.
+    /// Result.
     pub result: EntryResult,
 }
 
-/// The motion of a candidate, if it has one.
+/// Motion of a candidate, if it has one.
 #[derive(Debug, Clone)]
 pub enum EntryResult {
-    /// The run of a planner, with or without a plan.
+    /// Run of a planner, with or without a plan.
     Planned(Box<Run>),
-    /// A baseline.
+    /// Baseline with a motion.
     Baseline(Box<Baseline>),
-    /// A baseline found no motion; the reason.
+    /// Baseline without a motion; the reason.
     Nothing(&'static str),
 }
 
-/// Every candidate of a scenario, by method, then by risk. Holding course accepts no risk, so it
-/// appears once.
+/// Lists every candidate of a scenario, by method, then by risk. Holding course accepts no risk, so
+/// it appears once.
 pub fn candidates(methods: &[Method], risks: &[f64]) -> Vec<Candidate> {
     methods
         .iter()
@@ -69,8 +69,8 @@ pub fn candidates(methods: &[Method], risks: &[f64]) -> Vec<Candidate> {
         .collect()
 }
 
-/// Counts the space-time error of all methods alike: until own ship's length from the last
-/// waypoint. For a motion that does not come so near see [`Counted`](crate::evaluation::Counted).
+/// Counts the space-time error of all methods alike, until the distance to the last waypoint is own
+/// ship's length. For motions that stay farther away see [`Counted`](crate::evaluation::Counted).
 fn count_alike(evaluation: &mut Evaluation, scenario: &Scenario, trajectory: &Trajectory) {
     let (desired, q) = (&scenario.desired, scenario.time_weight);
     let within = scenario.own_ship.hull.length;
@@ -79,8 +79,8 @@ fn count_alike(evaluation: &mut Evaluation, scenario: &Scenario, trajectory: &Tr
 }
 
 impl Candidate {
-    /// Plans and evaluates. The space-time error of all methods is counted alike. Results are
-    /// deterministic but for the time that planning took; candidates may run in parallel.
+    /// Plans and evaluates the candidate. The space-time error of all methods is counted alike.
+    /// Results are deterministic except for the planning time. Candidates may run in parallel.
     pub fn run(self, scenario: &Scenario) -> Entry {
         let result = match self.method {
             Method::Planner { .. } => {
@@ -107,7 +107,7 @@ impl Candidate {
         }
     }
 
-    /// The scenario with the settings of this candidate.
+    /// Returns the scenario with the settings of this candidate.
     fn scenario(self, scenario: &Scenario) -> Scenario {
         let asked = self.method.asked(scenario);
         Scenario {
@@ -118,7 +118,7 @@ impl Candidate {
 }
 
 impl Entry {
-    /// The motion; `None` without one.
+    /// Motion; `None` without one.
     pub fn trajectory(&self) -> Option<&Trajectory> {
         match &self.result {
             EntryResult::Planned(run) => run.planned.outcome.plan().map(|plan| &plan.trajectory),
@@ -127,7 +127,7 @@ impl Entry {
         }
     }
 
-    /// The evaluation; `None` without a motion.
+    /// Evaluation; `None` without a motion.
     pub fn evaluation(&self) -> Option<&Evaluation> {
         match &self.result {
             EntryResult::Planned(run) => run.evaluation.as_ref(),
@@ -136,7 +136,7 @@ impl Entry {
         }
     }
 
-    /// Whether the motion enters sets, hulls or land; `None` without one.
+    /// Reports whether the motion enters sets, hulls or land; `None` without a motion.
     pub fn safety(&self) -> Option<Safety> {
         match &self.result {
             EntryResult::Planned(run) => run.safety(),
@@ -145,7 +145,7 @@ impl Entry {
         }
     }
 
-    /// The obstacles; empty where no motion was found.
+    /// Obstacles; empty without a motion.
     pub fn obstacles(&self) -> &[Obstacle] {
         match &self.result {
             EntryResult::Planned(run) => &run.obstacles,
@@ -154,7 +154,7 @@ impl Entry {
         }
     }
 
-    /// The largest risk along the motion, per target; empty without a motion.
+    /// Largest risk along the motion per target; empty without a motion.
     pub fn risks(&self) -> &[PeakRisk] {
         match &self.result {
             EntryResult::Planned(run) => &run.risks,
@@ -163,8 +163,9 @@ impl Entry {
         }
     }
 
-    /// Rule violations and monitors toward each target that is a ship, by the thresholds of the
-    /// scenario; empty without a motion. Targets follow their nominal motion. O(targets × seconds).
+    /// Rule violations and compliance monitors toward each target that is a ship; empty without a
+    /// motion. Uses the thresholds of the scenario and the nominal motion of the targets. O(targets
+    /// × seconds).
     pub fn conduct(&self, scenario: &Scenario) -> Vec<ComplianceReport> {
         let Some(trajectory) = self.trajectory() else {
             return Vec::new();
@@ -191,7 +192,7 @@ impl Entry {
         }
     }
 
-    /// The position at a time, metres; the last one after the end.
+    /// Position at a time in metres; after the end, the last position.
     pub fn position_at(&self, time: f64) -> Option<Vector> {
         let trajectory = self.trajectory()?;
         let within = time.clamp(trajectory.start_time(), trajectory.end_time());
@@ -199,7 +200,7 @@ impl Entry {
     }
 }
 
-/// Runs every candidate one after another.
+/// Runs every candidate sequentially.
 pub fn compare(scenario: &Scenario, risks: &[f64]) -> Vec<Entry> {
     let found = methods(scenario);
     candidates(&found.methods, risks)

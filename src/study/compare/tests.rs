@@ -1,4 +1,4 @@
-//! Baselines against answers that need no search; candidates against single runs.
+//! Tests of baselines against closed-form results, and of candidates against single runs.
 
 use std::path::Path;
 
@@ -30,7 +30,8 @@ fn holding_course_arrives_where_the_course_leads_and_meets_the_target() {
     assert!(held.evaluation.space_time_error > 1e3);
 }
 
-/// On the edge of the velocity obstacle: clear, while any smaller alteration is not.
+/// Tests that the velocity lies on the edge of the velocity obstacle: it is clear, and any smaller
+/// alteration is not.
 #[test]
 fn the_constant_velocity_is_clear_and_any_less_alteration_is_not() {
     for name in [
@@ -49,7 +50,7 @@ fn the_constant_velocity_is_clear_and_any_less_alteration_is_not() {
         let own = &scenario.own_ship;
         let turn = wrap(segment.start.heading - own.pose.heading);
         assert!(turn.abs() > 0.05, "{name}");
-        // no grid of velocities has a better one
+        // no velocity of a grid is better
         let start = own.pose.position;
         for k in 0..720 {
             for &speed in &own.speeds {
@@ -115,7 +116,7 @@ fn what_applies_depends_on_targets_start_land_and_ship() {
     let mut off = ships.clone();
     off.own_ship.pose.position.y = 3.0;
     assert!(!names(&off).iter().any(|n| n.starts_with("path-time")));
-    // ellipses and several velocity sets leave no choice
+    // targets given as ellipses or by several velocity sets leave no choice
     assert_eq!(names(&scenario("uncertainty/spells")).len(), 6);
     assert!(names(&scenario("paper/figure_9")).contains(&"optimal control".to_owned()));
     let land = methods(&scenario("harbour/munkholmen"));
@@ -126,8 +127,8 @@ fn what_applies_depends_on_targets_start_land_and_ship() {
     assert!(other.is_some_and(|o| o.reason.starts_with("map:")));
 }
 
-/// No error is counted beyond arrival or the end of the desired time, and the vessel of optimal
-/// control is as long as own ship.
+/// Tests that no error counts after arrival or the end of the desired time. The vessel of optimal
+/// control has the length of own ship.
 #[test]
 fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
     for name in ["head-on", "give-way", "overtaking", "stand-on"] {
@@ -202,7 +203,7 @@ fn a_contender_is_what_a_run_of_its_own_is() {
         alone.planned.outcome.plan().map(|p| &p.trajectory)
     );
     assert!(entry.arrived() && entry.evaluation().is_some_and(|e| e.verified()));
-    // an accepted risk is never dearer
+    // a higher accepted risk never increases the cost
     for pair in entries.chunks(2).take(6) {
         let cost = |e: &Entry| e.evaluation().map_or(f64::INFINITY, |e| e.space_time_error);
         assert!(

@@ -1,25 +1,25 @@
-//! Scenarios that are the same as others, or their mirror images.
+//! Detection of scenarios that repeat others or mirror them.
 
 use crate::frame::{Pose, Vector, direction, heading_of, wrap};
 use crate::scenario::Scenario;
 use crate::target::Motion;
 
-/// Metres, m/s and radians (0.2°) within which two ships are the same.
+/// Tolerances in metres, m/s and radians (0.2°) within which two ships are equal.
 const SAME_PLACE: f64 = 5.0;
 const SAME_SPEED: f64 = 0.05;
 const SAME_COURSE: f64 = std::f64::consts::PI / 900.0;
 
-/// How a scenario is like one before it.
+/// Relation of a scenario to an earlier one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Likeness {
     /// Equal ships on equal courses, relative to own ship.
     Same,
-    /// Equal after port and starboard are exchanged.
+    /// Equal after exchanging port and starboard.
     Mirrored,
 }
 
-/// A ship relative to own ship at the start: position ahead and to port, metres; course relative
-/// to own course; speed.
+/// Ship relative to own ship at the start: position ahead and to port in metres, relative course,
+/// and speed.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     place: Vector,
@@ -43,8 +43,8 @@ impl Seen {
     }
 }
 
-/// For every scenario the first earlier one that it repeats: own speed and all targets are equal.
-/// Routes are not compared. A scenario without targets repeats none. O(scenarios² targets²).
+/// Returns for every scenario the first earlier one that it repeats: own speed and all targets are
+/// equal. Routes are not compared. A scenario without targets repeats none. O(scenarios² targets²).
 pub fn likenesses(scenarios: &[&Scenario]) -> Vec<Option<(usize, Likeness)>> {
     let all: Vec<Option<Vec<Seen>>> = scenarios.iter().map(|s| seen(s)).collect();
     let run = |index: usize| {
@@ -56,7 +56,7 @@ pub fn likenesses(scenarios: &[&Scenario]) -> Vec<Option<(usize, Likeness)>> {
         let mirrored: Vec<Seen> = here.iter().map(Seen::mirrored).collect();
         all[..index].iter().enumerate().find_map(|(before, there)| {
             let there = there.as_ref()?;
-            // negated on purpose: a NaN is like none
+            // negated on purpose: a NaN is equal to nothing
             if !((run(before) - run(index)).abs() <= SAME_SPEED) {
                 return None;
             }
@@ -69,7 +69,7 @@ pub fn likenesses(scenarios: &[&Scenario]) -> Vec<Option<(usize, Likeness)>> {
     (0..scenarios.len()).map(like).collect()
 }
 
-/// The tracked ships; `None` where there are none, or others.
+/// Tracked ships; `None` if there are none, or other targets.
 fn seen(scenario: &Scenario) -> Option<Vec<Seen>> {
     let own: Pose = scenario.own_ship.pose;
     let ships = scenario.targets.iter().map(|target| match &target.motion {
@@ -84,7 +84,7 @@ fn seen(scenario: &Scenario) -> Option<Vec<Seen>> {
     (!ships.is_empty()).then_some(ships)
 }
 
-/// Equal ships in any order.
+/// True if the two lists contain equal ships in any order.
 fn are(some: &[Seen], others: &[Seen]) -> bool {
     let mut left: Vec<&Seen> = others.iter().collect();
     some.len() == others.len()

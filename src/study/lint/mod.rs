@@ -1,5 +1,5 @@
-//! Faults of scenarios that are found without planning: targets that never matter, missing ships,
-//! mirrored geometry, repeated scenarios.
+//! Detection of scenario faults without planning: targets that never matter, missing ships,
+//! mirrored geometry, and repeated scenarios.
 
 mod likeness;
 
@@ -14,18 +14,19 @@ use crate::scenario::Scenario;
 use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
 
-/// Instants at which sets and own ship are compared.
+/// Number of instants at which sets and own ship are compared.
 const INSTANTS: usize = 400;
 
-/// Radians. A target nearer to ahead or astern than this is on no side: 2°.
+/// Angle in radians (2°): a target closer to dead ahead or dead astern is on neither side.
 const ON_NO_SIDE: f64 = std::f64::consts::PI / 90.0;
 
-/// On the desired trajectory own ship enters the hard set of the target.
+/// On the desired trajectory, own ship enters the hard set of the target.
 const MEETS: &str = "meets";
-/// Own ship could not enter it at any of its speeds on any course.
+/// Own ship cannot enter the set at any of its speeds on any course.
 const NEVER: &str = "never";
 
-/// Checks a scenario against itself and against what its file declares. O(targets × instants).
+/// Checks a scenario for consistency, and against the declarations of its file. O(targets ×
+/// instants).
 pub fn lint(
     file: String,
     scenario: &Scenario,
@@ -97,7 +98,7 @@ pub fn lint(
     }
 }
 
-/// Upper bound of the speed of the target, m/s.
+/// Upper bound of the target's speed, m/s.
 fn top_speed(target: &Target) -> f64 {
     match &target.motion {
         Motion::Ship(ship) => ship.speed + ship.speed_spread,
