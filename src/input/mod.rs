@@ -85,11 +85,19 @@ impl InputError {
     }
 }
 
+/// Maximum number of faults that a message lists; the rest is counted.
+const LISTED: usize = 100;
+
 /// The number of faults, then one fault on each line.
 fn listed(faults: &[Fault]) -> String {
     let plural = if faults.len() == 1 { "" } else { "s" };
-    let lines: String = faults.iter().map(|fault| format!("\n  {fault}")).collect();
-    format!("{} fault{plural}{lines}", faults.len())
+    let shown = faults.iter().take(LISTED);
+    let lines: String = shown.map(|fault| format!("\n  {fault}")).collect();
+    let more = match faults.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        more => format!("\n  and {more} more"),
+    };
+    format!("{} fault{plural}{lines}{more}", faults.len())
 }
 
 /// Collects faults while a file is read.
@@ -152,4 +160,20 @@ pub(crate) fn read_text(file: &Path, mebibytes: u64, kind: &str) -> Result<Strin
         let found = format!("bytes that are not text at byte {at}");
         whole(found, "UTF-8 text".to_owned())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_lists_a_hundred_faults_and_counts_the_rest() {
+        let faults = |count| vec![Fault::new("speed_mps", "-1", "at least 0"); count];
+        let message = |count| InputError::faults(Path::new("a.toml"), faults(count)).to_string();
+        assert_eq!(message(100).lines().count(), 101);
+        assert!(!message(100).contains("more"));
+        assert!(message(5_000).starts_with("a.toml: 5000 faults\n"));
+        assert!(message(5_000).ends_with("\n  and 4900 more"));
+        assert_eq!(message(5_000).lines().count(), 102);
+    }
 }
