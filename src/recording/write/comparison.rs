@@ -56,7 +56,7 @@ pub struct Compared<'a> {
     /// The rows as markdown, without the time that planning took, so that recordings of one
     /// comparison are alike.
     pub table: &'a str,
-    /// The document of the comparison: [`super::Recorded::comparison`] gives it back.
+    /// The document of the comparison: [`crate::recording::Recorded::comparison`] gives it back.
     pub document: &'a str,
 }
 
