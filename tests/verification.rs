@@ -847,7 +847,7 @@ fn what_only_some_plans_have_is_held_too() {
                             add(&mut v[1], 5.0);
                         }
                     },
-                    "do not begin with the section",
+                    "does not begin with the final section",
                 ),
                 (
                     "a target that turns faster",

@@ -101,7 +101,7 @@ fn every_planner_is_compared_on_the_same_scenarios() {
     assert!(rows.starts_with("file,scenario,method,max_risk,"));
     let drawn = fs::read_to_string(&figure).expect("a figure");
     assert!(
-        drawn.contains("Overtaking: ways")
+        drawn.contains("Overtaking: trajectories")
             && drawn.contains("space-time, A*")
             && !drawn.contains("NaN")
     );
