@@ -128,7 +128,7 @@ pub struct BoxIndex {
 }
 
 impl BoxIndex {
-    /// Of boxes that count from 0.
+    /// Builds the index of boxes numbered from 0.
     pub fn new(boxes: impl IntoIterator<Item = Window>) -> Self {
         let boxes = boxes.into_iter().map(|window| boxed(&window)).enumerate();
         Self {
@@ -164,7 +164,7 @@ pub(crate) struct EdgeTree {
 }
 
 impl EdgeTree {
-    /// Of edges that count from 0 in O(n log n).
+    /// Builds the tree of edges numbered from 0, in O(n log n).
     pub fn new(edges: impl Iterator<Item = (Vector, Vector)>) -> Self {
         let ends: Vec<Point> = edges.flat_map(|(a, b)| [point(a), point(b)]).collect();
         let pairs = (0..ends.len() as u32 / 2).map(|k| [2 * k, 2 * k + 1]);

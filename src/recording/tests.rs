@@ -263,7 +263,7 @@ fn recorded_comparison(scenario: &Scenario, path: &Path) -> Recorded {
     Recorded::read(path).expect("whole")
 }
 
-/// What the labels of an entity say.
+/// Labels of an entity.
 fn labels(recorded: &Recorded, entity: &str) -> Vec<String> {
     let table = recorded.table(entity).expect(entity);
     let is_label = |c: &String| c.ends_with(":labels");

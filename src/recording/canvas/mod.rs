@@ -71,7 +71,7 @@ impl Bounds {
     }
 }
 
-/// What colours distinguish.
+/// Things that colours distinguish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Palette {
     /// Own ship is white.

@@ -89,7 +89,7 @@ pub fn toward_background(color: Color, strength: f32) -> Color {
     )
 }
 
-/// The same colour, translucent.
+/// Makes a colour translucent.
 pub fn translucent(color: Color, alpha: u8) -> Color {
     let [r, g, b, _] = color.to_array();
     Color::from_unmultiplied_rgba(r, g, b, alpha)

@@ -56,7 +56,7 @@ pub struct Recorded {
     chunks: BTreeMap<String, Vec<Chunk>>,
 }
 
-/// What one entity holds.
+/// Contents of one entity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EntityContents {
     /// With a leading slash.

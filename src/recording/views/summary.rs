@@ -296,7 +296,7 @@ fn search(model: &ViewModel, drawn: Drawn) -> String {
     )
 }
 
-/// What is claimed, and under which assumptions.
+/// Claims of the plan, with their assumptions.
 fn claim(model: &ViewModel) -> String {
     let run = model.run;
     let judged = run.evaluation.as_ref().is_some_and(Evaluation::verified);

@@ -269,7 +269,7 @@ mod tests {
     use crate::simulation::{EncounterKind, Placement, random_encounter, random_traffic};
     use crate::target::{Motion, Representation, Target};
 
-    /// The same graph without its heuristic.
+    /// A graph without its heuristic.
     struct Uninformed<'a, 'b>(&'b mut Graph<'a>);
 
     impl Space for Uninformed<'_, '_> {
