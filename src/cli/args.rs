@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use searoom::colregs::Thresholds;
-use searoom::planner::{PlannerKind, SearchKind};
+use searoom::planner::{Planner, SearchKind, planner_words};
 use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
@@ -205,7 +205,7 @@ pub struct CompletionsArgs {
 pub struct Asked {
     /// Planner instead of the scenario's: space-time, path-time, optimal-control
     #[arg(long, value_name = "KIND", value_parser = planner)]
-    pub planner: Option<PlannerKind>,
+    pub planner: Option<&'static dyn Planner>,
     /// Search instead of the scenario's: a-star, dijkstra
     #[arg(long, value_name = "KIND", value_parser = search)]
     pub search: Option<SearchKind>,
@@ -369,8 +369,8 @@ fn word<T: Copy>(words: &[(&str, T)], found: &str) -> Result<T, String> {
     })
 }
 
-fn planner(found: &str) -> Result<PlannerKind, String> {
-    word(&PlannerKind::WORDS, found)
+fn planner(found: &str) -> Result<&'static dyn Planner, String> {
+    word(&planner_words(), found)
 }
 
 fn search(found: &str) -> Result<SearchKind, String> {

@@ -154,9 +154,11 @@ fn ask(found: &Found, args: &CompareArgs) -> Asked {
 
 fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     match method {
-        Method::Planner { kind, search, .. } => {
+        Method::Planner {
+            planner, search, ..
+        } => {
             let asked = &args.asked;
-            asked.planner.is_none_or(|k| k == *kind) && asked.search.is_none_or(|s| s == *search)
+            asked.planner.is_none_or(|p| p == *planner) && asked.search.is_none_or(|s| s == *search)
         }
         Method::HoldCourse | Method::ConstantVelocity => true,
     }

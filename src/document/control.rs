@@ -54,7 +54,8 @@ pub struct HomotopyClassDocument {
 
 /// Builds the record; `None` for other planners.
 pub(super) fn control(run: &Run) -> Option<ControlDocument> {
-    let (report, settings) = (run.control.as_ref()?, &run.scenario.control);
+    let report = run.planned.control.as_deref()?;
+    let settings = &run.scenario.settings.control;
     let finite = |value: f64| value.is_finite().then_some(value);
     let limits = settings.force_limits;
     Some(ControlDocument {

@@ -2,8 +2,7 @@
 
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use crate::planner::space_time::{self, NominalTarget};
-use crate::planner::{Outcome, Planned, PlannerKind, Problem, path_time};
+use crate::planner::{NominalTarget, Problem};
 use crate::scenario::Scenario;
 use crate::target::Motion;
 use crate::tolerance::TOUCH_M;
@@ -19,22 +18,8 @@ const HALVINGS: usize = 30;
 /// Samples between two readings of the clock.
 const SAMPLES_PER_CLOCK_READING: u32 = 1000;
 
-/// The motion with the least harm, which may enter sets; along paths the one that does least harm.
-/// `None` where there is none within the horizon.
-pub(super) fn motion(scenario: &Scenario, problem: &Problem) -> Option<Planned> {
-    match scenario.planner {
-        PlannerKind::SpaceTime => {
-            let nominal = |index| nominal(scenario, problem, index);
-            let plan = space_time::escape(problem, nominal)?;
-            Some(Planned::of(Outcome::Solved(plan)))
-        }
-        PlannerKind::PathTime => path_time::least_harm(problem),
-        PlannerKind::OptimalControl => None,
-    }
-}
-
 /// A target without uncertainty: hull and set at its nominal velocity.
-fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> NominalTarget {
+pub(super) fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> NominalTarget {
     let (target, hard) = (&scenario.targets[index], &problem.obstacles[index]);
     let Motion::Ship(ship) = &target.motion else {
         let set = hard.at_risk(1.0);

@@ -4,6 +4,7 @@ mod clock;
 mod control_settings;
 pub mod cost;
 mod explored;
+mod interface;
 mod line_error;
 mod no_plan;
 pub mod optimal_control;
@@ -12,6 +13,7 @@ pub mod space_time;
 
 pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
+pub use interface::{Minimises, NominalTarget, Planner, PlannerFacts, Request, planner_words};
 pub use no_plan::NoPlan;
 
 use std::time::Duration;
@@ -20,7 +22,33 @@ use crate::colregs::{Duty, Encountered};
 use crate::frame::{Side, Vector};
 use crate::obstacle::{LandObstacle, Obstacle};
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
-use crate::vessel::OwnShip;
+use crate::vessel::{OwnShip, VesselKind};
+
+/// All planners, in the order of `compare`.
+pub const PLANNERS: [&dyn Planner; 3] = [
+    &space_time::SpaceTimePlanner,
+    &path_time::PathTimePlanner,
+    &optimal_control::OptimalControlPlanner,
+];
+
+/// The planner of a scenario that names none.
+pub const DEFAULT_PLANNER: &dyn Planner = PLANNERS[0];
+
+/// Settings of the planners that have some.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlannerSettings {
+    /// Settings of the optimal-control planner.
+    pub control: ControlSettings,
+}
+
+impl PlannerSettings {
+    /// Default settings for an own ship of the given length, metres.
+    pub fn at_length(length: f64) -> Self {
+        Self {
+            control: ControlSettings::at_length(VesselKind::CyberShip2, length),
+        }
+    }
+}
 
 /// Graph search algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,31 +59,6 @@ pub enum SearchKind {
     Dijkstra,
 }
 
-/// Planner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PlannerKind {
-    /// Chooses path and speed: [`space_time`].
-    SpaceTime,
-    /// Follows given paths and chooses the speed: [`path_time`].
-    PathTime,
-    /// Chooses forces: [`optimal_control`].
-    OptimalControl,
-}
-
-impl PlannerKind {
-    /// Each planner and its name in files and on the command line.
-    pub const WORDS: [(&'static str, Self); 3] = [
-        ("space-time", Self::SpaceTime),
-        ("path-time", Self::PathTime),
-        ("optimal-control", Self::OptimalControl),
-    ];
-
-    /// Name in files and on the command line.
-    pub fn word(self) -> &'static str {
-        word_of(&Self::WORDS, self)
-    }
-}
-
 impl SearchKind {
     /// Each search and its name in files and on the command line.
     pub const WORDS: [(&'static str, Self); 2] =
@@ -63,13 +66,19 @@ impl SearchKind {
 
     /// Name in files and on the command line.
     pub fn word(self) -> &'static str {
-        word_of(&Self::WORDS, self)
+        match self {
+            Self::AStar => "a-star",
+            Self::Dijkstra => "dijkstra",
+        }
     }
-}
 
-fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
-    let known = words.iter().find(|(_, other)| *other == value);
-    known.map_or("", |(word, _)| word)
+    /// Name in tables and figures.
+    pub(crate) fn label(self) -> &'static str {
+        match self {
+            Self::AStar => "A*",
+            Self::Dijkstra => "Dijkstra",
+        }
+    }
 }
 
 /// Quantity that a planner minimises.
@@ -246,9 +255,7 @@ impl Outcome {
             Self::Infeasible(_) => None,
         }
     }
-}
 
-impl Outcome {
     fn into_plan(self) -> Option<Plan> {
         match self {
             Self::Solved(plan) => Some(plan),
@@ -277,6 +284,8 @@ pub struct Planned {
     pub explored: ExploredGraph,
     /// Path-time diagram of the path-time planner; boxed because most plans have none.
     pub path_time: Option<Box<path_time::PathTimeDiagram>>,
+    /// Report of a plan under forces.
+    pub control: Option<Box<optimal_control::ControlReport>>,
     /// Escape of a stand-on ship (Rule 17).
     pub escape: Option<Escape>,
 }
@@ -289,6 +298,7 @@ impl Planned {
             stats: SearchStats::default(),
             explored: ExploredGraph::new(),
             path_time: None,
+            control: None,
             escape: None,
         }
     }

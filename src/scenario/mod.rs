@@ -21,7 +21,7 @@ use std::sync::Arc;
 use crate::colregs::Thresholds;
 use crate::frame::{Georeference, Vector};
 use crate::input::{Faults, read_text};
-use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use crate::planner::{Objective, Planner, PlannerSettings, SearchKind};
 use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
@@ -68,11 +68,11 @@ pub struct Scenario {
     /// The targets.
     pub targets: Vec<Target>,
     /// The planner.
-    pub planner: PlannerKind,
+    pub planner: &'static dyn Planner,
     /// The planner's objective.
     pub objective: Objective,
-    /// Settings of the optimal-control planner.
-    pub control: ControlSettings,
+    /// Settings of the planners that have some.
+    pub settings: PlannerSettings,
     /// The search algorithm.
     pub search: SearchKind,
     /// The sets to avoid.

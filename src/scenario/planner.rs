@@ -2,15 +2,17 @@
 
 use super::{Compliance, limits};
 use crate::input::{Field, Range, Table};
-use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use crate::planner::{
+    ControlSettings, Objective, Planner, PlannerSettings, SearchKind, planner_words,
+};
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 /// The fields of the table `[planner]` that a file has.
 #[derive(Debug, Default)]
-pub(super) struct PlannerSettings {
-    pub(super) kind: Option<PlannerKind>,
+pub(super) struct PlannerTable {
+    pub(super) kind: Option<&'static dyn Planner>,
     pub(super) objective: Option<Objective>,
-    pub(super) control: Option<ControlSettings>,
+    pub(super) settings: Option<PlannerSettings>,
     pub(super) search: Option<SearchKind>,
     pub(super) compliance: Option<Compliance>,
     pub(super) time_weight: Option<f64>,
@@ -19,10 +21,11 @@ pub(super) struct PlannerSettings {
 }
 
 /// Reads the table `[planner]` for an own ship of `length` metres.
-pub(super) fn planner(mut table: Table, length: f64) -> PlannerSettings {
-    let fields = PlannerSettings {
-        control: control_settings(&mut table, length),
-        kind: table.choice("kind", &PlannerKind::WORDS),
+pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
+    let control = control_settings(&mut table, length);
+    let fields = PlannerTable {
+        settings: control.map(|control| PlannerSettings { control }),
+        kind: table.choice("kind", &planner_words()),
         objective: objective(&mut table),
         search: table.choice("search", &SearchKind::WORDS),
         compliance: table.choice("compliance", &Compliance::WORDS),

@@ -31,7 +31,40 @@ pub use guess::{Start, family, profile_along};
 pub use keep_out::{Keep, KeepOut};
 pub use plan::{outer_sets, plan};
 pub use receding::{Measured, RecedingHorizon};
-pub use report::{ControlReport, Controlled, HomotopyClass, StartReport};
+pub use report::{ControlReport, HomotopyClass, StartReport};
 pub use solver::{Report, Settings, Status};
 pub use task::{Controls, Profile, Task};
 pub use transcription::Weights;
+
+use super::{Minimises, Planned, Planner, PlannerFacts, Request, SearchKind};
+use crate::obstacle::Obstacle;
+
+/// Chooses the forces on a ship with dynamics.
+pub struct OptimalControlPlanner;
+
+impl Planner for OptimalControlPlanner {
+    fn facts(&self) -> &'static PlannerFacts {
+        &PlannerFacts {
+            name: "optimal-control",
+            label: "optimal control",
+            minimises: Minimises::Own("stage-cost"),
+            follows_paths: false,
+            keeps_off_land: false,
+            keeps_rules: false,
+            avoids_ellipses: true,
+            relaxes_domains_only: true,
+            // the result reports what was tried
+            plans_without_time: true,
+            has_no_return: false,
+            searches: &[SearchKind::AStar],
+        }
+    }
+
+    fn plan(&self, request: &Request) -> Planned {
+        plan(&request.problem, &request.settings.control)
+    }
+
+    fn outer_sets(&self, sets: Vec<Obstacle>) -> Vec<Obstacle> {
+        outer_sets(&sets)
+    }
+}

@@ -11,7 +11,7 @@ use super::grid::{GridResult, Refined, refine_grid};
 use super::guess::{Start, family, profile_along};
 use super::keep_out::KeepOut;
 use super::passing::passing_sides;
-use super::report::{ControlReport, Controlled, HomotopyClass, StartReport};
+use super::report::{ControlReport, HomotopyClass, StartReport};
 use super::solver::{Settings, Status};
 use super::task::{Controls, Profile, Task};
 use super::transcription::Weights;
@@ -44,14 +44,15 @@ pub fn outer_sets(obstacles: &[Obstacle]) -> Vec<Obstacle> {
 /// Plans forces that keep own ship clear of [`outer_sets`] over the whole horizon at least cost
 /// near the desired trajectory.
 ///
-/// The plan is a local optimum, the cheapest over all initial guesses. These are the space-time
+/// The cost of a plan is the integral of the stage cost up to the problem's horizon. The plan is a
+/// local optimum, the cheapest over all initial guesses. These are the space-time
 /// planner's trajectory, the desired one bent to the sides, and the desired one bent around the
 /// worst sets on either side in every combination.
 ///
 /// The cubics between the nodes are clear of every set. The ship model without smoothing meets the
 /// next node to [`tolerance::DEFECT`] of its units. The same problem gives the same plan with any
 /// number of threads, unless the deadline is reached.
-pub fn plan(problem: &Problem, settings: &ControlSettings) -> Controlled {
+pub fn plan(problem: &Problem, settings: &ControlSettings) -> Planned {
     match settings.vessel {
         VesselKind::CyberShip2 => {
             let [smooth, exact] = [CyberShip2::SMOOTH, CyberShip2::EXACT]
@@ -119,7 +120,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         }
     }
 
-    fn plan(&self) -> Controlled {
+    fn plan(&self) -> Planned {
         let mut report = ControlReport {
             starts: Vec::new(),
             classes: Vec::new(),
@@ -131,9 +132,9 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             Some(reason) => Outcome::Infeasible(reason),
             None => self.find(&mut report),
         };
-        Controlled {
-            planned: Planned::of(outcome),
-            report,
+        Planned {
+            control: Some(Box::new(report)),
+            ..Planned::of(outcome)
         }
     }
 

@@ -28,8 +28,9 @@ use petgraph::graph::NodeIndex;
 
 use super::clock::Clock;
 use super::{
-    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NoPlan, NodeKind, Objective, Outcome,
-    Plan, Planned, Problem, SearchStats,
+    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, Minimises, NoPlan, NodeKind,
+    NominalTarget, Objective, Outcome, Plan, Planned, Planner, PlannerFacts, Problem, Request,
+    SearchKind, SearchStats,
 };
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
@@ -52,6 +53,51 @@ const FEW: usize = 100;
 /// Expansions after which the time-optimal search starts, and lines after which the search stops.
 const HARD: usize = 2_000;
 const MOST_LINES: usize = 500_000;
+
+/// Follows given paths and chooses the speed.
+pub struct PathTimePlanner;
+
+impl Planner for PathTimePlanner {
+    fn facts(&self) -> &'static PlannerFacts {
+        &PlannerFacts {
+            name: "path-time",
+            label: "path-time",
+            minimises: Minimises::Objective,
+            follows_paths: true,
+            keeps_off_land: true,
+            keeps_rules: false,
+            avoids_ellipses: false,
+            relaxes_domains_only: false,
+            // it tests a few lines all the same
+            plans_without_time: true,
+            has_no_return: false,
+            searches: &[SearchKind::AStar],
+        }
+    }
+
+    fn plan(&self, request: &Request) -> Planned {
+        let problem = &request.problem;
+        match problem.objective {
+            _ if request.may_wait => stay_clear(problem, request.max_risk),
+            Objective::LengthRisk { weight } => {
+                let whole = Problem {
+                    obstacles: request.whole,
+                    ..problem.clone()
+                };
+                plan_weighing_risk(&whole, weight, request.max_risk)
+            }
+            _ => plan(problem),
+        }
+    }
+
+    fn leaving_sets(
+        &self,
+        problem: &Problem,
+        _nominal: &dyn Fn(usize) -> NominalTarget,
+    ) -> Option<Planned> {
+        least_harm(problem)
+    }
+}
 
 /// Plans one problem along its desired path and the alternative paths.
 ///
@@ -237,11 +283,10 @@ fn search_for(
     let idle = Profile::new();
     let drawn = found.as_ref().map_or(&idle, |found| &found.profile);
     Planned {
-        outcome,
         stats,
         explored: explored(&graph, search, clock),
         path_time: Some(Box::new(drawn.diagram(scene, problem.own.pose))),
-        escape: None,
+        ..Planned::of(outcome)
     }
 }
 

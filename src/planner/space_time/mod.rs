@@ -23,16 +23,18 @@ mod selection;
 mod settings;
 mod similarity;
 
-pub(crate) use fallback::escape::{NominalTarget, escape};
 pub use fallback::escape::{after_holding, nominal_motion};
 pub use selection::warm_start::warm_started;
 
 use super::clock::Clock;
-use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
+use super::{
+    Minimises, NoPlan, NominalTarget, Outcome, Plan, Planned, Planner, PlannerFacts, Problem,
+    Request, SearchKind, SearchStats,
+};
 use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, Trajectory};
 use fallback::{hybrid_a_star, sequential};
 use graph::{Graph, node};
 use piece::pieces;
@@ -45,6 +47,48 @@ use selection::Selection;
 use selection::budget::SearchBudget;
 use selection::initial_guess::Conflict;
 use similarity::Similarity;
+
+/// Searches a graph, and refines the result.
+pub struct SpaceTimePlanner;
+
+impl Planner for SpaceTimePlanner {
+    fn facts(&self) -> &'static PlannerFacts {
+        &PlannerFacts {
+            name: "space-time",
+            label: "space-time",
+            minimises: Minimises::SpaceTimeError,
+            follows_paths: false,
+            keeps_off_land: true,
+            keeps_rules: true,
+            avoids_ellipses: false,
+            relaxes_domains_only: false,
+            plans_without_time: false,
+            has_no_return: true,
+            searches: &[SearchKind::AStar, SearchKind::Dijkstra],
+        }
+    }
+
+    fn plan(&self, request: &Request) -> Planned {
+        plan(&request.problem)
+    }
+
+    fn warm_started(&self, problem: &Problem, from: &Trajectory) -> Option<Outcome> {
+        Some(warm_started(problem, from).outcome)
+    }
+
+    fn wide_detour(&self, problem: &Problem) -> Option<Plan> {
+        hybrid_a_star(problem)
+    }
+
+    fn leaving_sets(
+        &self,
+        problem: &Problem,
+        nominal: &dyn Fn(usize) -> NominalTarget,
+    ) -> Option<Planned> {
+        let plan = fallback::escape::escape(problem, nominal)?;
+        Some(Planned::of(Outcome::Solved(plan)))
+    }
+}
 
 /// Plans one problem.
 ///
@@ -262,11 +306,9 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         (None, false) => Outcome::Infeasible(no_candidate(problem, contact, grounding)),
     };
     Planned {
-        outcome,
         stats,
         explored: node::explored(search),
-        path_time: None,
-        escape: None,
+        ..Planned::of(outcome)
     }
 }
 

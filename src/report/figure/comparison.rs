@@ -340,7 +340,9 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::planner::{PlannerKind, SearchKind};
+    use crate::planner::path_time::PathTimePlanner;
+    use crate::planner::space_time::SpaceTimePlanner;
+    use crate::planner::{Planner, SearchKind};
     use crate::study::compare::Candidate;
     use crate::target::Representation;
 
@@ -349,12 +351,13 @@ mod tests {
     fn what_goes_beyond_the_risk_has_no_point() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let scenario = Scenario::read(&root.join("scenarios/colregs/head-on.toml")).expect("valid");
-        let entries: Vec<Entry> = [PlannerKind::SpaceTime, PlannerKind::PathTime]
+        let planners: [&dyn Planner; 2] = [&SpaceTimePlanner, &PathTimePlanner];
+        let entries: Vec<Entry> = planners
             .into_iter()
-            .flat_map(|kind| [0.1, 0.0].map(|max_risk| (kind, max_risk)))
-            .map(|(kind, max_risk)| {
+            .flat_map(|planner| [0.1, 0.0].map(|max_risk| (planner, max_risk)))
+            .map(|(planner, max_risk)| {
                 let method = Method::Planner {
-                    kind,
+                    planner,
                     search: SearchKind::AStar,
                     representation: Some(Representation::Polytope),
                 };

@@ -19,7 +19,6 @@ use crate::evaluation::{Evaluation, Safety, counted_error};
 use crate::frame::Vector;
 use crate::obstacle::{Obstacle, PeakRisk};
 use crate::pipeline::{self, Run};
-use crate::planner::PlannerKind;
 use crate::scenario::Scenario;
 use crate::trajectory::Trajectory;
 
@@ -182,11 +181,7 @@ impl Entry {
     /// True when the motion ends at the last waypoint.
     pub fn arrived(&self) -> bool {
         match &self.result {
-            EntryResult::Planned(run) => {
-                let plan = run.planned.outcome.plan();
-                plan.is_some_and(|plan| plan.to_go == 0.0)
-                    && run.scenario.planner != PlannerKind::OptimalControl
-            }
+            EntryResult::Planned(run) => run.arrives(),
             EntryResult::Baseline(baseline) => baseline.arrived,
             EntryResult::Nothing(_) => false,
         }

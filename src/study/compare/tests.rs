@@ -6,7 +6,8 @@ use super::*;
 use crate::evaluation::counted_error;
 use crate::frame::{Side, wrap};
 use crate::obstacle::SpaceTimeObstacle;
-use crate::planner::SearchKind;
+use crate::planner::optimal_control::OptimalControlPlanner;
+use crate::planner::{DEFAULT_PLANNER, PLANNERS, Planner, SearchKind};
 use crate::target::Representation;
 
 fn scenario(name: &str) -> Scenario {
@@ -134,17 +135,13 @@ fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
     for name in ["head-on", "give-way", "overtaking", "stand-on"] {
         let scenario = scenario(&format!("colregs/{name}"));
         let methods = methods(&scenario).methods;
-        let kinds = [
-            PlannerKind::SpaceTime,
-            PlannerKind::PathTime,
-            PlannerKind::OptimalControl,
-        ];
-        let first = |kind| {
-            let is = |m: &&Method| matches!(m, Method::Planner { kind: k, .. } if *k == kind);
+        let first = |wanted: &'static dyn Planner| {
+            let is =
+                |m: &&Method| matches!(m, Method::Planner { planner, .. } if *planner == wanted);
             *methods.iter().find(is).expect("applies")
         };
         let baselines = [Method::HoldCourse, Method::ConstantVelocity];
-        for method in kinds.map(first).into_iter().chain(baselines) {
+        for method in PLANNERS.map(first).into_iter().chain(baselines) {
             let candidate = Candidate {
                 method,
                 max_risk: 0.0,
@@ -165,7 +162,7 @@ fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
                 counted.arrived || late <= 0.0,
                 "{name} {method}: {counted:?}"
             );
-            if method == first(PlannerKind::OptimalControl) {
+            if method == first(&OptimalControlPlanner) {
                 assert!(found.verified(), "{name}: {:?}", found.violations);
             }
         }
@@ -179,7 +176,7 @@ fn a_contender_is_what_a_run_of_its_own_is() {
     let entries = compare(&scenario, &risks);
     assert_eq!(entries.len(), 8 * 2 + 1);
     let method = Method::Planner {
-        kind: PlannerKind::SpaceTime,
+        planner: DEFAULT_PLANNER,
         search: SearchKind::Dijkstra,
         representation: Some(Representation::Ellipsoid),
     };

@@ -17,10 +17,10 @@ use crate::planner::space_time::piece::pieces as parts_of;
 use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::settings::{EVASIVE_HOLDS_S, EXIT_HOLDS_S};
-use crate::planner::{Plan, Problem};
+use crate::planner::{NominalTarget, Plan, Problem};
 use crate::tolerance::TOUCH_M;
 use crate::trajectory::{DesiredTrajectory, Segment};
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::OwnShip;
 
 /// Radians between two candidate turns, up to a half circle. Coarse turns are tried first, each
 /// turn once.
@@ -43,17 +43,6 @@ const MAX_EXITS: usize = 4;
 
 /// Motions that are compared even after the deadline.
 const MIN_COMPARED: usize = 12;
-
-/// Target on its nominal track, without uncertainty.
-#[derive(Debug, Clone)]
-pub(crate) struct NominalTarget {
-    /// Hull of the target; for a target without one, its set.
-    pub hull: Obstacle,
-    /// Hard set of the target.
-    pub set: Obstacle,
-    /// Own hull; of zero size where the set already contains it.
-    pub own: Hull,
-}
 
 /// Motion from own ship's start to the last waypoint within the horizon that leaves the sets it
 /// starts in.
@@ -447,6 +436,7 @@ fn append(
 mod tests {
     use super::*;
     use crate::frame::Vector;
+    use crate::vessel::Hull;
     use std::cell::Cell;
 
     fn own_ship(speeds: Vec<f64>) -> OwnShip {
