@@ -283,7 +283,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
     vessel: &V,
     starts: usize,
 ) -> Vec<f64> {
-    let (scenario, control) = (&run.scenario, &run.scenario.settings.control);
+    let (scenario, control) = (&run.scenario, &run.scenario.settings.optimal_control);
     let keep_outs: Vec<KeepOut> = run.obstacles.iter().map(KeepOut::outer_of).collect();
     let own = &scenario.own_ship;
     let (place, heading) = (own.pose.position, own.pose.heading);

@@ -140,7 +140,7 @@ pub struct ImportArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("planner", |arg| arg.help("Only this planner, beside the baselines: space-time, path-time, optimal-control")),
+    mut_arg("planner", |arg| arg.help(planners("Only this planner, beside the baselines"))),
     mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra")),
     mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder")),
     mut_arg("figure", |arg| arg.value_name("FILE").help("Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
@@ -203,8 +203,7 @@ pub struct CompletionsArgs {
 /// Settings that replace those of a scenario.
 #[derive(Debug, Args)]
 pub struct Asked {
-    /// Planner instead of the scenario's: space-time, path-time, optimal-control
-    #[arg(long, value_name = "KIND", value_parser = planner)]
+    #[arg(long, value_name = "KIND", value_parser = planner, help = planners("Planner instead of the scenario's"))]
     pub planner: Option<&'static dyn Planner>,
     /// Search instead of the scenario's: a-star, dijkstra
     #[arg(long, value_name = "KIND", value_parser = search)]
@@ -369,16 +368,24 @@ fn word<T: Copy>(words: &[(&str, T)], found: &str) -> Result<T, String> {
     })
 }
 
+/// Help that ends with the names of all planners.
+fn planners(help: &str) -> String {
+    format!(
+        "{help}: {}",
+        planner_words().map(|(word, _)| word).join(", ")
+    )
+}
+
 fn planner(found: &str) -> Result<&'static dyn Planner, String> {
     word(&planner_words(), found)
 }
 
 fn search(found: &str) -> Result<SearchKind, String> {
-    word(&SearchKind::WORDS, found)
+    word(SearchKind::WORDS, found)
 }
 
 fn compliance(found: &str) -> Result<Compliance, String> {
-    word(&Compliance::WORDS, found)
+    word(Compliance::WORDS, found)
 }
 
 /// Published thresholds by name, before a file of that name; `./NAME` is the file.

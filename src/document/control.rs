@@ -55,7 +55,7 @@ pub struct HomotopyClassDocument {
 /// Builds the record; `None` for other planners.
 pub(super) fn control(run: &Run) -> Option<ControlDocument> {
     let report = run.planned.control.as_deref()?;
-    let settings = &run.scenario.settings.control;
+    let settings = &run.scenario.settings.optimal_control;
     let finite = |value: f64| value.is_finite().then_some(value);
     let limits = settings.force_limits;
     Some(ControlDocument {

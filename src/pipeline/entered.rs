@@ -2,9 +2,8 @@
 
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use crate::planner::{NominalTarget, Problem};
-use crate::scenario::Scenario;
-use crate::target::Motion;
+use crate::planner::NominalTarget;
+use crate::target::{Motion, Target};
 use crate::tolerance::TOUCH_M;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
@@ -18,9 +17,8 @@ const HALVINGS: usize = 30;
 /// Samples between two readings of the clock.
 const SAMPLES_PER_CLOCK_READING: u32 = 1000;
 
-/// A target without uncertainty: hull and set at its nominal velocity.
-pub(super) fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> NominalTarget {
-    let (target, hard) = (&scenario.targets[index], &problem.obstacles[index]);
+/// A target without uncertainty: hull and set at its nominal velocity. `hard` is its hard set.
+pub(super) fn nominal(target: &Target, hard: &Obstacle, own: Hull) -> NominalTarget {
     let Motion::Ship(ship) = &target.motion else {
         let set = hard.at_risk(1.0);
         let own = Hull {
@@ -44,7 +42,7 @@ pub(super) fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> N
     NominalTarget {
         hull: moving(ship.hull.polygon(&ship.pose)),
         set: moving(hard.outer_section(0.0)),
-        own: scenario.own_ship.hull,
+        own,
     }
 }
 

@@ -130,7 +130,7 @@ fn judged(
     };
     match trajectory.steered() {
         Some(motion) => {
-            let control = &scenario.settings.control;
+            let control = &scenario.settings.optimal_control;
             let vessel = control.vessel.exact(control.length);
             let steering = Steering {
                 motion,

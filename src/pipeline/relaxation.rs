@@ -313,7 +313,11 @@ impl Relaxer<'_> {
     fn leaving_sets(&self, attempt: Attempt) -> Attempt {
         let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let problem = self.problem(&hard);
-        let nominal = |index| entered::nominal(self.scenario, &problem, index);
+        let own = self.scenario.own_ship.hull;
+        let targets = self.scenario.targets.iter().zip(&hard);
+        let nominal: Vec<_> = targets
+            .map(|(t, hard)| entered::nominal(t, hard, own))
+            .collect();
         let Some(planned) = self.scenario.planner.leaving_sets(&problem, &nominal) else {
             return attempt;
         };
@@ -416,8 +420,10 @@ impl Relaxer<'_> {
             _ => Vec::new(),
         };
         problem.encountered = &encounters;
+        let facts = planner.facts();
         let is_late = level != RelaxationLevel::Compliant && self.time_left().is_zero();
-        let planned = if is_late && !planner.facts().plans_without_time {
+        // along paths a few lines are tested all the same
+        let planned = if is_late && !facts.follows_paths && !facts.relaxes_domains_only {
             Planned::of(Outcome::Deadline(None))
         } else {
             planner.plan(&Request {

@@ -9,7 +9,7 @@ use crate::vessel::Hull;
 ///
 /// Only [`Planner::facts`] and [`Planner::plan`] are required. The other methods serve relaxation
 /// levels; a planner without them skips these levels.
-pub trait Planner: Sync + std::panic::RefUnwindSafe {
+pub trait Planner: Sync {
     /// What other modules have to know of this planner.
     fn facts(&self) -> &'static PlannerFacts;
 
@@ -31,13 +31,8 @@ pub trait Planner: Sync + std::panic::RefUnwindSafe {
         None
     }
 
-    /// The motion with the least harm, which may enter sets. `nominal` gives the target without
-    /// uncertainty that belongs to an obstacle.
-    fn leaving_sets(
-        &self,
-        _problem: &Problem,
-        _nominal: &dyn Fn(usize) -> NominalTarget,
-    ) -> Option<Planned> {
+    /// The motion with the least harm, which may enter sets. `nominal` belongs to the obstacles.
+    fn leaving_sets(&self, _problem: &Problem, _nominal: &[NominalTarget]) -> Option<Planned> {
         None
     }
 }
@@ -89,8 +84,6 @@ pub struct PlannerFacts {
     pub avoids_ellipses: bool,
     /// Of all requirements only the ship domains are given up, all at once.
     pub relaxes_domains_only: bool,
-    /// Relaxed requests are planned even when no time is left.
-    pub plans_without_time: bool,
     /// The time of no return is defined by its plans.
     pub has_no_return: bool,
     /// Graph searches that `compare` runs.

@@ -38,14 +38,14 @@ pub const DEFAULT_PLANNER: &dyn Planner = PLANNERS[0];
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlannerSettings {
     /// Settings of the optimal-control planner.
-    pub control: ControlSettings,
+    pub optimal_control: ControlSettings,
 }
 
 impl PlannerSettings {
     /// Default settings for an own ship of the given length, metres.
     pub fn at_length(length: f64) -> Self {
         Self {
-            control: ControlSettings::at_length(VesselKind::CyberShip2, length),
+            optimal_control: ControlSettings::at_length(VesselKind::CyberShip2, length),
         }
     }
 }
@@ -59,19 +59,12 @@ pub enum SearchKind {
     Dijkstra,
 }
 
+words!(SearchKind {
+    AStar => "a-star",
+    Dijkstra => "dijkstra",
+});
+
 impl SearchKind {
-    /// Each search and its name in files and on the command line.
-    pub const WORDS: [(&'static str, Self); 2] =
-        [("a-star", Self::AStar), ("dijkstra", Self::Dijkstra)];
-
-    /// Name in files and on the command line.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::AStar => "a-star",
-            Self::Dijkstra => "dijkstra",
-        }
-    }
-
     /// Name in tables and figures.
     pub(crate) fn label(self) -> &'static str {
         match self {
@@ -119,25 +112,6 @@ impl Objective {
 }
 
 /// Planning problem: keep `own` clear of every obstacle and close to `desired` until the arrival.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::obstacle::LandObstacle;
-/// use searoom::pipeline;
-/// use searoom::planner::{Problem, space_time};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let sets: Vec<_> = pipeline::sets(&scenario).into_iter().map(|target| target.hard).collect();
-/// let asked = pipeline::problem(&scenario, &sets, LandObstacle::none());
-/// let clear = space_time::plan(&asked).outcome;
-/// // the same without anybody else
-/// let alone = space_time::plan(&Problem { obstacles: &[], ..asked }).outcome;
-/// let cost = |outcome: &searoom::planner::Outcome| outcome.plan().map(|plan| plan.cost);
-/// assert!(cost(&clear) > cost(&alone) && cost(&alone) < Some(1.0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     /// Own ship and its limits.

@@ -22,13 +22,13 @@ pub(super) struct PlannerTable {
 
 /// Reads the table `[planner]` for an own ship of `length` metres.
 pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
-    let control = control_settings(&mut table, length);
+    let optimal_control = control_settings(&mut table, length);
     let fields = PlannerTable {
-        settings: control.map(|control| PlannerSettings { control }),
+        settings: optimal_control.map(|optimal_control| PlannerSettings { optimal_control }),
         kind: table.choice("kind", &planner_words()),
         objective: objective(&mut table),
-        search: table.choice("search", &SearchKind::WORDS),
-        compliance: table.choice("compliance", &Compliance::WORDS),
+        search: table.choice("search", SearchKind::WORDS),
+        compliance: table.choice("compliance", Compliance::WORDS),
         time_weight: table.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
         max_risk: table.number("max_risk", limits::RISK),
         deadline: table.number("deadline_s", limits::DURATION),

@@ -422,7 +422,7 @@ fn settings(table: &str) -> Result<ControlSettings, Vec<String>> {
     let text = format!("{OPTIMAL_CONTROL}[planner.optimal_control]\n{table}");
     let faults = |faults: Vec<Fault>| faults.into_iter().map(|f| f.path).collect();
     Scenario::parse(&text)
-        .map(|s| s.settings.control)
+        .map(|s| s.settings.optimal_control)
         .map_err(faults)
 }
 
@@ -430,7 +430,10 @@ fn settings(table: &str) -> Result<ControlSettings, Vec<String>> {
 fn the_vessel_is_as_long_as_own_ship() {
     for length in [0.5, 1.255, 30.0, 300.0] {
         let text = OPTIMAL_CONTROL.replace("1.255", &length.to_string());
-        let found = Scenario::parse(&text).expect("valid").settings.control;
+        let found = Scenario::parse(&text)
+            .expect("valid")
+            .settings
+            .optimal_control;
         let vessel = VesselKind::CyberShip2;
         assert_eq!(found, ControlSettings::at_length(vessel, length));
     }

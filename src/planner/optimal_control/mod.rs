@@ -53,15 +53,13 @@ impl Planner for OptimalControlPlanner {
             keeps_rules: false,
             avoids_ellipses: true,
             relaxes_domains_only: true,
-            // the result reports what was tried
-            plans_without_time: true,
             has_no_return: false,
             searches: &[SearchKind::AStar],
         }
     }
 
     fn plan(&self, request: &Request) -> Planned {
-        plan(&request.problem, &request.settings.control)
+        plan(&request.problem, &request.settings.optimal_control)
     }
 
     fn outer_sets(&self, sets: Vec<Obstacle>) -> Vec<Obstacle> {

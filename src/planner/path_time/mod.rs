@@ -68,8 +68,6 @@ impl Planner for PathTimePlanner {
             keeps_rules: false,
             avoids_ellipses: false,
             relaxes_domains_only: false,
-            // it tests a few lines all the same
-            plans_without_time: true,
             has_no_return: false,
             searches: &[SearchKind::AStar],
         }
@@ -90,11 +88,7 @@ impl Planner for PathTimePlanner {
         }
     }
 
-    fn leaving_sets(
-        &self,
-        problem: &Problem,
-        _nominal: &dyn Fn(usize) -> NominalTarget,
-    ) -> Option<Planned> {
+    fn leaving_sets(&self, problem: &Problem, _nominal: &[NominalTarget]) -> Option<Planned> {
         least_harm(problem)
     }
 }

@@ -62,7 +62,6 @@ impl Planner for SpaceTimePlanner {
             keeps_rules: true,
             avoids_ellipses: false,
             relaxes_domains_only: false,
-            plans_without_time: false,
             has_no_return: true,
             searches: &[SearchKind::AStar, SearchKind::Dijkstra],
         }
@@ -80,11 +79,7 @@ impl Planner for SpaceTimePlanner {
         hybrid_a_star(problem)
     }
 
-    fn leaving_sets(
-        &self,
-        problem: &Problem,
-        nominal: &dyn Fn(usize) -> NominalTarget,
-    ) -> Option<Planned> {
+    fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
         let plan = fallback::escape::escape(problem, nominal)?;
         Some(Planned::of(Outcome::Solved(plan)))
     }

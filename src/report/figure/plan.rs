@@ -81,7 +81,7 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
         panels.extend(force_panels(
             motion,
-            &scenario.settings.control.force_limits,
+            &scenario.settings.optimal_control.force_limits,
         ));
     }
     if let Some(diagram) = run.planned.path_time.as_deref() {

@@ -41,21 +41,10 @@ impl LineStyle {
     /// Returns the style of a method, independent of the other methods shown.
     pub fn of(method: Method) -> Self {
         let (colour, width) = match method {
-            Method::Planner {
-                planner,
-                search,
-                representation,
-            } => {
-                // polytopes are the usual representation
-                let ellipsoids = representation.filter(|r| *r == Representation::Ellipsoid);
-                let method = Method::Planner {
-                    planner,
-                    search,
-                    representation: ellipsoids,
-                };
+            Method::Planner { .. } => {
                 let all = Method::of_planners(&[None, Some(Representation::Ellipsoid)]);
-                let index = all.iter().position(|known| *known == method);
-                STYLES[index.unwrap_or_default() % STYLES.len()]
+                let same = |known: &Method| known.to_string() == method.to_string();
+                STYLES[all.iter().position(same).unwrap_or_default() % STYLES.len()]
             }
             Method::HoldCourse => ("#cc5de8", THIN),
             Method::ConstantVelocity => ("#8c6d31", THIN),

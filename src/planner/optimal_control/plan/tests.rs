@@ -22,7 +22,7 @@ fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
     let exact = CyberShip2::EXACT;
     let planner = Planner::new(
         &problem,
-        &scenario.settings.control,
+        &scenario.settings.optimal_control,
         CyberShip2::SMOOTH,
         exact,
     );

@@ -54,7 +54,7 @@ const MIN_COMPARED: usize = 12;
 ///
 /// Cost: some milliseconds and up to twenty plans. A few motions are compared even after the
 /// deadline.
-pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Option<Plan> {
+pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     if crate::planner::space_time::has_arrived(problem) {
         return crate::planner::space_time::arrived_plan(problem);
@@ -63,9 +63,9 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
     let proxies = within_reach(problem, &pieces);
     let mut near: Vec<usize> = proxies.iter().map(|h| h.obstacle).collect();
     near.dedup();
-    let targets: Vec<NominalTarget> = near.into_iter().map(nominal).collect();
-    let (hulls, own): (Vec<_>, Vec<_>) = targets.iter().map(|t| (t.hull.clone(), t.own)).unzip();
-    let sets: Vec<Obstacle> = targets.into_iter().map(|t| t.set).collect();
+    let targets = near.iter().map(|index| &nominal[*index]);
+    let (hulls, own): (Vec<_>, Vec<_>) = targets.clone().map(|t| (t.hull.clone(), t.own)).unzip();
+    let sets: Vec<Obstacle> = targets.map(|t| t.set.clone()).collect();
     let hulls = parts_of(&hulls, problem.horizon);
     let nominal_hulls = NominalHulls::new(&hulls, &own);
     let nominal = Problem {
