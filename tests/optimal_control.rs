@@ -844,7 +844,6 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
     );
     let found = run(&text);
     assert!(found.evaluation.as_ref().is_some_and(Evaluation::verified));
-    assert_eq!(found.enclosed, ["box"]);
     assert!(plan_text(&found).contains("of 'box' by the smallest ellipse"));
     let document = PlanDocument::of(&found);
     let control = document.optimal_control.as_ref().expect("forces");

@@ -203,14 +203,19 @@ pub struct CompletionsArgs {
 /// Settings that replace those of a scenario.
 #[derive(Debug, Args)]
 pub struct Asked {
-    #[arg(long, value_name = "KIND", value_parser = planner, help = planners("Planner instead of the scenario's"))]
+    #[arg(
+        long,
+        value_name = "KIND",
+        value_parser = |found: &str| word(&planner_words(), found),
+        help = planners("Planner instead of the scenario's")
+    )]
     pub planner: Option<&'static dyn Planner>,
     /// Search instead of the scenario's: a-star, dijkstra
-    #[arg(long, value_name = "KIND", value_parser = search)]
+    #[arg(long, value_name = "KIND", value_parser = |found: &str| word(SearchKind::WORDS, found))]
     pub search: Option<SearchKind>,
     /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and
     /// filters)
-    #[arg(long, value_name = "C", value_parser = compliance)]
+    #[arg(long, value_name = "C", value_parser = |found: &str| word(Compliance::WORDS, found))]
     pub compliance: Option<Compliance>,
     /// Thresholds of rule compliance, without effect on the plan: searoom, dnv-trafficgen,
     /// sfi-autoship, or a TOML file
@@ -374,18 +379,6 @@ fn planners(help: &str) -> String {
         "{help}: {}",
         planner_words().map(|(word, _)| word).join(", ")
     )
-}
-
-fn planner(found: &str) -> Result<&'static dyn Planner, String> {
-    word(&planner_words(), found)
-}
-
-fn search(found: &str) -> Result<SearchKind, String> {
-    word(SearchKind::WORDS, found)
-}
-
-fn compliance(found: &str) -> Result<Compliance, String> {
-    word(Compliance::WORDS, found)
 }
 
 /// Published thresholds by name, before a file of that name; `./NAME` is the file.

@@ -13,9 +13,7 @@ use searoom::report::{
     COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table, write_atomically,
 };
 use searoom::scenario::Scenario;
-use searoom::study::compare::{
-    Candidate, Entry, EntryResult, Inapplicable, Method, candidates, methods,
-};
+use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
 use super::input::files::{self, Found};
@@ -227,10 +225,7 @@ impl Compared {
         let of_planners: Vec<Status> = self
             .entries
             .iter()
-            .filter_map(|entry| match &entry.result {
-                EntryResult::Planned(run) => Some(Status::of(run)),
-                EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
-            })
+            .filter_map(|entry| Some(Status::of(entry.run.as_ref()?)))
             .collect();
         if of_planners.contains(&Status::InternalFault) {
             Status::InternalFault

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::Run;
 
 /// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
@@ -70,7 +71,10 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
         start_intervals: report.start_intervals,
         intervals: report.intervals,
         defect: finite(report.defect),
-        enclosed_targets: run.enclosed.clone(),
+        enclosed_targets: (run.whole.iter())
+            .filter(|set| !matches!(set, Obstacle::Ellipsoid(_)))
+            .map(|set| set.name().to_owned())
+            .collect(),
         starts: report
             .starts
             .iter()

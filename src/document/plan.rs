@@ -196,39 +196,22 @@ pub(super) fn timing(run: &Run) -> TimingDocument {
 }
 
 fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
-    match given_up {
-        Relaxation::Domain { target, amount } => RelaxationDocument {
-            kind: "domain".to_owned(),
-            target: target.clone(),
-            amount: *amount,
-            unit: "m".to_owned(),
-            until_s: None,
-        },
+    let (kind, target, amount, unit, until_s) = match given_up {
+        Relaxation::Domain { target, amount } => ("domain", target, *amount, "m", None),
         Relaxation::Risk {
             target,
             amount,
             until,
-        } => RelaxationDocument {
-            kind: "risk".to_owned(),
-            target: target.clone(),
-            amount: *amount,
-            unit: "1".to_owned(),
-            until_s: *until,
-        },
-        Relaxation::Arrival { target, amount } => RelaxationDocument {
-            kind: "arrival".to_owned(),
-            target: target.clone(),
-            amount: *amount,
-            unit: "m".to_owned(),
-            until_s: None,
-        },
-        Relaxation::Compliance { target, .. } => RelaxationDocument {
-            kind: "compliance".to_owned(),
-            target: target.clone(),
-            amount: 1.0,
-            unit: "1".to_owned(),
-            until_s: None,
-        },
+        } => ("risk", target, *amount, "1", *until),
+        Relaxation::Arrival { target, amount } => ("arrival", target, *amount, "m", None),
+        Relaxation::Compliance { target, .. } => ("compliance", target, 1.0, "1", None),
+    };
+    RelaxationDocument {
+        kind: kind.to_owned(),
+        target: target.clone(),
+        amount,
+        unit: unit.to_owned(),
+        until_s,
     }
 }
 

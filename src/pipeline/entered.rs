@@ -20,24 +20,17 @@ const SAMPLES_PER_CLOCK_READING: u32 = 1000;
 /// A target without uncertainty: hull and set at its nominal velocity. `hard` is its hard set.
 pub(super) fn nominal(target: &Target, hard: &Obstacle, own: Hull) -> NominalTarget {
     let Motion::Ship(ship) = &target.motion else {
+        let (length, beam) = (0.0, 0.0);
         let set = hard.at_risk(1.0);
-        let own = Hull {
-            length: 0.0,
-            beam: 0.0,
-        };
         return NominalTarget {
             hull: set.clone(),
             set,
-            own,
+            own: Hull { length, beam },
         };
     };
     let moving = |initial: ConvexPolygon| {
         let velocity = ConvexPolygon::point(ship.velocity());
-        Obstacle::from(PolytopeObstacle::new(
-            target.name.clone(),
-            initial,
-            velocity,
-        ))
+        PolytopeObstacle::new(target.name.clone(), initial, velocity).into()
     };
     NominalTarget {
         hull: moving(ship.hull.polygon(&ship.pose)),

@@ -56,8 +56,6 @@ pub struct Run {
     pub planned: Planned,
     /// Why no plan satisfies the whole request; `None` where one does, or where there is no plan.
     pub why: Option<NoPlan>,
-    /// Names of targets whose polygonal sets are replaced by ellipsoids around them.
-    pub enclosed: Vec<String>,
     /// Requirements that were given up, most important first.
     pub relaxations: Vec<Relaxation>,
     /// The largest risk along the plan, per target in the same order, in the sets `whole`; empty
@@ -163,10 +161,6 @@ pub fn run(scenario: Scenario) -> Run {
     if scenario.compliance == Compliance::Rules && answer.level > RelaxationLevel::Rules {
         relaxations.extend(rules_given_up(&scenario, &sets));
     }
-    let is_ellipsoid = |set: &Obstacle| matches!(set, Obstacle::Ellipsoid(_));
-    let planned_against = answer.whole.iter().zip(&answer.obstacles);
-    let enclosed = planned_against.filter(|(whole, set)| is_ellipsoid(set) && !is_ellipsoid(whole));
-    let enclosed = enclosed.map(|(s, _)| s.name().to_owned()).collect();
     let evaluation = answer
         .trajectory()
         .map(|trajectory| judge_answer(&scenario, &answer, trajectory));
@@ -181,7 +175,6 @@ pub fn run(scenario: Scenario) -> Run {
         scenario,
         sets,
         land,
-        enclosed,
         relaxations,
         risks,
         evaluation,

@@ -26,7 +26,8 @@ pub trait Planner: Sync {
         None
     }
 
-    /// A plan by a wider and slower search, without refinement.
+    /// A plan by a wider search, without refinement: use it only where nothing else is found. Ten
+    /// to several hundred milliseconds.
     fn wide_detour(&self, _problem: &Problem) -> Option<Plan> {
         None
     }

@@ -40,14 +40,15 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
 /// The objective; only the one that weighs risk has a weight, and needs it.
 fn objective(table: &mut Table) -> Option<Objective> {
     let weighed = Objective::LengthRisk { weight: 0.0 };
+    let all = [
+        Objective::SpaceTimeError,
+        Objective::Time,
+        Objective::Length,
+        weighed,
+    ];
     let objective = table.choice(
         "objective",
-        &[
-            ("space-time-error", Objective::SpaceTimeError),
-            ("time", Objective::Time),
-            ("length", Objective::Length),
-            ("length-risk", weighed),
-        ],
+        &all.map(|objective| (objective.word(), objective)),
     );
     if objective == Some(weighed) {
         let weight = table.required_number("risk_weight_m", limits::DISTANCE)?;

@@ -29,7 +29,7 @@ pub mod transcription;
 pub use attempt::{Attempt, Inside, attempt};
 pub use guess::{Start, family, profile_along};
 pub use keep_out::{Keep, KeepOut};
-pub use plan::{outer_sets, plan};
+pub use plan::plan;
 pub use receding::{Measured, RecedingHorizon};
 pub use report::{ControlReport, HomotopyClass, StartReport};
 pub use solver::{Report, Settings, Status};
@@ -63,6 +63,8 @@ impl Planner for OptimalControlPlanner {
     }
 
     fn outer_sets(&self, sets: Vec<Obstacle>) -> Vec<Obstacle> {
-        outer_sets(&sets)
+        // ellipsoids as they are, others by the smallest ellipses around their two sets
+        let outer = |set| KeepOut::outer_of(set).set().clone().into();
+        sets.iter().map(outer).collect()
     }
 }

@@ -16,7 +16,7 @@ use super::solver::{Settings, Status};
 use super::task::{Controls, Profile, Task};
 use super::transcription::Weights;
 use crate::frame::Vector;
-use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::obstacle::SpaceTimeObstacle;
 use crate::planner::{ControlSettings, NoPlan, Outcome, Plan, Planned, Problem, space_time};
 use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
@@ -32,16 +32,7 @@ const SPACE_TIME_SHARE: f64 = 0.25;
 /// Relative difference of the objective below which two plans are the same.
 const SAME_OBJECTIVE: f64 = 1e-6;
 
-/// Outer sets that the planner keeps out of. Ellipsoids are taken unchanged; other sets by the
-/// smallest ellipses around their two sets, at least a millimetre wide.
-pub fn outer_sets(obstacles: &[Obstacle]) -> Vec<Obstacle> {
-    obstacles
-        .iter()
-        .map(|o| KeepOut::outer_of(o).set().clone().into())
-        .collect()
-}
-
-/// Plans forces that keep own ship clear of [`outer_sets`] over the whole horizon at least cost
+/// Plans forces that keep own ship clear of the ellipses around all sets over the whole horizon at least cost
 /// near the desired trajectory.
 ///
 /// The cost of a plan is the integral of the stage cost up to the problem's horizon. The plan is a
@@ -57,12 +48,12 @@ pub fn plan(problem: &Problem, settings: &ControlSettings) -> Planned {
         VesselKind::CyberShip2 => {
             let [smooth, exact] = [CyberShip2::SMOOTH, CyberShip2::EXACT]
                 .map(|model| model.at_length(settings.length));
-            Planner::new(problem, settings, smooth, exact).plan()
+            Planning::new(problem, settings, smooth, exact).plan()
         }
     }
 }
 
-struct Planner<'a, V> {
+struct Planning<'a, V> {
     problem: &'a Problem<'a>,
     controls: Controls,
     intervals: usize,
@@ -72,7 +63,7 @@ struct Planner<'a, V> {
     started: Instant,
 }
 
-impl<'a, V: Manoeuvring> Planner<'a, V> {
+impl<'a, V: Manoeuvring> Planning<'a, V> {
     fn new(problem: &'a Problem, settings: &ControlSettings, smooth: V, exact: V) -> Self {
         Self {
             problem,

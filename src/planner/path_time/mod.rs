@@ -76,7 +76,7 @@ impl Planner for PathTimePlanner {
     fn plan(&self, request: &Request) -> Planned {
         let problem = &request.problem;
         match problem.objective {
-            _ if request.may_wait => stay_clear(problem, request.max_risk),
+            _ if request.may_wait => planned(problem, Aim::Last, request.max_risk),
             Objective::LengthRisk { weight } => {
                 let whole = Problem {
                     obstacles: request.whole,
@@ -107,13 +107,8 @@ pub fn plan(problem: &Problem) -> Planned {
     planned(problem, Aim::Arrive, 0.0)
 }
 
-/// Plans a motion that stays clear of every obstacle up to the horizon, if own ship cannot arrive
-/// in time. It minimises the remaining distance, whatever the objective. `risk` is the risk level
-/// of the obstacles.
-pub fn stay_clear(problem: &Problem, risk: f64) -> Planned {
-    planned(problem, Aim::Last, risk)
-}
-
+/// Plans a motion to the last waypoint, or one to the horizon with the shortest remaining distance,
+/// whatever the objective. `risk` is the risk level of the obstacles.
 fn planned(problem: &Problem, aim: Aim, risk: f64) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let first = problem.desired.legs()[0].start;

@@ -76,7 +76,11 @@ impl Planner for SpaceTimePlanner {
     }
 
     fn wide_detour(&self, problem: &Problem) -> Option<Plan> {
-        hybrid_a_star(problem)
+        let planned = plan_normalised(problem, |problem, _, _| {
+            let wide = hybrid_a_star::hybrid_a_star(problem);
+            Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
+        });
+        planned.outcome.into_plan()
     }
 
     fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
@@ -96,17 +100,6 @@ pub fn plan(problem: &Problem) -> Planned {
     plan_normalised(problem, |problem, proxies, _| {
         plan_clear_of(problem, proxies, clock)
     })
-}
-
-/// Plan by hybrid A* that is clear of every set and of land; `None` where none was found within the
-/// budget. The plan is not refined: use it only where nothing else is found. Ten to several hundred
-/// milliseconds.
-pub fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
-    let planned = plan_normalised(problem, |problem, _, _| {
-        let wide = hybrid_a_star::hybrid_a_star(problem);
-        Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
-    });
-    planned.outcome.into_plan()
 }
 
 /// Plans a problem in normalised coordinates. Where the restored plan touches a set, plans it

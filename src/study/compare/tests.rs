@@ -147,8 +147,8 @@ fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
                 max_risk: 0.0,
             };
             let entry = candidate.run(&scenario);
-            let found = entry.evaluation().expect("a motion");
-            let trajectory = entry.trajectory().expect("a motion");
+            let motion = entry.motion.expect("a motion");
+            let (found, trajectory) = (&motion.evaluation, &motion.trajectory);
             let (desired, q) = (&scenario.desired, scenario.time_weight);
             let (error, counted) = counted_error(trajectory, desired, q, 30.0);
             assert_eq!(
@@ -199,10 +199,13 @@ fn a_contender_is_what_a_run_of_its_own_is() {
         entry.trajectory(),
         alone.planned.outcome.plan().map(|p| &p.trajectory)
     );
-    assert!(entry.arrived() && entry.evaluation().is_some_and(|e| e.verified()));
+    assert!((entry.motion.as_ref()).is_some_and(|m| m.arrived && m.evaluation.verified()));
     // a higher accepted risk never increases the cost
     for pair in entries.chunks(2).take(6) {
-        let cost = |e: &Entry| e.evaluation().map_or(f64::INFINITY, |e| e.space_time_error);
+        let cost = |e: &Entry| {
+            let motion = e.motion.as_ref();
+            motion.map_or(f64::INFINITY, |m| m.evaluation.space_time_error)
+        };
         assert!(
             cost(&pair[1]) <= cost(&pair[0]) * 1.001,
             "{}",

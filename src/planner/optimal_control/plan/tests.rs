@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::super::defect::largest_defect;
 use super::*;
-use crate::obstacle::LandObstacle;
+use crate::obstacle::{LandObstacle, Obstacle};
 use crate::pipeline;
 use crate::scenario::Scenario;
 
@@ -20,7 +20,7 @@ fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
         ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
     };
     let exact = CyberShip2::EXACT;
-    let planner = Planner::new(
+    let planner = Planning::new(
         &problem,
         &scenario.settings.optimal_control,
         CyberShip2::SMOOTH,
