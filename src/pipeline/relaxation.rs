@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use super::entered;
 use super::rules::{encountered, first_turn};
 use super::sets::TargetSets;
-use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
-use crate::planner::{NoPlan, Outcome, Planned, Problem, Request};
+use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
+use crate::planner::{NoPlan, Outcome, PlanRequest, Planned, Problem};
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
@@ -426,7 +426,7 @@ impl Relaxer<'_> {
         let planned = if is_late && !facts.follows_paths && !facts.relaxes_domains_only {
             Planned::of(Outcome::Deadline(None))
         } else {
-            planner.plan(&Request {
+            planner.plan(&PlanRequest {
                 problem,
                 whole: &whole,
                 max_risk: risk,
@@ -563,15 +563,6 @@ impl Relaxer<'_> {
             best = self.clear_of(&best, &retained, RelaxationLevel::ReducedDomains);
         }
         best
-    }
-}
-
-/// The level sets of a risk.
-fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
-    if risk > 0.0 {
-        whole.iter().map(|set| set.at_risk(risk)).collect()
-    } else {
-        whole.to_vec()
     }
 }
 

@@ -14,7 +14,7 @@ pub trait Planner: Sync {
     fn facts(&self) -> &'static PlannerFacts;
 
     /// Plans one problem. A plan is clear of every obstacle and keeps own ship's limits.
-    fn plan(&self, request: &Request) -> Planned;
+    fn plan(&self, request: &PlanRequest) -> Planned;
 
     /// Sets that contain these sets and that the planner avoids in their place.
     fn outer_sets(&self, sets: Vec<Obstacle>) -> Vec<Obstacle> {
@@ -40,7 +40,7 @@ pub trait Planner: Sync {
 
 /// A problem with everything else that a planner may use.
 #[derive(Debug, Clone)]
-pub struct Request<'a> {
+pub struct PlanRequest<'a> {
     /// The problem. Its obstacles are the level sets of `whole` at `max_risk`.
     pub problem: Problem<'a>,
     /// The whole sets.
@@ -81,8 +81,8 @@ pub struct PlannerFacts {
     pub keeps_off_land: bool,
     /// It can restrict a plan to manoeuvres that comply with the collision regulations.
     pub keeps_rules: bool,
-    /// It avoids ellipses, whatever represents the targets.
-    pub avoids_ellipses: bool,
+    /// It replaces sets by ellipses, whatever represents the targets.
+    pub uses_ellipses: bool,
     /// Of all requirements only the ship domains are given up, all at once.
     pub relaxes_domains_only: bool,
     /// The time of no return is defined by its plans.

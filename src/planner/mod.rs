@@ -13,7 +13,7 @@ pub mod space_time;
 
 pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
-pub use interface::{Minimises, NominalTarget, Planner, PlannerFacts, Request, planner_words};
+pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
 pub use no_plan::NoPlan;
 
 use std::time::Duration;

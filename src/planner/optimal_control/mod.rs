@@ -36,7 +36,7 @@ pub use solver::{Report, Settings, Status};
 pub use task::{Controls, Profile, Task};
 pub use transcription::Weights;
 
-use super::{Minimises, Planned, Planner, PlannerFacts, Request, SearchKind};
+use super::{Minimises, PlanRequest, Planned, Planner, PlannerFacts, SearchKind};
 use crate::obstacle::Obstacle;
 
 /// Chooses the forces on a ship with dynamics.
@@ -51,14 +51,14 @@ impl Planner for OptimalControlPlanner {
             follows_paths: false,
             keeps_off_land: false,
             keeps_rules: false,
-            avoids_ellipses: true,
+            uses_ellipses: true,
             relaxes_domains_only: true,
             has_no_return: false,
             searches: &[SearchKind::AStar],
         }
     }
 
-    fn plan(&self, request: &Request) -> Planned {
+    fn plan(&self, request: &PlanRequest) -> Planned {
         plan(&request.problem, &request.settings.optimal_control)
     }
 

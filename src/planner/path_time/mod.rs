@@ -29,7 +29,7 @@ use petgraph::graph::NodeIndex;
 use super::clock::Clock;
 use super::{
     EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, Minimises, NoPlan, NodeKind,
-    NominalTarget, Objective, Outcome, Plan, Planned, Planner, PlannerFacts, Problem, Request,
+    NominalTarget, Objective, Outcome, Plan, PlanRequest, Planned, Planner, PlannerFacts, Problem,
     SearchKind, SearchStats,
 };
 use crate::frame::{Pose, heading_of};
@@ -66,14 +66,14 @@ impl Planner for PathTimePlanner {
             follows_paths: true,
             keeps_off_land: true,
             keeps_rules: false,
-            avoids_ellipses: false,
+            uses_ellipses: false,
             relaxes_domains_only: false,
             has_no_return: false,
             searches: &[SearchKind::AStar],
         }
     }
 
-    fn plan(&self, request: &Request) -> Planned {
+    fn plan(&self, request: &PlanRequest) -> Planned {
         let problem = &request.problem;
         match problem.objective {
             _ if request.may_wait => planned(problem, Aim::Last, request.max_risk),

@@ -28,8 +28,8 @@ pub use selection::warm_start::warm_started;
 
 use super::clock::Clock;
 use super::{
-    Minimises, NoPlan, NominalTarget, Outcome, Plan, Planned, Planner, PlannerFacts, Problem,
-    Request, SearchKind, SearchStats,
+    Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanRequest, Planned, Planner, PlannerFacts,
+    Problem, SearchKind, SearchStats,
 };
 use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
@@ -60,14 +60,14 @@ impl Planner for SpaceTimePlanner {
             follows_paths: false,
             keeps_off_land: true,
             keeps_rules: true,
-            avoids_ellipses: false,
+            uses_ellipses: false,
             relaxes_domains_only: false,
             has_no_return: true,
             searches: &[SearchKind::AStar, SearchKind::Dijkstra],
         }
     }
 
-    fn plan(&self, request: &Request) -> Planned {
+    fn plan(&self, request: &PlanRequest) -> Planned {
         plan(&request.problem)
     }
 

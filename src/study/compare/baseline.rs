@@ -3,7 +3,7 @@
 
 use crate::evaluation::{Evaluation, Safety};
 use crate::frame::{Pose, direction};
-use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
+use crate::obstacle::{Obstacle, PeakRisk, level_sets};
 use crate::pipeline::{self, Run, TargetSets};
 use crate::scenario::{Compliance, Scenario};
 use crate::study::assess::{Situation, least_alteration};
@@ -110,12 +110,7 @@ impl Sets {
             Compliance::None => sets.hard,
         };
         let whole: Vec<Obstacle> = pipeline::sets(scenario).into_iter().map(used).collect();
-        let risk = scenario.max_risk;
-        let level = if risk > 0.0 {
-            whole.iter().map(|set| set.at_risk(risk)).collect()
-        } else {
-            whole.clone()
-        };
+        let level = level_sets(&whole, scenario.max_risk);
         Self { level, whole }
     }
 }

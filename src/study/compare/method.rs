@@ -28,7 +28,7 @@ impl Method {
         let mut all = Vec::new();
         for planner in PLANNERS {
             let facts = planner.facts();
-            let representations = match facts.avoids_ellipses {
+            let representations = match facts.uses_ellipses {
                 true => &[None],
                 false => representations,
             };
