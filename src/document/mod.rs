@@ -34,8 +34,8 @@ pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTarg
 pub use parts::*;
 pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
-pub(crate) use plan::finite;
 pub use plan::{PLAN_FORMAT, PlanDocument};
+pub(crate) use plan::{finite, planner_names};
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
     UNREADABLE,
