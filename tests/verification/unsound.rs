@@ -14,7 +14,7 @@ use searoom::trajectory::Segment;
 use searoom::verification::verify;
 use serde_json::{Value, json};
 
-use super::{at, list};
+use crate::alter::{at, list};
 use crate::documents::{checked, document, inside, scenario};
 
 fn fault(name: &str) -> String {
