@@ -1,61 +1,82 @@
 //! Tests of the least alteration against a dense search and required relations.
 
-use super::generators::{seeded, vector};
-use rand::Rng;
-use rand_chacha::ChaCha8Rng;
+use std::f64::consts::PI;
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::select;
 use searoom::frame::{Pose, Vector, direction};
-use searoom::geometry::{ConvexPolygon, Ellipse};
+use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use searoom::obstacle::{
     EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
 };
 use searoom::study::assess::{Alteration, Query, Situation, assess, least_alteration};
 use searoom::target::VelocitySpell;
-use std::f64::consts::PI;
+
+use super::generators::{Counter, angle, check, hull, obstacle, slabs, vector};
 
 /// Number of headings per half turn, and of speeds, in the dense search.
 const STEPS: usize = 4000;
 
-fn polygon(rng: &mut ChaCha8Rng, center: Vector, reach: f64) -> ConvexPolygon {
-    let n = rng.random_range(1..7);
-    let points: Vec<Vector> = (0..n).map(|_| center + vector(rng, reach)).collect();
-    ConvexPolygon::hull(&points).expect("finite")
+fn polygon(center: Vector, points: &[Vector], reach: f64) -> ConvexPolygon {
+    let points: Vec<Vector> = points.iter().map(|p| center + p * reach).collect();
+    hull(&points)
 }
 
-fn ellipse(rng: &mut ChaCha8Rng, center: Vector, reach: f64) -> Ellipse {
-    let f = nalgebra::Matrix2::from_columns(&[vector(rng, reach), vector(rng, reach)]);
+fn ellipse(center: Vector, points: &[Vector], reach: f64) -> Ellipse {
+    let columns = [points[0] * reach, points[points.len() - 1] * reach];
+    let f = nalgebra::Matrix2::from_columns(&columns);
     Ellipse::new(center, f * f.transpose()).expect("a shape")
 }
 
-/// Random obstacle of any kind; some meet own ship.
-fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
-    let place = direction(rng.random_range(-PI..PI)) * rng.random_range(100.0..1500.0);
-    let way = -place / rng.random_range(50.0..400.0) + vector(rng, 4.0);
-    match rng.random_range(0..3) {
-        0 => PolytopeObstacle::new("p", polygon(rng, place, 80.0), polygon(rng, way, 1.0)).into(),
-        1 => EllipsoidObstacle::new("e", ellipse(rng, place, 60.0), ellipse(rng, way, 0.7)).into(),
-        _ => {
-            let ends = [60.0, 130.0, f64::INFINITY];
-            let spells = ends.map(|until| VelocitySpell {
-                until,
-                velocities: polygon(rng, way, 1.5),
-            });
-            SlabObstacle::new("s", polygon(rng, place, 60.0), spells.to_vec())
-                .expect("increasing")
-                .into()
+/// Obstacle of any kind; some meet own ship.
+fn approaching() -> impl Strategy<Value = Obstacle> {
+    let meeting = (angle(), 100.0..1500.0, 50.0..400.0, vector(4.0));
+    let shapes = vec(vec(vector(1.0), 1..7), 4);
+    (0..3, meeting, shapes).prop_map(|(kind, (bearing, range, time, off), shapes)| {
+        let place: Vector = direction(bearing) * range;
+        let way = -place / time + off;
+        let [first, second, third, fourth] = &shapes[..] else {
+            unreachable!("four shapes");
+        };
+        match kind {
+            0 => {
+                let velocity = polygon(way, second, 1.0);
+                PolytopeObstacle::new("p", polygon(place, first, 80.0), velocity).into()
+            }
+            1 => {
+                let velocity = ellipse(way, second, 0.7);
+                EllipsoidObstacle::new("e", ellipse(place, first, 60.0), velocity).into()
+            }
+            _ => {
+                let ends = [(60.0, second), (130.0, third), (f64::INFINITY, fourth)];
+                let spells = ends.map(|(until, shape)| VelocitySpell {
+                    until,
+                    velocities: polygon(way, shape, 1.5),
+                });
+                SlabObstacle::new("s", polygon(place, first, 60.0), spells.to_vec())
+                    .expect("increasing")
+                    .into()
+            }
         }
-    }
+    })
 }
 
-fn situation<'a>(rng: &mut ChaCha8Rng, obstacles: &'a [Obstacle]) -> Situation<'a> {
+/// Heading, speed and horizon of own ship.
+fn motion() -> impl Strategy<Value = (f64, f64, f64)> {
+    (
+        angle(),
+        1.0..8.0,
+        select(std::vec![300.0, 300.0, 300.0, 300.0, f64::INFINITY]),
+    )
+}
+
+fn situation((heading, speed, horizon): (f64, f64, f64), obstacles: &[Obstacle]) -> Situation<'_> {
     Situation {
-        pose: Pose::new(Vector::zeros(), rng.random_range(-PI..PI)),
-        speed: rng.random_range(1.0..8.0),
+        pose: Pose::new(Vector::zeros(), heading),
+        speed,
         max_speed: 9.0,
-        horizon: if rng.random_bool(0.8) {
-            300.0
-        } else {
-            f64::INFINITY
-        },
+        horizon,
         obstacles,
     }
 }
@@ -109,49 +130,49 @@ fn holds(
 
 #[test]
 fn the_least_alteration_is_that_of_a_dense_search() {
-    let mut rng = seeded(1);
-    let (mut turned, mut none, mut changed) = (0, 0, 0);
-    for case in 0..400 {
-        let count = rng.random_range(1..5);
-        let obstacles: Vec<_> = (0..count).map(|_| obstacle(&mut rng)).collect();
-        let s = situation(&mut rng, &obstacles);
-        let found = least_alteration(&s);
-        let step = PI / STEPS as f64;
-        for (side, sign, exact) in [
-            ("starboard", -1.0, found.starboard),
-            ("port", 1.0, found.port),
-        ] {
-            let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
-            let what = format!("{case} {side} {s:?}");
-            holds(exact, sampled(step, PI, free), step, free, &what);
-            turned += usize::from(exact.is_some_and(|t| t > 0.0));
-            none += usize::from(exact.is_none());
-        }
-        let step = s.max_speed / STEPS as f64;
-        let free = |change: f64| is_free(&s, s.pose.heading, s.speed + change);
-        let slower = |change: f64| free(-change);
-        let (down, up) = (
-            sampled(step, s.speed, slower),
-            sampled(step, s.max_speed - s.speed, free),
-        );
-        let what = format!("{case} speed {s:?}");
-        match found.speed {
-            Some(change) if change < 0.0 => {
-                holds(Some(-change), down, step, slower, &what);
-                assert!(up.is_none_or(|up| up >= -change - 1e-8), "{what}");
+    let [turned, none, changed] = [(); 3].map(|()| Counter::default());
+    check(
+        1,
+        400,
+        (vec(approaching(), 1..5), motion()),
+        |(obstacles, motion)| {
+            let s = situation(motion, &obstacles);
+            let found = least_alteration(&s);
+            let step = PI / STEPS as f64;
+            for (side, sign, exact) in [
+                ("starboard", -1.0, found.starboard),
+                ("port", 1.0, found.port),
+            ] {
+                let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
+                holds(exact, sampled(step, PI, free), step, free, side);
+                turned.add(exact.is_some_and(|t| t > 0.0));
+                none.add(exact.is_none());
             }
-            Some(change) => {
-                holds(Some(change), up, step, free, &what);
-                assert!(down.is_none_or(|down| down >= change - 1e-8), "{what}");
+            let step = s.max_speed / STEPS as f64;
+            let free = |change: f64| is_free(&s, s.pose.heading, s.speed + change);
+            let slower = |change: f64| free(-change);
+            let (down, up) = (
+                sampled(step, s.speed, slower),
+                sampled(step, s.max_speed - s.speed, free),
+            );
+            let what = "speed";
+            match found.speed {
+                Some(change) if change < 0.0 => {
+                    holds(Some(-change), down, step, slower, what);
+                    assert!(up.is_none_or(|up| up >= -change - 1e-8), "{what}");
+                }
+                Some(change) => {
+                    holds(Some(change), up, step, free, what);
+                    assert!(down.is_none_or(|down| down >= change - 1e-8), "{what}");
+                }
+                None => assert!(down.is_none() && up.is_none(), "{what}"),
             }
-            None => assert!(down.is_none() && up.is_none(), "{what}"),
-        }
-        changed += usize::from(found.speed.is_some_and(|c| c != 0.0));
-    }
-    assert!(
-        turned > 100 && none > 5 && changed > 50,
-        "{turned} {none} {changed}"
+            changed.add(found.speed.is_some_and(|c| c != 0.0));
+        },
     );
+    turned.assert_above(100);
+    none.assert_above(5);
+    changed.assert_above(50);
 }
 
 fn mirrored(obstacle: &Obstacle) -> Obstacle {
@@ -194,22 +215,24 @@ fn near(a: Option<f64>, b: Option<f64>) -> bool {
 
 #[test]
 fn a_mirrored_scene_has_the_mirrored_answer() {
-    let mut rng = seeded(2);
-    for _ in 0..300 {
-        let count = rng.random_range(1..4);
-        let obstacles: Vec<_> = (0..count).map(|_| obstacle(&mut rng)).collect();
-        let other: Vec<_> = obstacles.iter().map(mirrored).collect();
-        let s = situation(&mut rng, &obstacles);
-        let m = Situation {
-            pose: Pose::new(Vector::zeros(), -s.pose.heading),
-            obstacles: &other,
-            ..s
-        };
-        let (here, there) = (least_alteration(&s), least_alteration(&m));
-        assert!(near(here.starboard, there.port), "{here:?} {there:?} {s:?}");
-        assert!(near(here.port, there.starboard), "{here:?} {there:?} {s:?}");
-        assert!(near(here.speed, there.speed), "{here:?} {there:?} {s:?}");
-    }
+    check(
+        2,
+        300,
+        (vec(approaching(), 1..4), motion()),
+        |(obstacles, motion)| {
+            let other: Vec<_> = obstacles.iter().map(mirrored).collect();
+            let s = situation(motion, &obstacles);
+            let m = Situation {
+                pose: Pose::new(Vector::zeros(), -s.pose.heading),
+                obstacles: &other,
+                ..s
+            };
+            let (here, there) = (least_alteration(&s), least_alteration(&m));
+            assert!(near(here.starboard, there.port), "{here:?} {there:?}");
+            assert!(near(here.port, there.starboard), "{here:?} {there:?}");
+            assert!(near(here.speed, there.speed), "{here:?} {there:?}");
+        },
+    );
 }
 
 #[test]
@@ -265,51 +288,44 @@ fn own_ship_inside_a_set_is_helped_by_nothing_and_far_away_by_none_needed() {
 
 #[test]
 fn the_answers_are_those_of_the_obstacles() {
-    let mut rng = seeded(3);
-    for _ in 0..100 {
-        let obstacles = [obstacle(&mut rng), obstacle(&mut rng)];
-        let s = Situation {
-            horizon: 300.0,
-            ..situation(&mut rng, &obstacles)
-        };
-        let query = Query {
-            velocities: vec![s.velocity(), vector(&mut rng, 8.0)],
-            ..Query::default()
-        };
-        let answer = assess("Random", "hard", &s, &query);
-        let all = answer.hold_course.targets.iter();
-        for (held, same) in all.zip(&answer.velocities[0].targets) {
-            assert_eq!((held.dcpa_m, held.tcpa_s), (same.dcpa_m, same.tcpa_s));
-            assert!((0.0..=1.0).contains(&held.max_risk));
-            if held.dcpa_m > 1e-9 {
-                assert!(!same.in_velocity_obstacle);
-                assert!(held.max_risk <= 1e-11, "{}", held.max_risk);
+    let cases = ([approaching(), approaching()], motion(), vector(8.0));
+    check(
+        3,
+        100,
+        cases,
+        |(obstacles, (heading, speed, _), velocity)| {
+            let s = situation((heading, speed, 300.0), &obstacles);
+            let query = Query {
+                velocities: std::vec![s.velocity(), velocity],
+                ..Query::default()
+            };
+            let answer = assess("Random", "hard", &s, &query);
+            let all = answer.hold_course.targets.iter();
+            for (held, same) in all.zip(&answer.velocities[0].targets) {
+                assert_eq!((held.dcpa_m, held.tcpa_s), (same.dcpa_m, same.tcpa_s));
+                assert!((0.0..=1.0).contains(&held.max_risk));
+                if held.dcpa_m > 1e-9 {
+                    assert!(!same.in_velocity_obstacle);
+                    assert!(held.max_risk <= 1e-11, "{}", held.max_risk);
+                }
             }
-        }
-    }
+        },
+    );
 }
 
 /// Tests points, segments, needles and repeated vertices, near and far: the answer is free, and no
 /// smaller sample is.
 #[test]
 fn degenerate_sets_are_left_too() {
-    let mut rng = seeded(4);
-    let mut turned = 0;
-    for case in 0..600 {
-        let count = rng.random_range(1..4);
-        let obstacles: Vec<Obstacle> = (0..count)
-            .map(|_| match rng.random_range(0..3) {
-                0 => super::generators::polytope(&mut rng).into(),
-                1 => super::generators::ellipsoid(&mut rng).into(),
-                _ => super::generators::slabs(&mut rng).into(),
-            })
-            .collect();
-        let far = [1.0, 100.0, 1e4][rng.random_range(0..3)];
-        let mut s = situation(&mut rng, &obstacles);
-        s.pose.position = vector(&mut rng, 150.0 * far);
+    let turned = Counter::default();
+    let far = select(std::vec![1.0, 100.0, 1e4]);
+    let cases = (vec(obstacle(), 1..4), motion(), far, vector(150.0));
+    check(4, 600, cases, |(obstacles, motion, far, place)| {
+        let mut s = situation(motion, &obstacles);
+        s.pose.position = place * far;
         s.horizon *= far;
         // usually directly toward one of them
-        if let searoom::geometry::ConvexSet::Polygon(section) = obstacles[0].section(100.0 * far) {
+        if let ConvexSet::Polygon(section) = obstacles[0].section(100.0 * far) {
             let relative = section.vertices()[0] - s.pose.position;
             s.pose.heading = relative.y.atan2(relative.x);
             s.speed = (relative.norm() / (100.0 * far)).clamp(0.1, 9.0);
@@ -318,31 +334,30 @@ fn degenerate_sets_are_left_too() {
         let step = PI / 500.0;
         for (sign, exact) in [(-1.0, found.starboard), (1.0, found.port)] {
             let free = |turn: f64| is_free(&s, s.pose.heading + sign * turn, s.speed);
-            let what = format!("{case} {sign} {s:?}");
-            holds(exact, sampled(step, PI, free), step, free, &what);
-            turned += usize::from(exact.is_some_and(|t| t > 0.0));
+            holds(
+                exact,
+                sampled(step, PI, free),
+                step,
+                free,
+                &sign.to_string(),
+            );
+            turned.add(exact.is_some_and(|t| t > 0.0));
         }
         if let Some(change) = found.speed {
-            assert!(
-                is_free(&s, s.pose.heading, s.speed + change),
-                "{case} {change} {s:?}"
-            );
+            assert!(is_free(&s, s.pose.heading, s.speed + change), "{change}");
         }
-    }
-    assert!(turned > 100, "{turned}");
+    });
+    turned.assert_above(100);
 }
 
 #[test]
 fn the_regions_of_slabs_are_their_velocity_obstacle() {
-    let mut rng = seeded(5);
-    let (mut inside, mut outside) = (0, 0);
-    for _ in 0..300 {
-        let slabs = super::generators::slabs(&mut rng);
-        let position = vector(&mut rng, 200.0);
-        let horizon = [20.0, 90.0, f64::INFINITY][rng.random_range(0..3)];
+    let [inside, outside] = [(); 2].map(|()| Counter::default());
+    let horizons = select(std::vec![20.0, 90.0, f64::INFINITY]);
+    let cases = (slabs(), vector(200.0), horizons, vec(vector(6.0), 200));
+    check(5, 300, cases, |(slabs, position, horizon, velocities)| {
         let regions = slabs.velocity_obstacles(position, horizon);
-        for _ in 0..200 {
-            let v = vector(&mut rng, 6.0);
+        for v in velocities {
             let beyond = regions
                 .iter()
                 .map(|r| {
@@ -353,15 +368,12 @@ fn the_regions_of_slabs_are_their_velocity_obstacle() {
                 .fold(f64::INFINITY, f64::min);
             let meets = Obstacle::from(slabs.clone()).in_velocity_obstacle(position, v, horizon);
             if beyond.abs() > 1e-9 {
-                assert_eq!(
-                    meets,
-                    beyond < 0.0,
-                    "{slabs:?} {position:?} {v:?} {horizon}"
-                );
+                assert_eq!(meets, beyond < 0.0, "{v:?} {beyond}");
             }
-            inside += usize::from(meets);
-            outside += usize::from(!meets);
+            inside.add(meets);
+            outside.add(!meets);
         }
-    }
-    assert!(inside > 1000 && outside > 1000, "{inside} {outside}");
+    });
+    inside.assert_above(1000);
+    outside.assert_above(1000);
 }

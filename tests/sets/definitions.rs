@@ -1,21 +1,20 @@
 //! Tests of specific set properties beyond the common suite against their definitions.
 
 use super::generators::{
-    directions, ellipse, ellipsoid, points, polygon, polytope, seeded, segment, slabs, vector,
+    Counter, check, directions, ellipse, ellipsoid, hull, line, polygon, polytope, segment, slabs,
+    vector,
 };
 use nalgebra::{Matrix2, Matrix3, Vector3};
-use rand::Rng;
+use proptest::prelude::*;
+use proptest::sample::select;
 use searoom::frame::{Pose, Vector, direction, to_port};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{
     EllipsoidObstacle, PolytopeObstacle, SlabError, SlabObstacle, SpaceTimeObstacle,
 };
-use searoom::target::VelocitySpell;
-use searoom::trajectory::Segment;
-
-fn hull(points: &[Vector]) -> ConvexPolygon {
-    ConvexPolygon::hull(points).expect("finite")
-}
+use searoom::target::{DomainKind, ShipTrack, VelocitySpell};
+use searoom::trajectory::{Segment, Trajectory};
+use searoom::vessel::Hull;
 
 /// Definition, paper eqs. (22)-(25), as a linear programme in `(d, alpha)`: least `alpha >= 0` with
 /// `d / t in alpha (V - v)` and `x - v t - d in O_0`, by every vertex of its feasible set.
@@ -56,64 +55,53 @@ fn alpha_by_vertices(o: &PolytopeObstacle, x: Vector, t: f64) -> f64 {
 
 #[test]
 fn alpha_of_a_polytope_is_the_linear_programme() {
-    let mut rng = seeded(201);
-    let mut found = 0;
-    for _ in 0..1500 {
-        let triangle = |rng: &mut _, scale| {
-            let n = rand::Rng::random_range(rng, 3..6);
-            hull(&(0..n).map(|_| vector(rng, scale)).collect::<Vec<_>>())
-        };
-        let o = PolytopeObstacle::new("x", triangle(&mut rng, 40.0), triangle(&mut rng, 2.0));
-        let (x, t) = (vector(&mut rng, 120.0), rng.random_range(1.0..40.0));
+    let found = Counter::default();
+    let set = |scale| proptest::collection::vec(vector(scale), 3..6);
+    let cases = (set(40.0), set(2.0), vector(120.0), 1.0..40.0);
+    check(201, 1500, cases, |(initial, velocity, x, t)| {
+        let o = PolytopeObstacle::new("x", hull(&initial), hull(&velocity));
         let slow = alpha_by_vertices(&o, x, t);
         let alpha = o.alpha(x, t);
         if slow < 50.0 {
-            found += usize::from(alpha > 0.0);
-            assert!(
-                (alpha - slow).abs() < 1e-5 * (1.0 + slow),
-                "{o:?} {x:?} {t} {alpha} {slow}"
-            );
+            found.add(alpha > 0.0);
+            assert!((alpha - slow).abs() < 1e-5 * (1.0 + slow), "{alpha} {slow}");
         }
-    }
-    assert!(found > 500, "{found}");
+    });
+    found.assert_above(500);
 }
 
 #[test]
 fn the_search_for_the_closest_approach_agrees_with_the_closed_form() {
     // a polytope and the ellipsoid of two flat sets describe the same set
-    let mut rng = seeded(202);
-    for _ in 0..500 {
-        let (a, b) = (vector(&mut rng, 30.0), vector(&mut rng, 1.0));
-        let thin = |center, axis: Vector, width: f64| {
-            let across = to_port(axis).normalize() * width;
-            let shape = axis * axis.transpose() + across * across.transpose();
-            Ellipse::new(center, shape).expect("a shape")
-        };
-        let (p, v) = (vector(&mut rng, 50.0), vector(&mut rng, 2.0));
+    let thin = |center, axis: Vector, width: f64| {
+        let across = to_port(axis).normalize() * width;
+        let shape = axis * axis.transpose() + across * across.transpose();
+        Ellipse::new(center, shape).expect("a shape")
+    };
+    let axes = vector(30.0).prop_filter("a length", |a| a.norm() > 1e-3);
+    let cases = (axes, vector(50.0), vector(2.0), vector(300.0), vector(4.0));
+    check(202, 500, cases, |(a, p, v, x, own)| {
         let exact = PolytopeObstacle::new("x", hull(&[p - a, p + a]), ConvexPolygon::point(v));
         let nearly = EllipsoidObstacle::new("x", thin(p, a, 1e-4), Ellipse::point(v));
         let flat = EllipsoidObstacle::new("x", thin(p, a, 0.0), Ellipse::point(v));
         assert!(flat.is_flat() && !nearly.is_flat());
-        let (x, own) = (vector(&mut rng, 300.0), vector(&mut rng, 4.0));
         for horizon in [5.0, 100.0, f64::INFINITY] {
             let exact = exact.closest_approach(x, own, horizon);
             let flat = flat.closest_approach(x, own, horizon);
             let nearly = nearly.closest_approach(x, own, horizon);
-            assert!((exact.distance - flat.distance).abs() < 1e-9);
+            assert!(
+                (exact.distance - flat.distance).abs() < 1e-9,
+                "{exact:?} {flat:?}"
+            );
             assert!(
                 (exact.distance - nearly.distance).abs() < 1e-3,
-                "{exact:?} {nearly:?} {a:?} {p:?} {v:?} {x:?} {own:?} {horizon}"
+                "{exact:?} {nearly:?}"
             );
-            if exact.distance > 1.0 {
-                // the width rounds the ends by some centimetres
-                assert!(
-                    (exact.time - nearly.time).abs() < 0.5,
-                    "{exact:?} {nearly:?}"
-                );
-            }
+            // the width rounds the ends by some centimetres
+            let same_time = (exact.time - nearly.time).abs() < 0.5;
+            assert!(exact.distance <= 1.0 || same_time, "{exact:?} {nearly:?}");
         }
-        let _ = b;
-    }
+    });
 }
 
 #[test]
@@ -192,7 +180,7 @@ fn the_largest_risk_over_a_segment_of_velocities() {
         ]),
     );
     let s = Segment {
-        start: searoom::frame::Pose::new(
+        start: Pose::new(
             at(99.65467289116157, -41.06950535229376),
             3.1943180518723153,
         ),
@@ -216,41 +204,41 @@ fn the_largest_risk_over_a_segment_of_velocities() {
 /// hardly moves are adjacent to a face that it does not move.
 #[test]
 fn the_largest_risk_where_the_velocities_lie_along_a_face() {
-    let mut rng = seeded(231);
-    let mut between = 0;
-    for _ in 0..2000 {
-        let heading = rng.random_range(-3.2..3.2);
-        let [ahead, abeam] = [direction(heading), to_port(direction(heading))];
-        let (long, wide) = (rng.random_range(20.0..150.0), rng.random_range(1.0..20.0));
-        let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
-            .map(|(x, y): (f64, f64)| ahead * (x * long) + abeam * (y * wide));
-        let disc = Ellipse::new(Vector::zeros(), Matrix2::identity() * 1600.0).expect("a shape");
-        let initial = hull(&corners).minkowski_sum(&disc.outer_polygon(16));
-        // a course that differs from the hull's by rounding, and by more
-        let course = heading + 10_f64.powf(rng.random_range(-17.0..-8.0));
-        let fastest = direction(course) * rng.random_range(5.0..40.0);
-        let velocities = hull(&[fastest * 0.01, fastest]);
-        let o = PolytopeObstacle::new("o", initial, velocities);
-        let half = rng.random_range(20.0..150.0);
-        let side = abeam * rng.random_range(-60.0..60.0);
-        let meets = fastest * (half * rng.random_range(0.0..1.0)) + side;
-        let (heading, speed) = (rng.random_range(-3.2..3.2), rng.random_range(1.0..8.0));
-        let line = Segment {
-            start: Pose::new(meets - direction(heading) * (speed * half), heading),
-            start_time: 0.0,
-            duration: 2.0 * half,
-            speed,
-            turn_rate: 0.0,
-        };
-        let exact = o.peak_risk(&line).risk;
-        let searched = SlabObstacle::unchanging(&o).peak_risk(&line).risk;
-        assert!(
-            (exact - searched).abs() < 1e-7,
-            "{exact} {searched} {o:?} {line:?}"
-        );
-        between += usize::from(exact > 0.0 && exact < 1.0);
-    }
-    assert!(between > 300, "{between}");
+    let between = Counter::default();
+    let set = (-3.2..3.2, 20.0..150.0, 1.0..20.0);
+    // a course that differs from the hull's by rounding, and by more
+    let fastest = (-17.0..-8.0, 5.0..40.0);
+    let meeting = (20.0..150.0, -60.0..60.0, 0.0..1.0);
+    let cases = (set, fastest, meeting, -3.2..3.2, 1.0..8.0);
+    check(
+        231,
+        2000,
+        cases,
+        |((heading, long, wide), (off, fast), meeting, own, speed)| {
+            let [ahead, abeam] = [direction(heading), to_port(direction(heading))];
+            let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
+                .map(|(x, y): (f64, f64)| ahead * (x * long) + abeam * (y * wide));
+            let disc =
+                Ellipse::new(Vector::zeros(), Matrix2::identity() * 1600.0).expect("a shape");
+            let initial = hull(&corners).minkowski_sum(&disc.outer_polygon(16));
+            let fastest: Vector = direction(heading + 10_f64.powf(off)) * fast;
+            let o = PolytopeObstacle::new("o", initial, hull(&[fastest * 0.01, fastest]));
+            let (half, side, share) = meeting;
+            let meets = fastest * (half * share) + abeam * side;
+            let line = Segment {
+                start: Pose::new(meets - direction(own) * (speed * half), own),
+                start_time: 0.0,
+                duration: 2.0 * half,
+                speed,
+                turn_rate: 0.0,
+            };
+            let exact = o.peak_risk(&line).risk;
+            let searched = SlabObstacle::unchanging(&o).peak_risk(&line).risk;
+            assert!((exact - searched).abs() < 1e-7, "{exact} {searched}");
+            between.add(exact > 0.0 && exact < 1.0);
+        },
+    );
+    between.assert_above(300);
 }
 
 #[test]
@@ -279,102 +267,91 @@ fn of_a_flat_minimum_the_earliest_instant_is_told() {
 
 #[test]
 fn the_half_planes_are_the_velocities_that_meet() {
-    let mut rng = seeded(203);
-    let (mut within, mut outside) = (0, 0);
-    for _ in 0..2500 {
-        let o = polytope(&mut rng);
-        let x = vector(&mut rng, 200.0);
-        let horizon = [20.0, 100.0, f64::INFINITY][rng.random_range(0..3)];
+    let [within, outside] = [(); 2].map(|()| Counter::default());
+    let horizons = select(vec![20.0, 100.0, f64::INFINITY]);
+    let velocities = proptest::collection::vec(vector(3.0), 20);
+    let cases = (polytope(), vector(200.0), horizons, velocities, vector(5.0));
+    check(203, 2500, cases, |(o, x, horizon, velocities, drawn)| {
         let region = o.velocity_obstacle(x, horizon);
         if o.contains(x, 0.0) {
             assert!(region.half_planes().is_empty());
         }
-        for _ in 0..20 {
-            let v = o.velocity().centroid() + vector(&mut rng, 3.0);
-            let margin = region
-                .half_planes()
-                .iter()
-                .map(|h| h.normal.dot(&v) - h.offset)
-                .fold(f64::NEG_INFINITY, f64::max);
+        for v in velocities {
+            let v = o.velocity().centroid() + v;
+            let planes = region.half_planes().iter();
+            let margin = planes.map(|h| h.normal.dot(&v) - h.offset);
+            let margin = margin.fold(f64::NEG_INFINITY, f64::max);
             if margin.abs() < 1e-6 {
                 continue;
             }
             let meets = o.in_velocity_obstacle(x, v, horizon);
-            assert_eq!(
-                region.contains(v),
-                meets,
-                "{o:?} {x:?} {v:?} {horizon} {margin}"
-            );
-            within += usize::from(meets && !region.half_planes().is_empty());
-            outside += usize::from(!meets);
+            assert_eq!(region.contains(v), meets, "{v:?} {margin}");
+            within.add(meets && !region.half_planes().is_empty());
+            outside.add(!meets);
         }
-        if let Some(picture) = region.clipped(5.0) {
-            let v = vector(&mut rng, 5.0);
-            if picture.signed_distance(v).abs() > 1e-6 {
-                assert_eq!(picture.contains(v), region.contains(v));
-            }
+        if let Some(picture) = region.clipped(5.0)
+            && picture.signed_distance(drawn).abs() > 1e-6
+        {
+            assert_eq!(picture.contains(drawn), region.contains(drawn));
         }
-    }
-    assert!(within > 2000 && outside > 2000, "{within} {outside}");
+    });
+    within.assert_above(2000);
+    outside.assert_above(2000);
 }
 
 #[test]
 fn every_sum_of_points_is_in_the_outer_ellipse_and_few_others_are_in_the_sum() {
-    let mut rng = seeded(204);
-    for _ in 0..600 {
-        let o = ellipsoid(&mut rng);
-        let t = if rng.random_bool(0.1) {
-            0.0
-        } else {
-            rng.random_range(0.0..60.0)
-        };
-        let (p, v) = (
-            o.initial().sampled_boundary(16),
-            o.velocity().sampled_boundary(16),
-        );
-        for p in &p {
-            for v in &v {
-                let shrunk = o.center(t) + (p + v * t - o.center(t)) * (1.0 - 1e-9);
-                assert!(o.signed_distance(shrunk, t).distance <= 1e-9, "{o:?} {t}");
-                if !o.is_flat() && o.initial().area() > 1.0 {
-                    assert!(o.sum_contains(shrunk, t), "{o:?} {t}");
+    let times = prop_oneof![1 => Just(0.0), 9 => 0.0..60.0];
+    check(
+        204,
+        600,
+        (ellipsoid(), times, vector(1.0)),
+        |(o, t, off)| {
+            let (p, v) = (
+                o.initial().sampled_boundary(16),
+                o.velocity().sampled_boundary(16),
+            );
+            for p in &p {
+                for v in &v {
+                    let shrunk = o.center(t) + (p + v * t - o.center(t)) * (1.0 - 1e-9);
+                    assert!(o.signed_distance(shrunk, t).distance <= 1e-9);
+                    if !o.is_flat() && o.initial().area() > 1.0 {
+                        assert!(o.sum_contains(shrunk, t));
+                    }
                 }
             }
-        }
-        // the sum by its support function, contained in the outer set
-        let x = o.center(t) + vector(&mut rng, 60.0 + 2.0 * t);
-        let excess = directions(2000)
-            .map(|n| n.dot(&x) - o.sum_support(n, t))
-            .fold(f64::NEG_INFINITY, f64::max);
-        if excess > 1e-6 {
-            assert!(!o.sum_contains(x, t), "{o:?} {x:?} {t} {excess}");
-        } else if excess < -1.0 {
-            // maximum deviation between two of the directions
-            assert!(o.sum_contains(x, t), "{o:?} {x:?} {t} {excess}");
-            assert!(o.contains(x, t));
-        }
-        for n in directions(64) {
-            assert!(o.support(n, t).value >= o.sum_support(n, t) - 1e-9);
-        }
-        let polytope = o.sum_outer_polytope();
-        for n in directions(64) {
-            assert!(polytope.support(n, t).value >= o.sum_support(n, t) - 1e-9);
-        }
-        let boundary: Vec<Vector> = p
-            .iter()
-            .flat_map(|p| v.iter().map(move |v| p + v * t))
-            .collect();
-        assert!(o.sum_area(t) >= hull(&boundary).area() * (1.0 - 1e-6));
-        assert!(o.outer_excess(t) >= -1e-6, "{o:?} {t}");
-    }
+            // the sum by its support function, contained in the outer set
+            let x = o.center(t) + off * (60.0 + 2.0 * t);
+            let excess = directions(2000)
+                .map(|n| n.dot(&x) - o.sum_support(n, t))
+                .fold(f64::NEG_INFINITY, f64::max);
+            if excess > 1e-6 {
+                assert!(!o.sum_contains(x, t), "{excess}");
+            } else if excess < -1.0 {
+                // maximum deviation between two of the directions
+                assert!(o.sum_contains(x, t), "{excess}");
+                assert!(o.contains(x, t));
+            }
+            for n in directions(64) {
+                assert!(o.support(n, t).value >= o.sum_support(n, t) - 1e-9);
+            }
+            let polytope = o.sum_outer_polytope();
+            for n in directions(64) {
+                assert!(polytope.support(n, t).value >= o.sum_support(n, t) - 1e-9);
+            }
+            let boundary: Vec<Vector> = p
+                .iter()
+                .flat_map(|p| v.iter().map(move |v| p + v * t))
+                .collect();
+            assert!(o.sum_area(t) >= hull(&boundary).area() * (1.0 - 1e-6));
+            assert!(o.outer_excess(t) >= -1e-6);
+        },
+    );
 }
 
 #[test]
 fn the_area_of_the_sum_is_that_of_its_support_function() {
-    let mut rng = seeded(205);
-    for _ in 0..30 {
-        let o = ellipsoid(&mut rng);
-        let t = rng.random_range(0.0..60.0);
+    check(205, 30, (ellipsoid(), 0.0..60.0), |(o, t)| {
         // an outer polygon of tangents
         let n: Vec<Vector> = directions(40_000).collect();
         let h = |i: usize| o.sum_support(n[i % 40_000], t) - n[i % 40_000].dot(&o.center(t));
@@ -394,94 +371,49 @@ fn the_area_of_the_sum_is_that_of_its_support_function() {
         };
         assert!(
             (found - slow).abs() < 1e-3 * (1.0 + slow) + 2e-3 * needle,
-            "{o:?} {t} {found} {slow}"
+            "{found} {slow}"
         );
-    }
-}
-
-#[test]
-fn homothetic_ellipses_have_an_exact_sum_and_the_trace_is_least() {
-    let mut rng = seeded(206);
-    for _ in 0..500 {
-        let initial = ellipse(&mut rng, 60.0);
-        let share = rng.random_range(0.01..0.1_f64);
-        let shape = initial.shape() * share * share;
-        let velocity = Ellipse::new(vector(&mut rng, 2.0), shape).expect("a shape");
-        let o = EllipsoidObstacle::new("x", initial, velocity);
-        let t = rng.random_range(0.0..60.0);
-        for n in directions(16) {
-            let difference = o.support(n, t).value - o.sum_support(n, t);
-            assert!(difference.abs() < 1e-6, "{o:?} {t} {difference}");
-        }
-        if initial.area() > 100.0 {
-            assert!(o.outer_excess(t).abs() < 1e-8, "{o:?} {t}");
-        }
-        let o = ellipsoid(&mut rng);
-        let (q, r) = (o.initial().shape(), o.velocity().shape() * (t * t));
-        let least = (1..2000)
-            .map(|i| 0.99_f64.powi(i - 1000))
-            .map(|c| ((1.0 + 1.0 / c) * q + (1.0 + c) * r).trace())
-            .fold(f64::INFINITY, f64::min);
-        if q.trace() > 0.0 && r.trace() > 0.0 {
-            let trace = o.outer_section(t).shape().trace();
-            assert!(trace <= least * (1.0 + 1e-9), "{o:?} {t} {trace} {least}");
-        }
-    }
+    });
 }
 
 #[test]
 fn the_ellipsoid_around_a_polytope_contains_it() {
-    let mut rng = seeded(207);
-    for _ in 0..500 {
-        let inner = polytope(&mut rng);
+    check(207, 500, (polytope(), line()), |(inner, s)| {
         let outer = EllipsoidObstacle::outer_of(&inner);
         for t in [0.0, 1.0, 40.0] {
             for p in inner.section(t).vertices() {
-                assert!(
-                    outer.signed_distance(*p, t).distance <= 1e-9,
-                    "{inner:?} {t}"
-                );
+                assert!(outer.signed_distance(*p, t).distance <= 1e-9, "{t}");
             }
         }
-        let s = segment(&mut rng, false);
         if let Some(t) = inner.first_contact(&s, 1e-6) {
             assert!(outer.first_contact(&s, 0.0).is_some_and(|o| o <= t + 1e-9));
         }
-    }
+    });
 }
 
 #[test]
 fn an_interval_of_contact_ends_where_the_line_leaves() {
-    let mut rng = seeded(208);
-    let mut met = 0;
-    for _ in 0..1500 {
-        let o = ellipsoid(&mut rng);
-        let s = segment(&mut rng, false);
+    let met = Counter::default();
+    check(208, 1500, (ellipsoid(), line()), |(o, s)| {
         let Some(inside) = o.line_contact(&s) else {
-            continue;
+            return;
         };
-        met += 1;
+        met.add(true);
         assert_eq!(Some(inside.start), o.first_contact(&s, 0.0));
         let at = |t: f64| o.signed_distance(s.pose_at(t).position, t).distance;
         for i in 0..=50 {
             let t = inside.start + (inside.end - inside.start) * f64::from(i) / 50.0;
-            assert!(at(t) < 1e-6, "{o:?} {s:?} {inside:?} {t} {}", at(t));
+            assert!(at(t) < 1e-6, "{inside:?} {t} {}", at(t));
         }
         let after = inside.end + 1e-6;
-        assert!(
-            after > s.end_time() || at(after) > -1e-6,
-            "{o:?} {s:?} {inside:?}"
-        );
-    }
-    assert!(met > 100, "{met}");
+        assert!(after > s.end_time() || at(after) > -1e-6, "{inside:?}");
+    });
+    met.assert_above(100);
 }
 
 #[test]
 fn slabs_are_the_sums_of_what_went_before() {
-    let mut rng = seeded(209);
-    for _ in 0..400 {
-        let o = slabs(&mut rng);
-        let t = rng.random_range(0.0..120.0);
+    check(209, 400, (slabs(), 0.0..120.0), |(o, t)| {
         // definition: every vertex of O_0 with every choice of one velocity in each slab
         let mut all = o.initial().vertices().to_vec();
         for slab in o.slabs() {
@@ -498,14 +430,13 @@ fn slabs_are_the_sums_of_what_went_before() {
             assert!((o.support(n, t).value - slow.support(n)).abs() < 1e-8);
         }
         assert!((o.section(t).area() - slow.area()).abs() < 1e-6 * (1.0 + slow.area()));
-    }
+    });
 }
 
 #[test]
 fn one_slab_is_the_polytope_and_so_are_slabs_of_one_set() {
-    let mut rng = seeded(210);
-    for case in 0..400 {
-        let p = polytope(&mut rng);
+    let cases = (polytope(), vector(200.0), vector(4.0), 0.0..60.0, segment());
+    check(210, 400, cases, |(p, x, v, t, s)| {
         let spells = [7.0, 20.0, f64::INFINITY]
             .map(|until| VelocitySpell {
                 until,
@@ -514,31 +445,25 @@ fn one_slab_is_the_polytope_and_so_are_slabs_of_one_set() {
             .to_vec();
         let many = SlabObstacle::new("x", p.initial().clone(), spells).expect("increasing");
         let one = SlabObstacle::unchanging(&p);
-        let (x, v) = (vector(&mut rng, 200.0), vector(&mut rng, 4.0));
-        let t = rng.random_range(0.0..60.0);
-        let s = segment(&mut rng, case % 2 == 0);
         for o in [&one, &many] {
             let (a, b) = (
                 o.closest_approach(x, v, 100.0),
                 p.closest_approach(x, v, 100.0),
             );
-            assert!((a.distance - b.distance).abs() < 1e-7, "{p:?}");
+            assert!((a.distance - b.distance).abs() < 1e-7);
             assert!(
                 (a.time - b.time).abs() < 1e-4 || b.distance > 0.0,
-                "{p:?} {a:?} {b:?}"
+                "{a:?} {b:?}"
             );
             if p.signed_distance(x, t).distance.abs() > 1e-6 {
-                assert!(
-                    (o.risk(x, t) - p.risk(x, t)).abs() < 1e-7,
-                    "{p:?} {x:?} {t}"
-                );
+                assert!((o.risk(x, t) - p.risk(x, t)).abs() < 1e-7);
             }
             if let Some(first) = p.first_contact(&s, 1e-6) {
                 let found = o.first_contact(&s, 0.0).expect("met");
-                assert!(found <= first + 1e-6, "{p:?} {s:?}");
+                assert!(found <= first + 1e-6, "{found} {first}");
             }
         }
-    }
+    });
 }
 
 /// Tests t = 0, where the cubic is zero along the line of a segment and everywhere around a point.
@@ -552,7 +477,7 @@ fn on_the_line_of_a_flat_set_contact_begins_when_it_is_reached() {
         let o = EllipsoidObstacle::new("x", initial, growing);
         for (own, speed) in [(100.0, 5.0), (100.0, 0.0), (-60.0, 0.0), (11.0, 0.0)] {
             let line = Segment {
-                start: searoom::frame::Pose::new(Vector::new(own, 0.0), std::f64::consts::PI),
+                start: Pose::new(Vector::new(own, 0.0), std::f64::consts::PI),
                 start_time: 0.0,
                 duration: 400.0,
                 speed,
@@ -570,7 +495,6 @@ fn on_the_line_of_a_flat_set_contact_begins_when_it_is_reached() {
 
 #[test]
 fn numbers_that_overflow_are_contact() {
-    let mut rng = seeded(213);
     let circle = |r: f64| Ellipse::new(Vector::zeros(), Matrix2::identity() * r).expect("a shape");
     let o = EllipsoidObstacle::new("x", circle(100.0), circle(1.0));
     let lost = Segment {
@@ -578,7 +502,7 @@ fn numbers_that_overflow_are_contact() {
         speed: 1e305,
         duration: 1e5,
         turn_rate: 1e-7,
-        ..segment(&mut rng, true)
+        start: Pose::new(Vector::new(150.0, -80.0), 1.0),
     };
     assert!(lost.is_valid() && o.first_contact(&lost, 0.0).is_some());
     // a circle of one metre, traversed more often than the resolution of the time
@@ -593,27 +517,28 @@ fn numbers_that_overflow_are_contact() {
 
 #[test]
 fn the_risk_along_a_trajectory_is_the_largest_of_its_segments() {
-    use searoom::trajectory::Trajectory;
-    let mut rng = seeded(214);
-    let mut between = 0;
-    for case in 0..200 {
-        let o = polytope(&mut rng);
-        let first = segment(&mut rng, case % 2 == 0);
-        let second = Segment {
-            start: first.end(),
-            start_time: first.end_time(),
-            ..segment(&mut rng, case % 3 == 0)
-        };
-        let trajectory = Trajectory::new(vec![first, second]).expect("joined");
-        let peak = o.peak_risk_along(&trajectory);
-        let (a, b) = (o.peak_risk(&first), o.peak_risk(&second));
-        assert_eq!(peak.risk, a.risk.max(b.risk));
-        for t in trajectory.sample_times(0.5, u32::MAX) {
-            assert!(o.risk(trajectory.pose_at(t).position, t) <= peak.risk + 1e-9);
-        }
-        between += usize::from(peak.risk > 0.0 && peak.risk < 1.0);
-    }
-    assert!(between > 10, "{between}");
+    let between = Counter::default();
+    check(
+        214,
+        200,
+        (polytope(), segment(), segment()),
+        |(o, first, second)| {
+            let second = Segment {
+                start: first.end(),
+                start_time: first.end_time(),
+                ..second
+            };
+            let trajectory = Trajectory::new(vec![first, second]).expect("joined");
+            let peak = o.peak_risk_along(&trajectory);
+            let (a, b) = (o.peak_risk(&first), o.peak_risk(&second));
+            assert_eq!(peak.risk, a.risk.max(b.risk));
+            for t in trajectory.sample_times(0.5, u32::MAX) {
+                assert!(o.risk(trajectory.pose_at(t).position, t) <= peak.risk + 1e-9);
+            }
+            between.add(peak.risk > 0.0 && peak.risk < 1.0);
+        },
+    );
+    between.assert_above(10);
 }
 
 #[test]
@@ -647,82 +572,75 @@ fn velocity_sets_out_of_order_are_refused() {
 /// Tests a target with arbitrary turns within its rate: it stays in the sets.
 #[test]
 fn a_target_that_turns_stays_in_its_slabs() {
-    use searoom::frame::Pose;
-    use searoom::target::{DomainKind, ShipTrack};
-    use searoom::vessel::Hull;
-    let mut rng = seeded(211);
-    for _ in 0..100 {
-        let ship = ShipTrack {
-            pose: Pose::new(Vector::zeros(), rng.random_range(-3.0..3.0)),
-            speed: rng.random_range(1.0..8.0),
-            hull: Hull {
-                length: 50.0,
-                beam: 10.0,
-            },
-            position_std: 0.0,
-            speed_spread: rng.random_range(0.0..1.0),
-            course_spread: rng.random_range(0.0..0.2),
-            turn_rate: 0.0,
-            domain: DomainKind::Hull,
-        };
-        let rate: f64 = rng.random_range(0.001..0.03);
-        let spells = ship.outer_velocity_spells(rate, 200.0);
-        let o = SlabObstacle::new("x", ConvexPolygon::point(Vector::zeros()), spells)
-            .expect("increasing");
-        for policy in 0..3 {
-            let (mut x, mut t) = (Vector::zeros(), 0.0_f64);
-            let mut course = ship.pose.heading + ship.course_spread;
-            while t < 250.0 {
-                let turn = match policy {
-                    0 => rate,
-                    1 => rate * rng.random_range(-1.0..=1.0),
-                    _ => rate * (0.1 * t).sin().signum(),
-                };
-                x += direction(course) * (ship.speed + ship.speed_spread) * 0.5;
-                course += turn * 0.5;
-                t += 0.5;
-                assert!(o.signed_distance(x, t).distance <= 1e-6, "{ship:?} {t}");
+    let ship = (-3.0..3.0, 1.0..8.0, 0.0..1.0, 0.0..0.2);
+    let turns = proptest::collection::vec(-1.0..=1.0, 500);
+    let cases = (ship, 0.001..0.03, turns);
+    check(
+        211,
+        100,
+        cases,
+        |((heading, speed, speed_spread, course_spread), rate, turns)| {
+            let ship = ShipTrack {
+                pose: Pose::new(Vector::zeros(), heading),
+                speed,
+                hull: Hull {
+                    length: 50.0,
+                    beam: 10.0,
+                },
+                position_std: 0.0,
+                speed_spread,
+                course_spread,
+                turn_rate: 0.0,
+                domain: DomainKind::Hull,
+            };
+            let spells = ship.outer_velocity_spells(rate, 200.0);
+            let point = ConvexPolygon::point(Vector::zeros());
+            let o = SlabObstacle::new("x", point, spells).expect("increasing");
+            for policy in 0..3 {
+                let mut x = Vector::zeros();
+                let mut course = heading + course_spread;
+                for (step, share) in turns.iter().enumerate() {
+                    let t = 0.5 * step as f64;
+                    let share = match policy {
+                        0 => 1.0,
+                        1 => *share,
+                        _ => (0.1 * t).sin().signum(),
+                    };
+                    x += direction(course) * (speed + speed_spread) * 0.5;
+                    course += rate * share * 0.5;
+                    let apart = o.signed_distance(x, t + 0.5).distance;
+                    assert!(apart <= 1e-6, "{policy} {t} {apart}");
+                }
             }
-        }
-    }
+        },
+    );
 }
 
 #[test]
 fn degenerate_motion_of_degenerate_sets_is_answered() {
-    let mut rng = seeded(212);
-    for _ in 0..300 {
-        let set = points(&mut rng, 10.0);
-        let o = PolytopeObstacle::new("x", hull(&set), polygon(&mut rng, 1.0));
-        let e = EllipsoidObstacle::new("x", ellipse(&mut rng, 10.0), ellipse(&mut rng, 1.0));
-        for o in [&o as &dyn SpaceTimeObstacle, &e] {
+    let sets = (polygon(10.0), polygon(1.0), ellipse(10.0), ellipse(1.0));
+    check(212, 300, (sets, line()), |((p, v, e, w), s)| {
+        let polytope = PolytopeObstacle::new("x", p, v);
+        let ellipsoid = EllipsoidObstacle::new("x", e, w);
+        for o in [&polytope as &dyn SpaceTimeObstacle, &ellipsoid] {
             let wait = Segment {
                 speed: 0.0,
                 duration: 0.0,
-                ..segment(&mut rng, false)
+                ..s
             };
-            let at = o
-                .signed_distance(wait.start.position, wait.start_time)
-                .distance;
+            let place = wait.start.position;
+            let at = o.signed_distance(place, wait.start_time).distance;
             if at.abs() > 1e-6 {
                 assert_eq!(o.first_contact(&wait, 0.0).is_some(), at < 0.0);
             }
-            let risk = o.risk(wait.start.position, wait.start_time);
+            let risk = o.risk(place, wait.start_time);
             let peak = o.peak_risk(&wait);
-            assert!(
-                (peak.risk - risk).abs() < 1e-6,
-                "{} {peak:?} {risk} {at} {wait:?} {:?} {:?}",
-                o.name(),
-                e.initial(),
-                e.velocity()
-            );
-            let found = o.closest_approach(wait.start.position, Vector::zeros(), 0.0);
-            let now = o
-                .signed_distance(wait.start.position, 0.0)
-                .distance
-                .max(0.0);
+            assert!((peak.risk - risk).abs() < 1e-6, "{peak:?} {risk} {at}");
+            let found = o.closest_approach(place, Vector::zeros(), 0.0);
+            let now = o.signed_distance(place, 0.0).distance.max(0.0);
             assert!((found.distance - now).abs() < 1e-9 && found.time == 0.0);
         }
-    }
+    });
 }
 
 #[test]
@@ -733,7 +651,7 @@ fn an_arc_against_the_outer_ellipse_errs_early_by_a_hundredth_of_a_micrometre() 
     // farther it does not
     for (shift, meets) in [(0.0, true), (-1e-7, true), (1e-7, false)] {
         let arc = Segment {
-            start: searoom::frame::Pose::new(Vector::new(30.0 + shift, 20.0), std::f64::consts::PI),
+            start: Pose::new(Vector::new(30.0 + shift, 20.0), std::f64::consts::PI),
             start_time: 0.0,
             duration: std::f64::consts::TAU * 20.0 / 5.0,
             speed: 5.0,

@@ -1,22 +1,22 @@
 //! Tests of the velocity obstacle of ellipsoids as a region against its definition, by a dense
 //! search over time.
 
-use super::generators::{directions, ellipsoid, seeded, vector};
-use rand::Rng;
-use rand_chacha::ChaCha8Rng;
+use super::generators::{Counter, check, directions, ellipsoid, golden_maximum, vector};
+use proptest::prelude::*;
+use proptest::sample::select;
 use searoom::frame::{Vector, cross, direction, heading_of};
 use searoom::obstacle::{EllipsoidObstacle, EllipsoidVelocityObstacle, SpaceTimeObstacle};
 
-const HORIZONS: [f64; 4] = [5.0, 40.0, 300.0, f64::INFINITY];
-
-/// Random position outside `O_0` by more than `distance`, far enough that rounding does not matter.
-fn place(rng: &mut ChaCha8Rng, o: &EllipsoidObstacle, distance: f64) -> Vector {
-    loop {
-        let x = vector(rng, 250.0);
-        if o.initial().signed_distance(x).distance > distance + 0.1 {
-            return x;
-        }
-    }
+/// Obstacle, a position outside `O_0` by more than a distance, far enough that rounding does not
+/// matter, a horizon, and the distance.
+fn cases(
+    distances: &'static [f64],
+) -> impl Strategy<Value = (EllipsoidObstacle, Vector, f64, f64)> {
+    let horizons = select(vec![5.0, 40.0, 300.0, f64::INFINITY]);
+    (ellipsoid(), vector(250.0), horizons, select(distances))
+        .prop_filter("own ship is outside", |(o, x, _, distance)| {
+            o.initial().signed_distance(*x).distance > distance + 0.1
+        })
 }
 
 /// Maximum `n . v` of the velocities that lead within the distance of the section at some time.
@@ -31,19 +31,11 @@ fn searched(o: &EllipsoidObstacle, x: Vector, horizon: f64, distance: f64, n: Ve
     let best = (0..times.len())
         .max_by(|a, b| of(times[*a]).total_cmp(&of(times[*b])))
         .expect("times");
-    let (mut low, mut high) = (
+    let (low, high) = (
         times[(best + 1).min(times.len() - 1)],
         times[best.saturating_sub(1)],
     );
-    for _ in 0..100 {
-        let (a, b) = (low + (high - low) * 0.382, low + (high - low) * 0.618);
-        if of(a) > of(b) {
-            high = b;
-        } else {
-            low = a;
-        }
-    }
-    of(0.5 * (low + high)).max(of(times[best]))
+    of(golden_maximum(low, high, of)).max(of(times[best]))
 }
 
 /// Distance of a velocity from the region by its supporting lines; negative inside.
@@ -61,96 +53,91 @@ fn beyond(region: &EllipsoidVelocityObstacle, v: Vector) -> f64 {
 
 #[test]
 fn the_support_is_the_farthest_velocity_of_any_time() {
-    let mut rng = seeded(301);
-    let (mut finite, mut late) = (0, 0);
-    for round in 0..600 {
-        let o = ellipsoid(&mut rng);
-        let distance = [0.0, 0.0, 30.0][round % 3];
-        let x = place(&mut rng, &o, distance);
-        let horizon = HORIZONS[rng.random_range(0..4)];
-        let region = o.velocities_within(x, horizon, distance);
-        for n in directions(24) {
-            let closes = o.initial().support(n) + distance - n.dot(&x);
-            if closes.abs() < 1e-3 {
-                continue;
+    let [finite, late] = [(); 2].map(|()| Counter::default());
+    check(
+        301,
+        600,
+        cases(&[0.0, 0.0, 30.0]),
+        |(o, x, horizon, distance)| {
+            let region = o.velocities_within(x, horizon, distance);
+            for n in directions(24) {
+                let closes = o.initial().support(n) + distance - n.dot(&x);
+                if closes.abs() < 1e-3 {
+                    continue;
+                }
+                let found = region.support(n);
+                assert_eq!(found.is_finite(), closes < 0.0, "{n:?}");
+                if !found.is_finite() {
+                    continue;
+                }
+                let slow = searched(&o, x, horizon, distance, n);
+                assert!(
+                    (found - slow).abs() < 1e-6 * (1.0 + slow.abs()),
+                    "{found} {slow} {n:?}"
+                );
+                let at = region.boundary_point(n).expect("attained");
+                assert!((n.dot(&at) - found).abs() < 1e-9 * (1.0 + at.norm()));
+                finite.add(true);
+                let last = (o.support(n, horizon).value + distance - n.dot(&x)) / horizon;
+                late.add(horizon.is_finite() && (last - found).abs() > 1e-6);
             }
-            let found = region.support(n);
-            assert_eq!(found.is_finite(), closes < 0.0, "{o:?} {x:?} {n:?}");
-            if !found.is_finite() {
-                continue;
-            }
-            let slow = searched(&o, x, horizon, distance, n);
-            assert!(
-                (found - slow).abs() < 1e-6 * (1.0 + slow.abs()),
-                "{found} {slow} {horizon} {distance} {o:?} {x:?} {n:?}"
-            );
-            let at = region.boundary_point(n).expect("attained");
-            assert!((n.dot(&at) - found).abs() < 1e-9 * (1.0 + at.norm()));
-            finite += 1;
-            let last = (o.support(n, horizon).value + distance - n.dot(&x)) / horizon;
-            late += usize::from(horizon.is_finite() && (last - found).abs() > 1e-6);
-        }
-    }
-    assert!(finite > 3000 && late > 20, "{finite} {late}");
+        },
+    );
+    finite.assert_above(3000);
+    late.assert_above(20);
 }
 
 #[test]
 fn the_region_holds_the_velocities_that_meet_and_no_others() {
-    let mut rng = seeded(302);
-    let (mut within, mut outside) = (0, 0);
-    for round in 0..500 {
-        let o = ellipsoid(&mut rng);
-        let distance = [0.0, 0.0, 20.0][round % 3];
-        let x = place(&mut rng, &o, distance);
-        let horizon = HORIZONS[rng.random_range(0..4)];
-        let region = o.velocities_within(x, horizon, distance);
-        let picture = region.outer_half_planes(8.0, 1e-3);
-        for _ in 0..10 {
-            let v = o.velocity().center() + vector(&mut rng, 4.0);
-            let out = beyond(&region, v);
-            if out.abs() < 1e-3 {
-                continue;
+    let [within, outside] = [(); 2].map(|()| Counter::default());
+    let velocities = proptest::collection::vec(vector(4.0), 10);
+    let cases = (cases(&[0.0, 0.0, 20.0]), velocities);
+    check(
+        302,
+        500,
+        cases,
+        |((o, x, horizon, distance), velocities)| {
+            let region = o.velocities_within(x, horizon, distance);
+            let picture = region.outer_half_planes(8.0, 1e-3);
+            for v in velocities {
+                let v = o.velocity().center() + v;
+                let out = beyond(&region, v);
+                if out.abs() < 1e-3 {
+                    continue;
+                }
+                assert_eq!(region.contains(v), out < 0.0, "{out} {v:?}");
+                if v.amax() < 8.0 {
+                    let drawn = picture.contains(v);
+                    assert!(drawn || out > 0.0, "an outer set: {v:?}");
+                    assert!(!drawn || out < 2e-3, "{v:?} {out}");
+                }
+                // also for each time
+                let end = horizon.min(2000.0);
+                let meets = (0..=20_000).any(|i| {
+                    let t = end * (f64::from(i) / 20_000.0).powi(2);
+                    o.signed_distance(x + v * t, t).distance <= distance
+                });
+                assert!(!meets || out < 0.0, "{v:?} {out}");
+                if out > 0.0 {
+                    assert!(!meets);
+                }
+                within.add(meets);
+                outside.add(!meets);
             }
-            assert_eq!(
-                region.contains(v),
-                out < 0.0,
-                "{out} {horizon} {distance} {o:?} {x:?} {v:?}"
-            );
-            if v.amax() < 8.0 {
-                let drawn = picture.contains(v);
-                assert!(drawn || out > 0.0, "an outer set: {o:?} {x:?} {v:?}");
-                assert!(!drawn || out < 2e-3, "{o:?} {x:?} {v:?} {out}");
-            }
-            // also for each time
-            let end = horizon.min(2000.0);
-            let meets = (0..=20_000).any(|i| {
-                let t = end * (f64::from(i) / 20_000.0).powi(2);
-                o.signed_distance(x + v * t, t).distance <= distance
-            });
-            assert!(!meets || out < 0.0, "{o:?} {x:?} {v:?} {out}");
-            if out > 0.0 {
-                assert!(!meets);
-            }
-            within += usize::from(meets);
-            outside += usize::from(!meets);
-        }
-    }
-    assert!(within > 300 && outside > 1000, "{within} {outside}");
+        },
+    );
+    within.assert_above(300);
+    outside.assert_above(1000);
 }
 
 /// Tests the accuracy: every corner of the drawn polygon is within the promised distance of the
 /// region, and contains its boundary.
 #[test]
 fn the_half_planes_are_outside_by_no_more_than_was_asked() {
-    let mut rng = seeded(303);
-    let mut corners = 0;
-    for round in 0..400 {
-        let o = ellipsoid(&mut rng);
-        let distance = [0.0, 15.0][round % 2];
-        let x = place(&mut rng, &o, distance);
-        let horizon = HORIZONS[rng.random_range(0..4)];
+    let corners = Counter::default();
+    let cases = (cases(&[0.0, 15.0]), select(vec![1e-1, 1e-2, 1e-3]));
+    check(303, 400, cases, |((o, x, horizon, distance), accuracy)| {
         let region = o.velocities_within(x, horizon, distance);
-        let accuracy = [1e-1, 1e-2, 1e-3][rng.random_range(0..3)];
         let limit = 6.0;
         let picture = region.outer_half_planes(limit, accuracy);
         assert!(picture.half_planes().len() < 1000);
@@ -160,40 +147,39 @@ fn the_half_planes_are_outside_by_no_more_than_was_asked() {
                 let out = out
                     .map(|h| h.normal.dot(&at) - h.offset)
                     .fold(0.0, f64::max);
-                assert!(out < 1e-9 * (1.0 + at.norm()), "{o:?} {x:?} {n:?} {out}");
+                assert!(out < 1e-9 * (1.0 + at.norm()), "{n:?} {out}");
             }
         }
         let Some(polygon) = picture.clipped(limit) else {
-            continue;
+            return;
         };
         for v in polygon.vertices() {
             let out = beyond(&region, *v);
-            assert!(
-                out < accuracy * 1.01 + 1e-6,
-                "{o:?} {x:?} {v:?} {out} {accuracy}"
-            );
-            corners += 1;
+            assert!(out < accuracy * 1.01 + 1e-6, "{v:?} {out}");
+            corners.add(true);
         }
-    }
-    assert!(corners > 2000, "{corners}");
+    });
+    corners.assert_above(2000);
 }
 
 #[test]
 fn from_inside_or_from_nowhere_every_velocity_meets() {
-    let mut rng = seeded(304);
-    for _ in 0..100 {
-        let o = ellipsoid(&mut rng);
-        for x in [o.initial().center(), Vector::new(f64::NAN, 0.0)] {
-            let region = o.velocity_obstacle(x, 100.0);
-            assert!(region.sides().is_none());
-            assert!(region.contains(vector(&mut rng, 50.0)));
-            assert!(region.outer_half_planes(5.0, 1e-3).half_planes().is_empty());
-            assert!(directions(8).all(|n| region.support(n).is_infinite()));
-        }
-        let away = place(&mut rng, &o, 0.0);
-        let region = o.velocity_obstacle(away, 100.0);
-        assert!(region.contains(Vector::new(f64::NAN, 0.0)));
-    }
+    check(
+        304,
+        100,
+        (cases(&[0.0]), vector(50.0)),
+        |((o, away, ..), v)| {
+            for x in [o.initial().center(), Vector::new(f64::NAN, 0.0)] {
+                let region = o.velocity_obstacle(x, 100.0);
+                assert!(region.sides().is_none());
+                assert!(region.contains(v));
+                assert!(region.outer_half_planes(5.0, 1e-3).half_planes().is_empty());
+                assert!(directions(8).all(|n| region.support(n).is_infinite()));
+            }
+            let region = o.velocity_obstacle(away, 100.0);
+            assert!(region.contains(Vector::new(f64::NAN, 0.0)));
+        },
+    );
 }
 
 /// Tests discs against the textbook cone: two tangents, shifted by the speed that the target may

@@ -1,10 +1,10 @@
 //! Metamorphic tests: invariance or known change under translation, rotation, reflection, scaling,
 //! current, time shift, vertex order and larger sets.
 
-use super::generators::{ellipsoid, points, polytope, seeded, segment, slabs, vector};
+use super::generators::{check, ellipsoid, hull, line, points, polytope, segment, slabs, vector};
 use nalgebra::Matrix2;
-use rand::Rng;
-use rand_chacha::ChaCha8Rng;
+use proptest::prelude::*;
+use proptest::sample::select;
 use searoom::frame::{Pose, Vector, direction, heading_of};
 use searoom::geometry::{ConvexPolygon, Ellipse, outer_disc};
 use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
@@ -126,127 +126,124 @@ impl Mapped for SlabObstacle {
     }
 }
 
+/// What is asked of a set: a position, a time, a velocity, a horizon and a motion.
+type Question = (Vector, f64, Vector, f64, Segment);
+
+fn question() -> impl Strategy<Value = Question> {
+    let horizons = select(vec![30.0, 200.0]);
+    (vector(150.0), 0.0..50.0, vector(4.0), horizons, segment())
+}
+
 /// Compares both answers; `digits` is the rounding error of the coordinate change in metres.
-fn compare<O: Mapped>(o: &O, map: &Map, rng: &mut ChaCha8Rng, digits: f64) {
+fn compare<O: Mapped>(o: &O, map: &Map, (x, t, v, horizon, s): Question, digits: f64) {
     let other = o.mapped(map);
-    let (x, t) = (vector(rng, 150.0), rng.random_range(0.0..50.0));
     let (mx, mt) = map.event(x, t);
     let (a, b) = (o.signed_distance(x, t), other.signed_distance(mx, mt));
-    assert!(
-        (a.distance * map.scale - b.distance).abs() <= digits * (1.0 + map.scale),
-        "{o:?} {map:?} {x:?} {t} {a:?} {b:?}"
-    );
+    let off = (a.distance * map.scale - b.distance).abs();
+    assert!(off <= digits * (1.0 + map.scale), "{a:?} {b:?}");
     if a.distance.abs() > 1e-4 {
-        assert_eq!(
-            o.contains(x, t),
-            other.contains(mx, mt),
-            "{o:?} {map:?} {x:?} {t}"
-        );
+        assert_eq!(o.contains(x, t), other.contains(mx, mt));
         // far from the boundary of a set that is not thin, risks are well conditioned
-        if o.signed_distance(x, t).distance < -1.0 && t > 5.0 {
+        if a.distance < -1.0 && t > 5.0 {
             let (a, b) = (o.risk(x, t), other.risk(mx, mt));
-            assert!(
-                (a - b).abs() <= 1e3 * digits,
-                "{o:?} {map:?} {x:?} {t} {a} {b}"
-            );
+            assert!((a - b).abs() <= 1e3 * digits, "{a} {b}");
         }
     }
-    let v = vector(rng, 4.0);
-    let horizon = [30.0, 200.0][rng.random_range(0..2)];
+    let (from, going, last) = (map.place(x), map.velocity(v), horizon * map.stretch);
     let (p, q) = (
         o.closest_approach(x, v, horizon),
-        other.closest_approach(map.place(x), map.velocity(v), horizon * map.stretch),
+        other.closest_approach(from, going, last),
     );
     let slack = 100.0 * digits * (1.0 + map.scale);
     assert!(
         (p.distance * map.scale - q.distance).abs() <= slack,
-        "{o:?} {map:?} {x:?} {v:?} {p:?} {q:?}"
+        "{p:?} {q:?}"
     );
     if p.distance > 1.0 {
         // compare times by their effect: each gives the distance of the other
         let (there, then) = map.event(x + v * p.time, p.time);
         let there = other.signed_distance(there, then).distance;
-        assert!(
-            (there - q.distance).abs() <= slack,
-            "{o:?} {map:?} {p:?} {q:?}"
-        );
-        let (from, going) = (map.place(x), map.velocity(v));
+        assert!((there - q.distance).abs() <= slack, "{p:?} {q:?}");
         assert!(!o.in_velocity_obstacle(x, v, horizon));
-        assert!(!other.in_velocity_obstacle(from, going, horizon * map.stretch));
+        assert!(!other.in_velocity_obstacle(from, going, last));
     }
     if map.current == Vector::zeros() {
-        let bent = rng.random_bool(0.5);
-        let s = segment(rng, bent);
-        let depth = 1.0;
-        let (a, b) = (
-            o.first_contact(&s, depth),
-            other.first_contact(&map.segment(&s), depth * map.scale),
-        );
-        if a.is_some() != b.is_some() {
-            // grazing contact: at slightly less depth, both have a contact
-            let (a, b) = (
-                o.first_contact(&s, depth - 1e-4),
-                other.first_contact(&map.segment(&s), (depth - 1e-4) * map.scale),
-            );
-            assert_eq!(a.is_some(), b.is_some(), "{o:?} {map:?} {s:?}");
-        }
+        let meet = |depth: f64| {
+            let mapped = other.first_contact(&map.segment(&s), depth * map.scale);
+            [o.first_contact(&s, depth).is_some(), mapped.is_some()]
+        };
+        let [a, b] = meet(1.0);
+        // grazing contact: at slightly less depth, both have a contact
+        assert!(a == b || meet(1.0 - 1e-4) == [true; 2] || meet(1.0 - 1e-4) == [false; 2]);
     }
 }
 
-fn all_kinds(seed: u64, count: usize, digits: f64, draw: impl Fn(&mut ChaCha8Rng) -> Map) {
-    let mut rng = seeded(seed);
-    for _ in 0..count {
-        let map = draw(&mut rng);
-        compare(&polytope(&mut rng), &map, &mut rng, digits);
-        compare(&slabs(&mut rng), &map, &mut rng, digits);
-        // a shape matrix represents the width of a needle only to the square root of the precision
-        let o = ellipsoid(&mut rng);
-        let needle = |e: &Ellipse| e.semi_axes()[1].norm() < 1e-2 * e.semi_axes()[0].norm();
-        if !needle(o.initial()) && !needle(o.velocity()) {
-            compare(&o, &map, &mut rng, digits);
-        }
-    }
+fn all_kinds(seed: u64, count: u32, digits: f64, maps: impl Strategy<Value = Map> + Clone) {
+    check(
+        seed,
+        count,
+        (polytope(), maps.clone(), question()),
+        |(o, map, asked)| {
+            compare(&o, &map, asked, digits);
+        },
+    );
+    check(
+        seed,
+        count,
+        (slabs(), maps.clone(), question()),
+        |(o, map, asked)| {
+            compare(&o, &map, asked, digits);
+        },
+    );
+    check(
+        seed,
+        count,
+        (ellipsoid(), maps, question()),
+        |(o, map, asked)| {
+            // a shape matrix represents the width of a needle only to the square root of the precision
+            let needle = |e: &Ellipse| e.semi_axes()[1].norm() < 1e-2 * e.semi_axes()[0].norm();
+            if !needle(o.initial()) && !needle(o.velocity()) {
+                compare(&o, &map, asked, digits);
+            }
+        },
+    );
 }
+
+const MIRROR: Map = Map {
+    linear: Matrix2::new(1.0, 0.0, 0.0, -1.0),
+    ..Map::NONE
+};
 
 #[test]
 fn relation_1_translation() {
     for far in [1.0, 1e3, 1e6] {
-        all_kinds(301, 200, 1e-9 + 1e-14 * far, |rng| Map {
-            shift: vector(rng, 1.0) * far,
+        let maps = vector(1.0).prop_map(move |shift| Map {
+            shift: shift * far,
             ..Map::NONE
         });
+        all_kinds(301, 200, 1e-9 + 1e-14 * far, maps);
     }
 }
 
 #[test]
 fn relation_2_rotation() {
-    all_kinds(302, 300, 1e-9, |rng| {
-        Map::rotation(rng.random_range(-7.0..7.0))
+    all_kinds(302, 300, 1e-9, (-7.0..7.0).prop_map(Map::rotation));
+    let quarters = select(vec![(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]);
+    let exact = quarters.prop_map(|(c, s)| Map {
+        linear: Matrix2::new(c, -s, s, c),
+        ..Map::NONE
     });
-    all_kinds(303, 100, 1e-9, |rng| {
-        let turned = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][rng.random_range(0..4)];
-        Map {
-            linear: Matrix2::new(turned.0, -turned.1, turned.1, turned.0),
-            ..Map::NONE
-        }
-    });
+    all_kinds(303, 100, 1e-9, exact);
 }
 
 #[test]
 fn relation_3_time_shift() {
     // properties t after t_0 hold t after the section of t_0
-    let mut rng = seeded(304);
-    for _ in 0..400 {
-        let o = polytope(&mut rng);
-        let start = rng.random_range(0.0..50.0);
+    let cases = (polytope(), 0.0..50.0, vector(200.0), 0.0..50.0, line());
+    check(304, 400, cases, |(o, start, x, t, s)| {
         let later = PolytopeObstacle::new("later", o.section(start), o.velocity().clone());
-        let (x, t) = (vector(&mut rng, 200.0), rng.random_range(0.0..50.0));
         let (a, b) = (o.signed_distance(x, start + t), later.signed_distance(x, t));
-        assert!(
-            (a.distance - b.distance).abs() < 1e-8,
-            "{o:?} {start} {x:?} {t}"
-        );
-        let s = segment(&mut rng, false);
+        assert!((a.distance - b.distance).abs() < 1e-8, "{a:?} {b:?}");
         let shifted = Segment {
             start_time: s.start_time + start,
             ..s
@@ -255,163 +252,128 @@ fn relation_3_time_shift() {
             o.first_contact(&shifted, 1e-3),
             later.first_contact(&s, 1e-3),
         ) {
-            (Some(a), Some(b)) => assert!((a - start - b).abs() < 1e-5, "{o:?} {s:?}"),
+            (Some(a), Some(b)) => assert!((a - start - b).abs() < 1e-5, "{a} {b}"),
             (None, None) => {}
-            other => {
-                // grazing contact
-                let deep = later.first_contact(&s, 1e-3 + 1e-6).is_some();
-                assert!(!deep, "{o:?} {s:?} {other:?}");
-            }
+            // grazing contact
+            other => assert!(later.first_contact(&s, 1e-3 + 1e-6).is_none(), "{other:?}"),
         }
-    }
+    });
 }
 
 #[test]
 fn relation_4_scaling() {
-    all_kinds(305, 300, 1e-9, |rng| {
-        let scale = [1e-3, 0.5, 7.0, 1e3][rng.random_range(0..4)];
-        Map {
-            linear: Matrix2::identity() * scale,
-            scale,
-            // lengths and speeds, lengths and times, or times alone
-            stretch: [1.0, scale, 0.1][rng.random_range(0..3)],
-            ..Map::NONE
-        }
+    let maps = (select(vec![1e-3, 0.5, 7.0, 1e3]), 0..3_usize).prop_map(|(scale, stretch)| Map {
+        linear: Matrix2::identity() * scale,
+        scale,
+        // lengths and speeds, lengths and times, or times alone
+        stretch: [1.0, scale, 0.1][stretch],
+        ..Map::NONE
     });
+    all_kinds(305, 300, 1e-9, maps);
 }
 
 #[test]
 fn relation_5_current() {
-    all_kinds(306, 300, 1e-9, |rng| Map {
-        current: vector(rng, 5.0),
+    let maps = vector(5.0).prop_map(|current| Map {
+        current,
         ..Map::NONE
     });
+    all_kinds(306, 300, 1e-9, maps);
 }
 
 #[test]
 fn relation_6_mirror() {
-    all_kinds(307, 300, 1e-9, |_| Map {
-        linear: Matrix2::new(1.0, 0.0, 0.0, -1.0),
-        ..Map::NONE
-    });
+    all_kinds(307, 300, 1e-9, Just(MIRROR));
     // exact if only signs change
-    let mut rng = seeded(308);
-    let mirror = Map {
-        linear: Matrix2::new(1.0, 0.0, 0.0, -1.0),
-        ..Map::NONE
-    };
-    for _ in 0..200 {
-        let o = polytope(&mut rng);
-        let m = o.mapped(&mirror);
-        let x = vector(&mut rng, 200.0);
-        let region = (
-            o.velocity_obstacle(x, 90.0),
-            m.velocity_obstacle(mirror.place(x), 90.0),
-        );
-        for _ in 0..20 {
-            let v = vector(&mut rng, 5.0);
-            let edge = region
-                .0
-                .half_planes()
-                .iter()
-                .map(|h| (h.normal.dot(&v) - h.offset).abs());
-            if edge.fold(f64::INFINITY, f64::min) > 1e-9 {
-                assert_eq!(region.0.contains(v), region.1.contains(mirror.velocity(v)));
-            }
+    let cases = (polytope(), vector(200.0), vector(5.0));
+    check(308, 4000, cases, |(o, x, v)| {
+        let region = o.velocity_obstacle(x, 90.0);
+        let mirrored = o.mapped(&MIRROR).velocity_obstacle(MIRROR.place(x), 90.0);
+        let planes = region.half_planes().iter();
+        let edge = planes.map(|h| (h.normal.dot(&v) - h.offset).abs());
+        if edge.fold(f64::INFINITY, f64::min) > 1e-9 {
+            assert_eq!(region.contains(v), mirrored.contains(MIRROR.velocity(v)));
         }
-    }
+    });
+}
+
+/// Points with some repeated, some midpoints added, and in another order.
+fn with_repetitions(scale: f64) -> impl Strategy<Value = (Vec<Vector>, Vec<Vector>)> {
+    let pairs = proptest::collection::vec(
+        (any::<prop::sample::Index>(), any::<prop::sample::Index>()),
+        3,
+    );
+    (points(scale), pairs).prop_flat_map(|(set, pairs)| {
+        let mut other = set.clone();
+        for (i, j) in pairs {
+            other.push(*i.get(&set));
+            other.push((i.get(&set) + j.get(&set)) * 0.5);
+        }
+        (Just(set), Just(other).prop_shuffle())
+    })
 }
 
 #[test]
 fn relation_10_order_repetition_and_collinear_vertices_change_nothing() {
-    let mut rng = seeded(309);
-    for _ in 0..500 {
-        let (first, second) = (points(&mut rng, 60.0), points(&mut rng, 2.0));
-        let mut shuffle = |set: &[Vector]| {
-            let mut other = set.to_vec();
-            for _ in 0..3 {
-                let (i, j) = (
-                    rng.random_range(0..set.len()),
-                    rng.random_range(0..set.len()),
-                );
-                other.push(set[i]);
-                other.push((set[i] + set[j]) * 0.5);
-            }
-            for i in (1..other.len()).rev() {
-                other.swap(i, rng.random_range(0..=i));
-            }
-            other
-        };
-        let made = |initial: &[Vector], velocity: &[Vector]| {
-            PolytopeObstacle::new(
-                "x",
-                ConvexPolygon::hull(initial).expect("finite"),
-                ConvexPolygon::hull(velocity).expect("finite"),
-            )
-        };
-        let (a, b) = (
-            made(&first, &second),
-            made(&shuffle(&first), &shuffle(&second)),
-        );
-        let (x, t) = (vector(&mut rng, 150.0), rng.random_range(0.0..50.0));
-        let (p, q) = (a.signed_distance(x, t), b.signed_distance(x, t));
-        assert!((p.distance - q.distance).abs() < 1e-9, "{a:?} {b:?}");
-        let (p, q) = (
-            a.closest_approach(x, x * 0.01, 100.0),
-            b.closest_approach(x, x * 0.01, 100.0),
-        );
-        assert!(
-            (p.distance - q.distance).abs() < 1e-8,
-            "{a:?} {b:?} {p:?} {q:?}"
-        );
-    }
+    let sets = (with_repetitions(60.0), with_repetitions(2.0));
+    check(
+        309,
+        500,
+        (sets, vector(150.0), 0.0..50.0),
+        |((initial, velocity), x, t)| {
+            let a = PolytopeObstacle::new("x", hull(&initial.0), hull(&velocity.0));
+            let b = PolytopeObstacle::new("x", hull(&initial.1), hull(&velocity.1));
+            let (p, q) = (a.signed_distance(x, t), b.signed_distance(x, t));
+            assert!((p.distance - q.distance).abs() < 1e-9, "{p:?} {q:?}");
+            let approach = |o: &PolytopeObstacle| o.closest_approach(x, x * 0.01, 100.0).distance;
+            assert!((approach(&a) - approach(&b)).abs() < 1e-8);
+        },
+    );
 }
 
 #[test]
 fn relation_14_larger_sets_contain_and_endanger_more() {
-    let mut rng = seeded(310);
-    for _ in 0..500 {
-        let (mut initial, mut velocity) = (points(&mut rng, 60.0), points(&mut rng, 2.0));
-        let hull = |p: &[Vector]| ConvexPolygon::hull(p).expect("finite");
-        let small = PolytopeObstacle::new("x", hull(&initial), hull(&velocity));
-        initial.push(vector(&mut rng, 80.0));
-        let wider = PolytopeObstacle::new("x", hull(&initial), hull(&velocity));
-        velocity.push(vector(&mut rng, 3.0));
-        let large = PolytopeObstacle::new("x", hull(&initial), hull(&velocity));
-        let (x, t) = (vector(&mut rng, 150.0), rng.random_range(0.0..50.0));
-        let v = vector(&mut rng, 4.0);
-        assert!(
-            large.signed_distance(x, t).distance <= small.signed_distance(x, t).distance + 1e-9
-        );
-        let (a, b) = (
-            small.closest_approach(x, v, 100.0),
-            large.closest_approach(x, v, 100.0),
-        );
-        assert!(b.distance <= a.distance + 1e-9, "{small:?} {large:?}");
-        // the centre of the velocities is fixed if only the positions grow
-        assert!(
-            wider.risk(x, t) >= small.risk(x, t) - 1e-9,
-            "{small:?} {wider:?} {x:?} {t}"
-        );
-        if small.in_velocity_obstacle(x, v, 100.0) && a.distance == 0.0 {
-            assert!(
-                b.distance == 0.0 || small.signed_distance(x + v * a.time, a.time).distance > -1e-9
+    let sets = (points(60.0), points(2.0), vector(80.0), vector(3.0));
+    let cases = (sets, vector(150.0), 0.0..50.0, vector(4.0));
+    check(
+        310,
+        500,
+        cases,
+        |((mut initial, mut velocity, out, fast), x, t, v)| {
+            let made = |initial: &[Vector], velocity: &[Vector]| {
+                PolytopeObstacle::new("x", hull(initial), hull(velocity))
+            };
+            let small = made(&initial, &velocity);
+            initial.push(out);
+            let wider = made(&initial, &velocity);
+            velocity.push(fast);
+            let large = made(&initial, &velocity);
+            let distance = |o: &PolytopeObstacle| o.signed_distance(x, t).distance;
+            assert!(distance(&large) <= distance(&small) + 1e-9);
+            let (a, b) = (
+                small.closest_approach(x, v, 100.0),
+                large.closest_approach(x, v, 100.0),
             );
-        }
-    }
+            assert!(b.distance <= a.distance + 1e-9, "{a:?} {b:?}");
+            // the centre of the velocities is fixed if only the positions grow
+            assert!(wider.risk(x, t) >= small.risk(x, t) - 1e-9);
+            if small.in_velocity_obstacle(x, v, 100.0) && a.distance == 0.0 {
+                let deep = small.signed_distance(x + v * a.time, a.time).distance;
+                assert!(b.distance == 0.0 || deep > -1e-9);
+            }
+        },
+    );
 }
 
 #[test]
 fn relation_16_the_area_is_that_of_minkowski() {
-    let mut rng = seeded(311);
-    for _ in 0..300 {
-        let o = polytope(&mut rng);
+    check(311, 300, polytope(), |o| {
         // quadratic in t: |O_0| + 2 t V(O_0, V) + t² |V|
         let area = |t: f64| o.section(t).area();
         let mixed = 0.5 * (area(1.0) - o.initial().area() - o.velocity().area());
         for t in [0.5, 3.0, 40.0] {
             let sum = o.initial().area() + 2.0 * t * mixed + t * t * o.velocity().area();
-            assert!((area(t) - sum).abs() < 1e-8 * (1.0 + sum), "{o:?} {t}");
+            assert!((area(t) - sum).abs() < 1e-8 * (1.0 + sum), "{t}");
         }
         // the rows of the corrected eq. (9) between two times are the faces
         for face in o.faces() {
@@ -419,88 +381,92 @@ fn relation_16_the_area_is_that_of_minkowski() {
             assert!((h(10.0) - h(4.0) - 6.0 * face.velocity_support).abs() < 1e-8);
             assert!((h(0.0) - face.initial_support).abs() < 1e-9);
         }
-    }
+    });
 }
 
 #[test]
 fn relation_21_a_disc_without_spread_is_the_textbook() {
-    let mut rng = seeded(312);
-    for _ in 0..1000 {
-        let (center, velocity) = (vector(&mut rng, 300.0), vector(&mut rng, 5.0));
-        let radius = rng.random_range(5.0..60.0);
-        let disc = outer_disc(radius, 0.3).translated(center);
-        let polygon = PolytopeObstacle::new("x", disc, ConvexPolygon::point(velocity));
-        let circle = Matrix2::identity() * radius * radius;
-        let exact = EllipsoidObstacle::new(
-            "x",
-            Ellipse::new(center, circle).expect("a shape"),
-            Ellipse::point(velocity),
-        );
-        let (x, v) = (vector(&mut rng, 300.0), vector(&mut rng, 5.0));
-        let (apart, relative) = (x - center, v - velocity);
-        let time = (-apart.dot(&relative) / relative.norm_squared()).max(0.0);
-        let distance = (apart + relative * time).norm() - radius;
-        let (p, e) = (
-            polygon.closest_approach(x, v, f64::INFINITY),
-            exact.closest_approach(x, v, f64::INFINITY),
-        );
-        assert!(
-            (e.distance - distance.max(0.0)).abs() < 1e-9,
-            "{e:?} {distance}"
-        );
-        assert!(p.distance <= e.distance + 1e-9 && p.distance >= e.distance - 0.02 * radius);
-        if distance > 1e-6 {
-            // accuracy of a flat minimum from the root of its derivative
-            assert!((e.time - time).abs() < 1e-6 * (1.0 + time), "{e:?} {time}");
-            assert!(!exact.in_velocity_obstacle(x, v, f64::INFINITY));
-        } else if distance < -1e-6 {
-            assert!(exact.in_velocity_obstacle(x, v, f64::INFINITY));
-            assert!(polygon.in_velocity_obstacle(x, v, f64::INFINITY));
-            // the quadratic gives the time of entry into the circle
-            let (a, b, c) = (
-                relative.norm_squared(),
-                apart.dot(&relative),
-                apart.norm_squared() - radius * radius,
+    let disc = (vector(300.0), vector(5.0), 5.0..60.0);
+    check(
+        312,
+        1000,
+        (disc, vector(300.0), vector(5.0)),
+        |((center, velocity, radius), x, v)| {
+            let disc = outer_disc(radius, 0.3).translated(center);
+            let polygon = PolytopeObstacle::new("x", disc, ConvexPolygon::point(velocity));
+            let circle = Matrix2::identity() * radius * radius;
+            let exact = EllipsoidObstacle::new(
+                "x",
+                Ellipse::new(center, circle).expect("a shape"),
+                Ellipse::point(velocity),
             );
-            let entry = if c <= 0.0 {
-                0.0
-            } else {
-                (-b - (b * b - a * c).sqrt()) / a
-            };
-            let at = apart + relative * e.time;
+            let (apart, relative) = (x - center, v - velocity);
+            let time = (-apart.dot(&relative) / relative.norm_squared()).max(0.0);
+            let distance = (apart + relative * time).norm() - radius;
+            let (p, e) = (
+                polygon.closest_approach(x, v, f64::INFINITY),
+                exact.closest_approach(x, v, f64::INFINITY),
+            );
             assert!(
-                (at.norm() - radius).abs() < 1e-7 || entry == 0.0,
-                "{e:?} {entry}"
+                (e.distance - distance.max(0.0)).abs() < 1e-9,
+                "{e:?} {distance}"
             );
-        }
-    }
+            assert!(p.distance <= e.distance + 1e-9 && p.distance >= e.distance - 0.02 * radius);
+            if distance > 1e-6 {
+                // accuracy of a flat minimum from the root of its derivative
+                assert!((e.time - time).abs() < 1e-6 * (1.0 + time), "{e:?} {time}");
+                assert!(!exact.in_velocity_obstacle(x, v, f64::INFINITY));
+            } else if distance < -1e-6 {
+                assert!(exact.in_velocity_obstacle(x, v, f64::INFINITY));
+                assert!(polygon.in_velocity_obstacle(x, v, f64::INFINITY));
+                // the quadratic gives the time of entry into the circle
+                let (a, b, c) = (
+                    relative.norm_squared(),
+                    apart.dot(&relative),
+                    apart.norm_squared() - radius * radius,
+                );
+                let entry = if c <= 0.0 {
+                    0.0
+                } else {
+                    (-b - (b * b - a * c).sqrt()) / a
+                };
+                let at = apart + relative * e.time;
+                assert!(
+                    (at.norm() - radius).abs() < 1e-7 || entry == 0.0,
+                    "{e:?} {entry}"
+                );
+            }
+        },
+    );
 }
 
 #[test]
 fn relation_24_the_same_question_has_the_same_bits() {
     let answers = || {
-        let mut rng = seeded(313);
-        let mut bits = Vec::new();
-        for case in 0..60 {
-            let (p, e, s) = (polytope(&mut rng), ellipsoid(&mut rng), slabs(&mut rng));
-            let (x, t) = (vector(&mut rng, 150.0), rng.random_range(0.0..50.0));
-            let path = segment(&mut rng, case % 2 == 0);
-            for o in [&p as &dyn SpaceTimeObstacle, &e, &s] {
-                let approach = o.closest_approach(x, x * 0.01, 100.0);
-                let peak = o.peak_risk(&path);
-                let contact = o.first_contact(&path, 0.0).unwrap_or(-1.0);
-                let found = [
-                    o.risk(x, t),
-                    approach.distance,
-                    approach.time,
-                    peak.risk,
-                    peak.time,
-                    contact,
-                ];
-                bits.extend(found.map(f64::to_bits));
-            }
-        }
-        bits
+        let bits = std::cell::RefCell::new(Vec::new());
+        let sets = (polytope(), ellipsoid(), slabs());
+        check(
+            313,
+            60,
+            (sets, vector(150.0), 0.0..50.0, segment()),
+            |((p, e, s), x, t, path)| {
+                for o in [&p as &dyn SpaceTimeObstacle, &e, &s] {
+                    let approach = o.closest_approach(x, x * 0.01, 100.0);
+                    let peak = o.peak_risk(&path);
+                    let contact = o.first_contact(&path, 0.0).unwrap_or(-1.0);
+                    let found = [
+                        o.risk(x, t),
+                        approach.distance,
+                        approach.time,
+                        peak.risk,
+                        peak.time,
+                        contact,
+                    ];
+                    bits.borrow_mut().extend(found.map(f64::to_bits));
+                }
+            },
+        );
+        bits.into_inner()
     };
     let first = answers();
     let others: Vec<_> = std::thread::scope(|scope| {

@@ -1,32 +1,37 @@
 //! Tests of the common obstacle interface against slow definitions, for all implementors.
 
-use super::generators::{directions, ellipsoid, polytope, seeded, segment, slabs, vector};
-use rand::Rng;
-use rand_chacha::ChaCha8Rng;
+use std::fmt::Debug;
+
+use proptest::prelude::*;
+use proptest::sample::select;
 use searoom::frame::{Vector, heading_of};
 use searoom::obstacle::contact::{Interval, arc_contacts, line_contact};
 use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
 use searoom::trajectory::Segment;
 
-type Draw<O> = fn(&mut ChaCha8Rng) -> O;
+use super::generators::{
+    Counter, arc, check, directions, ellipsoid, line, obstacle, polytope, segment, slabs, vector,
+};
 
-/// Random point near the section at a time, which is sometimes 0.
-fn event<O: SpaceTimeObstacle>(o: &O, rng: &mut ChaCha8Rng) -> (Vector, f64) {
-    let time = if rng.random_bool(0.15) {
-        0.0
-    } else {
-        rng.random_range(0.0..60.0)
-    };
-    let n = vector(rng, 1.0).normalize();
-    let (a, b) = (o.support(n, time).value, -o.support(-n, time).value);
-    let across = Vector::new(-n.y, n.x);
-    let (c, d) = (
-        o.support(across, time).value,
-        -o.support(-across, time).value,
-    );
-    let mut within = |a: f64, b: f64| 0.5 * (a + b) + rng.random_range(-1.0..1.0) * (a - b + 5.0);
-    (n * within(a, b) + across * within(c, d), time)
+/// Obstacle, and a point near its section at a time that is sometimes 0.
+fn event<O: SpaceTimeObstacle + Debug>(
+    obstacles: impl Strategy<Value = O>,
+) -> impl Strategy<Value = (O, Vector, f64)> {
+    let time = prop_oneof![3 => Just(0.0), 17 => 0.0..60.0];
+    let shares = (-1.0..1.0, -1.0..1.0);
+    (obstacles, time, -3.2..3.2, shares).prop_map(|(o, time, heading, shares)| {
+        let n: Vector = searoom::frame::direction(heading);
+        let within = |n: Vector, share: f64| {
+            let (far, near) = (o.support(n, time).value, -o.support(-n, time).value);
+            n * (0.5 * (far + near) + share * (far - near + 5.0))
+        };
+        let x = within(n, shares.0) + within(Vector::new(-n.y, n.x), shares.1);
+        (o, x, time)
+    })
 }
+
+trait Set: SpaceTimeObstacle + Debug {}
+impl<O: SpaceTimeObstacle + Debug> Set for O {}
 
 /// Definition: the largest signed distance from a supporting line, found by sampling and
 /// refinement.
@@ -55,42 +60,31 @@ fn searched_distance<O: SpaceTimeObstacle>(o: &O, x: Vector, t: f64) -> f64 {
         .fold(f64::NEG_INFINITY, f64::max)
 }
 
-fn distance_is_the_best_supporting_line<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>) {
-    let mut rng = seeded(101);
-    let mut inside = 0;
-    for _ in 0..1500 {
-        let o = draw(&mut rng);
-        let (x, t) = event(&o, &mut rng);
+fn distance_is_the_best_supporting_line<O: Set>(draw: impl Strategy<Value = O>) {
+    let inside = Counter::default();
+    check(101, 1500, event(draw), |(o, x, t)| {
         let found = o.signed_distance(x, t);
-        let slow = searched_distance(&o, x, t);
         // the search may miss a narrow peak, but never exceeds the true value
-        assert!(
-            found.distance >= slow - 1e-7,
-            "{o:?} {x:?} {t} {slow} {found:?}"
-        );
+        let slow = searched_distance(&o, x, t);
+        assert!(found.distance >= slow - 1e-7, "{slow} {found:?}");
         let n = found.normal;
         assert!((n.norm() - 1.0).abs() < 1e-9);
         let attained = n.dot(&x) - o.support(n, t).value;
         assert!(
             (attained - found.distance).abs() < 1e-7,
-            "{o:?} {x:?} {t} {found:?} {attained}"
+            "{found:?} {attained}"
         );
         if found.distance.abs() > 1e-7 {
-            assert_eq!(o.contains(x, t), found.distance < 0.0, "{o:?} {x:?} {t}");
+            assert_eq!(o.contains(x, t), found.distance < 0.0);
         }
-        inside += usize::from(found.distance < 0.0);
-        let later = o.support(n, t + 1e-6);
-        let now = o.support(n, t);
+        inside.add(found.distance < 0.0);
+        let (now, later) = (o.support(n, t), o.support(n, t + 1e-6));
         if now.rate.is_finite() && t > 1.0 {
             let slope = (later.value - now.value) / 1e-6;
-            assert!(
-                (slope - now.rate).abs() < 1e-3,
-                "{o:?} {t} {slope} {}",
-                now.rate
-            );
+            assert!((slope - now.rate).abs() < 1e-3, "{slope} {}", now.rate);
         }
-    }
-    assert!(inside > 100, "{inside}");
+    });
+    inside.assert_above(100);
 }
 
 /// Definition: the least alpha whose set contains the point, found by bisection.
@@ -114,40 +108,31 @@ fn searched_alpha<O: SpaceTimeObstacle>(o: &O, x: Vector, t: f64) -> Option<f64>
     Some(within)
 }
 
-fn alpha_is_the_least_scaling<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>) {
-    let mut rng = seeded(102);
-    let mut between = 0;
-    for _ in 0..1500 {
-        let o = draw(&mut rng);
-        let (x, t) = event(&o, &mut rng);
+fn alpha_is_the_least_scaling<O: Set>(draw: impl Strategy<Value = O>) {
+    let between = Counter::default();
+    check(102, 1500, event(draw), |(o, x, t)| {
         let (alpha, depth) = (o.alpha(x, t), o.signed_distance(x, t).distance);
         // a set without interior has no margin for rounding
         if depth.abs() < 1e-6 {
-            continue;
+            return;
         }
-        assert_eq!(alpha <= 1.0, o.contains(x, t), "{o:?} {x:?} {t} {alpha}");
+        assert_eq!(alpha <= 1.0, o.contains(x, t), "{alpha}");
         if let Some(slow) = searched_alpha(&o, x, t) {
-            assert!(
-                (alpha - slow).abs() < 1e-6,
-                "{o:?} {x:?} {t} {alpha} {slow}"
-            );
+            assert!((alpha - slow).abs() < 1e-6, "{alpha} {slow}");
             assert!((o.risk(x, t) - (1.0 - slow)).abs() < 1e-6);
-            between += usize::from(alpha > 1e-6);
+            between.add(alpha > 1e-6);
         } else {
             assert_eq!(o.risk(x, t), 0.0);
         }
         assert_eq!((o.risk(x, -1.0), o.alpha(x, -1.0)), (0.0, f64::INFINITY));
-    }
-    assert!(between > 60, "{between}");
+    });
+    between.assert_above(60);
 }
 
-fn contact_is_the_first_instant_inside<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>) {
-    let mut rng = seeded(103);
-    let mut met = [0; 2];
-    for case in 0..900 {
-        let o = draw(&mut rng);
-        let s = segment(&mut rng, case % 2 == 0);
-        let depth = [0.0, 0.0, 1e-3, 2.0][rng.random_range(0..4)];
+fn contact_is_the_first_instant_inside<O: Set>(draw: impl Strategy<Value = O>) {
+    let met = [Counter::default(), Counter::default()];
+    let depths = select(vec![0.0, 0.0, 1e-3, 2.0]);
+    check(103, 900, (draw, segment(), depths), |(o, s, depth)| {
         let found = o.first_contact(&s, depth);
         let step = s.duration / 2000.0;
         let at = |t: f64| o.signed_distance(s.pose_at(t).position, t).distance + depth;
@@ -155,40 +140,35 @@ fn contact_is_the_first_instant_inside<O: SpaceTimeObstacle + std::fmt::Debug>(d
             .map(|i| s.start_time + step * f64::from(i))
             .find(|t| at(*t) <= -1e-6);
         if let Some(t) = dense {
-            let found = found.unwrap_or_else(|| panic!("missed at {t}: {o:?} {s:?} {depth}"));
-            assert!(found <= t + 1e-9, "{o:?} {s:?} {depth} {found} {t}");
-            met[case % 2] += 1;
+            assert!(
+                found.is_some_and(|found| found <= t + 1e-9),
+                "{found:?} {t}"
+            );
+            met[usize::from(s.is_arc())].add(true);
         }
         if let Some(t) = found {
             assert!(t >= s.start_time && t <= s.end_time() + 1e-9);
             // inside from this time on, and not before
-            assert!(at(t) <= 1e-6, "{o:?} {s:?} {depth} {t} {}", at(t));
-            let before = (0..200).map(|i| s.start_time + (t - s.start_time) * f64::from(i) / 200.0);
-            assert!(
-                t <= s.start_time.max(0.0) + 1e-9 || before.into_iter().all(|b| at(b) > -1e-6),
-                "{o:?} {s:?} {depth} {t}"
-            );
+            assert!(at(t) <= 1e-6, "{t} {}", at(t));
+            let before = |i: i32| s.start_time + (t - s.start_time) * f64::from(i) / 200.0;
+            let begins = t <= s.start_time.max(0.0) + 1e-9;
+            assert!(begins || (0..200).all(|i| at(before(i)) > -1e-6), "{t}");
         }
-    }
-    assert!(met[0] > 30 && met[1] > 30, "{met:?}");
+    });
+    met.iter().for_each(|met| met.assert_above(30));
 }
 
-fn peak_risk_is_the_largest_sample<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>) {
-    let mut rng = seeded(104);
-    let mut between = 0;
-    for case in 0..600 {
-        let o = draw(&mut rng);
-        let s = segment(&mut rng, case % 3 == 0);
+fn peak_risk_is_the_largest_sample<O: Set>(draw: impl Strategy<Value = O>) {
+    let between = Counter::default();
+    let segments = prop_oneof![1 => arc().boxed(), 2 => line().boxed()];
+    check(104, 600, (draw, segments), |(o, s)| {
         let peak = o.peak_risk(&s);
         let at = |t: f64| o.risk(s.pose_at(t).position, t);
         let step = s.duration / 4000.0;
         let sampled = (0..=4000)
             .map(|i| at(s.start_time + step * f64::from(i)))
             .fold(0.0, f64::max);
-        assert!(
-            sampled <= peak.risk + 1e-9,
-            "{o:?} {s:?} {sampled} {peak:?}"
-        );
+        assert!(sampled <= peak.risk + 1e-9, "{sampled} {peak:?}");
         // attained nearby, if the sets have an interior
         let near = directions(8)
             .map(|d| o.risk(s.pose_at(peak.time).position + d * 1e-6, peak.time))
@@ -197,20 +177,18 @@ fn peak_risk_is_the_largest_sample<O: SpaceTimeObstacle + std::fmt::Debug>(draw:
         let width =
             |n: Vector| level.support(n, peak.time).value + level.support(-n, peak.time).value;
         if peak.time > 1.0 && directions(720).all(|n| width(n) > 2.0) {
-            assert!(near >= peak.risk - 1e-4, "{o:?} {s:?} {peak:?} {near}");
+            assert!(near >= peak.risk - 1e-4, "{peak:?} {near}");
         }
-        between += usize::from(peak.risk > 0.01 && peak.risk < 0.99);
-    }
-    assert!(between > 20, "{between}");
+        between.add(peak.risk > 0.01 && peak.risk < 0.99);
+    });
+    between.assert_above(20);
 }
 
-fn approach_is_the_least_sample<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>) {
-    let mut rng = seeded(105);
-    let mut apart = 0;
-    for _ in 0..800 {
-        let o = draw(&mut rng);
-        let (x, v) = (vector(&mut rng, 300.0), vector(&mut rng, 4.0));
-        let horizon = [10.0, 60.0, 300.0, f64::INFINITY][rng.random_range(0..4)];
+fn approach_is_the_least_sample<O: Set>(draw: impl Strategy<Value = O>) {
+    let apart = Counter::default();
+    let horizons = select(vec![10.0, 60.0, 300.0, f64::INFINITY]);
+    let cases = (draw, vector(300.0), vector(4.0), horizons);
+    check(105, 800, cases, |(o, x, v, horizon)| {
         let found = o.closest_approach(x, v, horizon);
         let at = |t: f64| o.signed_distance(x + v * t, t).distance.max(0.0);
         let until = f64::min(horizon, 400.0);
@@ -219,45 +197,29 @@ fn approach_is_the_least_sample<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Dr
             .map(|t| (t, at(t)))
             .collect();
         let least = dense.iter().map(|d| d.1).fold(f64::INFINITY, f64::min);
-        assert!(
-            found.distance <= least + 1e-7,
-            "{o:?} {x:?} {v:?} {horizon} {found:?} {least}"
-        );
+        assert!(found.distance <= least + 1e-7, "{found:?} {least}");
         if found.attained {
             assert!(found.time >= 0.0 && found.time <= horizon);
-            let there = at(found.time);
-            assert!(
-                (there - found.distance).abs() < 1e-6 * (1.0 + 1e-3 * found.time),
-                "{o:?} {x:?} {v:?} {horizon} {found:?} {there}"
-            );
+            let off = (at(found.time) - found.distance).abs();
+            assert!(off < 1e-6 * (1.0 + 1e-3 * found.time), "{found:?} {off}");
             // no earlier sample is as near
             for (t, d) in dense.iter().filter(|(t, _)| *t < found.time - 1e-6) {
-                assert!(
-                    *d > found.distance - 1e-7,
-                    "{o:?} {x:?} {v:?} {t} {d} {found:?}"
-                );
+                assert!(*d > found.distance - 1e-7, "{t} {d} {found:?}");
             }
         }
         let meets = o.in_velocity_obstacle(x, v, horizon);
-        assert_eq!(
-            meets,
-            found.distance == 0.0,
-            "{o:?} {x:?} {v:?} {horizon} {found:?}"
-        );
-        apart += usize::from(!meets && found.time > 0.0 && found.time < horizon);
-    }
-    assert!(apart > 100, "{apart}");
+        assert_eq!(meets, found.distance == 0.0, "{found:?}");
+        apart.add(!meets && found.time > 0.0 && found.time < horizon);
+    });
+    apart.assert_above(100);
 }
 
-fn risk_levels_are_nested<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>) {
-    let mut rng = seeded(106);
-    for _ in 0..500 {
-        let o = draw(&mut rng);
-        let (low, high) = (rng.random_range(0.0..0.5), rng.random_range(0.5..=1.0));
-        let t = rng.random_range(0.0..50.0);
+fn risk_levels_are_nested<O: Set>(draw: impl Strategy<Value = O>) {
+    let cases = (draw, 0.0..0.5, 0.5..=1.0, 0.0..50.0);
+    check(106, 500, cases, |(o, low, high, t)| {
         for n in directions(32) {
             let [all, more, less] = [0.0, low, high].map(|r| o.at_risk(r).support(n, t).value);
-            assert!(less <= more + 1e-9 && more <= all + 1e-9, "{o:?} {t}");
+            assert!(less <= more + 1e-9 && more <= all + 1e-9);
             assert!((all - o.support(n, t).value).abs() < 1e-9);
         }
         // an invalid level accepts no risk
@@ -265,20 +227,18 @@ fn risk_levels_are_nested<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>)
         for odd in [f64::NAN, -1.0, 2.0] {
             assert_eq!(o.at_risk(odd).support(Vector::new(1.0, 0.0), t).value, all);
         }
-    }
+    });
 }
 
-fn what_is_no_number_is_in_contact<O: SpaceTimeObstacle + std::fmt::Debug>(draw: Draw<O>) {
-    let mut rng = seeded(107);
-    for _ in 0..50 {
-        let o = draw(&mut rng);
+fn what_is_no_number_is_in_contact<O: Set>(draw: impl Strategy<Value = O>) {
+    check(107, 50, (draw, line()), |(o, s)| {
         let far = Vector::new(1e7, 1e7);
         for bad in [f64::NAN, f64::INFINITY] {
             let lost = Vector::new(bad, 0.0);
             assert!(o.closest_approach(lost, far, 10.0).distance == 0.0);
             assert!(o.closest_approach(far, lost, 10.0).distance == 0.0);
             assert!(o.in_velocity_obstacle(lost, far, 10.0));
-            let mut s = segment(&mut rng, false);
+            let mut s = s;
             s.start.position = far;
             s.speed = bad;
             assert!(o.first_contact(&s, 0.0).is_some());
@@ -288,7 +248,6 @@ fn what_is_no_number_is_in_contact<O: SpaceTimeObstacle + std::fmt::Debug>(draw:
         assert!(o.contains(lost, 1.0) && o.contains(far, f64::NAN));
         assert!(o.signed_distance(lost, 1.0).distance.is_nan());
         assert_eq!((o.risk(far, f64::NAN), o.risk(lost, 1.0)), (1.0, 1.0));
-        let s = segment(&mut rng, false);
         assert!(o.first_contact(&s, f64::NAN).is_some());
         assert!(!o.contains(far, 1.0) && !o.contains(o_center(&o), -1.0));
         let past = Segment {
@@ -298,7 +257,7 @@ fn what_is_no_number_is_in_contact<O: SpaceTimeObstacle + std::fmt::Debug>(draw:
         };
         assert_eq!(o.first_contact(&past, 0.0), None);
         assert_eq!(o.peak_risk(&past).risk, 0.0);
-    }
+    });
 }
 
 fn o_center<O: SpaceTimeObstacle>(o: &O) -> Vector {
@@ -307,61 +266,41 @@ fn o_center<O: SpaceTimeObstacle>(o: &O) -> Vector {
 }
 
 macro_rules! suite {
-    ($room:ident, $draw:expr) => {
+    ($room:ident, $draw:expr, $($test:ident)*) => {
         mod $room {
             use super::*;
 
-            #[test]
-            fn distance_is_the_best_supporting_line() {
-                super::distance_is_the_best_supporting_line($draw);
-            }
-
-            #[test]
-            fn alpha_is_the_least_scaling() {
-                super::alpha_is_the_least_scaling($draw);
-            }
-
-            #[test]
-            fn contact_is_the_first_instant_inside() {
-                super::contact_is_the_first_instant_inside($draw);
-            }
-
-            #[test]
-            fn peak_risk_is_the_largest_sample() {
-                super::peak_risk_is_the_largest_sample($draw);
-            }
-
-            #[test]
-            fn approach_is_the_least_sample() {
-                super::approach_is_the_least_sample($draw);
-            }
-
-            #[test]
-            fn risk_levels_are_nested() {
-                super::risk_levels_are_nested($draw);
-            }
-
-            #[test]
-            fn what_is_no_number_is_in_contact() {
-                super::what_is_no_number_is_in_contact($draw);
-            }
+            $(
+                #[test]
+                fn $test() {
+                    super::$test($draw);
+                }
+            )*
         }
+    };
+    ($room:ident, $draw:expr) => {
+        suite!($room, $draw,
+            distance_is_the_best_supporting_line
+            alpha_is_the_least_scaling
+            contact_is_the_first_instant_inside
+            peak_risk_is_the_largest_sample
+            approach_is_the_least_sample
+            risk_levels_are_nested
+            what_is_no_number_is_in_contact
+        );
     };
 }
 
-suite!(of_polytopes, polytope);
-suite!(of_ellipsoids, ellipsoid);
-suite!(of_slabs, slabs);
+suite!(of_polytopes, polytope());
+suite!(of_ellipsoids, ellipsoid());
+suite!(of_slabs, slabs());
 
 /// Tests lines and arcs: during a contact the position is in the set, and just before and after it
 /// is not. Positions between two contacts are also outside.
 #[test]
 fn a_contact_begins_and_ends_where_the_set_does() {
-    let mut rng = seeded(505);
-    let (mut begun, mut ended, mut twice) = (0, 0, 0);
-    for case in 0..4000 {
-        let o = polytope(&mut rng);
-        let s = segment(&mut rng, case % 2 == 0);
+    let [begun, ended, twice] = [(); 3].map(|()| Counter::default());
+    check(505, 4000, (polytope(), segment()), |(o, s)| {
         let contacts: Vec<Interval> = if s.is_arc() {
             arc_contacts(&o, &s, 0.0)
         } else {
@@ -370,73 +309,54 @@ fn a_contact_begins_and_ends_where_the_set_does() {
         let slack = |t: f64| o.slack(s.pose_at(t).position, t).value;
         for contact in &contacts {
             let middle = 0.5 * (contact.start + contact.end);
-            assert!(slack(middle) < 1e-6, "{o:?} {s:?} {contact:?}");
+            assert!(slack(middle) < 1e-6, "{contact:?}");
             for (edge, inward, limit) in [
                 (contact.start, 1.0, s.start_time),
                 (contact.end, -1.0, s.end_time()),
             ] {
-                assert!(slack(edge) < 1e-6, "{o:?} {s:?} {contact:?}");
+                assert!(slack(edge) < 1e-6, "{contact:?}");
                 if (edge - limit).abs() < 1e-3 {
                     continue;
                 }
-                assert!(
-                    slack(edge - 1e-4 * inward) > -1e-9,
-                    "{o:?} {s:?} {contact:?}"
-                );
-                assert!(slack(edge).abs() < 1e-6, "{o:?} {s:?} {contact:?}");
-                *(if inward > 0.0 { &mut begun } else { &mut ended }) += 1;
+                assert!(slack(edge - 1e-4 * inward) > -1e-9, "{contact:?}");
+                assert!(slack(edge).abs() < 1e-6, "{contact:?}");
+                (if inward > 0.0 { &begun } else { &ended }).add(true);
             }
         }
         for pair in contacts.windows(2) {
-            twice += 1;
-            assert!(
-                slack(0.5 * (pair[0].end + pair[1].start)) > -1e-9,
-                "{o:?} {s:?}"
-            );
+            twice.add(true);
+            assert!(slack(0.5 * (pair[0].end + pair[1].start)) > -1e-9);
         }
         for k in 0..=200 {
             let t = s.start_time + s.duration * f64::from(k) / 200.0;
             let within = contacts
                 .iter()
                 .any(|c| c.start - 1e-6 <= t && t <= c.end + 1e-6);
-            assert!(within || slack(t) > -1e-6, "{o:?} {s:?} {t}");
+            assert!(within || slack(t) > -1e-6, "{t}");
         }
-    }
-    assert!(
-        begun > 300 && ended > 300 && twice > 5,
-        "{begun} {ended} {twice}"
-    );
+    });
+    begun.assert_above(300);
+    ended.assert_above(300);
+    twice.assert_above(5);
 }
 
 /// Tests the remainder of a set from a time on, with a clock that starts then. A polygon is exact.
 /// An ellipse is exact at first and never smaller.
 #[test]
 fn what_remains_of_a_set_goes_on_from_its_section() {
-    let mut rng = seeded(506);
-    for case in 0..600 {
-        let o: Obstacle = match case % 3 {
-            0 => polytope(&mut rng).into(),
-            1 => ellipsoid(&mut rng).into(),
-            _ => slabs(&mut rng).into(),
-        };
-        let time = rng.random_range(0.5..100.0);
+    let cases = (obstacle(), 0.5..100.0, 0.0..20.0, 20.0..90.0);
+    check(506, 600, cases, |(o, time, soon, late)| {
         let rest = o.remainder(time);
-        for later in [
-            0.0,
-            rng.random_range(0.0..20.0),
-            rng.random_range(20.0..90.0),
-        ] {
+        for later in [0.0, soon, late] {
             for n in directions(24) {
-                let (was, is) = (
-                    o.support(n, time + later).value,
-                    rest.support(n, later).value,
-                );
+                let was = o.support(n, time + later).value;
+                let is = rest.support(n, later).value;
                 let equal = later == 0.0 || !matches!(o, Obstacle::Ellipsoid(_));
                 assert!(
                     is > was - 1e-6 && (!equal || is < was + 1e-6),
-                    "{o:?} {time} {later} {was} {is}"
+                    "{later} {was} {is}"
                 );
             }
         }
-    }
+    });
 }
