@@ -39,9 +39,47 @@ fn shown(text: &str, keep: impl Fn(char) -> bool) -> String {
     out
 }
 
-#[test]
-fn control_characters_appear_as_their_codes() {
-    let text = "ferry\n\u{1b}[8m\u{202e}";
-    assert_eq!(printable(text), r"ferry\u000a\u001b[8m\u202e");
-    assert_eq!(printable("Trondheimsfjorden ø"), "Trondheimsfjorden ø");
+/// Formats a space-time error; small values have one decimal.
+pub(crate) fn square_metres(value: f64) -> String {
+    if value.is_nan() {
+        "undefined".to_owned()
+    } else if value < 1000.0 {
+        format!("{value:.1}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
+/// Formats one decimal; values that round to zero have no sign.
+pub(crate) fn tenths(value: f64) -> String {
+    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
+}
+
+/// Formats one decimal with a sign; values that round to zero give `+0.0`.
+pub(crate) fn signed(value: f64) -> String {
+    format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(
+            (tenths(-0.04), signed(-0.04)),
+            ("0.0".into(), "+0.0".into())
+        );
+        assert_eq!(
+            (tenths(-0.06), signed(0.06)),
+            ("-0.1".into(), "+0.1".into())
+        );
+    }
+
+    #[test]
+    fn control_characters_appear_as_their_codes() {
+        let text = "ferry\n\u{1b}[8m\u{202e}";
+        assert_eq!(printable(text), r"ferry\u000a\u001b[8m\u202e");
+        assert_eq!(printable("Trondheimsfjorden ø"), "Trondheimsfjorden ø");
+    }
 }

@@ -179,6 +179,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "scenario",
             "pipeline",
             "study",
+            "text",
         ],
     ),
     (

@@ -12,11 +12,11 @@ use super::{Recorder, RecordingError, Stores, put};
 use crate::frame::{Vector, knots_from_mps};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
-use crate::recording::canvas::{Canvas, Motion, Palette, flat, style};
+use crate::recording::canvas::{Canvas, Palette, ShownMotion, flat, style};
 use crate::recording::views::chart::{self, Key};
 use crate::recording::views::curves::{self, CLEARANCE, SPEED, Series};
 use crate::recording::views::explored::log_explored;
-use crate::recording::views::ships::{self, OwnShip};
+use crate::recording::views::ships::{self, DrawnShip};
 use crate::recording::views::{land, space_time};
 use crate::recording::{COMPARISON, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
@@ -81,7 +81,7 @@ pub struct Compared<'a> {
 /// ```
 pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), RecordingError> {
     let title = &compared.scenario.title;
-    put(path, title, Some((COMPARISON, compared.document)), || {
+    put(path, title, (COMPARISON, compared.document), || {
         log(compared)
     })
 }
@@ -89,7 +89,7 @@ pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), Recordin
 /// One motion and its style.
 struct Candidate<'a> {
     entry: &'a Entry,
-    own: OwnShip<'a>,
+    own: DrawnShip<'a>,
     style: LineStyle,
 }
 
@@ -102,19 +102,19 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
     let candidates = candidates(entries);
     let sets = pipeline::sets(scenario);
     let is_plan = |c: &&Candidate| matches!(c.entry.candidate.method, Method::Planner { .. });
-    let plans: Vec<Motion> = candidates
+    let plans: Vec<ShownMotion> = candidates
         .iter()
         .filter(is_plan)
         .map(|c| c.own.motion)
         .collect();
     // baselines go on to the horizon, far away
-    let end = plans.iter().map(Motion::end).fold(0.0, f64::max);
+    let end = plans.iter().map(ShownMotion::end).fold(0.0, f64::max);
     let end = end.max(scenario.desired.duration()).min(scenario.horizon);
     let canvas = Canvas::new(scenario, &sets, &plans, end, Palette::OwnShips);
 
     let legend = legend(&canvas, &candidates, &sets);
     let rows = legend.len().div_ceil(KEYS);
-    let own: Vec<OwnShip> = candidates.iter().map(|c| c.own.clone()).collect();
+    let own: Vec<DrawnShip> = candidates.iter().map(|c| c.own.clone()).collect();
     land::log_land(rec, &canvas)?;
     chart::log_waters(rec, &canvas)?;
     chart::log_legend(rec, &canvas, legend, rows)?;
@@ -167,7 +167,7 @@ fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
         of_method.map(|e| e.candidate.max_risk)
     };
     let sailing = entries.iter().filter_map(|entry| {
-        let motion = Motion::Planned(entry.trajectory()?);
+        let motion = ShownMotion::Planned(entry.trajectory()?);
         let candidate = entry.candidate;
         let style = LineStyle::of(candidate.method);
         let all: Vec<f64> = risks(candidate.method).collect();
@@ -180,7 +180,7 @@ fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
         } else {
             candidate.method.to_string()
         };
-        let own = OwnShip {
+        let own = DrawnShip {
             motion,
             name,
             color: style::toward_background(color, 1.0 - share * (1.0 - WEAKEST)),
@@ -253,7 +253,7 @@ fn log_way(
     order: f32,
 ) -> RecordingStreamResult<()> {
     let Candidate { own, style, .. } = candidate;
-    let Motion::Planned(trajectory) = own.motion else {
+    let ShownMotion::Planned(trajectory) = own.motion else {
         return Ok(());
     };
     let mut line: Vec<(Vector, f64)> = Vec::new();

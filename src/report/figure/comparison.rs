@@ -5,7 +5,7 @@ use super::outline::{SYMBOLS, Stroke, area, curve, sampled_boundary, symbols};
 use super::path_time::{ProfileLine, path_time_panel};
 use super::plan::{DESIRED, LAND, land_areas};
 use super::sections::PLAN;
-use super::{Figure, Panel, Window};
+use super::{Figure, Panel, PlotWindow};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
@@ -139,7 +139,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let waypoints = scenario.desired.waypoints();
     let end = scenario.desired.duration();
     // a motion that continues to the horizon would shrink all others
-    let reach = Window::around(waypoints.iter().copied(), 0.35);
+    let reach = PlotWindow::around(waypoints.iter().copied(), 0.35);
     let within = |p: &Vector| {
         p.x > reach.low.x && p.x < reach.high.x && p.y > reach.low.y && p.y < reach.high.y
     };
@@ -158,7 +158,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
         }
     }
     let title = format!("{}: trajectories", scenario.title);
-    let mut panel = Panel::plan(title, PLAN, Window::around(shown, 0.06));
+    let mut panel = Panel::plan(title, PLAN, PlotWindow::around(shown, 0.06));
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
     for boundary in &sets {
@@ -221,7 +221,7 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
         .flat_map(|(_, line)| line)
         .filter(|p| p.y <= top);
     let end = near.map(|p| p.x).fold(1.0, f64::max);
-    let window = Window {
+    let window = PlotWindow {
         low: Vector::new(0.0, 0.0),
         high: Vector::new(end, if top > 0.0 { top } else { 1.0 }),
     };
@@ -285,7 +285,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
         right = right.max(p.x);
         top = top.max(p.y);
     }
-    let window = Window {
+    let window = PlotWindow {
         low: Vector::zeros(),
         high: Vector::new(
             if right > 0.0 { right * 1.05 } else { 1.0 },
