@@ -256,30 +256,6 @@ pub enum Representation {
 }
 
 /// A tracked target.
-///
-/// ```
-/// use searoom::frame::{Pose, Vector};
-/// use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
-/// use searoom::vessel::Hull;
-///
-/// let ferry = Target {
-///     name: "ferry".to_owned(),
-///     motion: Motion::Ship(ShipTrack {
-///         pose: Pose::new(Vector::new(1500.0, 0.0), std::f64::consts::PI),
-///         speed: 5.0,
-///         hull: Hull { length: 60.0, beam: 12.0 },
-///         position_std: 0.0,
-///         speed_spread: 0.5,
-///         course_spread: 0.05,
-///         turn_rate: 0.0,
-///         domain: DomainKind::Colregs,
-///     }),
-///     representation: Representation::Polytope,
-/// };
-/// assert!((ferry.position_at(100.0) - Vector::new(1000.0, 0.0)).norm() < 1e-9);
-/// let ship = ferry.ship().expect("a ship");
-/// assert!(ship.outer_velocity_set().contains(Vector::new(-5.4, 0.0)));
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
     /// Unique within a scenario.

@@ -1,0 +1,11 @@
+//! Tests of the plan document check: documents from the planners pass, and every alteration is
+//! detected.
+
+mod alter;
+mod claims;
+#[path = "../campaigns/documents.rs"]
+mod documents;
+mod input;
+mod motion;
+mod risk;
+mod unsound;
