@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::alteration::largest_alteration;
 use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
-use super::plan::{cost_of, finite, objective, position, stats, timing};
+use super::plan::{cost_of, finite, minimised, objective, position, stats, timing};
 use crate::evaluation::{Safety, outcome_word};
 use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
@@ -156,7 +156,9 @@ impl EntryDocument {
             safe: entry.safety() == Some(Safety::Safe),
             cost: trajectory.zip(entry.evaluation()).map(|(motion, found)| {
                 // a baseline has no other objective
-                let objective = plan.map_or(found.space_time_error, |plan| plan.cost);
+                let objective = run.zip(plan).map_or(found.space_time_error, |(run, plan)| {
+                    minimised(&run.scenario, plan, found)
+                });
                 let mut cost = cost_of(motion, found, objective, entry.arrived(), entry.risks());
                 cost.delay_s = cost.delay_s.filter(|_| cost.arrived);
                 cost

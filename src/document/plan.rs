@@ -271,9 +271,21 @@ fn cost(run: &Run) -> Option<CostDocument> {
     let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
     let arrived = run.control.is_none() && plan.to_go == 0.0;
     let trajectory = &plan.trajectory;
+    let minimised = minimised(&run.scenario, plan, evaluation);
     Some(cost_of(
-        trajectory, evaluation, plan.cost, arrived, &run.risks,
+        trajectory, evaluation, minimised, arrived, &run.risks,
     ))
+}
+
+/// Minimised quantity. Where it is a property of the motion, it is that of the evaluation: the
+/// planner sums it in other coordinates, so the last digits differ.
+pub(super) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluation) -> f64 {
+    match (scenario.planner, scenario.objective) {
+        (PlannerKind::OptimalControl, _) | (_, Objective::LengthRisk { .. }) => plan.cost,
+        (_, Objective::SpaceTimeError) => evaluation.space_time_error,
+        (_, Objective::Time) => evaluation.duration,
+        (_, Objective::Length) => evaluation.length,
+    }
 }
 
 /// Costs of any motion.

@@ -168,12 +168,7 @@ impl ConvexPolygon {
         if v.is_empty() {
             v.push(Vector::zeros());
         }
-        // lowest, then leftmost first: a polygon has one representation
-        let first = (0..v.len())
-            .min_by(|&i, &j| v[i].y.total_cmp(&v[j].y).then(v[i].x.total_cmp(&v[j].x)))
-            .unwrap_or(0);
-        v.rotate_left(first);
-        Self { vertices: v }
+        Self::from_lowest(v)
     }
 
     /// Counter-clockwise vertices, lowest first.
@@ -300,6 +295,15 @@ impl ConvexPolygon {
         if vertices.len() > 1 && vertices.iter().zip(next).any(|(a, b)| a == b) {
             return Self::from_ccw(vertices);
         }
+        Self::from_lowest(vertices)
+    }
+
+    /// Starts with the lowest, then leftmost vertex: a polygon has one representation, and its
+    /// edges are in order of their angle, as [`Self::minkowski_sum`] requires.
+    fn from_lowest(mut vertices: Vec<Vector>) -> Self {
+        let by_place = |a: &Vector, b: &Vector| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x));
+        let lowest = (0..vertices.len()).min_by(|&i, &j| by_place(&vertices[i], &vertices[j]));
+        vertices.rotate_left(lowest.unwrap_or(0));
         Self { vertices }
     }
 

@@ -9,7 +9,8 @@
 //!   possible turn.
 //!
 //! Explicit sets have to be contained unchanged. If risk was accepted, the level set has to contain
-//! the known velocities scaled to that level. Scaled back, it has to contain all of them.
+//! the known velocities scaled to that level. The level set of a ship, scaled back, has to contain
+//! all of them.
 //!
 //! Polygons are compared by their sections. The support of a section in a direction is linear in
 //! time between two changes of its velocities. The support of the target's reachable set is linear
@@ -71,7 +72,9 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
         SetShape::Polygons { initial, spells } => {
             let mut scales = vec![level];
             // The set around a scaled polygon has a centre of its own, so it cannot be scaled back.
-            if level < 1.0 && claim.file.optimal_control.is_none() {
+            // Explicit sets are known as they are: the first check is complete.
+            let ship = target.ship().is_some();
+            if level < 1.0 && ship && claim.file.optimal_control.is_none() {
                 scales.push(1.0);
             }
             let short = |scale| in_sections(claim, target, set.from, (initial, spells), scale);

@@ -1,14 +1,14 @@
 //! Checks the encounters of a document against its motion.
 
 use super::claim::{Claim, ClaimedMotion};
-use super::figures::near;
+use super::figures::near_to;
 use super::untrue;
-use crate::evaluation::{Evaluation, Violation};
+use crate::evaluation::{Evaluation, SetShape, Violation};
 use crate::frame::{Pose, Vector, wrap};
 use crate::geometry::Ellipse;
 use crate::target::{Motion, Target};
 use crate::tolerance;
-use nalgebra::Matrix2;
+use crate::trajectory::Segment;
 
 /// Checks for each target the least distance, the distance at the given time, and the passing side.
 pub(super) fn check(
@@ -35,8 +35,8 @@ pub(super) fn check(
     let all = said.iter().zip(&claim.targets).zip(&evaluation.passages);
     for ((said, target), passage) in all {
         let label = |key: &str| format!("encounter with '{}', {key}", target.name);
-        let dcpa = passage.dcpa;
-        if !said.dcpa_m.is_some_and(|d| near(d, dcpa)) {
+        let (dcpa, rounding) = (passage.dcpa, shape_rounding(target, passage.tcpa));
+        if !said.dcpa_m.is_some_and(|d| near_to(d, dcpa, rounding)) {
             let value = said
                 .dcpa_m
                 .map_or_else(|| "nothing".to_owned(), |d| d.to_string());
@@ -52,7 +52,7 @@ pub(super) fn check(
             [before, .., after] => then.min(while_turning(claim, target, (before, after), tcpa)),
             _ => then,
         };
-        if !(then.is_finite() && near(then, dcpa)) {
+        if !(then.is_finite() && near_to(then, dcpa, rounding)) {
             found.push(untrue(
                 &label("tcpa_s"),
                 tcpa,
@@ -97,12 +97,44 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
             .separation(&ship.hull.polygon(&ship.pose_at(time))),
         None => match &target.motion {
             Motion::Ellipses { initial, velocity } => {
-                let section = least_trace_sum(initial, velocity, time);
-                section.map_or(f64::NAN, |set| set.signed_distance(pose.position).distance)
+                let shape = SetShape::Ellipses {
+                    initial: *initial,
+                    velocity: *velocity,
+                };
+                let here = Segment {
+                    start: *pose,
+                    start_time: time,
+                    duration: 0.0,
+                    speed: 0.0,
+                    turn_rate: 0.0,
+                };
+                shape.least_distance(&[here]).value
             }
             _ => (target.outer_set_at(time))
                 .map_or(f64::NAN, |set| set.signed_distance(pose.position)),
         },
+    }
+}
+
+/// Relative rounding of a shape matrix and of its eigenvalues.
+const SHAPE_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Largest effect of the rounding of shape matrices on a distance at a time, metres; 0 for targets
+/// without ellipses.
+///
+/// A document states an ellipse with the semi-axes `a >= b` by its shape matrix. Rounding of the
+/// entries changes `b²` by some epsilons of `a²`, so `b` by that fraction of `a² / b`, or of `a²`
+/// by the square root where `b` is smaller still.
+pub(super) fn shape_rounding(target: &Target, time: f64) -> f64 {
+    let Motion::Ellipses { initial, velocity } = &target.motion else {
+        return 0.0;
+    };
+    let [still, moving] = [initial, velocity].map(Ellipse::semi_axes);
+    let [long, short] = [0, 1].map(|axis| still[axis].norm() + moving[axis].norm() * time);
+    if long > 0.0 {
+        SHAPE_ROUNDING * long * long / (short + SHAPE_ROUNDING.sqrt() * long)
+    } else {
+        0.0
     }
 }
 
@@ -133,19 +165,4 @@ fn while_turning(claim: &Claim, target: &Target, turn: (&Pose, &Pose), time: f64
         }
     }
     least
-}
-
-/// Ellipse of least trace around `initial + t velocity`, docs/theory.md section 3.
-fn least_trace_sum(initial: &Ellipse, velocity: &Ellipse, time: f64) -> Option<Ellipse> {
-    let center = initial.center() + velocity.center() * time;
-    let (still, moving) = (initial.shape(), velocity.shape() * (time * time));
-    let (a, b) = (still.trace().sqrt(), moving.trace().sqrt());
-    let share = |shape: Matrix2<f64>, root: f64| {
-        if root > 0.0 {
-            shape / root
-        } else {
-            Matrix2::zeros()
-        }
-    };
-    Ellipse::new(center, (share(still, a) + share(moving, b)) * (a + b)).ok()
 }

@@ -4,6 +4,7 @@ use crate::evaluation::distance::least::{Least, Probe};
 use crate::evaluation::distance::piece::Piece;
 use crate::frame::{Vector, direction};
 use crate::geometry::Ellipse;
+use crate::tolerance;
 
 /// Number of directions of the initial scan.
 const DIRECTIONS: usize = 64;
@@ -54,14 +55,20 @@ impl MovingEllipse {
         }
     }
 
-    /// Returns false when every section is a point or a segment.
+    /// Returns false when every section is a point or a segment, to [`tolerance::THIN_ELLIPSE`].
     pub fn has_interior(&self) -> bool {
-        let spans = |a: Vector, b: Vector| crate::frame::cross(a, b) != 0.0;
         let [a, b] = self.initial.semi_axes();
         let [c, d] = self.velocity.semi_axes();
-        [(a, b), (c, d), (a, c), (a, d), (b, c), (b, d)]
-            .into_iter()
-            .any(|(p, q)| spans(p, q))
+        let spans = |p: Vector, q: Vector, lengths: f64| {
+            // Negated on purpose: a NaN has an interior.
+            !(crate::frame::cross(p, q).abs() <= tolerance::THIN_ELLIPSE * lengths)
+        };
+        let (still, moving) = (a.norm(), c.norm());
+        spans(a, b, still * still)
+            || spans(c, d, moving * moving)
+            || [(a, c), (a, d), (b, c), (b, d)]
+                .into_iter()
+                .any(|(p, q)| spans(p, q, still * moving))
     }
 
     fn line(&self, normal: Vector, time: f64) -> Line {
