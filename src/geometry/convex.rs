@@ -102,7 +102,8 @@ impl ConvexPolygon {
     /// written by a user.
     pub fn from_vertices(points: &[Vector]) -> Result<Self, GeometryError> {
         let hull = Self::hull(points)?;
-        let limit = 1e-9 * extent(points);
+        let farthest = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
+        let limit = 1e-9 * extent(points) + 2.0 * f64::EPSILON * farthest;
         let by_place = |a: &Vector, b: &Vector| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
         let mut corners = hull.vertices.clone();
         corners.sort_by(by_place);

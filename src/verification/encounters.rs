@@ -2,15 +2,18 @@
 
 use super::claim::{Claim, ClaimedMotion};
 use super::figures::near_to;
+use super::file::EncounterFile;
 use super::untrue;
-use crate::evaluation::{Evaluation, SetShape, Violation};
+use crate::document::{crosses_astern, is_crossing};
+use crate::evaluation::{Evaluation, MovingEllipse, Violation};
 use crate::frame::{Pose, Vector, wrap};
-use crate::geometry::Ellipse;
+use crate::geometry::ConvexPolygon;
 use crate::target::{Motion, Target};
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, Trajectory};
 
-/// Checks for each target the least distance, the distance at the given time, and the passing side.
+/// Checks for each target the least distance, the distance at the given time, the passing side and
+/// the crossing of its track.
 pub(super) fn check(
     claim: &Claim,
     motion: &ClaimedMotion,
@@ -32,6 +35,7 @@ pub(super) fn check(
         ));
         return found;
     }
+    let trajectory = motion.trajectory();
     let all = said.iter().zip(&claim.targets).zip(&evaluation.passages);
     for ((said, target), passage) in all {
         let label = |key: &str| format!("encounter with '{}', {key}", target.name);
@@ -76,8 +80,43 @@ pub(super) fn check(
             let so = if to_port { "port" } else { "starboard" };
             found.push(untrue(&label("passing_side"), side_said, so));
         }
+        let crossing = trajectory.as_ref().and_then(|t| crossing(t, said, target));
+        if let Some(so) = crossing {
+            let word =
+                |astern: Option<bool>| astern.map_or("nothing".to_owned(), |a| a.to_string());
+            let (said, so) = (word(said.crosses_astern), word(so));
+            found.push(untrue(&label("crosses_astern"), said, so));
+        }
     }
     found
+}
+
+/// The right value of `crosses_astern` where the document has another one.
+///
+/// Own ship may be on the target's centre line or abeam of it to rounding. So the value is also
+/// accepted if it is right for a track shifted by [`tolerance::DEPTH_M`].
+fn crossing(
+    trajectory: &Trajectory,
+    said: &EncounterFile,
+    target: &Target,
+) -> Option<Option<bool>> {
+    let role = said.role.as_deref().unwrap_or_default();
+    let ship = target.ship().filter(|_| is_crossing(role));
+    let shifted = |east: f64, north: f64| {
+        let mut ship = ship?.clone();
+        ship.pose.position += Vector::new(east, north) * tolerance::DEPTH_M;
+        crosses_astern(trajectory, &ship, said.tcpa_s?)
+    };
+    let mut shifts = [
+        [0.0, 0.0],
+        [1.0, 1.0],
+        [-1.0, 1.0],
+        [-1.0, -1.0],
+        [1.0, -1.0],
+    ]
+    .into_iter();
+    let right = shifts.any(|[east, north]| shifted(east, north) == said.crosses_astern);
+    (!right).then(|| shifted(0.0, 0.0))
 }
 
 /// Offset of a place to port of the line ahead through a pose, metres.
@@ -97,10 +136,6 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
             .separation(&ship.hull.polygon(&ship.pose_at(time))),
         None => match &target.motion {
             Motion::Ellipses { initial, velocity } => {
-                let shape = SetShape::Ellipses {
-                    initial: *initial,
-                    velocity: *velocity,
-                };
                 let here = Segment {
                     start: *pose,
                     start_time: time,
@@ -108,7 +143,9 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
                     speed: 0.0,
                     turn_rate: 0.0,
                 };
-                shape.least_distance(&[here]).value
+                MovingEllipse::new(initial, velocity)
+                    .least_distance(&[here])
+                    .value
             }
             _ => (target.outer_set_at(time))
                 .map_or(f64::NAN, |set| set.signed_distance(pose.position)),
@@ -116,25 +153,24 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
     }
 }
 
-/// Relative rounding of a shape matrix and of its eigenvalues.
-const SHAPE_ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-/// Largest effect of the rounding of shape matrices on a distance at a time, metres; 0 for targets
-/// without ellipses.
+/// Largest difference of two distances from an explicit set at a time, metres; 0 for ships.
 ///
-/// A document states an ellipse with the semi-axes `a >= b` by its shape matrix. Rounding of the
-/// entries changes `b²` by some epsilons of `a²`, so `b` by that fraction of `a² / b`, or of `a²`
-/// by the square root where `b` is smaller still.
+/// It is that of the shape matrices of ellipses. Sums of polygons omit corners at which the
+/// boundary turns by less than [`tolerance::COLLINEAR_RAD`].
 pub(super) fn shape_rounding(target: &Target, time: f64) -> f64 {
-    let Motion::Ellipses { initial, velocity } = &target.motion else {
-        return 0.0;
+    let omitted = |initial: &ConvexPolygon, fastest: f64| {
+        tolerance::COLLINEAR_RAD * (initial.across() + fastest * time)
     };
-    let [still, moving] = [initial, velocity].map(Ellipse::semi_axes);
-    let [long, short] = [0, 1].map(|axis| still[axis].norm() + moving[axis].norm() * time);
-    if long > 0.0 {
-        SHAPE_ROUNDING * long * long / (short + SHAPE_ROUNDING.sqrt() * long)
-    } else {
-        0.0
+    match &target.motion {
+        Motion::Ship(_) => 0.0,
+        Motion::Sets { initial, velocity } => omitted(initial, velocity.across()),
+        Motion::Spells { initial, spells } => {
+            let fastest = spells.iter().map(|s| s.velocities.across());
+            omitted(initial, fastest.fold(0.0, f64::max))
+        }
+        Motion::Ellipses { initial, velocity } => {
+            MovingEllipse::new(initial, velocity).rounding(time)
+        }
     }
 }
 

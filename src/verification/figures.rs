@@ -3,6 +3,7 @@
 use super::claim::{ARRIVAL, Claim, ClaimedMotion};
 use super::encounters::shape_rounding;
 use super::untrue;
+use crate::document::first_alteration;
 use crate::evaluation::{Evaluation, Steering, Violation, stage_costs};
 use crate::frame::Vector;
 use crate::tolerance;
@@ -114,9 +115,29 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     if cost.min_land_distance_m.is_none() && land.is_finite() {
         found.push(untrue("cost.min_land_distance_m", "nothing", land));
     }
+    found.extend(first_turn(claim));
     found.extend(profile(claim));
     found.extend(way_left(claim, evaluation));
     found
+}
+
+/// Checks the first alteration of course.
+fn first_turn(claim: &Claim) -> Option<Violation> {
+    let said = claim.file.cost.as_ref()?.first_turn.as_ref();
+    let so = first_alteration(&claim.motion.as_ref()?.trajectory()?);
+    let agree = match (said, &so) {
+        (Some(said), Some(so)) => {
+            said.side == so.side.to_string()
+                && near(said.turn_deg, so.degrees)
+                && near(said.t_s, so.start)
+        }
+        (said, so) => said.is_none() && so.is_none(),
+    };
+    let turn = |side: &str, degrees: f64, time: f64| format!("{degrees}° to {side} at {time} s");
+    let words = |turn: Option<String>| turn.unwrap_or_else(|| "nothing".to_owned());
+    let said = said.map(|t| turn(&t.side, t.turn_deg, t.t_s));
+    let so = so.map(|t| turn(&t.side.to_string(), t.degrees, t.start));
+    (!agree).then(|| untrue("cost.first_turn", words(said), words(so)))
 }
 
 /// Checks the remaining distance of a plan that does not arrive. It is at least the straight

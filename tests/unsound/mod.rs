@@ -1,6 +1,8 @@
 //! Documents that agree with themselves in all figures and are unsound, and plans that are sound
 //! and nearly did not seem so.
 
+mod extremes;
+
 use std::f64::consts::TAU;
 
 use searoom::document::{PlanDocument, VerifiedPlanDocument};

@@ -16,6 +16,9 @@ const STEP: f64 = std::f64::consts::TAU / DIRECTIONS as f64;
 /// distance to 1e-15 of the set's size.
 const GOLDEN_STEPS: usize = 32;
 
+/// Relative rounding of a shape matrix and of its eigenvalues.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// Ellipse of least trace around `O_0 + t V`, docs/theory.md section 3, by its support function
 ///
 /// ```text
@@ -69,6 +72,28 @@ impl MovingEllipse {
             || [(a, c), (a, d), (b, c), (b, d)]
                 .into_iter()
                 .any(|(p, q)| spans(p, q, still * moving))
+    }
+
+    /// Depth at a time within which a motion is on the edge of the set, metres; `None` without an
+    /// interior.
+    pub fn edge(&self, time: f64) -> Option<f64> {
+        self.has_interior()
+            .then(|| tolerance::DEPTH_M + self.rounding(time))
+    }
+
+    /// Largest effect of the rounding of the shape matrices on a distance at a time, metres.
+    ///
+    /// A document states an ellipse with the semi-axes `a >= b` by its shape matrix. Rounding of
+    /// the entries changes `b²` by some epsilons of `a²`, so `b` by that fraction of `a² / b`, or
+    /// of `a²` by the square root where `b` is smaller still.
+    pub fn rounding(&self, time: f64) -> f64 {
+        let [still, moving] = [&self.initial, &self.velocity].map(Ellipse::semi_axes);
+        let [long, short] = [0, 1].map(|axis| still[axis].norm() + moving[axis].norm() * time);
+        if long > 0.0 {
+            ROUNDING * long * long / (short + ROUNDING.sqrt() * long)
+        } else {
+            0.0
+        }
     }
 
     fn line(&self, normal: Vector, time: f64) -> Line {
