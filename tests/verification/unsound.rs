@@ -25,7 +25,7 @@ fn fault(name: &str) -> String {
 }
 
 /// True where a violation says so.
-fn said(document: &Value, expected: &str) -> bool {
+pub fn said(document: &Value, expected: &str) -> bool {
     let found = checked(document).violations;
     let told = found.iter().any(|v| v.what.contains(expected));
     assert!(told, "'{expected}' is not among {found:#?}");
