@@ -13,9 +13,7 @@ use searoom::report::{
     COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table, write_atomically,
 };
 use searoom::scenario::Scenario;
-use searoom::study::compare::{
-    Candidate, Entry, EntryResult, Inapplicable, Method, candidates, methods,
-};
+use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
 use super::input::files::{self, Found};
@@ -154,9 +152,11 @@ fn ask(found: &Found, args: &CompareArgs) -> Asked {
 
 fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     match method {
-        Method::Planner { kind, search, .. } => {
+        Method::Planner {
+            planner, search, ..
+        } => {
             let asked = &args.asked;
-            asked.planner.is_none_or(|k| k == *kind) && asked.search.is_none_or(|s| s == *search)
+            asked.planner.is_none_or(|p| p == *planner) && asked.search.is_none_or(|s| s == *search)
         }
         Method::HoldCourse | Method::ConstantVelocity => true,
     }
@@ -225,10 +225,7 @@ impl Compared {
         let of_planners: Vec<ExitStatus> = self
             .entries
             .iter()
-            .filter_map(|entry| match &entry.result {
-                EntryResult::Planned(run) => Some(ExitStatus::of(run)),
-                EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
-            })
+            .filter_map(|entry| Some(ExitStatus::of(entry.run.as_ref()?)))
             .collect();
         if of_planners.contains(&ExitStatus::InternalFault) {
             ExitStatus::InternalFault

@@ -18,6 +18,7 @@ mod suite;
 mod targets;
 mod verification;
 
+pub(crate) use alteration::first_alteration;
 pub use assessment::*;
 pub use comparison::{
     ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
@@ -29,13 +30,14 @@ pub use control::{
 pub use encounter::{
     BreachDocument, ConductDocument, EncounterDocument, MonitorDocument, RoleDocument,
 };
+pub(crate) use encounter::{crosses_astern, is_crossing};
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use parts::*;
 pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
-pub(crate) use plan::finite;
 pub use plan::{PLAN_FORMAT, PlanDocument};
+pub(crate) use plan::{finite, planner_names};
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
     UNREADABLE,

@@ -1,6 +1,6 @@
 //! Clearances and safety of own ship with respect to one target.
 
-use super::safety::Claim;
+use super::safety::{Claim, EDGE};
 use super::{Passage, Request, Safety, TurnedHull};
 use crate::evaluation::distance::clearance::{Body, least_distance};
 use crate::evaluation::distance::least::Least;
@@ -95,21 +95,21 @@ pub(super) fn passage<P: Piece>(
             let set = MovingSet::new(initial, velocity);
             let least = least_distance(pieces, Body::POINT, &set);
             let hold = least_distance(&lying, Body::POINT, &set);
-            let safety = claim.of_set(request, &least, set.has_interior());
+            let safety = claim.of_set(request, &least, EDGE.filter(|_| set.has_interior()));
             (least, least, least, hold, safety)
         }
         Motion::Ellipses { initial, velocity } => {
             let set = MovingEllipse::new(initial, velocity);
             let least = set.least_distance(pieces);
             let hold = set.least_distance(&lying);
-            let safety = claim.of_set(request, &least, set.has_interior());
+            let safety = claim.of_set(request, &least, set.edge(least.time));
             (least, least, least, hold, safety)
         }
         Motion::Spells { initial, spells } => {
             let slabs = MovingSlabs::new(initial, spells);
             let least = slabs.least_distance(pieces, Body::POINT);
             let hold = slabs.least_distance(&lying, Body::POINT);
-            let safety = claim.of_set(request, &least, slabs.has_interior());
+            let safety = claim.of_set(request, &least, EDGE.filter(|_| slabs.has_interior()));
             (least, least, least, hold, safety)
         }
     };

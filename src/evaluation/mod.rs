@@ -22,6 +22,7 @@ pub(crate) use distance::turned_hull::TurnedHull;
 pub(crate) use nominal::{nominal_distance, nominal_legs};
 pub use request::{Freedom, Request};
 pub use safety::Safety;
+pub(crate) use sets::moving_ellipse::MovingEllipse;
 pub use sets::space_time_set::{SetShape, SpaceTimeSet};
 pub use steered::{Steering, evaluate_steered};
 pub(crate) use words::risk_figure;
@@ -33,7 +34,7 @@ use distance::piece::Piece;
 use distance::turn::{Turn, turns};
 use land::Shore;
 use met::passage;
-use safety::{Claim, collision, grounding};
+use safety::{Claim, EDGE, collision, grounding};
 
 use std::collections::HashMap;
 
@@ -237,7 +238,8 @@ fn meetings<P: Piece>(
         .map(|set| {
             let least = set.least_distance(pieces);
             let label = format!("set of '{}'", set.name);
-            let entered = collision(&label, &least, set.shape.has_interior());
+            let edge = set.shape.edge(least.time - set.from);
+            let entered = collision(&label, &least, edge);
             let kept = entered.is_none();
             violations.extend(entered.filter(|_| judged));
             (least, kept)
@@ -258,7 +260,7 @@ fn meetings<P: Piece>(
         // Explicit sets are already judged above, as sets.
         if judged && target.ship().is_some() {
             let label = format!("hull of '{}'", target.name);
-            violations.extend(collision(&label, &clearance, true));
+            violations.extend(collision(&label, &clearance, EDGE));
         }
         passages.push(passage);
     }

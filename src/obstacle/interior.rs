@@ -45,7 +45,7 @@ impl Obstacle {
             Self::Polytope(o) => flat(o.initial(), o.velocity()),
             // sections do not become flat again
             Self::Slabs(o) => flat(o.initial(), &o.velocity_sets()[0].velocities),
-            Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
+            Self::Ellipsoid(o) => o.is_thin(),
         }
     }
 }
@@ -72,8 +72,8 @@ fn widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
 }
 
 fn widened_ellipsoid(obstacle: &EllipsoidObstacle) -> EllipsoidObstacle {
-    let [a, b] = obstacle.initial().semi_axes();
-    if a.norm().min(b.norm()) < HALF_WIDTH_M {
+    let [_, b] = obstacle.initial().semi_axes();
+    if b.norm() < HALF_WIDTH_M || obstacle.is_thin() {
         let axes = [
             Vector::new(HALF_WIDTH_M, 0.0),
             Vector::new(0.0, HALF_WIDTH_M),

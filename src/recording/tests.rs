@@ -303,9 +303,9 @@ fn a_comparison_is_one_recording_with_every_motion() {
             format!("/space_time/methods/{name}/way"),
             format!("/curves/clearance_m/{name}"),
         ];
-        if let crate::study::compare::Method::Planner { kind, .. } = entry.candidate.method {
+        if let crate::study::compare::Method::Planner { planner, .. } = entry.candidate.method {
             // no graph is searched for forces
-            if kind != crate::planner::PlannerKind::OptimalControl {
+            if !planner.facts().relaxes_domains_only {
                 parts.push(format!("/chart/map/methods/{name}/explored/free"));
             }
             let target = EntityPathPart::new(NAME).escaped_string();
@@ -370,7 +370,7 @@ fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
     let run = pipeline::run(Scenario::read(&scenario).expect("valid"));
     write_run(&run, &path).expect("writes");
     let entities = read(&path);
-    let nodes = run.control.as_ref().expect("forces").intervals as u64 + 1;
+    let nodes = run.planned.control.as_ref().expect("forces").intervals as u64 + 1;
     for entity in ["/curves/states", "/curves/forces"] {
         assert_eq!(entities[entity].0, nodes, "{entity}");
     }

@@ -6,7 +6,6 @@ use crate::document::{
 };
 use crate::evaluation::risk_figure;
 use crate::pipeline::{NO_RETURN_STEP_S, NoReturn, Run};
-use crate::planner::PlannerKind;
 use crate::text::{signed, square_metres, tenths};
 
 /// Maximum number of targets that are listed; the rest is counted.
@@ -109,12 +108,14 @@ pub fn no_return_line(found: NoReturn) -> String {
 
 /// Explains why [`Run::no_return`] returns nothing.
 pub fn no_return_reason(run: &Run) -> String {
-    let reason = match run.scenario.planner {
-        PlannerKind::SpaceTime => "the desired trajectory cannot be followed".to_owned(),
-        other => format!(
+    let planner = run.scenario.planner.facts();
+    let reason = if planner.has_no_return {
+        "the desired trajectory cannot be followed".to_owned()
+    } else {
+        format!(
             "it is sought for plans of the space-time planner, this one is of the {} planner",
-            other.word()
-        ),
+            planner.name
+        )
     };
     format!("no time of no return: {reason}")
 }

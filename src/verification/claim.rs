@@ -4,6 +4,7 @@ use super::FORMAT;
 use super::file::{OwnShipFile, PlaceFile, PlanFile, SetFile, TargetFile};
 use super::motion;
 use super::sets;
+use crate::document::planner_names;
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
@@ -16,7 +17,6 @@ pub(super) const PATH_TIME: &str = "path-time";
 /// Name of the planner whose plans are motions under forces.
 pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
 
-const PLANNERS: [&str; 3] = ["space-time", PATH_TIME, OPTIMAL_CONTROL];
 const COMPLIANCES: [&str; 3] = ["none", "shape", "rules"];
 const OBJECTIVES: [&str; 5] = [
     "space-time-error",
@@ -116,7 +116,7 @@ impl Claim {
         if file.format != FORMAT {
             return Err(fault("format", format!("'{}'", file.format), FORMAT));
         }
-        word("planner", &file.planner, &PLANNERS)?;
+        word("planner", &file.planner, &planner_names())?;
         word("compliance", &file.compliance, &COMPLIANCES)?;
         word("objective", &file.objective, &OBJECTIVES)?;
         word("outcome", &file.outcome, &OUTCOMES)?;
@@ -201,6 +201,9 @@ impl Claim {
         })
     }
 }
+
+/// Greatest speed of own ship at the start in m/s, equal to that of scenarios.
+const FASTEST_MPS: f64 = 100.0;
 
 /// Longest arrival hold in seconds, equal to that of scenarios.
 const LONGEST_HOLD_S: f64 = 1e6;
@@ -308,7 +311,7 @@ fn own_ship(own: &OwnShipFile) -> Result<OwnShip, ClaimError> {
     not_negative("own_ship.land_margin_m", own.land_margin_m)?;
     Ok(OwnShip {
         pose: Pose::new(point(own.position), heading_from_course_deg(own.course_deg)),
-        speed: not_negative("own_ship.speed_mps", own.speed_mps)?,
+        speed: within("own_ship.speed_mps", own.speed_mps, 0.0, FASTEST_MPS)?,
         hull: Hull {
             length: not_negative("own_ship.length_m", own.length_m)?,
             beam: not_negative("own_ship.beam_m", own.beam_m)?,

@@ -1,7 +1,7 @@
 //! Support functions of the region that a target may reach by a time, with the required distance.
 
 use super::claim::Claim;
-use super::coverage::{about_centroid, largest};
+use super::coverage::{largest, scaled_about};
 use crate::evaluation::TurnedHull;
 use crate::frame::{Vector, direction, heading_of, wrap};
 use crate::geometry::{ConvexPolygon, Ellipse, outer_enclosing_ellipse};
@@ -41,15 +41,7 @@ pub(super) fn at_level(target: &Target, level: f64, horizon: f64) -> Vec<Velocit
         Motion::Spells { spells, .. } => spells.clone(),
         Motion::Ellipses { .. } => Vec::new(),
     };
-    let scaled = |set: &ConvexPolygon| match target.representation {
-        _ if level == 1.0 => set.clone(),
-        Representation::Polytope => about_centroid(set, level),
-        Representation::Ellipsoid => {
-            let center = outer_enclosing_ellipse(set).center();
-            let about = set.translated(-center);
-            about.scaled(level).translated(center)
-        }
-    };
+    let scaled = |set: &ConvexPolygon| scaled_about(set, center(target, set), level);
     spells
         .into_iter()
         .map(|spell| VelocitySpell {
@@ -57,6 +49,14 @@ pub(super) fn at_level(target: &Target, level: f64, horizon: f64) -> Vec<Velocit
             velocities: scaled(&spell.velocities),
         })
         .collect()
+}
+
+/// Centre of a velocity set of a target, about which a level of risk scales it.
+fn center(target: &Target, set: &ConvexPolygon) -> Vector {
+    match target.representation {
+        Representation::Polytope => set.centroid(),
+        Representation::Ellipsoid => outer_enclosing_ellipse(set).center(),
+    }
 }
 
 /// Known reachable set of a target with the required distance, by its supports in given directions.
@@ -67,6 +67,8 @@ pub(super) struct Known<'a> {
     /// Upper bound of the diameter at t = 0, metres.
     across: f64,
     motion: Moving,
+    /// Ends of a ship's velocity sets and their centres.
+    centers: Vec<(f64, Vector)>,
 }
 
 /// Further motion of the target.
@@ -111,12 +113,27 @@ impl<'a> Known<'a> {
                 Moving::Sets(spells.iter().map(of).collect())
             }
         };
+        let spells = match &target.motion {
+            Motion::Ship(_) if scale == 1.0 => at_level(target, 1.0, claim.file.horizon_s),
+            _ => Vec::new(),
+        };
+        let centers = spells.iter();
         Self {
             normals,
             initial,
             across,
             motion,
+            centers: centers
+                .map(|s| (s.until, center(target, &s.velocities)))
+                .collect(),
         }
+    }
+
+    /// Centre of a ship's velocities at a time.
+    pub fn center_at(&self, time: f64) -> Option<Vector> {
+        let mut centers = self.centers.iter();
+        let held = centers.find(|(until, _)| time < *until);
+        held.map(|(_, center)| *center)
     }
 
     /// Times at which the velocities change instantly.

@@ -85,17 +85,16 @@ pub fn run_scenes(count: usize) -> Report {
             let begun = std::time::Instant::now();
             let found = plan(&problem, &ControlSettings::of(VesselKind::CyberShip2));
             times.push(begun.elapsed().as_secs_f64() * 1e3);
-            let Outcome::Solved(plan) = &found.planned.outcome else {
-                report.missed.push(format!(
-                    "{ellipsoids} ellipsoids: {:?}",
-                    found.planned.outcome
-                ));
+            let Outcome::Solved(plan) = &found.outcome else {
+                report
+                    .missed
+                    .push(format!("{ellipsoids} ellipsoids: {:?}", found.outcome));
                 continue;
             };
             let motion = plan.trajectory.steered().expect("forces");
             defect = defect.max(largest_defect(motion));
             margin = margin.min(least_margin(motion, &keep_outs));
-            most_intervals = most_intervals.max(found.report.intervals);
+            most_intervals = most_intervals.max(found.control.expect("forces").intervals);
         }
         println!(
             "{ellipsoids} ellipsoids: {count} scenes have a plan; off at the end of an interval by \
@@ -119,7 +118,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
     vessel: &V,
     starts: usize,
 ) -> Vec<f64> {
-    let (scenario, control) = (&run.scenario, &run.scenario.control);
+    let (scenario, control) = (&run.scenario, &run.scenario.settings.optimal_control);
     let keep_outs: Vec<KeepOut> = run.obstacles.iter().map(KeepOut::outer_of).collect();
     let own = &scenario.own_ship;
     let (place, heading) = (own.pose.position, own.pose.heading);
@@ -137,7 +136,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
         first: StateVector::new(place.x, place.y, heading, own.speed, 0.0, 0.0),
         start_time: 0.0,
         duration: scenario.horizon,
-        intervals: run.control.as_ref().expect("forces").intervals,
+        intervals: run.planned.control.as_ref().expect("forces").intervals,
     };
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     (0..starts)

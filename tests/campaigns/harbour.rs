@@ -8,11 +8,11 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Geographic, Georeference, Pose, Vector, direction};
 use searoom::map::Map;
 use searoom::pipeline;
-use searoom::planner::{ControlSettings, Objective, Outcome, PlannerKind, SearchKind};
+use searoom::planner::{DEFAULT_PLANNER, Objective, Outcome, PlannerSettings, SearchKind};
 use searoom::scenario::{Compliance, Land, Scenario};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
-use searoom::vessel::{Hull, OwnShip, VesselKind};
+use searoom::vessel::{Hull, OwnShip};
 
 use super::statistics::spread;
 use super::{Report, Seeds};
@@ -146,9 +146,9 @@ pub fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
         desired,
         alternatives: Vec::new(),
         targets,
-        planner: PlannerKind::SpaceTime,
+        planner: DEFAULT_PLANNER,
         objective: Objective::SpaceTimeError,
-        control: ControlSettings::of(VesselKind::CyberShip2),
+        settings: PlannerSettings::at_length(30.0),
         search: SearchKind::AStar,
         compliance: Compliance::Shape,
         time_weight: speed * speed,

@@ -6,11 +6,11 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::pipeline;
-use searoom::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use searoom::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
-use searoom::vessel::{Hull, OwnShip, VesselKind};
+use searoom::vessel::{Hull, OwnShip};
 
 use super::{Report, Seeds};
 
@@ -242,9 +242,9 @@ pub fn scene(seed: u64) -> Scenario {
         desired,
         alternatives: Vec::new(),
         targets,
-        planner: PlannerKind::SpaceTime,
+        planner: DEFAULT_PLANNER,
         objective: Objective::SpaceTimeError,
-        control: ControlSettings::of(VesselKind::CyberShip2),
+        settings: PlannerSettings::at_length(30.0),
         search: SearchKind::AStar,
         compliance: Compliance::None,
         arrival_hold: 60.0,

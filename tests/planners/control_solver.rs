@@ -188,7 +188,7 @@ fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
         (limits(-2.0), "no force to choose"),
         (limits(f64::NAN), "no force to choose"),
     ] {
-        match plan(&problem, &settings).planned.outcome {
+        match plan(&problem, &settings).outcome {
             Outcome::Infeasible(NoPlan::Unsolved { why: said, .. }) => {
                 assert!(said.contains(why), "{said}");
             }
@@ -203,7 +203,7 @@ fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
             ..usual
         };
         let begun = std::time::Instant::now();
-        let found = plan(&problem, &settings).planned.outcome;
+        let found = plan(&problem, &settings).outcome;
         assert!(found.plan().is_none_or(|p| p.cost.is_finite()), "{weight}");
         assert!(begun.elapsed() < Duration::from_secs(20));
     }

@@ -39,7 +39,7 @@ fn figure_9_is_solved_verified_and_written() {
     let run = run(FIGURE_9);
     let evaluation = run.evaluation.as_ref().expect("a plan");
     assert!(evaluation.verified(), "{:?}", evaluation.violations);
-    let report = run.control.as_ref().expect("forces");
+    let report = run.planned.control.as_ref().expect("forces");
     assert!(report.starts.iter().all(|s| s.feasible) && report.starts.len() > 10);
     assert!(report.defect <= 1e-4 && report.classes.len() > 4);
     let plan = run.planned.outcome.plan().expect("solved");
@@ -270,7 +270,10 @@ fn what_is_not_solved_comes_with_what_may_help() {
     let NoPlan::Unsolved { starts, .. } = reason(&long) else {
         panic!("{:?}", reason(&long));
     };
-    assert_eq!(*starts, long.control.as_ref().expect("forces").starts.len());
+    assert_eq!(
+        *starts,
+        long.planned.control.as_ref().expect("forces").starts.len()
+    );
     let said = plan_text(&long);
     assert!(
         said.contains("what may help: ") && said.contains("a shorter horizon"),
@@ -299,7 +302,7 @@ fn free_water_one_interval_and_full_scale_are_planned() {
         }
         other => panic!("{other:?}"),
     }
-    let report = coarse.control.as_ref().expect("forces");
+    let report = coarse.planned.control.as_ref().expect("forces");
     assert!(report.start_intervals == 1 && report.intervals > 5);
     let said = plan_text(&coarse);
     assert!(said.contains("intervals, 1 were too coarse") && said.contains("on 1 intervals: "));
@@ -431,7 +434,6 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
     );
     let found = run(&text);
     assert!(found.evaluation.as_ref().is_some_and(Evaluation::verified));
-    assert_eq!(found.enclosed, ["box"]);
     assert!(plan_text(&found).contains("of 'box' by the smallest ellipse"));
     let document = PlanDocument::of(&found);
     let control = document.optimal_control.as_ref().expect("forces");

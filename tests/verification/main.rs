@@ -5,6 +5,7 @@ mod alter;
 mod claims;
 #[path = "../campaigns/documents.rs"]
 mod documents;
+mod extremes;
 mod input;
 mod motion;
 mod risk;

@@ -211,8 +211,8 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         [length * cos * sin, length * sin * sin]
     ]);
     said(&needle, "too small for the initial set");
-    // one-sided velocities: scaled about their centre they contain all, but not those of half the
-    // risk
+    // one-sided velocities: scaled about their own centre they contain all, but not about that of
+    // the ship's velocities, nor those of half the risk
     let text = std::fs::read_to_string(file("colregs/give-way.toml")).expect("a scenario");
     let mut scenario = Scenario::parse(&text).expect("a scenario");
     scenario.max_risk = 0.5;
@@ -233,9 +233,7 @@ fn sets_that_only_seem_large_enough_are_too_small() {
         [east + half, middle[1] + half],
         [east - half, middle[1] + half]
     ]);
-    let found = checked(&lopsided).violations;
-    let whole = "too small for her velocities";
-    assert!(!found.iter().any(|v| v.what.contains(whole)), "{found:?}");
+    said(&lopsided, "too small for her velocities");
     said(&lopsided, "the velocities at the accepted risk");
 }
 

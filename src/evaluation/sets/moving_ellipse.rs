@@ -4,6 +4,7 @@ use crate::evaluation::distance::least::{Least, Probe};
 use crate::evaluation::distance::piece::Piece;
 use crate::frame::{Vector, direction};
 use crate::geometry::Ellipse;
+use crate::tolerance;
 
 /// Number of directions of the initial scan.
 const DIRECTIONS: usize = 64;
@@ -14,6 +15,9 @@ const STEP: f64 = std::f64::consts::TAU / DIRECTIONS as f64;
 /// Golden-section steps around the best direction. They determine the direction to 4e-8, so the
 /// distance to 1e-15 of the set's size.
 const GOLDEN_STEPS: usize = 32;
+
+/// Relative rounding of a shape matrix and of its eigenvalues.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Ellipse of least trace around `O_0 + t V`, docs/theory.md section 3, by its support function
 ///
@@ -54,14 +58,42 @@ impl MovingEllipse {
         }
     }
 
-    /// Returns false when every section is a point or a segment.
+    /// Returns false when every section is a point or a segment, to [`tolerance::THIN_ELLIPSE`].
     pub fn has_interior(&self) -> bool {
-        let spans = |a: Vector, b: Vector| crate::frame::cross(a, b) != 0.0;
         let [a, b] = self.initial.semi_axes();
         let [c, d] = self.velocity.semi_axes();
-        [(a, b), (c, d), (a, c), (a, d), (b, c), (b, d)]
-            .into_iter()
-            .any(|(p, q)| spans(p, q))
+        let spans = |p: Vector, q: Vector, lengths: f64| {
+            // Negated on purpose: a NaN has an interior.
+            !(crate::frame::cross(p, q).abs() <= tolerance::THIN_ELLIPSE * lengths)
+        };
+        let (still, moving) = (a.norm(), c.norm());
+        spans(a, b, still * still)
+            || spans(c, d, moving * moving)
+            || [(a, c), (a, d), (b, c), (b, d)]
+                .into_iter()
+                .any(|(p, q)| spans(p, q, still * moving))
+    }
+
+    /// Depth at a time within which a motion is on the edge of the set, metres; `None` without an
+    /// interior.
+    pub fn edge(&self, time: f64) -> Option<f64> {
+        self.has_interior()
+            .then(|| tolerance::DEPTH_M + self.rounding(time))
+    }
+
+    /// Largest effect of the rounding of the shape matrices on a distance at a time, metres.
+    ///
+    /// A document states an ellipse with the semi-axes `a >= b` by its shape matrix. Rounding of
+    /// the entries changes `b²` by some epsilons of `a²`, so `b` by that fraction of `a² / b`, or
+    /// of `a²` by the square root where `b` is smaller still.
+    pub fn rounding(&self, time: f64) -> f64 {
+        let [still, moving] = [&self.initial, &self.velocity].map(Ellipse::semi_axes);
+        let [long, short] = [0, 1].map(|axis| still[axis].norm() + moving[axis].norm() * time);
+        if long > 0.0 {
+            ROUNDING * long * long / (short + ROUNDING.sqrt() * long)
+        } else {
+            0.0
+        }
     }
 
     fn line(&self, normal: Vector, time: f64) -> Line {

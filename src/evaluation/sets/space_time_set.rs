@@ -8,6 +8,7 @@ use crate::evaluation::sets::moving_slabs::MovingSlabs;
 use crate::frame::{Vector, to_starboard};
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::target::VelocitySpell;
+use crate::tolerance;
 
 /// Space-time set against which a plan was made.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,6 +97,17 @@ impl SetShape {
             }
             Self::Ellipses { initial, velocity } => {
                 MovingEllipse::new(initial, velocity).least_distance(pieces)
+            }
+        }
+    }
+
+    /// Depth at a time within which a motion is on the edge of the set, metres; `None` where the
+    /// sections are points or segments over some time interval, and so have no depth.
+    pub(crate) fn edge(&self, time: f64) -> Option<f64> {
+        match self {
+            Self::Polygons { .. } => self.has_interior().then_some(tolerance::DEPTH_M),
+            Self::Ellipses { initial, velocity } => {
+                MovingEllipse::new(initial, velocity).edge(time)
             }
         }
     }

@@ -20,7 +20,7 @@ use crate::recording::views::ships::{self, DrawnShip};
 use crate::recording::views::{land, space_time};
 use crate::recording::{COMPARISON, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, EntryResult, LineStyle, Method};
+use crate::study::compare::{Entry, LineStyle, Method};
 
 /// The folder of the candidates, on the chart and in the volume.
 const METHODS: &str = "methods";
@@ -130,7 +130,7 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
         log_way(rec, &canvas, candidate, order)?;
         let ship = path(&[MAP, METHODS, &candidate.own.name, "own_ship"]);
         ships::log_own_ship(rec, &canvas, ship, &candidate.own, false)?;
-        let EntryResult::Planned(run) = &candidate.entry.result else {
+        let Some(run) = &candidate.entry.run else {
             continue;
         };
         let folders =
@@ -231,10 +231,8 @@ fn legend(canvas: &Canvas, candidates: &[Candidate], sets: &[TargetSets]) -> Vec
         .iter()
         .map(|c| (c.own.name.clone(), c.own.color, radius(&c.style)))
         .collect();
-    let of_its_own = |c: &Candidate| match &c.entry.result {
-        EntryResult::Planned(run) => has_sets_of_its_own(run, sets),
-        EntryResult::Baseline(_) | EntryResult::Nothing(_) => false,
-    };
+    let of_its_own =
+        |c: &Candidate| (c.entry.run.as_deref()).is_some_and(|run| has_sets_of_its_own(run, sets));
     if let Some(first) = candidates.iter().find(|c| of_its_own(c)) {
         let color = style::toward_background(first.own.color, SET_STRENGTH);
         let name = "a method's own sets".to_owned();

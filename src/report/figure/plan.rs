@@ -79,7 +79,10 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
     let plan = run.planned.outcome.plan();
     let mut panels = vec![chart_panel("Chart", run)];
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
-        panels.extend(force_panels(motion, &scenario.control.force_limits));
+        panels.extend(force_panels(
+            motion,
+            &scenario.settings.optimal_control.force_limits,
+        ));
     }
     if let Some(diagram) = run.planned.path_time.as_deref() {
         let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
