@@ -159,6 +159,26 @@ fn a_set_thinner_than_its_shape_matrix_tells_is_left_for_good() {
     );
 }
 
+/// The ellipse around a needle and a disc is wider than both. A plan beside the needle takes no risk.
+#[test]
+fn a_needle_that_is_passed_is_no_risk() {
+    let plan = verified(
+        r#"title = "no risk"
+        horizon_s = 200
+        own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 283.00345941932255,
+            speed_mps = 5, length_m = 5, beam_m = 1.25, turning_radius_m = 0.001, safety_margin_m = 5 }
+        planner = { compliance = "rules", max_risk = 0.5 }
+        mission = { waypoints = [{ east_m = 0, north_m = 0 },
+            { east_m = -487.17824042826777, north_m = 112.50494235017821 }] }
+        targets = [{ name = "t", representation = "ellipsoid",
+            initial_set = { vertices_m = [[-725.7673606424016, 168.75741352526728]] },
+            velocity_set = { vertices_mps = [[3.4517398813529097, -0.5625247166466086],
+                [7.331608867708269, -0.5625247107350423], [1.4200425229297688, -0.5625247068551732],
+                [-2.459826463425591, -0.5625247127667395]] } }]"#,
+    );
+    assert_eq!(plan["cost"]["max_risk"], json!(0.0));
+}
+
 /// Half a turn is 36 times 5° or 37 times a little less: 12° are read as they were written.
 #[test]
 fn a_turn_rate_is_written_as_it_is_read() {
