@@ -88,8 +88,8 @@ fn the_level_set_of_a_sliver_is_held_against_the_set_that_was_given() {
     assert!(!checked(&small).verified());
 }
 
-/// Ellipses of 1 nm that grow in one direction, and of 50 km by half a metre: the distance of a
-/// narrow ellipse depends on the digits of its shape matrix.
+/// One ellipse of 1 nm grows in one direction, another of 50 km is half a metre wide. Their
+/// distances depend on the digits of the shape matrices.
 #[test]
 fn distances_from_narrow_ellipses_are_those_of_the_document() {
     verified(
@@ -118,7 +118,7 @@ fn distances_from_narrow_ellipses_are_those_of_the_document() {
     );
 }
 
-/// Corners of a set of 5,000 km at which the boundary turns by less than a nanoradian.
+/// A set of 5,000 km has corners at which the boundary turns by less than a nanoradian.
 #[test]
 fn corners_that_a_sum_omits_do_not_decide_a_distance() {
     verified(
@@ -197,7 +197,7 @@ fn a_turn_rate_is_written_as_it_is_read() {
     );
 }
 
-/// A motion of which the planner adds up the error in other units and about another origin.
+/// The planner adds up the error of its motion in other units and about another origin.
 #[test]
 fn the_objective_is_that_of_the_motion_in_the_document() {
     let plan = verified(
@@ -232,7 +232,7 @@ fn a_ship_in_a_hurry_holds_no_speed() {
     assert_eq!(plan["escape"], Value::Null);
 }
 
-/// First turn, crossing and speed of a document, altered.
+/// Altered first turns, crossings and speeds are rejected.
 #[test]
 fn the_first_turn_and_the_crossing_are_those_of_the_motion() {
     let scenario = super::super::scenario("colregs/give-way.toml");
