@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, Ellipse, outer_disc};
+use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse, outer_disc};
 use crate::tolerance::HALF_WIDTH_M;
 
 impl Obstacle {
@@ -22,6 +22,7 @@ impl Obstacle {
                 .into(),
             Self::Ellipsoid(o) => match o.flat() {
                 Some(flat) => widened(flat).into(),
+                None if o.is_thin() => widened_needle(o).into(),
                 None => widened_ellipsoid(o).into(),
             },
         }
@@ -37,6 +38,14 @@ impl Obstacle {
         }
     }
 
+    /// [`Obstacle::outer_where_flat`], also of a set too thin for its shape matrices.
+    pub(crate) fn outer_where_thin(&self) -> Cow<'_, Self> {
+        match self {
+            Self::Ellipsoid(o) if o.is_thin() => Cow::Owned(self.outer_with_interior()),
+            _ => self.outer_where_flat(),
+        }
+    }
+
     fn is_flat_for_a_while(&self) -> bool {
         let flat = |initial: &ConvexPolygon, velocity: &ConvexPolygon| {
             initial.minkowski_sum(velocity).vertices().len() < 3
@@ -45,7 +54,7 @@ impl Obstacle {
             Self::Polytope(o) => flat(o.initial(), o.velocity()),
             // sections do not become flat again
             Self::Slabs(o) => flat(o.initial(), &o.velocity_sets()[0].velocities),
-            Self::Ellipsoid(o) => o.is_thin(),
+            Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
         }
     }
 }
@@ -71,9 +80,16 @@ fn widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
     }
 }
 
+/// Polygons around both ellipses: the ellipse around a needle and a disc is very much wider.
+fn widened_needle(obstacle: &EllipsoidObstacle) -> PolytopeObstacle {
+    let polygon = |e: &Ellipse| e.outer_polygon(DISC_SIDES);
+    let grown = polygon(obstacle.initial()).minkowski_sum(&outer_disc(HALF_WIDTH_M, 0.0));
+    PolytopeObstacle::new(obstacle.name(), grown, polygon(obstacle.velocity()))
+}
+
 fn widened_ellipsoid(obstacle: &EllipsoidObstacle) -> EllipsoidObstacle {
     let [_, b] = obstacle.initial().semi_axes();
-    if b.norm() < HALF_WIDTH_M || obstacle.is_thin() {
+    if b.norm() < HALF_WIDTH_M {
         let axes = [
             Vector::new(HALF_WIDTH_M, 0.0),
             Vector::new(0.0, HALF_WIDTH_M),
