@@ -16,7 +16,6 @@ mod measure;
 mod nodes;
 mod profile;
 mod rays;
-mod recovery;
 mod scene;
 mod weighing;
 

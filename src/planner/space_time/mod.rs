@@ -263,9 +263,8 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         timed_out |= selection.refine(&conflicts, clock);
     }
     // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
-    let is_bent = problem.desired.legs().len() > 1;
     if !timed_out
-        && (sequential::are_several(&conflicts) || is_bent && !selection.has_plan())
+        && sequential::are_several(&conflicts)
         && let Some(motion) =
             sequential::resolve_sequentially(problem, proxies, &route, &nominal_motion, clock)
     {

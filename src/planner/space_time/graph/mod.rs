@@ -17,12 +17,9 @@ use crate::obstacle::{PolytopeObstacle, along_path};
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::planner::space_time::bound::Heuristic;
-use crate::planner::space_time::bound::obstacle::ObstacleBound;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::fallback::sequential::{TOGETHER_S, checked_part};
-use crate::planner::space_time::graph::departure::{
-    apparent_turns, departure_motions, leave_for, until,
-};
+use crate::planner::space_time::graph::departure::{departure_motions, leave_for, until};
 use crate::planner::space_time::graph::intercept::{Interceptor, Limits};
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::graph::return_to_line::return_to_line;
@@ -121,15 +118,8 @@ impl<'a> Graph<'a> {
             })
             .chain(land::tangent_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
             .collect();
-        let heuristic = (problem.search == SearchKind::AStar).then(|| {
-            let obstacle_bound = ObstacleBound::new(problem, proxies);
-            Heuristic::new(
-                problem.desired,
-                problem.time_weight,
-                problem.own,
-                obstacle_bound,
-            )
-        });
+        let heuristic = (problem.search == SearchKind::AStar)
+            .then(|| Heuristic::new(problem.desired, problem.time_weight, problem.own));
         Self {
             problem,
             proxies,
@@ -235,12 +225,8 @@ impl<'a> Graph<'a> {
         }
         for &time in &times {
             let before = until(self.nominal_motion, time);
-            let along = before.len();
             for (motion, least_turn) in departure_motions(self.problem, self.route, &before) {
                 self.interceptions(from, &motion, least_turn, out);
-            }
-            for motion in apparent_turns(self.problem, from, &before, GRAPH_HOLDS_S[0]) {
-                self.push(out, NodeKind::Held, Ending::Follow, motion, along, from);
             }
         }
     }
@@ -472,15 +458,7 @@ impl Space for Graph<'_> {
     fn bound(&mut self, state: &State) -> f64 {
         match (&self.heuristic, state.kind) {
             (None, _) | (_, NodeKind::End) => 0.0,
-            (Some(heuristic), _) if heuristic.is_dead_end(&state.pose, state.time) => f64::INFINITY,
             (Some(heuristic), _) => heuristic.cost_to_go(&state.pose, state.time),
-        }
-    }
-
-    fn tight_bound(&mut self, state: &State) -> f64 {
-        match (&self.heuristic, state.kind) {
-            (None, _) | (_, NodeKind::End) => 0.0,
-            (Some(heuristic), _) => heuristic.tight_cost_to_go(&state.pose, state.time),
         }
     }
 

@@ -96,9 +96,6 @@ const SLENDER: [EvasiveManoeuvre; 5] = [
 /// Slenderness from which a conflict uses [`SLENDER`].
 const SLENDER_FROM: f64 = 2.5;
 
-/// Ratio of the offsets of the two sides above which the farther side gets one manoeuvre only.
-const FAR_SIDE_RATIO: f64 = 1.8;
-
 /// Ratio of the offset astern to the lateral one below which waiting is tried as well.
 const WAITING_RATIO: f64 = 1.2;
 
@@ -213,14 +210,8 @@ impl<'a> Selection<'a> {
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
             for &side in sides {
-                let far = conflict.offset(side) > FAR_SIDE_RATIO * conflict.offset(side.opposite());
-                let tried = if far && sides.len() > 1 {
-                    &manoeuvres[..1]
-                } else {
-                    manoeuvres
-                };
                 guesses.extend(
-                    tried
+                    manoeuvres
                         .iter()
                         .filter_map(|c| c.guess(problem, route, side, conflict, leg)),
                 );
