@@ -286,13 +286,7 @@ pub(crate) mod tests {
             blocks: &[],
             chord: FINE_CHORD_RAD,
         };
-        let canonical = EvasiveManoeuvre {
-            turn: 0.7,
-            lead: 0.9,
-            reach: 1.0,
-            slow: false,
-            fast_share: 0.0,
-        };
+        let canonical = EvasiveManoeuvre::new(0.7, 0.9, 1.0);
         let conflict = Conflict {
             from: 140.0,
             to: 180.0,

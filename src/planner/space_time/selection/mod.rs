@@ -25,71 +25,26 @@ use crate::trajectory::Segment;
 
 /// Ahead of schedule first, then around the set: useful in every conflict.
 const FASTER_FIRST: EvasiveManoeuvre = EvasiveManoeuvre {
-    turn: 0.5,
-    lead: 0.3,
-    reach: 0.9,
-    slow: false,
     fast_share: 0.5,
+    ..EvasiveManoeuvre::new(0.5, 0.3, 0.9)
 };
 
 /// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin
 /// of attraction. The best subset for 400 encounters of 152 combinations of angles, leads and
 /// offsets.
 const COMPACT: [EvasiveManoeuvre; 4] = [
-    EvasiveManoeuvre {
-        turn: 1.4,
-        lead: 0.6,
-        reach: 0.6,
-        slow: false,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 1.0,
-        lead: 1.0,
-        reach: 0.9,
-        slow: true,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 0.4,
-        lead: 1.4,
-        reach: 0.6,
-        slow: false,
-        fast_share: 0.0,
-    },
+    EvasiveManoeuvre::new(1.4, 0.6, 0.6),
+    EvasiveManoeuvre::slow(1.0, 1.0, 0.9),
+    EvasiveManoeuvre::new(0.4, 1.4, 0.6),
     FASTER_FIRST,
 ];
 
 /// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
 const SLENDER: [EvasiveManoeuvre; 5] = [
-    EvasiveManoeuvre {
-        turn: 0.2,
-        lead: 0.3,
-        reach: 0.6,
-        slow: false,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 0.2,
-        lead: 1.0,
-        reach: 0.9,
-        slow: false,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 0.7,
-        lead: 0.3,
-        reach: 0.6,
-        slow: true,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 0.4,
-        lead: 0.3,
-        reach: 0.9,
-        slow: false,
-        fast_share: 0.0,
-    },
+    EvasiveManoeuvre::new(0.2, 0.3, 0.6),
+    EvasiveManoeuvre::new(0.2, 1.0, 0.9),
+    EvasiveManoeuvre::slow(0.7, 0.3, 0.6),
+    EvasiveManoeuvre::new(0.4, 0.3, 0.9),
     FASTER_FIRST,
 ];
 
