@@ -192,8 +192,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let Some(route) = Route::new(problem, clock) else {
         return refuse(NoPlan::NoRoute);
     };
-    let mut nominal_motion = Vec::new();
-    route.follow(0.0, 0.0, &mut nominal_motion);
+    let nominal_motion = route.follow(0.0, 0.0);
     let arrival = nominal_motion.last().map_or(0.0, Segment::end_time);
     // negated on purpose: a NaN is too late
     if !(arrival <= problem.horizon) {

@@ -149,8 +149,9 @@ fn continue_to_end(
 fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
     let (own, desired) = (problem.own, problem.desired);
     let mean = desired.length() / desired.duration();
-    let speeds = own.speeds.iter().copied().filter(|u| *u > 0.0);
-    let nearest = speeds.min_by(|a, b| (a - mean).abs().total_cmp(&(b - mean).abs()))?;
+    let nearest = own
+        .moving_speeds()
+        .min_by(|a, b| (a - mean).abs().total_cmp(&(b - mean).abs()))?;
     let direct = [own.pose.position, desired.end()];
     let direct = DesiredTrajectory::new(&direct, &[nearest]).ok();
     let desired = if straight { direct.as_ref()? } else { desired };
@@ -174,8 +175,7 @@ fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Se
 /// horizon.
 pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
     let route = Route::new(problem, Clock::new(problem.deadline))?;
-    let mut motion = Vec::new();
-    route.follow(0.0, 0.0, &mut motion);
+    let motion = route.follow(0.0, 0.0);
     let arrival = motion.last()?.end_time();
     (arrival <= problem.horizon).then_some(motion)
 }

@@ -9,7 +9,6 @@ use std::collections::HashSet;
 
 use crate::frame::{Pose, Side, wrap};
 use crate::planner::clock::Clock;
-use crate::planner::cost::space_time_error;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::fallback::cost_to_go::CostToGoGrid;
 use crate::planner::space_time::graph::intercept::Interceptor;
@@ -162,8 +161,7 @@ impl Lattice<'_> {
         let motion = state.motion(problem.own.turning_radius);
         let last = motion.last()?;
         (state.pose, state.time) = (last.end(), last.end_time());
-        let error = |s| space_time_error(problem.desired, s, problem.time_weight);
-        let cost = motion.iter().map(error).sum();
+        let cost = problem.error_of(&motion);
         (state.time <= problem.horizon).then_some((state, cost))
     }
 }

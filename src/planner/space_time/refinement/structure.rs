@@ -128,8 +128,7 @@ impl Structure {
         }
         rollout.return_segments = rollout.legs.len();
         if !matches!(self.ending, Ending::Goal { .. }) {
-            let mut return_segments = Vec::with_capacity(4);
-            route.follow(rollout.joined.0, rollout.joined.1, &mut return_segments);
+            let return_segments = route.follow(rollout.joined.0, rollout.joined.1);
             for (index, segment) in return_segments.into_iter().enumerate() {
                 let ahead = at.ahead_of(&segment);
                 rollout.legs.push(Leg {

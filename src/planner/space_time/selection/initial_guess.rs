@@ -24,7 +24,7 @@ pub(crate) struct ManoeuvreSpeeds {
 impl ManoeuvreSpeeds {
     /// Least and greatest moving speed, and the one nearest to the desired speed.
     pub(crate) fn of(problem: &Problem) -> Self {
-        let mut moving = problem.own.speeds.iter().copied().filter(|u| *u > 0.0);
+        let mut moving = problem.own.moving_speeds();
         let desired = problem.desired.length() / problem.desired.duration();
         let off = |u: &f64| (u - desired).abs();
         let nearest = moving.clone().min_by(|a, b| off(a).total_cmp(&off(b)));

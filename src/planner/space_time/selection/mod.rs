@@ -8,7 +8,6 @@ pub(crate) mod warm_start;
 use crate::frame::Side;
 use crate::planner::Plan;
 use crate::planner::clock::Clock;
-use crate::planner::cost::space_time_error;
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::first_met;
@@ -296,10 +295,7 @@ impl<'a> Selection<'a> {
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
     pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.context.problem;
-        let cost: f64 = motion
-            .iter()
-            .map(|s| space_time_error(problem.desired, s, problem.time_weight))
-            .sum();
+        let cost = problem.error_of(&motion);
         let in_time = motion
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);
