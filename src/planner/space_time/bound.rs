@@ -130,6 +130,7 @@ mod tests {
     use super::*;
     use crate::frame::Vector;
     use crate::planner::cost::space_time_error;
+    use crate::planner::fixtures::own_ship;
     use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
 
@@ -148,17 +149,7 @@ mod tests {
         for round in 0..3000 {
             let points = if round % 3 == 0 { &bent } else { &straight };
             let desired = DesiredTrajectory::new(points, &[5.0, 5.0]).expect("valid");
-            let own = OwnShip {
-                pose: Pose::new(Vector::zeros(), 0.0),
-                speed: 5.0,
-                hull: crate::vessel::Hull {
-                    length: 0.0,
-                    beam: 0.0,
-                },
-                turning_radius: 100.0,
-                speeds: vec![6.0],
-                safety_margin: 0.0,
-            };
+            let own = own_ship(&[6.0]);
             let bound = Heuristic::new(&desired, 25.0, &own);
             let mut pose = Pose::new(
                 Vector::new(

@@ -7,7 +7,7 @@
 //! before `t` own ship has an escape that is known to be clear, whatever the other ship does.
 
 use crate::colregs::{APPARENT_TIME, APPARENT_TURN};
-use crate::frame::{Side, wrap};
+use crate::frame::{Side, heading_of, wrap};
 use crate::planner::clock::Clock;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::departure::until;
