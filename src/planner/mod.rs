@@ -180,7 +180,7 @@ pub struct Plan {
     /// Minimised quantity, in the objective's unit.
     pub cost: f64,
     /// Cost of the first plan on the graph before refinement, in the same unit. For one target it
-    /// is the graph's optimum; for several it is at most six times that. `None` where the graph
+    /// is the graph's optimum; for several it is at most four times that. `None` where the graph
     /// had no plan.
     pub graph_cost: Option<f64>,
     /// Remaining length of the shortest path to the last waypoint at the end, metres; 0 for a plan

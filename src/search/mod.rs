@@ -54,6 +54,14 @@ pub trait Space {
     /// turns A* into Dijkstra.
     fn bound(&mut self, state: &Self::State) -> f64;
 
+    /// A tighter bound that costs more time.
+    ///
+    /// It is evaluated once per node, when the node would be expanded next. A node whose bound
+    /// increases returns to the queue.
+    fn tight_bound(&mut self, _: &Self::State) -> f64 {
+        0.0
+    }
+
     /// True at a goal.
     fn is_goal(&self, state: &Self::State) -> bool;
 
@@ -71,7 +79,7 @@ pub trait Space {
 /// Status of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
-    /// In the queue; its edge is untested.
+    /// In the queue; its edge is untested, or the tighter bound put it back.
     Queued,
     /// Its edge is not admitted.
     Rejected,
@@ -136,6 +144,8 @@ struct Entry {
     estimate: OrderedFloat<f64>,
     cost: OrderedFloat<f64>,
     node: usize,
+    /// Its edge is tested and its bound is the tighter one.
+    ready: bool,
 }
 
 impl Ord for Entry {
@@ -162,6 +172,7 @@ impl<S> Search<S> {
             estimate: zero,
             cost: zero,
             node: 0,
+            ready: true,
         }));
         Self {
             nodes: vec![Node {
@@ -245,8 +256,7 @@ impl<S> Search<S> {
                 self.queue.push(Reverse(entry));
                 return Stop::Budget;
             }
-            // the root has no edge
-            if index > 0 {
+            if !entry.ready {
                 self.counts.tested += 1;
                 if !space.admits(&self.nodes[index].state) {
                     self.nodes[index].fate = Fate::Rejected;
@@ -256,6 +266,22 @@ impl<S> Search<S> {
             if space.is_goal(&self.nodes[index].state) {
                 self.nodes[index].fate = Fate::Goal;
                 return Stop::Goal(index);
+            }
+            if !entry.ready {
+                let to_go = space.tight_bound(&self.nodes[index].state);
+                let estimate = entry.cost + self.weight * to_go;
+                if estimate > entry.estimate {
+                    if estimate.is_finite() {
+                        self.queue.push(Reverse(Entry {
+                            estimate,
+                            ready: true,
+                            ..entry
+                        }));
+                    } else {
+                        self.nodes[index].fate = Fate::Rejected;
+                    }
+                    continue;
+                }
             }
             self.nodes[index].fate = Fate::Expanded;
             self.counts.expanded += 1;
@@ -273,6 +299,7 @@ impl<S> Search<S> {
                         estimate: OrderedFloat(estimate),
                         cost: OrderedFloat(cost),
                         node,
+                        ready: false,
                     }));
                 }
                 let fate = if comparable {

@@ -4,6 +4,7 @@ use super::*;
 struct Grid {
     size: i32,
     informed: bool,
+    closer: bool,
 }
 
 impl Grid {
@@ -28,6 +29,19 @@ impl Space for Grid {
             0.0
         }
     }
+    fn tight_bound(&mut self, &(x, y): &(i32, i32)) -> f64 {
+        if self.closer {
+            let steps = 2 * self.size - 2 - x - y;
+            f64::from(steps)
+                + if steps > 0 {
+                    Self::weight(self.size - 1, self.size - 1) - 1.0
+                } else {
+                    0.0
+                }
+        } else {
+            0.0
+        }
+    }
     fn is_goal(&self, &(x, y): &(i32, i32)) -> bool {
         x == self.size - 1 && y == self.size - 1
     }
@@ -36,8 +50,12 @@ impl Space for Grid {
     }
 }
 
-fn costs(informed: bool) -> (Vec<f64>, Counts) {
-    let mut grid = Grid { size: 7, informed };
+fn costs(informed: bool, closer: bool) -> (Vec<f64>, Counts) {
+    let mut grid = Grid {
+        size: 7,
+        informed,
+        closer,
+    };
     let mut search = Search::new((0, 0));
     let mut found = Vec::new();
     while let Stop::Goal(node) = search.next_goal(&mut grid, usize::MAX) {
@@ -73,6 +91,7 @@ fn goals_come_in_order_of_cost_and_are_those_of_plain_enumeration() {
         &mut Grid {
             size: 7,
             informed: false,
+            closer: false,
         },
         (0, 0),
         0.0,
@@ -80,23 +99,25 @@ fn goals_come_in_order_of_cost_and_are_those_of_plain_enumeration() {
     );
     every.sort_by(f64::total_cmp);
     let mut expanded = Vec::new();
-    for informed in [false, true] {
-        let (found, counts) = costs(informed);
+    for (informed, closer) in [(false, false), (true, false), (true, true)] {
+        let (found, counts) = costs(informed, closer);
         for k in 0..5 {
             assert!((found[k] - every[k]).abs() < 1e-12);
         }
         expanded.push(counts.expanded);
     }
     assert!(expanded[1] < expanded[0], "{expanded:?}");
+    assert!(expanded[2] <= expanded[1], "{expanded:?}");
 }
 
 #[test]
 fn weighed_goals_cost_at_most_so_many_times_the_cheapest() {
-    let (exact, patient) = costs(true);
+    let (exact, patient) = costs(true, true);
     for weight in [1.0, 1.5, 4.0] {
         let mut grid = Grid {
             size: 7,
             informed: true,
+            closer: true,
         };
         let mut search = Search::new((0, 0));
         assert_eq!(search.next_goal(&mut grid, 3), Stop::Budget);
@@ -115,6 +136,7 @@ fn a_budget_stops_and_can_be_raised() {
     let mut grid = Grid {
         size: 7,
         informed: false,
+        closer: false,
     };
     let mut search = Search::new((0, 0));
     assert_eq!(search.next_goal(&mut grid, 3), Stop::Budget);

@@ -307,7 +307,7 @@ fn least_time(seeds: Seeds, report: &mut Report) {
 /// The least space-time error is about that of a fine grid.
 fn space_time_error(seeds: Seeds, report: &mut Report) {
     let count = seeds.clone().count();
-    let mut ratios = Vec::new();
+    let (mut ratios, mut expanded) = (Vec::new(), [0, 0]);
     for seed in seeds {
         let drawn = draw(seed, Kinds::Exact);
         let planned = plan(&drawn, SearchKind::AStar, Objective::SpaceTimeError);
@@ -335,6 +335,8 @@ fn space_time_error(seeds: Seeds, report: &mut Report) {
             "{seed}: {}, Dijkstra {other}",
             found.cost
         );
+        expanded[0] += planned.stats.expanded;
+        expanded[1] += dijkstra.stats.expanded;
         if let Some(grid) = grid {
             // a grid cannot follow the schedule: subtract the cost of the resulting lag
             let piece = path.length() / 400.0;
@@ -346,6 +348,13 @@ fn space_time_error(seeds: Seeds, report: &mut Report) {
         "{} scenes: error over that of the grid: median {half:.4}, 95 % {most:.4}, worst {worst:.4}",
         ratios.len(),
     );
+    println!(
+        "expanded: {} by A*, {} by Dijkstra",
+        expanded[0], expanded[1]
+    );
+    report.require(expanded[0] < expanded[1], || {
+        format!("{expanded:?} expanded")
+    });
     report.require(ratios.len() * 2 > count, || {
         format!("{} of {count} compared", ratios.len())
     });

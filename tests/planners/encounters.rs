@@ -140,7 +140,7 @@ fn plans_of_another_size_are_the_same_plans() {
 }
 
 /// Maximum cost of the graph's plan relative to the optimum for several targets under a weighted
-/// search: median, 90th percentile and maximum. The weights permit 6. Measured: 1.05, 1.16 and
+/// search: median, 90th percentile and maximum. The weights permit 4. Measured: 1.05, 1.16 and
 /// 1.36.
 const HASTE: [f64; 3] = [1.1, 1.3, 1.7];
 
@@ -193,7 +193,7 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
         blind += b;
     }
     println!("expanded {expanded}, without the bound {blind}; {equal} of the same cost");
-    assert!(3 * expanded < 2 * blind, "{expanded} {blind}");
+    assert!(2 * expanded < blind, "{expanded} {blind}");
     assert!(equal >= 90 && hasty.len() >= 15, "{equal} {}", hasty.len());
     let found = [0.5, 0.9, 1.0].map(|share| quantile(&hasty, share));
     let within = found.iter().zip(HASTE).all(|(found, most)| *found <= most);
@@ -201,9 +201,9 @@ fn a_star_finds_what_dijkstra_finds_and_in_haste_hardly_more() {
 }
 
 /// Tests A* against Dijkstra on the four scenarios. The cost is equal. A* expands fewer nodes on
-/// each, and at most two thirds as many in total.
+/// each, and at most half as many in total.
 #[test]
-fn a_star_expands_fewer_nodes_than_dijkstra_on_the_four_scenarios() {
+fn a_star_expands_half_of_dijkstra_on_the_four_scenarios() {
     let (mut expanded, mut blind) = (0, 0);
     for name in ["head-on", "give-way", "stand-on", "overtaking"] {
         let path = format!("scenarios/colregs/{name}.toml");
@@ -220,7 +220,7 @@ fn a_star_expands_fewer_nodes_than_dijkstra_on_the_four_scenarios() {
         expanded += a.0;
         blind += b.0;
     }
-    assert!(3 * expanded <= 2 * blind, "{expanded} of {blind}");
+    assert!(2 * expanded <= blind, "{expanded} of {blind}");
 }
 
 /// petgraph's A* and Dijkstra, on the free edges of the explored graph, find the cost that our

@@ -301,7 +301,7 @@ impl Space for Graph<'_> {
         if !self.scene.in_time(to_go, node.time) {
             f64::INFINITY
         } else if self.informed {
-            self.measure.bound(self.scene, to_go)
+            self.measure.bound(self.scene, to_go, node.time)
         } else {
             0.0
         }

@@ -2,11 +2,12 @@
 
 use super::due::Due;
 use super::nodes::{Mark, Node, Place};
+use super::recovery::Recovery;
 use super::scene::Scene;
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::PathTime;
 use crate::planner::cost::space_time_error;
-use crate::planner::{Objective, Problem};
+use crate::planner::{Objective, Problem, SearchKind};
 use crate::tolerance;
 use crate::trajectory::Segment;
 
@@ -21,11 +22,17 @@ const ALIKE: f64 = 2e-3;
 #[derive(Debug, Clone)]
 pub(crate) struct Measure<'a> {
     problem: &'a Problem<'a>,
+    recovery: Option<Recovery<'a>>,
 }
 
 impl<'a> Measure<'a> {
     pub(crate) fn new(problem: &'a Problem<'a>) -> Self {
-        Self { problem }
+        let informed =
+            problem.search == SearchKind::AStar && problem.objective == Objective::SpaceTimeError;
+        Self {
+            problem,
+            recovery: informed.then(|| Recovery::new(problem)).flatten(),
+        }
     }
 
     /// Returns the cost of a line in seconds, metres or m².
@@ -60,13 +67,16 @@ impl<'a> Measure<'a> {
         }
     }
 
-    /// Lower bound of the cost to the end, given the remaining metres.
-    pub(crate) fn bound(&self, scene: &Scene, to_go: f64) -> f64 {
+    /// Lower bound of the cost to the end, given the remaining metres and the current time.
+    pub(crate) fn bound(&self, scene: &Scene, to_go: f64, now: f64) -> f64 {
         let time = to_go / scene.max_speed;
         match self.problem.objective {
             Objective::Time => time,
             Objective::Length | Objective::LengthRisk { .. } => to_go + METRES_PER_SECOND * time,
-            Objective::SpaceTimeError => 0.0,
+            Objective::SpaceTimeError => {
+                let recovery = self.recovery.as_ref();
+                recovery.map_or(0.0, |recovery| recovery.bound(to_go, now))
+            }
         }
     }
 

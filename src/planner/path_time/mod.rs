@@ -16,6 +16,7 @@ mod measure;
 mod nodes;
 mod profile;
 mod rays;
+mod recovery;
 mod scene;
 mod weighing;
 

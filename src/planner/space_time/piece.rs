@@ -6,7 +6,7 @@
 //! without an interior, which are enlarged. A motion that is clear of the pieces is clear of the
 //! obstacle.
 
-use crate::geometry::{DISC_SIDES, Ellipse};
+use crate::geometry::{ConvexPolygon, DISC_SIDES, Ellipse};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 
 /// The graph uses a polytope that contains the ellipsoid, unless that needs a larger factor than
@@ -37,13 +37,16 @@ pub(crate) enum Body {
     Ellipsoid(Box<BoundedEllipsoid>),
 }
 
-/// Ellipsoid within a polytope.
+/// Ellipsoid between two polytopes.
 #[derive(Debug)]
 pub(crate) struct BoundedEllipsoid {
     pub exact: EllipsoidObstacle,
     /// Outer polytope: two 16-gons around its sets, enlarged by the excess of the ellipsoid over
     /// their sum.
     pub around: PolytopeObstacle,
+    /// Inner polytope: two polygons of 16 boundary points of its sets. It is within their sum,
+    /// which is within the ellipsoid.
+    pub within: PolytopeObstacle,
 }
 
 /// Convex pieces of all obstacles until the horizon, in their order.
@@ -79,6 +82,17 @@ pub(crate) fn pieces(obstacles: &[Obstacle], horizon: f64) -> Vec<Piece> {
 fn bounded_ellipsoid(exact: EllipsoidObstacle, horizon: f64) -> Body {
     let growth = exact.largest_ratio_to_sum(horizon).min(MAX_GROWTH);
     let around = |e: &Ellipse| e.scaled_about_center(growth).outer_polygon(DISC_SIDES);
-    let around = PolytopeObstacle::new("", around(exact.initial()), around(exact.velocity()));
-    Body::Ellipsoid(Box::new(BoundedEllipsoid { around, exact }))
+    let within = |e: &Ellipse| {
+        // boundary points of a finite ellipse are finite
+        ConvexPolygon::hull(&e.sampled_boundary(DISC_SIDES))
+            .unwrap_or_else(|_| ConvexPolygon::point(e.center()))
+    };
+    let polytope = |set: &dyn Fn(&Ellipse) -> ConvexPolygon| {
+        PolytopeObstacle::new("", set(exact.initial()), set(exact.velocity()))
+    };
+    Body::Ellipsoid(Box::new(BoundedEllipsoid {
+        around: polytope(&around),
+        within: polytope(&within),
+        exact,
+    }))
 }

@@ -40,7 +40,7 @@ impl SearchBudget {
     /// conflict are less often clear of all. A graph plan that is not optimal is usually as good an
     /// initial guess. The first stage is short; the later ones weight the heuristic less.
     pub(crate) const SEVERAL_TARGETS: Self = Self {
-        stages: &[(20, 1.0), (200, 6.0), (1_300, 4.0)],
+        stages: &[(20, 1.0), (200, 4.0), (1_300, 2.5)],
         manoeuvres: 2,
         survivors: &[(0, 6), (1, 3), (2, 2), (6, 1)],
         steps: MAX_STEPS,

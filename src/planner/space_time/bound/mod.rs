@@ -20,8 +20,17 @@
 //! are linear and integrate in closed form. For a polyline the distance `d` to the nearest leg
 //! replaces `c`. It decreases by at most `u_max` per second and is zero at the end:
 //! `h = d³ / (3 u_max T_d)`.
+//!
+//! The obstacles give a second bound, [`ObstacleBound`]; the greater of two bounds is a bound.
+//! Nodes that would be expanded next get a third one, [`TightBound`].
+
+pub(crate) mod half_plane;
+pub(crate) mod obstacle;
+pub(crate) mod tight;
 
 use crate::frame::{Pose, Vector, cross, direction, heading_of, to_port};
+use crate::planner::space_time::bound::obstacle::ObstacleBound;
+use crate::planner::space_time::bound::tight::TightBound;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
 
@@ -38,20 +47,77 @@ pub(crate) struct Heuristic<'a> {
     max_speed: f64,
     /// Metres.
     radius: f64,
+    /// Lower bound that the obstacles add.
+    obstacle_bound: ObstacleBound,
+    /// Tight bound, for one straight leg.
+    tight_bound: Option<TightBound<'a>>,
 }
 
 impl<'a> Heuristic<'a> {
-    pub(crate) fn new(desired: &'a DesiredTrajectory, time_weight: f64, own: &OwnShip) -> Self {
+    pub(crate) fn new(
+        desired: &'a DesiredTrajectory,
+        time_weight: f64,
+        own: &OwnShip,
+        obstacle_bound: ObstacleBound,
+    ) -> Self {
+        let (max_speed, radius) = (own.max_speed(), own.turning_radius);
+        let tight_bound = match desired.legs() {
+            [leg] => {
+                let kappa = time_weight / (time_weight + leg.speed * leg.speed);
+                Some(TightBound::new(
+                    leg,
+                    kappa,
+                    max_speed,
+                    radius,
+                    &obstacle_bound,
+                ))
+            }
+            _ => None,
+        };
         Self {
             desired,
             time_weight,
-            max_speed: own.max_speed(),
-            radius: own.turning_radius,
+            max_speed,
+            radius,
+            obstacle_bound,
+            tight_bound,
         }
     }
 
     /// Lower bound of the space-time error from here to the last waypoint, m².
     pub(crate) fn cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
+        let obstacle_bound =
+            |from: f64| self.obstacle_bound.cost_from(from) / self.desired.duration();
+        let (across, lag) = self.unobstructed_bounds(pose, time);
+        // bounds over disjoint time intervals add up
+        let both = across.cost + lag.cost + obstacle_bound(time + across.span.max(lag.span));
+        both.max(across.cost + obstacle_bound(time + across.span))
+            .max(obstacle_bound(time))
+    }
+
+    /// Tighter lower bound for one straight leg, m²; slower than [`Self::cost_to_go`].
+    pub(crate) fn tight_cost_to_go(&self, pose: &Pose, time: f64) -> f64 {
+        let Some(tight_bound) = &self.tight_bound else {
+            return 0.0;
+        };
+        let arrival = (self.desired.end() - pose.position).norm() / self.max_speed;
+        tight_bound.cost_to_go(&self.obstacle_bound, pose, time, arrival) / self.desired.duration()
+    }
+
+    /// True when no trajectory from here clears the obstacles.
+    pub(crate) fn is_dead_end(&self, pose: &Pose, time: f64) -> bool {
+        let [leg] = self.desired.legs() else {
+            return false;
+        };
+        let offset = pose.position - leg.start;
+        let lag = leg.speed * (time - leg.start_time) - leg.direction.dot(&offset);
+        let kappa = self.time_weight / (self.time_weight + leg.speed * leg.speed);
+        let error = (cross(leg.direction, offset).powi(2) + kappa * lag * lag).sqrt();
+        self.obstacle_bound.forbids(error, time)
+    }
+
+    /// Bounds that ignore obstacles: cross-track and lag.
+    fn unobstructed_bounds(&self, pose: &Pose, time: f64) -> (CostInterval, CostInterval) {
         let legs = self.desired.legs();
         if let [leg] = legs {
             let offset = pose.position - leg.start;
@@ -71,7 +137,7 @@ impl<'a> Heuristic<'a> {
             // heading relative to the direction straight to the path
             let toward = Vector::new(-across.signum() * sine, cosine.abs());
             let aside = self.decreasing_bound(across.abs(), toward, 0.0, f64::INFINITY);
-            return scale * (aside + kappa * along);
+            return (aside.scaled(scale), along.scaled(kappa * scale));
         }
         let off = legs
             .iter()
@@ -81,13 +147,20 @@ impl<'a> Heuristic<'a> {
                 (offset - l.direction * along).norm()
             })
             .fold(f64::INFINITY, f64::min);
-        squared_ramp(off, -self.max_speed, f64::INFINITY) / self.desired.duration()
+        let aside = squared_ramp(off, -self.max_speed, f64::INFINITY);
+        (
+            aside.scaled(1.0 / self.desired.duration()),
+            CostInterval {
+                cost: 0.0,
+                span: 0.0,
+            },
+        )
     }
 
     /// Lower sum, up to `until`, of the integral of the squared positive part of
     /// `start + growth tau - P(u_max tau)`. `off` is the cosine and sine of the angle, up to pi,
     /// between the heading and the direction that reduces the error fastest.
-    fn decreasing_bound(&self, start: f64, off: Vector, growth: f64, until: f64) -> f64 {
+    fn decreasing_bound(&self, start: f64, off: Vector, growth: f64, until: f64) -> CostInterval {
         let (u, r) = (self.max_speed, self.radius);
         let angle = heading_of(off);
         let turning = (r * angle / u).min(until);
@@ -106,23 +179,53 @@ impl<'a> Heuristic<'a> {
                 before = now;
             }
         }
-        sum + squared_ramp(before, growth - u, until - turning)
+        let after = squared_ramp(before, growth - u, until - turning);
+        CostInterval {
+            cost: sum + after.cost,
+            span: turning.max(0.0) + after.span,
+        }
     }
 }
 
-/// Integral over `[0, duration]` of the squared positive part of `start + slope tau`. A decreasing
-/// ramp may extend to infinity.
-fn squared_ramp(start: f64, slope: f64, duration: f64) -> f64 {
+/// Cost over the next `span` seconds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CostInterval {
+    pub cost: f64,
+    span: f64,
+}
+
+impl CostInterval {
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            cost: self.cost * factor,
+            ..self
+        }
+    }
+}
+
+/// Integral over `[0, duration]` of the squared positive part of `start + slope tau`, and the time
+/// until which that is positive. A decreasing ramp may extend to infinity.
+pub(crate) fn squared_ramp(start: f64, slope: f64, duration: f64) -> CostInterval {
     if start <= 0.0 && slope <= 0.0 || !(duration > 0.0) {
-        return 0.0;
+        return CostInterval {
+            cost: 0.0,
+            span: 0.0,
+        };
     }
     if slope < 0.0 {
         let span = duration.min(-start / slope).max(0.0);
         let end = (start + slope * span).max(0.0);
-        return (start.powi(3) - end.powi(3)) / (-3.0 * slope);
+        return CostInterval {
+            cost: (start.powi(3) - end.powi(3)) / (-3.0 * slope),
+            span,
+        };
     }
     // not decreasing: the start value remains a bound
-    start * start * duration.min(1e9)
+    let span = duration.min(1e9);
+    CostInterval {
+        cost: start * start * span,
+        span,
+    }
 }
 
 #[cfg(test)]
@@ -130,7 +233,6 @@ mod tests {
     use super::*;
     use crate::frame::Vector;
     use crate::planner::cost::space_time_error;
-    use crate::planner::fixtures::own_ship;
     use crate::trajectory::Segment;
     use rand::{Rng, SeedableRng};
 
@@ -149,8 +251,18 @@ mod tests {
         for round in 0..3000 {
             let points = if round % 3 == 0 { &bent } else { &straight };
             let desired = DesiredTrajectory::new(points, &[5.0, 5.0]).expect("valid");
-            let own = own_ship(&[6.0]);
-            let bound = Heuristic::new(&desired, 25.0, &own);
+            let own = OwnShip {
+                pose: Pose::new(Vector::zeros(), 0.0),
+                speed: 5.0,
+                hull: crate::vessel::Hull {
+                    length: 0.0,
+                    beam: 0.0,
+                },
+                turning_radius: 100.0,
+                speeds: vec![6.0],
+                safety_margin: 0.0,
+            };
+            let bound = Heuristic::new(&desired, 25.0, &own, ObstacleBound::none());
             let mut pose = Pose::new(
                 Vector::new(
                     rng.random_range(0.0..1300.0),
