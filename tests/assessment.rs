@@ -6,11 +6,9 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, Ellipse};
-use searoom::obstacle::{
-    EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle,
-};
+use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::study::assess::{Alteration, Query, Situation, assess, least_alteration};
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 use set_generators::{seeded, vector};
 use std::f64::consts::PI;
 
@@ -37,13 +35,9 @@ fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
         1 => EllipsoidObstacle::new("e", ellipse(rng, place, 60.0), ellipse(rng, way, 0.7)).into(),
         _ => {
             let ends = [60.0, 130.0, f64::INFINITY];
-            let spells = ends.map(|until| VelocitySpell {
-                until,
-                velocities: polygon(rng, way, 1.5),
-            });
-            SlabObstacle::new("s", polygon(rng, place, 60.0), spells.to_vec())
-                .expect("increasing")
-                .into()
+            let timed = ends.map(|until| TimedVelocitySet::new(until, polygon(rng, way, 1.5)));
+            let sets = Uncertainty::new(polygon(rng, place, 60.0), timed.to_vec());
+            Obstacle::new("s", sets).expect("increasing")
         }
     }
 }
@@ -175,13 +169,12 @@ fn mirrored(obstacle: &Obstacle) -> Obstacle {
             EllipsoidObstacle::new("e", ellipse(o.initial()), ellipse(o.velocity())).into()
         }
         Obstacle::Slabs(o) => {
-            let spells = o.slabs().iter().map(|slab| VelocitySpell {
-                until: slab.end(),
-                velocities: polygon(slab.obstacle().velocity()),
-            });
-            SlabObstacle::new("s", polygon(o.initial()), spells.collect())
-                .expect("increasing")
-                .into()
+            let timed = o
+                .slabs()
+                .iter()
+                .map(|slab| TimedVelocitySet::new(slab.end(), polygon(slab.obstacle().velocity())));
+            let sets = Uncertainty::new(polygon(o.initial()), timed.collect());
+            Obstacle::new("s", sets).expect("increasing")
         }
     }
 }

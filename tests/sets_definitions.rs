@@ -9,7 +9,7 @@ use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{
     EllipsoidObstacle, PolytopeObstacle, SlabError, SlabObstacle, SpaceTimeObstacle,
 };
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
 use set_generators::{
     directions, ellipse, ellipsoid, points, polygon, polytope, seeded, segment, slabs, vector,
@@ -508,13 +508,10 @@ fn one_slab_is_the_polytope_and_so_are_slabs_of_one_set() {
     let mut rng = seeded(210);
     for case in 0..400 {
         let p = polytope(&mut rng);
-        let spells = [7.0, 20.0, f64::INFINITY]
-            .map(|until| VelocitySpell {
-                until,
-                velocities: p.velocity().clone(),
-            })
-            .to_vec();
-        let many = SlabObstacle::new("x", p.initial().clone(), spells).expect("increasing");
+        let timed = [7.0, 20.0, f64::INFINITY]
+            .map(|until| TimedVelocitySet::new(until, p.velocity().clone()));
+        let sets = Uncertainty::new(p.initial().clone(), timed.to_vec());
+        let many = SlabObstacle::new("x", sets).expect("increasing");
         let one = SlabObstacle::unchanging(&p);
         let (x, v) = (vector(&mut rng, 200.0), vector(&mut rng, 4.0));
         let t = rng.random_range(0.0..60.0);
@@ -620,14 +617,12 @@ fn the_risk_along_a_trajectory_is_the_largest_of_its_segments() {
 
 #[test]
 fn velocity_sets_out_of_order_are_refused() {
-    let spell = |until| VelocitySpell {
-        until,
-        velocities: ConvexPolygon::point(Vector::zeros()),
-    };
-    let made = |spells| SlabObstacle::new("x", ConvexPolygon::point(Vector::zeros()), spells);
+    let still = ConvexPolygon::point(Vector::zeros());
+    let timed = |until| TimedVelocitySet::new(until, still.clone());
+    let made = |sets| SlabObstacle::new("x", Uncertainty::new(still.clone(), sets));
     assert_eq!(made(vec![]).err(), Some(SlabError::Empty));
     for bad in [5.0, 3.0, f64::NAN, f64::INFINITY] {
-        let found = made(vec![spell(5.0), spell(bad), spell(9.0)]).err();
+        let found = made(vec![timed(5.0), timed(bad), timed(9.0)]).err();
         assert!(
             matches!(
                 found,
@@ -641,7 +636,7 @@ fn velocity_sets_out_of_order_are_refused() {
         );
     }
     assert!(
-        made(vec![spell(5.0), spell(4.0)]).is_ok(),
+        made(vec![timed(5.0), timed(4.0)]).is_ok(),
         "the last has no end"
     );
 }
@@ -668,9 +663,9 @@ fn a_target_that_turns_stays_in_its_slabs() {
             domain: DomainKind::Hull,
         };
         let rate: f64 = rng.random_range(0.001..0.03);
-        let spells = ship.outer_velocity_spells(rate, 200.0);
-        let o = SlabObstacle::new("x", ConvexPolygon::point(Vector::zeros()), spells)
-            .expect("increasing");
+        let velocities = ship.outer_velocity_sets(rate, 200.0);
+        let sets = Uncertainty::new(ConvexPolygon::point(Vector::zeros()), velocities);
+        let o = SlabObstacle::new("x", sets).expect("increasing");
         for policy in 0..3 {
             let (mut x, mut t) = (Vector::zeros(), 0.0_f64);
             let mut course = ship.pose.heading + ship.course_spread;

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction, heading_of};
 use searoom::geometry::{ConvexPolygon, Ellipse, outer_disc};
 use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
 use set_generators::{ellipsoid, points, polytope, seeded, segment, slabs, vector};
 
@@ -116,15 +116,12 @@ impl Mapped for EllipsoidObstacle {
 
 impl Mapped for SlabObstacle {
     fn mapped(&self, map: &Map) -> Self {
-        let spells = self
-            .slabs()
-            .iter()
-            .map(|slab| VelocitySpell {
-                until: slab.end() * map.stretch,
-                velocities: map.polygon(slab.obstacle().velocity(), true),
-            })
-            .collect();
-        Self::new("mapped", map.polygon(self.initial(), false), spells).expect("increasing")
+        let timed = self.slabs().iter().map(|slab| {
+            let velocities = map.polygon(slab.obstacle().velocity(), true);
+            TimedVelocitySet::new(slab.end() * map.stretch, velocities)
+        });
+        let sets = Uncertainty::new(map.polygon(self.initial(), false), timed.collect());
+        Self::new("mapped", sets).expect("increasing")
     }
 }
 

@@ -20,7 +20,7 @@ use searoom::obstacle::SlabObstacle;
 use searoom::pipeline;
 use searoom::planner::Objective;
 use searoom::scenario::{Compliance, Scenario};
-use searoom::target::{Motion, Representation, ShipTrack};
+use searoom::target::{Motion, Representation, ShipTrack, Uncertainty};
 use searoom::verification::{Verification, verify};
 use serde_json::{Value, json};
 
@@ -106,7 +106,10 @@ fn documents() -> Vec<(&'static str, Value)> {
         ("ellipsoid", document(round)),
         ("munkholmen", document(scenario("harbour/munkholmen.toml"))),
         ("turning", document(scenario("uncertainty/turning.toml"))),
-        ("spells", document(scenario("uncertainty/spells.toml"))),
+        (
+            "changing velocities",
+            document(scenario("uncertainty/changing-velocities.toml")),
+        ),
         ("ellipses", document(scenario("uncertainty/ellipse.toml"))),
         ("canal", document(scenario("harbour/canal-transit.toml"))),
         ("quick ferry", document(quick)),
@@ -857,7 +860,7 @@ fn what_only_some_plans_have_is_held_too() {
             ],
         ),
         (
-            document(scenario("uncertainty/spells.toml")),
+            document(scenario("uncertainty/changing-velocities.toml")),
             vec![
                 (
                     "a velocity set that begins earlier",
@@ -1364,7 +1367,7 @@ fn every_claim_of_a_document_is_held() {
     let along = document(scenario("harbour/ferry-crossing.toml"));
     let forces = document(scenario("forces/give-way.toml"));
     let land = document(scenario("harbour/munkholmen.toml"));
-    let sets = document(scenario("uncertainty/spells.toml"));
+    let sets = document(scenario("uncertainty/changing-velocities.toml"));
     let ellipses = document(scenario("uncertainty/ellipse.toml"));
     let cases: Vec<(&Value, Alteration)> = vec![
         (
@@ -1838,9 +1841,10 @@ fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
     let mut turning = scenario("uncertainty/turning.toml");
     turning.compliance = Compliance::None;
     let ship = turning.targets[0].ship().expect("a ship").clone();
-    let spells = ship.outer_velocity_spells(ship.turn_rate, turning.horizon);
+    let velocities = ship.outer_velocity_sets(ship.turn_rate, turning.horizon);
     let initial = around(&ship, ship.outer_hull(0.0));
-    let slabs = SlabObstacle::new("x", initial, spells).expect("in order");
+    let sets = Uncertainty::new(initial, velocities);
+    let slabs = SlabObstacle::new("x", sets).expect("in order");
     let mut altered = document(turning);
     for (entry, slab) in list(&mut altered, "/obstacles")
         .iter_mut()

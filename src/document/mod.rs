@@ -38,5 +38,5 @@ pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
     UNREADABLE,
 };
-pub use targets::{ShipDocument, SpellDocument, TargetDocument};
+pub use targets::{ShipDocument, TargetDocument, TimedSetDocument};
 pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};

@@ -6,18 +6,17 @@ use super::alteration::{Turn, first_alteration};
 use super::control::{ControlDocument, control};
 use super::encounter::{EncounterDocument, encounters};
 use super::parts::{
-    CostDocument, EscapeDocument, InitialSetDocument, MissionDocument, NodeDocument,
-    ObstacleDocument, OwnShipDocument, PositionDocument, RelaxationDocument, SampleDocument,
-    SearchStatsDocument, SegmentDocument, StartDocument, TimingDocument, TrajectoryDocument,
-    TurnDocument, VelocitySetDocument, ViolationDocument,
+    CostDocument, EscapeDocument, MissionDocument, NodeDocument, ObstacleDocument, OwnShipDocument,
+    PositionDocument, RelaxationDocument, SampleDocument, SearchStatsDocument, SegmentDocument,
+    StartDocument, TimingDocument, TrajectoryDocument, TurnDocument, ViolationDocument,
 };
 use super::path_time::{PathTimeDocument, path_time_document};
-use super::targets::{TargetDocument, ellipse, target, velocity_ellipse};
+use super::targets::{TargetDocument, initial_set, target, velocity_set};
 use crate::evaluation::Evaluation;
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
 };
-use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run, Verdict};
 use crate::planner::{Objective, Plan, PlannerKind};
@@ -387,29 +386,25 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
     let from = from.min(horizon);
     let set = &set.remainder(from);
     let left = horizon - from;
-    let entry = |valid_s, initial_set, velocity_set| ObstacleDocument {
+    let entry = |valid_s, initial: ConvexSet, velocity: ConvexSet| ObstacleDocument {
         name: set.name().to_owned(),
         valid_s,
-        initial_set,
-        velocity_set,
+        initial_set: initial_set(&initial),
+        velocity_set: velocity_set(&velocity),
     };
     let polytope = |o: &PolytopeObstacle, valid_s| {
         entry(
             valid_s,
-            InitialSetDocument::Polygon {
-                vertices_m: vertices(o.initial()),
-            },
-            VelocitySetDocument::Polygon {
-                vertices_mps: vertices(o.velocity()),
-            },
+            o.initial().clone().into(),
+            o.velocity().clone().into(),
         )
     };
     match set {
         Obstacle::Polytope(o) => vec![polytope(o, [from, horizon])],
         Obstacle::Ellipsoid(o) => vec![entry(
             [from, horizon],
-            ellipse(o.initial()),
-            velocity_ellipse(o.velocity()),
+            (*o.initial()).into(),
+            (*o.velocity()).into(),
         )],
         Obstacle::Slabs(o) => o
             .slabs()

@@ -22,7 +22,7 @@ pub(crate) use distance::turned_hull::TurnedHull;
 pub(crate) use nominal::{nominal_distance, nominal_legs};
 pub use request::{Freedom, Request};
 pub use safety::Safety;
-pub use sets::space_time_set::{SetShape, SpaceTimeSet};
+pub use sets::space_time_set::SpaceTimeSet;
 pub use steered::{Steering, evaluate_steered};
 pub(crate) use words::risk_figure;
 pub use words::{facts, outcome_word};
@@ -237,7 +237,7 @@ fn meetings<P: Piece>(
         .map(|set| {
             let least = set.least_distance(pieces);
             let label = format!("set of '{}'", set.name);
-            let entered = collision(&label, &least, set.shape.has_interior());
+            let entered = collision(&label, &least, set.has_interior());
             let kept = entered.is_none();
             violations.extend(entered.filter(|_| judged));
             (least, kept)

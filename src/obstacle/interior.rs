@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
+use super::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, Ellipse, outer_disc};
 use crate::tolerance::HALF_WIDTH_M;
@@ -14,12 +14,10 @@ impl Obstacle {
     pub(crate) fn outer_with_interior(&self) -> Self {
         match self {
             Self::Polytope(o) => widened(o).into(),
-            Self::Slabs(o) => outer_grown(o.initial())
-                .and_then(|grown| {
-                    SlabObstacle::new(o.name(), grown, o.velocity_sets().to_vec()).ok()
-                })
-                .unwrap_or_else(|| o.clone())
-                .into(),
+            Self::Slabs(o) => match outer_grown(o.initial()) {
+                Some(grown) => o.with_initial(grown).into(),
+                None => o.clone().into(),
+            },
             Self::Ellipsoid(o) => match o.flat() {
                 Some(flat) => widened(flat).into(),
                 None => widened_ellipsoid(o).into(),
@@ -44,7 +42,7 @@ impl Obstacle {
         match self {
             Self::Polytope(o) => flat(o.initial(), o.velocity()),
             // sections do not become flat again
-            Self::Slabs(o) => flat(o.initial(), &o.velocity_sets()[0].velocities),
+            Self::Slabs(o) => flat(o.initial(), o.slabs()[0].obstacle().velocity()),
             Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
         }
     }

@@ -131,7 +131,10 @@ fn greatest_speed(set: &Obstacle) -> f64 {
     match set {
         Obstacle::Polytope(o) => o.velocity().reach(),
         Obstacle::Slabs(o) => {
-            let reaches = o.velocity_sets().iter().map(|set| set.velocities.reach());
+            let reaches = o
+                .slabs()
+                .iter()
+                .map(|slab| slab.obstacle().velocity().reach());
             reaches.fold(0.0, f64::max)
         }
         Obstacle::Ellipsoid(_) => f64::INFINITY,

@@ -5,8 +5,8 @@ use super::figures::near;
 use super::untrue;
 use crate::evaluation::{Evaluation, Violation};
 use crate::frame::{Pose, Vector, wrap};
-use crate::geometry::Ellipse;
-use crate::target::{Motion, Target};
+use crate::geometry::{ConvexSet, Ellipse};
+use crate::target::{Target, Uncertainty};
 use crate::tolerance;
 use nalgebra::Matrix2;
 
@@ -95,14 +95,18 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
             .hull
             .polygon(pose)
             .separation(&ship.hull.polygon(&ship.pose_at(time))),
-        None => match &target.motion {
-            Motion::Ellipses { initial, velocity } => {
-                let section = least_trace_sum(initial, velocity, time);
-                section.map_or(f64::NAN, |set| set.signed_distance(pose.position).distance)
-            }
-            _ => (target.outer_set_at(time))
-                .map_or(f64::NAN, |set| set.signed_distance(pose.position)),
-        },
+        None => {
+            let distance = |sets: &Uncertainty| match &sets.initial {
+                ConvexSet::Polygon(_) => {
+                    Some(sets.outer_section(time).signed_distance(pose.position))
+                }
+                ConvexSet::Ellipse(initial) => {
+                    let section = least_trace_sum(initial, sets, time)?;
+                    Some(section.signed_distance(pose.position).distance)
+                }
+            };
+            target.sets().and_then(distance).unwrap_or(f64::NAN)
+        }
     }
 }
 
@@ -135,17 +139,22 @@ fn while_turning(claim: &Claim, target: &Target, turn: (&Pose, &Pose), time: f64
     least
 }
 
-/// Ellipse of least trace around `initial + t velocity`, docs/theory.md section 3.
-fn least_trace_sum(initial: &Ellipse, velocity: &Ellipse, time: f64) -> Option<Ellipse> {
-    let center = initial.center() + velocity.center() * time;
-    let (still, moving) = (initial.shape(), velocity.shape() * (time * time));
-    let (a, b) = (still.trace().sqrt(), moving.trace().sqrt());
-    let share = |shape: Matrix2<f64>, root: f64| {
-        if root > 0.0 {
-            shape / root
-        } else {
-            Matrix2::zeros()
+/// Ellipse of least trace around a sum of ellipses, docs/theory.md section 3.
+pub(super) fn least_trace_sum(initial: &Ellipse, sets: &Uncertainty, time: f64) -> Option<Ellipse> {
+    let (mut center, mut shape, mut sum) = (Vector::zeros(), Matrix2::zeros(), 0.0);
+    let mut add = |ellipse: &Ellipse, factor: f64| {
+        let scaled = ellipse.shape() * (factor * factor);
+        let root = scaled.trace().sqrt();
+        // Negated on purpose: a NaN is included.
+        if !(root <= 0.0) {
+            shape += scaled / root;
+            sum += root;
         }
+        center += ellipse.center() * factor;
     };
-    Ellipse::new(center, (share(still, a) + share(moving, b)) * (a + b)).ok()
+    add(initial, 1.0);
+    for (duration, velocities) in sets.durations(time) {
+        add(velocities.as_ellipse()?, duration);
+    }
+    Ellipse::new(center, shape * sum).ok()
 }

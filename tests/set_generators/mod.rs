@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::geometry::{ConvexPolygon, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle};
-use searoom::target::VelocitySpell;
+use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
 
 /// The generator of one test; `SEAROOM_SEED` gives other cases.
@@ -85,16 +85,14 @@ pub fn ellipsoid(rng: &mut ChaCha8Rng) -> EllipsoidObstacle {
 
 pub fn slabs(rng: &mut ChaCha8Rng) -> SlabObstacle {
     let mut until = 0.0;
-    let spells = (0..rng.random_range(1..5))
+    let timed = (0..rng.random_range(1..5))
         .map(|_| {
             until += rng.random_range(1.0..40.0);
-            VelocitySpell {
-                until,
-                velocities: polygon(rng, 2.0),
-            }
+            TimedVelocitySet::new(until, polygon(rng, 2.0))
         })
         .collect();
-    SlabObstacle::new("slabs", polygon(rng, 60.0), spells).expect("increasing")
+    let sets = Uncertainty::new(polygon(rng, 60.0), timed);
+    SlabObstacle::new("slabs", sets).expect("increasing")
 }
 
 /// A line or an arc, of some hundred metres.

@@ -4,14 +4,17 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, SignedDistance};
+use crate::geometry::{ConvexPolygon, ConvexSet, SignedDistance};
 use crate::obstacle::closest_approach::{ClosestApproach, usable_horizon};
 use crate::obstacle::risk::{PeakRisk, level_of, peak_by_bisection, scaled_velocities};
 use crate::obstacle::space_time_obstacle::largest_risk_of_parts;
 use crate::obstacle::{HalfSpace, PolytopeObstacle, SpaceTimeObstacle, Support};
-use crate::target::VelocitySpell;
+use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
+
+/// Sides of the polygon around an ellipse.
+const SIDES: usize = 64;
 
 /// Why velocity sets do not form a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -80,29 +83,6 @@ struct SlabFace {
 /// `O_t = O_0 ⊕ sum of (t_j+1 - t_j) V_j ⊕ (t - t_k) V_k`. Sections and slabs are convex. The whole
 /// is not where the sets grow, so every query goes slab by slab. A slab has the faces of `O_0` and
 /// of all sets so far.
-///
-/// ```
-/// use searoom::frame::Vector;
-/// use searoom::geometry::ConvexPolygon;
-/// use searoom::obstacle::SlabObstacle;
-/// use searoom::target::VelocitySpell;
-///
-/// let heading_north = |spread: f64| {
-///     let corners = [(-spread, 4.0), (spread, 4.0), (0.0, 6.0)];
-///     ConvexPolygon::hull(&corners.map(|(x, y)| Vector::new(x, y)))
-/// };
-/// // little uncertainty for a minute, more from then on
-/// let velocity_sets = vec![
-///     VelocitySpell { until: 60.0, velocities: heading_north(0.1)? },
-///     VelocitySpell { until: f64::INFINITY, velocities: heading_north(2.0)? },
-/// ];
-/// let start = ConvexPolygon::point(Vector::zeros());
-/// let target = SlabObstacle::new("ferry", start, velocity_sets).expect("in order");
-/// let beside = |time| target.section(time).support(Vector::new(1.0, 0.0));
-/// assert!((beside(60.0) - 6.0).abs() < 1e-6);
-/// assert!((beside(90.0) - 66.0).abs() < 1e-6);
-/// # Ok::<(), searoom::geometry::GeometryError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct SlabObstacle {
     shared: Arc<Shared>,
@@ -112,38 +92,25 @@ pub struct SlabObstacle {
 #[derive(Debug)]
 struct Shared {
     name: String,
-    initial: ConvexPolygon,
-    velocity_sets: Vec<VelocitySpell>,
+    sets: Uncertainty,
     slabs: Vec<Slab>,
 }
 
 impl PartialEq for SlabObstacle {
     fn eq(&self, other: &Self) -> bool {
         // everything else follows from these
-        let key = |o: &Self| {
-            (
-                o.name().to_owned(),
-                o.initial().clone(),
-                o.velocity_sets().to_vec(),
-            )
-        };
-        key(self) == key(other)
+        self.name() == other.name() && self.sets() == other.sets()
     }
 }
 
 impl SlabObstacle {
-    /// From the set at t = 0, metres, and the velocity sets in order of time. The last set has no
-    /// end, whatever its `until`.
-    pub fn new(
-        name: impl Into<String>,
-        initial: ConvexPolygon,
-        velocity_sets: Vec<VelocitySpell>,
-    ) -> Result<Self, SlabError> {
-        if velocity_sets.is_empty() {
+    /// From the sets of a target. The last velocity set has no end, whatever its `until`.
+    pub fn new(name: impl Into<String>, sets: Uncertainty) -> Result<Self, SlabError> {
+        let Some((_, changes)) = sets.velocities.split_last() else {
             return Err(SlabError::Empty);
-        }
+        };
         let mut after = 0.0;
-        for (index, set) in velocity_sets[..velocity_sets.len() - 1].iter().enumerate() {
+        for (index, set) in changes.iter().enumerate() {
             let found = set.until;
             if !(found > after && found.is_finite()) {
                 return Err(SlabError::NotIncreasing {
@@ -154,24 +121,21 @@ impl SlabObstacle {
             }
             after = found;
         }
-        Ok(Self::from_sequence(name.into(), initial, velocity_sets))
+        Ok(Self::from_sequence(name.into(), sets))
     }
 
-    fn from_sequence(
-        name: String,
-        initial: ConvexPolygon,
-        velocity_sets: Vec<VelocitySpell>,
-    ) -> Self {
-        let mut slabs: Vec<Slab> = Vec::with_capacity(velocity_sets.len());
-        let (mut start, mut section, mut nominal) = (0.0, initial.clone(), Vector::zeros());
-        for (index, set) in velocity_sets.iter().enumerate() {
-            let end = if index + 1 == velocity_sets.len() {
-                f64::INFINITY
-            } else {
-                set.until
-            };
-            let obstacle = PolytopeObstacle::new(name.clone(), section, set.velocities.clone());
-            let centroid = set.velocities.centroid();
+    fn from_sequence(name: String, mut sets: Uncertainty) -> Self {
+        if let Some(last) = sets.velocities.last_mut() {
+            last.until = f64::INFINITY;
+        }
+        let mut slabs: Vec<Slab> = Vec::with_capacity(sets.velocities.len());
+        let (mut start, mut nominal) = (0.0, Vector::zeros());
+        let mut section = sets.initial.outer_polygon(SIDES);
+        for set in &sets.velocities {
+            let end = set.until;
+            let velocities = set.velocities.outer_polygon(SIDES);
+            let centroid = velocities.centroid();
+            let obstacle = PolytopeObstacle::new(name.clone(), section, velocities);
             section = if end.is_finite() {
                 obstacle.section(end - start)
             } else {
@@ -190,12 +154,7 @@ impl SlabObstacle {
             }
         }
         Self {
-            shared: Arc::new(Shared {
-                name,
-                initial,
-                velocity_sets,
-                slabs,
-            }),
+            shared: Arc::new(Shared { name, sets, slabs }),
         }
     }
 
@@ -221,31 +180,28 @@ impl SlabObstacle {
 
     /// A polytope as a single slab.
     pub fn unchanging(polytope: &PolytopeObstacle) -> Self {
-        let set = VelocitySpell {
-            until: f64::INFINITY,
-            velocities: polytope.velocity().clone(),
-        };
-        let (name, initial) = (polytope.name().to_owned(), polytope.initial().clone());
-        Self::from_sequence(name, initial, vec![set])
+        let (initial, velocity) = (polytope.initial().clone(), polytope.velocity().clone());
+        let sets = Uncertainty::constant(initial, velocity);
+        Self::from_sequence(polytope.name().to_owned(), sets)
     }
 
     /// These velocity sets with another set at t = 0, metres.
-    pub fn with_initial(&self, initial: ConvexPolygon) -> Self {
-        Self::from_sequence(
-            self.shared.name.clone(),
-            initial,
-            self.shared.velocity_sets.clone(),
-        )
+    pub fn with_initial(&self, initial: impl Into<ConvexSet>) -> Self {
+        let sets = Uncertainty {
+            initial: initial.into(),
+            velocities: self.sets().velocities.clone(),
+        };
+        Self::from_sequence(self.shared.name.clone(), sets)
+    }
+
+    /// The set at t = 0 and the velocity sets.
+    pub fn sets(&self) -> &Uncertainty {
+        &self.shared.sets
     }
 
     /// `O_0`, metres.
     pub fn initial(&self) -> &ConvexPolygon {
-        &self.shared.initial
-    }
-
-    /// The velocity sets in order of time, m/s.
-    pub fn velocity_sets(&self) -> &[VelocitySpell] {
-        &self.shared.velocity_sets
+        self.shared.slabs[0].obstacle.initial()
     }
 
     /// The slabs in order of time; the first starts at 0, the last has no end.
@@ -370,19 +326,15 @@ impl SpaceTimeObstacle for SlabObstacle {
         if alpha == 1.0 {
             return self.clone();
         }
-        let velocity_sets = self
-            .velocity_sets()
-            .iter()
-            .map(|set| VelocitySpell {
-                until: set.until,
-                velocities: scaled_velocities(&set.velocities, alpha),
-            })
-            .collect();
-        Self::from_sequence(
-            self.shared.name.clone(),
-            self.shared.initial.clone(),
-            velocity_sets,
-        )
+        let scaled = self.slabs().iter().map(|slab| {
+            let velocities = scaled_velocities(slab.obstacle.velocity(), alpha);
+            TimedVelocitySet::new(slab.end, velocities)
+        });
+        let sets = Uncertainty {
+            initial: self.sets().initial.clone(),
+            velocities: scaled.collect(),
+        };
+        Self::from_sequence(self.shared.name.clone(), sets)
     }
 
     /// The minimum over the slabs, each in closed form; the earliest of equal ones.

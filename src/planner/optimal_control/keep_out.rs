@@ -3,7 +3,7 @@
 use nalgebra::Matrix2;
 
 use crate::frame::{Vector, to_port};
-use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::geometry::Ellipse;
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 
 /// Least semi-axis in metres. The constraint needs a set with interior, so a narrower initial
@@ -42,14 +42,7 @@ impl KeepOut {
             Obstacle::Ellipsoid(o) => (o.as_ref().clone(), false),
             Obstacle::Polytope(o) => (EllipsoidObstacle::outer_of(o), true),
             Obstacle::Slabs(o) => {
-                let velocities: Vec<Vector> = o
-                    .velocity_sets()
-                    .iter()
-                    .flat_map(|s| s.velocities.vertices().iter().copied())
-                    .collect();
-                // slabs always have velocities
-                let all = ConvexPolygon::hull(&velocities)
-                    .unwrap_or_else(|_| ConvexPolygon::point(Vector::zeros()));
+                let all = o.sets().outer_velocities_after(f64::NEG_INFINITY);
                 let whole = PolytopeObstacle::new(o.name(), o.initial().clone(), all);
                 (EllipsoidObstacle::outer_of(&whole), true)
             }
@@ -123,6 +116,7 @@ pub(super) fn ellipsoid(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::ConvexPolygon;
 
     #[test]
     fn the_level_is_one_on_the_edge_and_agrees_with_the_set() {

@@ -173,8 +173,8 @@ pub fn square(limit: f64) -> ConvexPolygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::obstacle::{EllipsoidObstacle, SlabObstacle, SpaceTimeObstacle};
-    use crate::target::VelocitySpell;
+    use crate::obstacle::{EllipsoidObstacle, SpaceTimeObstacle};
+    use crate::target::{TimedVelocitySet, Uncertainty};
 
     fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
         let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
@@ -186,10 +186,9 @@ mod tests {
     #[test]
     fn the_velocities_drawn_are_those_that_come_so_near() {
         let (place, way) = (Vector::new(300.0, 80.0), Vector::new(-2.0, -0.5));
-        let spells = [(70.0, 0.2), (f64::INFINITY, 0.9)].map(|(until, wide)| VelocitySpell {
-            until,
-            velocities: rectangle(way, wide, wide),
-        });
+        let timed = [(70.0, 0.2), (f64::INFINITY, 0.9)]
+            .map(|(until, wide)| TimedVelocitySet::new(until, rectangle(way, wide, wide)));
+        let changing = Uncertainty::new(rectangle(place, 30.0, 10.0), timed.to_vec());
         let ellipse = |center: Vector, a: f64, b: f64| {
             Ellipse::from_axes(center, [Vector::new(a, 0.0), Vector::new(0.0, b)])
         };
@@ -197,9 +196,7 @@ mod tests {
             PolytopeObstacle::new("", rectangle(place, 30.0, 10.0), rectangle(way, 0.4, 0.2))
                 .into(),
             EllipsoidObstacle::new("", ellipse(place, 30.0, 10.0), ellipse(way, 0.4, 0.2)).into(),
-            SlabObstacle::new("", rectangle(place, 30.0, 10.0), spells.to_vec())
-                .expect("increasing")
-                .into(),
+            Obstacle::new("", changing).expect("increasing"),
         ];
         let (position, limit) = (Vector::new(-10.0, 5.0), 12.0);
         for horizon in [200.0, f64::INFINITY] {
