@@ -5,7 +5,7 @@ mod set_generators;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
-use searoom::geometry::{ConvexPolygon, Ellipse};
+use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use searoom::study::assess::{Alteration, Query, Situation, assess, least_alteration};
 use searoom::target::{TimedVelocitySet, Uncertainty};
@@ -161,22 +161,15 @@ fn mirrored(obstacle: &Obstacle) -> Obstacle {
         let shape = nalgebra::Matrix2::new(q[(0, 0)], -q[(0, 1)], -q[(1, 0)], q[(1, 1)]);
         Ellipse::new(flip(&set.center()), shape).expect("a shape")
     };
-    match obstacle {
-        Obstacle::Polytope(o) => {
-            PolytopeObstacle::new("p", polygon(o.initial()), polygon(o.velocity())).into()
-        }
-        Obstacle::Ellipsoid(o) => {
-            EllipsoidObstacle::new("e", ellipse(o.initial()), ellipse(o.velocity())).into()
-        }
-        Obstacle::Slabs(o) => {
-            let timed = o
-                .slabs()
-                .iter()
-                .map(|slab| TimedVelocitySet::new(slab.end(), polygon(slab.obstacle().velocity())));
-            let sets = Uncertainty::new(polygon(o.initial()), timed.collect());
-            Obstacle::new("s", sets).expect("increasing")
-        }
-    }
+    let map = |set: &ConvexSet| match set {
+        ConvexSet::Polygon(set) => ConvexSet::from(polygon(set)),
+        ConvexSet::Ellipse(set) => ConvexSet::from(ellipse(set)),
+    };
+    let sets = obstacle.sets();
+    let timed = sets.velocities.iter();
+    let timed = timed.map(|set| TimedVelocitySet::new(set.until, map(&set.velocities)));
+    let sets = Uncertainty::new(map(&sets.initial), timed.collect());
+    Obstacle::new(obstacle.name(), sets).expect("increasing")
 }
 
 fn near(a: Option<f64>, b: Option<f64>) -> bool {
@@ -335,7 +328,7 @@ fn the_regions_of_slabs_are_their_velocity_obstacle() {
         let slabs = set_generators::slabs(&mut rng);
         let position = vector(&mut rng, 200.0);
         let horizon = [20.0, 90.0, f64::INFINITY][rng.random_range(0..3)];
-        let regions = slabs.velocity_obstacles(position, horizon);
+        let regions = slabs.outer_velocity_obstacles(position, horizon);
         for _ in 0..200 {
             let v = vector(&mut rng, 6.0);
             let beyond = regions

@@ -7,7 +7,7 @@ use nalgebra::Matrix2;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction, heading_of};
-use searoom::geometry::{ConvexPolygon, Ellipse, outer_disc};
+use searoom::geometry::{ConvexPolygon, ConvexSet, Ellipse, outer_disc};
 use searoom::obstacle::{EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle};
 use searoom::target::{TimedVelocitySet, Uncertainty};
 use searoom::trajectory::Segment;
@@ -116,11 +116,12 @@ impl Mapped for EllipsoidObstacle {
 
 impl Mapped for SlabObstacle {
     fn mapped(&self, map: &Map) -> Self {
-        let timed = self.slabs().iter().map(|slab| {
-            let velocities = map.polygon(slab.obstacle().velocity(), true);
-            TimedVelocitySet::new(slab.end() * map.stretch, velocities)
+        let mapped =
+            |set: &ConvexSet, moves| map.polygon(set.as_polygon().expect("a polygon"), moves);
+        let timed = self.sets().velocities.iter().map(|set| {
+            TimedVelocitySet::new(set.until * map.stretch, mapped(&set.velocities, true))
         });
-        let sets = Uncertainty::new(map.polygon(self.initial(), false), timed.collect());
+        let sets = Uncertainty::new(mapped(&self.sets().initial, false), timed.collect());
         Self::new("mapped", sets).expect("increasing")
     }
 }

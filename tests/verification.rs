@@ -1850,7 +1850,7 @@ fn sets_around_a_hull_that_does_not_turn_with_its_course_are_too_small() {
         .iter_mut()
         .zip(slabs.slabs())
     {
-        entry["initial_set"]["vertices_m"] = plain(slab.obstacle().initial());
+        entry["initial_set"]["vertices_m"] = plain(&slab.obstacle().outer_section(0.0));
     }
     rejected(&altered);
 }

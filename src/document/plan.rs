@@ -16,8 +16,8 @@ use crate::evaluation::Evaluation;
 use crate::frame::{
     Pose, Vector, clockwise_deg, clockwise_deg_per_s, course_deg_from_heading, heading_of,
 };
-use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
-use crate::obstacle::{Obstacle, PeakRisk, PolytopeObstacle, SpaceTimeObstacle};
+use crate::geometry::{ConvexPolygon, Ellipse};
+use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run, Verdict};
 use crate::planner::{Objective, Plan, PlannerKind};
 use crate::scenario::Scenario;
@@ -386,34 +386,22 @@ fn obstacles(set: &Obstacle, from: f64, horizon: f64) -> Vec<ObstacleDocument> {
     let from = from.min(horizon);
     let set = &set.remainder(from);
     let left = horizon - from;
-    let entry = |valid_s, initial: ConvexSet, velocity: ConvexSet| ObstacleDocument {
-        name: set.name().to_owned(),
-        valid_s,
-        initial_set: initial_set(&initial),
-        velocity_set: velocity_set(&velocity),
-    };
-    let polytope = |o: &PolytopeObstacle, valid_s| {
-        entry(
-            valid_s,
-            o.initial().clone().into(),
-            o.velocity().clone().into(),
-        )
+    let entry = |set: &Obstacle, times: [f64; 2]| {
+        let sets = set.sets();
+        ObstacleDocument {
+            name: set.name().to_owned(),
+            valid_s: times.map(|time| from + time),
+            initial_set: initial_set(&sets.initial),
+            velocity_set: velocity_set(&sets.velocities[0].velocities),
+        }
     };
     match set {
-        Obstacle::Polytope(o) => vec![polytope(o, [from, horizon])],
-        Obstacle::Ellipsoid(o) => vec![entry(
-            [from, horizon],
-            (*o.initial()).into(),
-            (*o.velocity()).into(),
-        )],
+        Obstacle::Polytope(_) | Obstacle::Ellipsoid(_) => vec![entry(set, [0.0, left])],
         Obstacle::Slabs(o) => o
             .slabs()
             .iter()
             .filter(|slab| slab.start() < left || slab.start() == 0.0)
-            .map(|slab| {
-                let times = [slab.start(), slab.end().min(left)];
-                polytope(slab.obstacle(), times.map(|time| from + time))
-            })
+            .map(|slab| entry(slab.obstacle(), [slab.start(), slab.end().min(left)]))
             .collect(),
     }
 }

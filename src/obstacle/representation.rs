@@ -1,8 +1,8 @@
 //! An obstacle of any kind.
 
 use super::closest_approach::ClosestApproach;
-use super::polytope::slabs::SlabError;
 use super::risk::PeakRisk;
+use super::slabs::SlabError;
 use super::{
     EllipsoidObstacle, PolytopeObstacle, SlabObstacle, SpaceTimeObstacle, Support, VelocityObstacle,
 };
@@ -82,8 +82,12 @@ impl Obstacle {
     /// Kind of the sections: `"polytope"` or `"ellipsoid"`.
     pub fn representation(&self) -> &'static str {
         match self {
-            Self::Polytope(_) | Self::Slabs(_) => "polytope",
+            Self::Polytope(_) => "polytope",
             Self::Ellipsoid(_) => "ellipsoid",
+            Self::Slabs(o) => match o.sets().initial {
+                ConvexSet::Polygon(_) => "polytope",
+                ConvexSet::Ellipse(_) => "ellipsoid",
+            },
         }
     }
 
@@ -92,7 +96,7 @@ impl Obstacle {
         match self {
             Self::Polytope(o) => ConvexSet::Polygon(o.section(time)),
             Self::Ellipsoid(o) => ConvexSet::Ellipse(o.outer_section(time)),
-            Self::Slabs(o) => ConvexSet::Polygon(o.section(time)),
+            Self::Slabs(o) => o.section(time),
         }
     }
 
@@ -134,7 +138,7 @@ impl Obstacle {
     ) -> Option<Vec<VelocityObstacle>> {
         match self {
             Self::Polytope(o) => Some(vec![o.velocity_obstacle(position, horizon)]),
-            Self::Slabs(o) => Some(o.velocity_obstacles(position, horizon)),
+            Self::Slabs(o) => Some(o.outer_velocity_obstacles(position, horizon)),
             // for parallel segments and points the sixteen sides of the outer polygon coincide
             Self::Ellipsoid(o) if o.is_flat() => Some(vec![
                 o.sum_outer_polytope().velocity_obstacle(position, horizon),

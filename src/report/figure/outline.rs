@@ -5,7 +5,7 @@ use kuva::render::plots::Plot;
 
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
-use crate::obstacle::{Obstacle, PolytopeObstacle};
+use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle};
 
 /// Number of points on the boundary of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
@@ -127,7 +127,7 @@ pub fn outer_velocities_within(
     let Approaching { position, horizon } = *approach;
     let wider = |set: &ConvexPolygon| {
         if distance > 0.0 {
-            set.minkowski_sum(&disc(distance))
+            set.minkowski_sum(&disc(distance).outer_polygon(64))
         } else {
             set.clone()
         }
@@ -139,8 +139,14 @@ pub fn outer_velocities_within(
             vec![wide.velocity_obstacle(position, horizon)]
         }
         Obstacle::Slabs(obstacle) => {
-            let wide = obstacle.with_initial(wider(obstacle.initial()));
-            wide.velocity_obstacles(position, horizon)
+            let wide = match &obstacle.sets().initial {
+                ConvexSet::Polygon(initial) => obstacle.with_initial(wider(initial)),
+                ConvexSet::Ellipse(initial) => {
+                    let wide = EllipsoidObstacle::new("", *initial, disc(distance));
+                    obstacle.with_initial(wide.outer_section(1.0))
+                }
+            };
+            wide.outer_velocity_obstacles(position, horizon)
         }
         Obstacle::Ellipsoid(obstacle) => {
             let region = obstacle.velocities_within(position, horizon, distance);
@@ -159,9 +165,9 @@ pub struct Approaching {
     pub horizon: f64,
 }
 
-fn disc(radius: f64) -> ConvexPolygon {
+fn disc(radius: f64) -> Ellipse {
     let axes = [Vector::new(radius, 0.0), Vector::new(0.0, radius)];
-    Ellipse::from_axes(Vector::zeros(), axes).outer_polygon(64)
+    Ellipse::from_axes(Vector::zeros(), axes)
 }
 
 /// Square of all velocities within `limit` east and north.
@@ -173,7 +179,7 @@ pub fn square(limit: f64) -> ConvexPolygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::obstacle::{EllipsoidObstacle, SpaceTimeObstacle};
+    use crate::obstacle::SpaceTimeObstacle;
     use crate::target::{TimedVelocitySet, Uncertainty};
 
     fn rectangle(center: Vector, length: f64, beam: f64) -> ConvexPolygon {
