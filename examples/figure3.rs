@@ -7,10 +7,10 @@
 mod shared;
 
 use searoom::frame::Vector;
-use searoom::report::figure::{Figure, FigureError, Window, risk_panel};
+use searoom::report::figure::{Figure, FigureError, PlotWindow, risk_panel};
 
 fn main() -> Result<(), FigureError> {
-    let window = Window {
+    let window = PlotWindow {
         low: Vector::new(-20.0, -75.0),
         high: Vector::new(140.0, 75.0),
     };

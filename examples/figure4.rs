@@ -8,11 +8,11 @@
 mod shared;
 
 use searoom::frame::Vector;
-use searoom::report::figure::{Figure, FigureError, VelocityWindow, Window, dcpa_panel};
+use searoom::report::figure::{Figure, FigureError, PlotWindow, VelocityWindow, dcpa_panel};
 
 fn main() -> Result<(), FigureError> {
     let shown = VelocityWindow {
-        window: Window {
+        window: PlotWindow {
             low: Vector::new(-2.0, -2.0),
             high: Vector::new(3.0, 2.0),
         },

@@ -75,8 +75,8 @@ fn main() {
             }
         }
     }
-    println!("\n| larger sets | comparisons | cheaper | J over J, least |");
-    println!("| --- | --- | --- | --- |");
+    println!("\n| larger sets | comparisons | cheaper | with one target | J over J, least |");
+    println!("| --- | --- | --- | --- | --- |");
     for (name, change) in LARGER {
         let compared: Vec<(usize, f64)> = scenes
             .par_iter()
@@ -95,9 +95,13 @@ fn main() {
         let cheaper = compared.iter().filter(|c| c.1 < 1.0 - EQUAL);
         let least = compared.iter().map(|c| c.1).fold(f64::INFINITY, f64::min);
         println!(
-            "| {name} | {} | {} | {least:.4} |",
+            "| {name} | {} | {} | {} | {least:.4} |",
             compared.len(),
-            cheaper.clone().count()
+            cheaper.clone().count(),
+            cheaper
+                .clone()
+                .filter(|c| scenes[c.0].0.targets.len() == 1)
+                .count()
         );
         for (seed, ratio) in cheaper {
             eprintln!("{name}: scene {seed}: {ratio:.6}");

@@ -26,7 +26,7 @@ fn main() -> Result<(), TrajectoryError> {
     let scenario = Scenario::parse(text).expect("a sound scenario");
     let sets = pipeline::sets(&scenario);
     let keep_outs: Vec<KeepOut> = sets.iter().map(|s| KeepOut::outer_of(&s.hard)).collect();
-    let (own, control) = (&scenario.own_ship, &scenario.control);
+    let (own, control) = (&scenario.own_ship, &scenario.settings.optimal_control);
     let place = own.pose.position;
     let mut task = Task {
         vessel: &CyberShip2::SMOOTH,

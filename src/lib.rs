@@ -125,6 +125,10 @@
 
 #![warn(missing_docs)]
 
+// first, because its macro is used in the modules below
+#[macro_use]
+mod text;
+
 pub mod colregs;
 pub mod document;
 pub mod evaluation;
@@ -145,7 +149,6 @@ pub mod search;
 pub mod simulation;
 pub mod study;
 pub mod target;
-mod text;
 pub mod tolerance;
 pub mod trajectory;
 pub mod verification;

@@ -1,5 +1,22 @@
 //! Allowed names and titles, and safe display of untrusted texts.
 
+/// Defines the names that the values of an enum have in files and on the command line.
+macro_rules! words {
+    ($kind:ty { $($value:ident => $word:literal),+ $(,)? }) => {
+        impl $kind {
+            /// Each value and its name in files and on the command line.
+            pub const WORDS: &'static [(&'static str, Self)] = &[$(($word, Self::$value)),+];
+
+            /// Name in files and on the command line.
+            pub fn word(self) -> &'static str {
+                match self {
+                    $(Self::$value => $word),+
+                }
+            }
+        }
+    };
+}
+
 /// Texts that [`is_line`] accepts, in words.
 pub(crate) const LINE: &str = "a text of 1 to 200 characters on one line";
 
@@ -44,4 +61,42 @@ fn shown(text: &str, keep: impl Fn(char) -> bool) -> String {
         }
     }
     out
+}
+
+/// Formats a space-time error; small values have one decimal.
+pub(crate) fn square_metres(value: f64) -> String {
+    if value.is_nan() {
+        "undefined".to_owned()
+    } else if value < 1000.0 {
+        format!("{value:.1}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
+/// Formats one decimal; values that round to zero have no sign.
+pub(crate) fn tenths(value: f64) -> String {
+    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
+}
+
+/// Formats one decimal with a sign; values that round to zero give `+0.0`.
+pub(crate) fn signed(value: f64) -> String {
+    format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(
+            (tenths(-0.04), signed(-0.04)),
+            ("0.0".into(), "+0.0".into())
+        );
+        assert_eq!(
+            (tenths(-0.06), signed(0.06)),
+            ("-0.1".into(), "+0.1".into())
+        );
+    }
 }

@@ -15,12 +15,12 @@ use searoom::map::Map;
 use searoom::obstacle::Obstacle;
 use searoom::pipeline;
 use searoom::planner::{
-    ControlSettings, Objective, Outcome, PlannerKind, Problem, SearchKind, space_time,
+    DEFAULT_PLANNER, Objective, Outcome, PlannerSettings, Problem, SearchKind, space_time,
 };
 use searoom::scenario::{Compliance, Land, Scenario};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
-use searoom::vessel::{Hull, OwnShip, VesselKind};
+use searoom::vessel::{Hull, OwnShip};
 use statistics::quantile;
 
 const TARGETS: usize = 3;
@@ -158,9 +158,9 @@ fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
         desired,
         alternatives: Vec::new(),
         targets,
-        planner: PlannerKind::SpaceTime,
+        planner: DEFAULT_PLANNER,
         objective: Objective::SpaceTimeError,
-        control: ControlSettings::of(VesselKind::CyberShip2),
+        settings: PlannerSettings::at_length(30.0),
         search: SearchKind::AStar,
         compliance: Compliance::Shape,
         time_weight: speed * speed,

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use searoom::frame::{Geographic, Georeference, Vector};
 use searoom::pipeline;
-use searoom::planner::PlannerKind;
+use searoom::planner::DEFAULT_PLANNER;
+use searoom::planner::path_time::PathTimePlanner;
 use searoom::scenario::{Compliance, Scenario, ScenarioError};
 
 /// Scenario south-west of Munkholmen, in the middle of the fjord, in metres and on the map.
@@ -223,7 +224,7 @@ mission = {{ waypoints = [{{ east_m = 0, north_m = 0 }}, {{ east_m = 200, north_
     // the space-time planner turns on an arc around the corner
     let mut scenario = read(folder.path(), &text("space-time", 90.0, north)).expect("valid");
     // for a planner without this check, the independent checker finds it
-    scenario.planner = PlannerKind::PathTime;
+    scenario.planner = &PathTimePlanner;
     let wrong = pipeline::run(scenario)
         .evaluation
         .expect("judged")
@@ -281,7 +282,7 @@ fn a_path_that_cannot_be_sailed_clear_of_land_has_no_plan_rather_than_one_ashore
     let along = Scenario::read(file.as_ref()).expect("a scenario");
     for compliance in [Compliance::None, Compliance::Shape, Compliance::Rules] {
         let run = pipeline::run(Scenario {
-            planner: PlannerKind::SpaceTime,
+            planner: DEFAULT_PLANNER,
             compliance,
             ..along.clone()
         });

@@ -54,7 +54,7 @@ fn figure_9_is_solved_verified_and_written() {
     let run = run(FIGURE_9);
     let evaluation = run.evaluation.as_ref().expect("a plan");
     assert!(evaluation.verified(), "{:?}", evaluation.violations);
-    let report = run.control.as_ref().expect("forces");
+    let report = run.planned.control.as_ref().expect("forces");
     assert!(report.starts.iter().all(|s| s.feasible) && report.starts.len() > 10);
     assert!(report.defect <= 1e-4 && report.classes.len() > 4);
     let plan = run.planned.outcome.plan().expect("solved");
@@ -255,14 +255,14 @@ fn random_scenes_have_plans_that_are_the_ships_and_clear_between_the_nodes() {
             let begun = std::time::Instant::now();
             let found = plan(&problem, &ControlSettings::of(VesselKind::CyberShip2));
             times.push(begun.elapsed().as_secs_f64() * 1e3);
-            let Outcome::Solved(plan) = &found.planned.outcome else {
-                panic!("{ellipsoids} ellipsoids: {:?}", found.planned.outcome);
+            let Outcome::Solved(plan) = &found.outcome else {
+                panic!("{ellipsoids} ellipsoids: {:?}", found.outcome);
             };
             clear += 1;
             let motion = plan.trajectory.steered().expect("forces");
             defect = defect.max(largest_defect(motion));
             margin = margin.min(least_margin(motion, &keep_outs));
-            most_intervals = most_intervals.max(found.report.intervals);
+            most_intervals = most_intervals.max(found.control.expect("forces").intervals);
         }
         times.sort_by(f64::total_cmp);
         println!(
@@ -283,7 +283,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
     vessel: &V,
     starts: usize,
 ) -> Vec<f64> {
-    let (scenario, control) = (&run.scenario, &run.scenario.control);
+    let (scenario, control) = (&run.scenario, &run.scenario.settings.optimal_control);
     let keep_outs: Vec<KeepOut> = run.obstacles.iter().map(KeepOut::outer_of).collect();
     let own = &scenario.own_ship;
     let (place, heading) = (own.pose.position, own.pose.heading);
@@ -301,7 +301,7 @@ fn objectives_of_wandering_starts<V: Manoeuvring>(
         first: StateVector::new(place.x, place.y, heading, own.speed, 0.0, 0.0),
         start_time: 0.0,
         duration: scenario.horizon,
-        intervals: run.control.as_ref().expect("forces").intervals,
+        intervals: run.planned.control.as_ref().expect("forces").intervals,
     };
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     (0..starts)
@@ -564,7 +564,7 @@ fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
         (limits(-2.0), "no force to choose"),
         (limits(f64::NAN), "no force to choose"),
     ] {
-        match plan(&problem, &settings).planned.outcome {
+        match plan(&problem, &settings).outcome {
             Outcome::Infeasible(NoPlan::Unsolved { why: said, .. }) => {
                 assert!(said.contains(why), "{said}");
             }
@@ -579,7 +579,7 @@ fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
             ..usual
         };
         let begun = std::time::Instant::now();
-        let found = plan(&problem, &settings).planned.outcome;
+        let found = plan(&problem, &settings).outcome;
         assert!(found.plan().is_none_or(|p| p.cost.is_finite()), "{weight}");
         assert!(begun.elapsed() < Duration::from_secs(20));
     }
@@ -680,7 +680,10 @@ fn what_is_not_solved_comes_with_what_may_help() {
     let NoPlan::Unsolved { starts, .. } = reason(&long) else {
         panic!("{:?}", reason(&long));
     };
-    assert_eq!(*starts, long.control.as_ref().expect("forces").starts.len());
+    assert_eq!(
+        *starts,
+        long.planned.control.as_ref().expect("forces").starts.len()
+    );
     let said = plan_text(&long);
     assert!(
         said.contains("what may help: ") && said.contains("a shorter horizon"),
@@ -709,7 +712,7 @@ fn free_water_one_interval_and_full_scale_are_planned() {
         }
         other => panic!("{other:?}"),
     }
-    let report = coarse.control.as_ref().expect("forces");
+    let report = coarse.planned.control.as_ref().expect("forces");
     assert!(report.start_intervals == 1 && report.intervals > 5);
     let said = plan_text(&coarse);
     assert!(said.contains("intervals, 1 were too coarse") && said.contains("on 1 intervals: "));
@@ -841,7 +844,6 @@ fn polytopes_are_kept_out_of_by_an_ellipse_and_it_is_said() {
     );
     let found = run(&text);
     assert!(found.evaluation.as_ref().is_some_and(Evaluation::verified));
-    assert_eq!(found.enclosed, ["box"]);
     assert!(plan_text(&found).contains("of 'box' by the smallest ellipse"));
     let document = PlanDocument::of(&found);
     let control = document.optimal_control.as_ref().expect("forces");

@@ -500,7 +500,9 @@ fn slabs_are_the_sums_of_what_went_before() {
         for n in directions(32) {
             assert!((o.support(n, t).value - slow.support(n)).abs() < 1e-8);
         }
-        assert!((o.section(t).outer_polygon(3).area() - slow.area()).abs() < 1e-6 * (1.0 + slow.area()));
+        assert!(
+            (o.section(t).outer_polygon(3).area() - slow.area()).abs() < 1e-6 * (1.0 + slow.area())
+        );
     }
 }
 

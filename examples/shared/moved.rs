@@ -5,11 +5,11 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::frame::{Pose, Vector, direction};
 use searoom::pipeline;
-use searoom::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use searoom::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use searoom::trajectory::DesiredTrajectory;
-use searoom::vessel::{Hull, OwnShip, VesselKind};
+use searoom::vessel::{Hull, OwnShip};
 
 /// Cost in m². Smaller costs are equal if their difference is below a millionth of this.
 pub const LEAST_COST: f64 = 1.0;
@@ -239,9 +239,9 @@ pub fn scene(seed: u64) -> Scenario {
         desired,
         alternatives: Vec::new(),
         targets,
-        planner: PlannerKind::SpaceTime,
+        planner: DEFAULT_PLANNER,
         objective: Objective::SpaceTimeError,
-        control: ControlSettings::of(VesselKind::CyberShip2),
+        settings: PlannerSettings::at_length(30.0),
         search: SearchKind::AStar,
         compliance: Compliance::None,
         arrival_hold: 60.0,

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use searoom::colregs::Thresholds;
-use searoom::planner::{PlannerKind, SearchKind};
+use searoom::planner::{Planner, SearchKind, planner_words};
 use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::{Compliance, Fault, Scenario};
@@ -140,7 +140,7 @@ pub struct ImportArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("planner", |arg| arg.help("Only this planner, beside the baselines: space-time, path-time, optimal-control")),
+    mut_arg("planner", |arg| arg.help(planners("Only this planner, beside the baselines"))),
     mut_arg("search", |arg| arg.help("Only this search: a-star, dijkstra")),
     mut_arg("rrd", |arg| arg.help("Write one Rerun recording per scenario, with every motion in it: a file ending in .rrd, or a folder")),
     mut_arg("figure", |arg| arg.value_name("FILE").help("Draw trajectories, distances, and in a sweep cost over risk: a file ending in .svg or .png")),
@@ -203,15 +203,19 @@ pub struct CompletionsArgs {
 /// Settings that replace those of a scenario.
 #[derive(Debug, Args)]
 pub struct Asked {
-    /// Planner instead of the scenario's: space-time, path-time, optimal-control
-    #[arg(long, value_name = "KIND", value_parser = planner)]
-    pub planner: Option<PlannerKind>,
+    #[arg(
+        long,
+        value_name = "KIND",
+        value_parser = |found: &str| word(&planner_words(), found),
+        help = planners("Planner instead of the scenario's")
+    )]
+    pub planner: Option<&'static dyn Planner>,
     /// Search instead of the scenario's: a-star, dijkstra
-    #[arg(long, value_name = "KIND", value_parser = search)]
+    #[arg(long, value_name = "KIND", value_parser = |found: &str| word(SearchKind::WORDS, found))]
     pub search: Option<SearchKind>,
     /// Compliance instead of the scenario's: none (hulls only), shape (domains), rules (and
     /// filters)
-    #[arg(long, value_name = "C", value_parser = compliance)]
+    #[arg(long, value_name = "C", value_parser = |found: &str| word(Compliance::WORDS, found))]
     pub compliance: Option<Compliance>,
     /// Thresholds of rule compliance, without effect on the plan: searoom, dnv-trafficgen,
     /// sfi-autoship, or a TOML file
@@ -369,16 +373,12 @@ fn word<T: Copy>(words: &[(&str, T)], found: &str) -> Result<T, String> {
     })
 }
 
-fn planner(found: &str) -> Result<PlannerKind, String> {
-    word(&PlannerKind::WORDS, found)
-}
-
-fn search(found: &str) -> Result<SearchKind, String> {
-    word(&SearchKind::WORDS, found)
-}
-
-fn compliance(found: &str) -> Result<Compliance, String> {
-    word(&Compliance::WORDS, found)
+/// Help that ends with the names of all planners.
+fn planners(help: &str) -> String {
+    format!(
+        "{help}: {}",
+        planner_words().map(|(word, _)| word).join(", ")
+    )
 }
 
 /// Published thresholds by name, before a file of that name; `./NAME` is the file.

@@ -13,43 +13,43 @@ use super::input::rows;
 use super::input::scenes::scenario_file;
 use super::output::Output;
 use super::output::products::prepare_figure;
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 use super::runner::guarded;
 
 /// Assesses one file.
-pub fn assess(args: &AssessArgs, output: &Output) -> Status {
+pub fn assess(args: &AssessArgs, output: &Output) -> ExitStatus {
     let file = &args.scenario;
     if file.is_dir() {
         output.error(&format_args!(
             "{}: a folder; `assess` takes one scenario",
             file.display()
         ));
-        return Status::BadInput;
+        return ExitStatus::BadInput;
     }
     // before any computation
     if let Some(path) = &args.figure
         && let Err(error) = prepare_figure(path)
     {
         output.error(&format_args!("{error:#}"));
-        return Status::BadInput;
+        return ExitStatus::BadInput;
     }
     match guarded(|| read(args)) {
         Ok(Ok((scenario, query))) => {
             let shown = guarded(|| show(args, &scenario, &query, output));
             shown.unwrap_or_else(|fault| {
                 output.error(&format_args!("{}: {fault}", file.display()));
-                Status::InternalFault
+                ExitStatus::InternalFault
             })
         }
         Ok(Err(errors)) => {
             for error in errors {
                 output.error(&error);
             }
-            Status::BadInput
+            ExitStatus::BadInput
         }
         Err(fault) => {
             output.error(&format_args!("{}: {fault}", file.display()));
-            Status::InternalFault
+            ExitStatus::InternalFault
         }
     }
 }
@@ -92,7 +92,7 @@ fn read(args: &AssessArgs) -> Result<(Scenario, Query), Vec<String>> {
     }
 }
 
-fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) -> Status {
+fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) -> ExitStatus {
     let obstacles: Vec<Obstacle> = pipeline::sets(scenario)
         .into_iter()
         .map(|sets| if args.shaped { sets.shaped } else { sets.hard })
@@ -112,13 +112,13 @@ fn show(args: &AssessArgs, scenario: &Scenario, query: &Query, output: &Output) 
             .titled(&format!("{}, {sets} sets", scenario.title))
             .write(path)
         {
-            Ok(()) => Status::Good,
+            Ok(()) => ExitStatus::Good,
             Err(error) => {
                 output.error(&error);
-                Status::BadInput
+                ExitStatus::BadInput
             }
         },
-        None => Status::Good,
+        None => ExitStatus::Good,
     };
     drawn.max(if args.json {
         output.document(&assessment)

@@ -3,11 +3,11 @@
 use super::args::CheckArgs;
 use super::input::{files, scenes};
 use super::output::Output;
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 
 /// Prints one line per valid scenario with its assumptions, and every fault of the others.
-pub fn check(args: &CheckArgs, output: &Output) -> Status {
-    let mut status = Status::Good;
+pub fn check(args: &CheckArgs, output: &Output) -> ExitStatus {
+    let mut status = ExitStatus::Good;
     let assumed = args.assumed.assumed();
     let files = files::find(&args.paths, &files::ANY_FORMAT, output);
     for scene in scenes::open(files, &assumed, output) {
@@ -25,7 +25,7 @@ pub fn check(args: &CheckArgs, output: &Output) -> Status {
             Err(unread) => unread.error,
         };
         output.error(&failed);
-        status = status.max(Status::BadInput);
+        status = status.max(ExitStatus::BadInput);
     }
     status
 }

@@ -8,21 +8,19 @@ use searoom::document::{
     ComparisonDocument, INTERNAL_FAULT, ScenarioComparisonDocument, UNREADABLE,
 };
 use searoom::report::figure::comparison_figure;
-use searoom::report::page::Report;
+use searoom::report::page::HtmlReport;
 use searoom::report::{
     COMPARISON_COLUMNS, comparison_csv, comparison_markdown, comparison_table, write_atomically,
 };
 use searoom::scenario::Scenario;
-use searoom::study::compare::{
-    Candidate, Entry, EntryResult, Inapplicable, Method, candidates, methods,
-};
+use searoom::study::compare::{Candidate, Entry, Inapplicable, Method, candidates, methods};
 
 use super::args::CompareArgs;
 use super::input::files::{self, Found};
 use super::input::scenes::{note_foreign, scenario_file};
 use super::output::Output;
 use super::output::products::{Failure, Products, ScenarioCompared, Wanted, prepare_figure};
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 use super::runner::guarded;
 
 /// Scenario with its candidates, or the error.
@@ -42,13 +40,13 @@ struct Compared {
 }
 
 /// Compares all scenarios. Candidates run in parallel and are shown in a fixed order.
-pub fn compare(args: &CompareArgs, output: &Output) -> Status {
+pub fn compare(args: &CompareArgs, output: &Output) -> ExitStatus {
     // before any computation
     if let Some(path) = &args.written.figure
         && let Err(error) = prepare_figure(path)
     {
         output.error(&format_args!("{error:#}"));
-        return Status::BadInput;
+        return ExitStatus::BadInput;
     }
     let all = files::find(&args.paths, &files::SCENARIOS, output);
     note_foreign(&args.paths, output);
@@ -62,7 +60,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
         Ok(products) => products,
         Err(error) => {
             output.error(&format_args!("{error:#}"));
-            return Status::BadInput;
+            return ExitStatus::BadInput;
         }
     };
     let asked: Vec<Asked> = all
@@ -73,7 +71,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
         })
         .collect();
     let compared = run(asked, output);
-    let mut status = Status::Good;
+    let mut status = ExitStatus::Good;
     for c in &compared {
         for error in c.asked.scenario.as_ref().err().into_iter().chain(&c.faults) {
             output.error(error);
@@ -83,7 +81,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> Status {
     let documents: Vec<_> = compared.iter().map(Compared::document).collect();
     let written = write(args, &compared, &documents).unwrap_or_else(|error| {
         output.error(&format_args!("{error:#}"));
-        Status::BadInput
+        ExitStatus::BadInput
     });
     for (c, document) in compared.iter().zip(&documents) {
         let Ok(scenario) = &c.asked.scenario else {
@@ -154,9 +152,11 @@ fn ask(found: &Found, args: &CompareArgs) -> Asked {
 
 fn is_wanted(method: &Method, args: &CompareArgs) -> bool {
     match method {
-        Method::Planner { kind, search, .. } => {
+        Method::Planner {
+            planner, search, ..
+        } => {
             let asked = &args.asked;
-            asked.planner.is_none_or(|k| k == *kind) && asked.search.is_none_or(|s| s == *search)
+            asked.planner.is_none_or(|p| p == *planner) && asked.search.is_none_or(|s| s == *search)
         }
         Method::HoldCourse | Method::ConstantVelocity => true,
     }
@@ -215,25 +215,22 @@ impl Compared {
 
     /// Good if some planner has a clear plan. A plan that fails its verification is an internal
     /// fault.
-    fn status(&self) -> Status {
+    fn status(&self) -> ExitStatus {
         if self.asked.scenario.is_err() {
-            return Status::BadInput;
+            return ExitStatus::BadInput;
         }
         if !self.faults.is_empty() {
-            return Status::InternalFault;
+            return ExitStatus::InternalFault;
         }
-        let of_planners: Vec<Status> = self
+        let of_planners: Vec<ExitStatus> = self
             .entries
             .iter()
-            .filter_map(|entry| match &entry.result {
-                EntryResult::Planned(run) => Some(Status::of(run)),
-                EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
-            })
+            .filter_map(|entry| Some(ExitStatus::of(entry.run.as_ref()?)))
             .collect();
-        if of_planners.contains(&Status::InternalFault) {
-            Status::InternalFault
+        if of_planners.contains(&ExitStatus::InternalFault) {
+            ExitStatus::InternalFault
         } else {
-            of_planners.into_iter().min().unwrap_or(Status::NoPlan)
+            of_planners.into_iter().min().unwrap_or(ExitStatus::NoPlan)
         }
     }
 }
@@ -243,7 +240,7 @@ fn write(
     args: &CompareArgs,
     compared: &[Compared],
     documents: &[ScenarioComparisonDocument],
-) -> anyhow::Result<Status> {
+) -> anyhow::Result<ExitStatus> {
     if let Some(file) = &args.csv {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(COMPARISON_COLUMNS)?;
@@ -264,7 +261,7 @@ fn write(
             comparison_figure(&drawn).write(file)?;
         }
     }
-    Ok(Status::Good)
+    Ok(ExitStatus::Good)
 }
 
 /// Builds the report of all scenarios, including unreadable ones.
@@ -273,7 +270,7 @@ fn report(
     documents: &[ScenarioComparisonDocument],
     products: &Products,
 ) -> Result<(), Failure> {
-    let mut report = Report::new();
+    let mut report = HtmlReport::new();
     for (c, document) in compared.iter().zip(documents) {
         let file = files::shown(Path::new(&c.asked.file));
         match &c.asked.scenario {
@@ -302,7 +299,7 @@ fn show(
     args: &CompareArgs,
     comparisons: Vec<ScenarioComparisonDocument>,
     output: &Output,
-) -> Status {
+) -> ExitStatus {
     if args.written.json {
         return output.document(&ComparisonDocument { comparisons });
     }
@@ -311,7 +308,7 @@ fn show(
         .map(|compared| comparison_table(compared, output.colour))
         .collect();
     if tables.is_empty() {
-        return Status::Good;
+        return ExitStatus::Good;
     }
     output.result(&tables.join("\n\n"))
 }

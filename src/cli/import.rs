@@ -11,10 +11,10 @@ use super::input::files::refuse_clashes;
 use super::input::scenes::Scene;
 use super::input::{files, scenes};
 use super::output::Output;
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 
 /// Writes one scenario file per situation. Scenario files are not changed.
-pub fn import(args: &ImportArgs, output: &Output) -> Status {
+pub fn import(args: &ImportArgs, output: &Output) -> ExitStatus {
     let assumed = args.assumed.assumed();
     let found = files::find(&args.files, &files::ANY_FORMAT, output);
     let scenes = scenes::open(found, &assumed, output);
@@ -29,15 +29,15 @@ pub fn import(args: &ImportArgs, output: &Output) -> Status {
     });
     if let Err(error) = made {
         output.error(&format_args!("{error:#}"));
-        return Status::BadInput;
+        return ExitStatus::BadInput;
     }
-    let mut status = Status::Good;
+    let mut status = ExitStatus::Good;
     for scene in scenes {
         let reached = match scene {
             Ok(scene) => one(&scene, args, &assumed, output),
             Err(unread) => {
                 output.error(&unread.error);
-                Status::BadInput
+                ExitStatus::BadInput
             }
         };
         status = status.max(reached);
@@ -45,19 +45,19 @@ pub fn import(args: &ImportArgs, output: &Output) -> Status {
     status
 }
 
-fn one(scene: &Scene, args: &ImportArgs, assumed: &Assumed, output: &Output) -> Status {
+fn one(scene: &Scene, args: &ImportArgs, assumed: &Assumed, output: &Output) -> ExitStatus {
     let imported = match scene.imported(assumed) {
         None => {
             output.note(&format_args!(
                 "{}: a scenario file already, left out",
                 scene.label()
             ));
-            return Status::Good;
+            return ExitStatus::Good;
         }
         Some(Ok(imported)) => imported,
         Some(Err(error)) => {
             output.error(&error);
-            return Status::BadInput;
+            return ExitStatus::BadInput;
         }
     };
     let file = args.out.join(format!("{}.toml", scene.found.stem));
@@ -65,7 +65,7 @@ fn one(scene: &Scene, args: &ImportArgs, assumed: &Assumed, output: &Output) -> 
         Ok(()) => output.result(&format!("{}: {}", scene.label(), file.display())),
         Err(error) => {
             output.error(&error);
-            Status::BadInput
+            ExitStatus::BadInput
         }
     }
 }

@@ -9,7 +9,7 @@ use searoom::study::lint::{Likeness, likenesses, lint};
 use super::args::SuiteArgs;
 use super::input::scenes::{Scene, Unread};
 use super::output::Output;
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 use super::runner::guarded;
 
 /// Scenario with its findings.
@@ -24,19 +24,19 @@ pub fn suite(
     args: &SuiteArgs,
     assumed: &Assumed,
     output: &Output,
-) -> Status {
-    let mut status = Status::Good;
+) -> ExitStatus {
+    let mut status = ExitStatus::Good;
     let mut all: Vec<Result<Checked, Unread>> = Vec::new();
     for scene in scenes {
         let checked = match scene {
             Ok(scene) => guarded(|| check(&scene, assumed)).unwrap_or_else(|fault| {
-                status = status.max(Status::InternalFault);
+                status = status.max(ExitStatus::InternalFault);
                 Err(unread(&scene, fault))
             }),
             Err(unread) => Err(unread),
         };
         if let Err(failed) = &checked {
-            status = status.max(Status::BadInput);
+            status = status.max(ExitStatus::BadInput);
             output.error(&failed.error);
         }
         all.push(checked);

@@ -22,7 +22,7 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use output::Output;
-use output::status::Status;
+use output::status::ExitStatus;
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
@@ -44,7 +44,7 @@ pub fn main() -> ExitCode {
         #[cfg(not(feature = "recording"))]
         Command::Inspect(_) => {
             output.error(&"inspect: this program was built without recordings; build it with its default features, `cargo build`");
-            Status::BadInput
+            ExitStatus::BadInput
         }
         Command::Verify(args) => verify::verify(args, &output),
         Command::Completions(args) => shell::completions(args, &output),
@@ -52,7 +52,7 @@ pub fn main() -> ExitCode {
     };
     let status = runner::guarded(run).unwrap_or_else(|fault| {
         output.error(&fault);
-        Status::InternalFault
+        ExitStatus::InternalFault
     });
     status.into()
 }

@@ -2,7 +2,7 @@
 
 use searoom::document::PlanDocument;
 use searoom::pipeline::{NoReturn, Run};
-use searoom::report::page::Report;
+use searoom::report::page::HtmlReport;
 use searoom::report::{no_return_line, no_return_reason, plan_document_text};
 
 use super::args::PlanArgs;
@@ -10,18 +10,18 @@ use super::input::files::{Found, shown};
 use super::input::{files, scenes};
 use super::output::Output;
 use super::output::products::{Failure, Products};
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 use super::runner::{Attempt, attempt};
 
 /// Plans one file and prints the verdict.
-pub fn plan(args: &PlanArgs, output: &Output) -> Status {
+pub fn plan(args: &PlanArgs, output: &Output) -> ExitStatus {
     let file = &args.scenario;
     if file.is_dir() {
         output.error(&format_args!(
             "{}: a folder; `searoom suite` runs the scenarios in it",
             file.display()
         ));
-        return Status::BadInput;
+        return ExitStatus::BadInput;
     }
     let assumed = args.assumed.assumed();
     let files = files::find(std::slice::from_ref(file), &files::ANY_FORMAT, output);
@@ -31,7 +31,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
             Ok(scene) => scenes.push(scene),
             Err(unread) => {
                 output.error(&unread.error);
-                return Status::BadInput;
+                return ExitStatus::BadInput;
             }
         }
     }
@@ -40,17 +40,17 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
         output.error(&format_args!(
             "{file}: {count} situations; `searoom suite` runs them"
         ));
-        return Status::BadInput;
+        return ExitStatus::BadInput;
     }
     let found: Vec<_> = scenes.iter().map(|scene| scene.found.clone()).collect();
     let products = match Products::prepare(&found, args.shared.written.wanted()) {
         Ok(products) => products,
         Err(error) => {
             output.error(&format_args!("{error:#}"));
-            return Status::BadInput;
+            return ExitStatus::BadInput;
         }
     };
-    let mut status = Status::Good;
+    let mut status = ExitStatus::Good;
     for scene in scenes {
         let reached = match attempt(&scene, &args.shared, &assumed) {
             Attempt::Run(run, notes) => {
@@ -73,21 +73,21 @@ pub fn plan(args: &PlanArgs, output: &Output) -> Status {
                     output.result(&format!("{text}{}", line.unwrap_or_default()))
                 };
                 let written = match write(&products, &scene.found, &run, &document) {
-                    Ok(()) => Status::Good,
+                    Ok(()) => ExitStatus::Good,
                     Err((status, error)) => {
                         output.error(&error);
                         status
                     }
                 };
-                shown.max(written).max(Status::of(&run))
+                shown.max(written).max(ExitStatus::of(&run))
             }
             Attempt::Unreadable(error) | Attempt::NotApplicable(_, error) => {
                 output.error(&error);
-                Status::BadInput
+                ExitStatus::BadInput
             }
             Attempt::Fault(fault) => {
                 output.error(&fault);
-                Status::InternalFault
+                ExitStatus::InternalFault
             }
         };
         status = status.max(reached);
@@ -102,7 +102,7 @@ fn write(
     plan: &PlanDocument,
 ) -> Result<(), Failure> {
     products.write(&found.stem, run, plan)?;
-    let mut report = Report::new();
+    let mut report = HtmlReport::new();
     if products.wants_report() {
         let subject = products.subject(&found.stem, shown(&found.file));
         report.add_run(&subject, plan, run);

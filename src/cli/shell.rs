@@ -6,10 +6,10 @@ use clap_mangen::Man;
 
 use super::args::{Arguments, CompletionsArgs};
 use super::output::Output;
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 
 /// Prints the completions of a shell.
-pub fn completions(args: &CompletionsArgs, output: &Output) -> Status {
+pub fn completions(args: &CompletionsArgs, output: &Output) -> ExitStatus {
     let mut command = Arguments::command();
     let name = command.get_name().to_owned();
     let mut text = Vec::new();
@@ -18,7 +18,7 @@ pub fn completions(args: &CompletionsArgs, output: &Output) -> Status {
 }
 
 /// Prints the manual of the program and of each command.
-pub fn man(output: &Output) -> Status {
+pub fn man(output: &Output) -> ExitStatus {
     let mut command = Arguments::command();
     command.build();
     let mut text = Vec::new();
@@ -42,7 +42,7 @@ pub fn man(output: &Output) -> Status {
         Ok(()) => print(one_page(text), output),
         Err(error) => {
             output.error(&format_args!("the manual cannot be written: {error}"));
-            Status::InternalFault
+            ExitStatus::InternalFault
         }
     }
 }
@@ -59,6 +59,6 @@ fn one_page(text: Vec<u8>) -> Vec<u8> {
     lines.collect::<Vec<_>>().join("\n").into_bytes()
 }
 
-fn print(text: Vec<u8>, output: &Output) -> Status {
+fn print(text: Vec<u8>, output: &Output) -> ExitStatus {
     output.result(String::from_utf8_lossy(&text).trim_end())
 }

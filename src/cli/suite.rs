@@ -5,7 +5,7 @@ use std::path::Path;
 use searoom::document::{
     INTERNAL_FAULT, NOT_APPLICABLE, PlanDocument, SuiteDocument, SuiteRunDocument, UNREADABLE,
 };
-use searoom::report::page::Report;
+use searoom::report::page::HtmlReport;
 use searoom::report::{printable, suite_table};
 use searoom::scenario::import::Assumed;
 
@@ -15,7 +15,7 @@ use super::input::scenes::{self, Scene};
 use super::lint;
 use super::output::Output;
 use super::output::products::{Products, Wanted};
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 use super::runner::{Attempt, attempt};
 
 /// Document entries and messages so far, in the order of the files.
@@ -23,12 +23,12 @@ use super::runner::{Attempt, attempt};
 struct Tally {
     runs: Vec<SuiteRunDocument>,
     errors: Vec<String>,
-    report: Report,
-    status: Option<Status>,
+    report: HtmlReport,
+    status: Option<ExitStatus>,
 }
 
 impl Tally {
-    fn reach(&mut self, status: Status) {
+    fn reach(&mut self, status: ExitStatus) {
         self.status = self.status.max(Some(status));
     }
 
@@ -42,8 +42,8 @@ impl Tally {
 
     fn failed(&mut self, file: &Path, outcome: &'static str, error: String) {
         self.reach(match outcome {
-            INTERNAL_FAULT => Status::InternalFault,
-            _ => Status::BadInput,
+            INTERNAL_FAULT => ExitStatus::InternalFault,
+            _ => ExitStatus::BadInput,
         });
         self.errors.push(error.clone());
         self.fail(file, outcome, &error);
@@ -61,7 +61,7 @@ impl Tally {
 }
 
 /// Runs every scenario below the paths sequentially, so that each is timed alone.
-pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
+pub fn suite(args: &SuiteArgs, output: &Output) -> ExitStatus {
     let assumed = args.assumed.assumed();
     let files = files::find(&args.paths, &files::ANY_FORMAT, output);
     let all = scenes::open(files, &assumed, output);
@@ -77,7 +77,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
         Ok(products) => products,
         Err(error) => {
             output.error(&format_args!("{error:#}"));
-            return Status::BadInput;
+            return ExitStatus::BadInput;
         }
     };
     let bar = output.progress(all.len());
@@ -125,7 +125,7 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> Status {
         let table = suite_table(&document.runs, output.colour);
         output.result(&format!("{table}\n{}", document.summary))
     };
-    tally.status.unwrap_or(Status::Good).max(shown)
+    tally.status.unwrap_or(ExitStatus::Good).max(shown)
 }
 
 fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, tally: &mut Tally) {
@@ -134,7 +134,7 @@ fn one(scene: &Scene, args: &SuiteArgs, assumed: &Assumed, products: &Products, 
         Attempt::Run(run, notes) => {
             let plan = PlanDocument::of(&run);
             let name = file.display().to_string();
-            tally.reach(Status::of(&run));
+            tally.reach(ExitStatus::of(&run));
             tally.runs.push(SuiteRunDocument::of(name, &plan, notes));
             if let Err((status, error)) = products.write(&scene.found.stem, &run, &plan) {
                 tally.reach(status);

@@ -11,15 +11,15 @@ use searoom::verification::{Verification, verify as check};
 
 use super::args::VerifyArgs;
 use super::output::Output;
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 use super::runner::guarded_within;
 
 /// Maximum file size, 64 MiB; a plan with a hundred targets needs less than 1 MiB.
 const FILE_BYTES: u64 = 1 << 26;
 
 /// Checks every file; an unreadable one does not stop the others.
-pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
-    let mut status = Status::Good;
+pub fn verify(args: &VerifyArgs, output: &Output) -> ExitStatus {
+    let mut status = ExitStatus::Good;
     let mut documents = Vec::new();
     for file in &args.plans {
         let name = file.display().to_string();
@@ -30,19 +30,19 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
                 let error = format!("{name}: not proven within the budget of {budget} s");
                 documents.push(VerifiedPlanDocument::unproven(name, error.clone()));
                 output.error(&error);
-                Status::NoPlan
+                ExitStatus::NoPlan
             }
             Some(Ok(Ok(verification))) => {
                 let shown = if args.json {
                     documents.push(VerifiedPlanDocument::of(name, &verification));
-                    Status::Good
+                    ExitStatus::Good
                 } else {
                     output.result(&verification_text(&verification, output.colour))
                 };
                 shown.max(if verification.verified() {
-                    Status::Good
+                    ExitStatus::Good
                 } else {
-                    Status::NoPlan
+                    ExitStatus::NoPlan
                 })
             }
             Some(Ok(Err(error))) => {
@@ -54,11 +54,11 @@ pub fn verify(args: &VerifyArgs, output: &Output) -> Status {
                 };
                 documents.push(VerifiedPlanDocument::unreadable(name, error.clone()));
                 output.error(&error);
-                Status::BadInput
+                ExitStatus::BadInput
             }
             Some(Err(fault)) => {
                 output.error(&format_args!("{name}: {fault}"));
-                Status::InternalFault
+                ExitStatus::InternalFault
             }
         };
         status = status.max(reached);

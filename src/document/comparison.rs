@@ -8,12 +8,15 @@ use super::plan::{cost_of, finite, objective, position, stats, timing};
 use crate::evaluation::{Safety, outcome_word};
 use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, EntryResult, Inapplicable};
+use crate::study::compare::{Entry, Inapplicable};
 
 /// Time step of a track in seconds, and the maximum number of steps. Longer motions use longer
 /// steps.
 const TRACK_STEP: f64 = 5.0;
 const MOST_STEPS: f64 = 1000.0;
+
+/// Why a baseline has no motion.
+const NO_VELOCITY: &str = "no constant velocity is out of every velocity obstacle";
 
 /// All compared scenarios, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -112,25 +115,19 @@ impl ScenarioComparisonDocument {
 
 impl EntryDocument {
     fn of(scenario: &Scenario, entry: &Entry) -> Self {
-        let run = match &entry.result {
-            EntryResult::Planned(run) => Some(run),
-            EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
-        };
+        let (run, motion) = (entry.run.as_deref(), entry.motion.as_ref());
         let plan = run.and_then(|run| run.planned.outcome.plan());
         let trajectory = entry.trajectory();
-        let verified = entry.evaluation().is_some_and(|e| e.verified());
+        let verified = motion.is_some_and(|motion| motion.evaluation.verified());
         let max_risk = entry.candidate.max_risk;
-        let risks = entry.risks().iter().map(|peak| peak.risk);
-        let largest_risk = risks.fold(0.0, f64::max);
-        let outcome = match &entry.result {
-            EntryResult::Planned(run) => Verdict::of(run).word(),
-            EntryResult::Baseline(_) if !verified => "collides",
+        let largest_risk = entry.largest_risk();
+        let outcome = match (run, motion) {
+            (Some(run), _) => Verdict::of(run).word(),
+            (None, None) => Verdict::Infeasible.word(),
+            _ if !verified => "collides",
             // clear of the level sets alone
-            EntryResult::Baseline(_) if max_risk > 0.0 && largest_risk > 0.0 => {
-                Verdict::Relaxed.word()
-            }
-            EntryResult::Baseline(_) => "clear",
-            EntryResult::Nothing(_) => Verdict::Infeasible.word(),
+            _ if max_risk > 0.0 && largest_risk > 0.0 => Verdict::Relaxed.word(),
+            _ => "clear",
         };
         let turn = trajectory
             .and_then(|motion| largest_alteration(motion, scenario.own_ship.pose.heading));
@@ -147,25 +144,27 @@ impl EntryDocument {
             objective: run.map(|run| objective(&run.scenario).to_owned()),
             outcome: outcome.to_owned(),
             verdict: outcome_word(outcome, entry.safety(), largest_risk),
-            reason: match &entry.result {
-                EntryResult::Planned(run) => run.reason(),
-                EntryResult::Baseline(_) => None,
-                EntryResult::Nothing(reason) => Some((*reason).to_owned()),
+            reason: match (run, motion) {
+                (Some(run), _) => run.reason(),
+                (None, Some(_)) => None,
+                (None, None) => Some(NO_VELOCITY.to_owned()),
             },
             verified,
             safe: entry.safety() == Some(Safety::Safe),
-            cost: trajectory.zip(entry.evaluation()).map(|(motion, found)| {
+            cost: motion.map(|motion| {
                 // a baseline has no other objective
+                let found = &motion.evaluation;
                 let objective = plan.map_or(found.space_time_error, |plan| plan.cost);
-                let mut cost = cost_of(motion, found, objective, entry.arrived(), entry.risks());
+                let (way, risks) = (&motion.trajectory, &motion.risks);
+                let mut cost = cost_of(way, found, objective, motion.arrived, risks);
                 cost.delay_s = cost.delay_s.filter(|_| cost.arrived);
                 cost
             }),
             largest_turn_deg: turn.map(|turn| turn.degrees),
             largest_turn_side: turn.map(|turn| turn.side.to_string()),
             breaks: (!conduct.is_empty()).then_some(broken),
-            search_stats: run.map(|run| stats(run)),
-            timing: run.map(|run| timing(run)),
+            search_stats: run.map(stats),
+            timing: run.map(timing),
             track: track(entry),
         }
     }

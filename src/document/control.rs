@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::pipeline::Run;
 
 /// Ship, weights and grid, the result of every initial guess, and the homotopy classes.
@@ -54,7 +55,8 @@ pub struct HomotopyClassDocument {
 
 /// Builds the record; `None` for other planners.
 pub(super) fn control(run: &Run) -> Option<ControlDocument> {
-    let (report, settings) = (run.control.as_ref()?, &run.scenario.control);
+    let report = run.planned.control.as_deref()?;
+    let settings = &run.scenario.settings.optimal_control;
     let finite = |value: f64| value.is_finite().then_some(value);
     let limits = settings.force_limits;
     Some(ControlDocument {
@@ -69,7 +71,10 @@ pub(super) fn control(run: &Run) -> Option<ControlDocument> {
         start_intervals: report.start_intervals,
         intervals: report.intervals,
         defect: finite(report.defect),
-        enclosed_targets: run.enclosed.clone(),
+        enclosed_targets: (run.whole.iter())
+            .filter(|set| !matches!(set, Obstacle::Ellipsoid(_)))
+            .map(|set| set.name().to_owned())
+            .collect(),
         starts: report
             .starts
             .iter()

@@ -9,6 +9,7 @@ mod assessment;
 mod comparison;
 mod control;
 mod encounter;
+mod lines;
 mod lint;
 mod parts;
 mod path_time;
@@ -28,15 +29,23 @@ pub use control::{
 pub use encounter::{
     BreachDocument, ConductDocument, EncounterDocument, MonitorDocument, RoleDocument,
 };
+pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use parts::*;
 pub(crate) use path_time::paths;
 pub use path_time::{PathCornerDocument, PathLegDocument, PathObstacleDocument, PathTimeDocument};
-pub(crate) use plan::finite;
 pub use plan::{PLAN_FORMAT, PlanDocument};
+pub(crate) use plan::{finite, planner_names};
 pub use suite::{
     INTERNAL_FAULT, NOT_APPLICABLE, SuiteDocument, SuiteRunDocument, SuiteSummaryDocument,
     UNREADABLE,
 };
 pub use targets::{ShipDocument, TargetDocument, TimedSetDocument};
 pub use verification::{MarginDocument, VerificationDocument, VerifiedPlanDocument};
+
+/// The JSON text of a document, indented, with a line end.
+pub fn json(document: &impl serde::Serialize) -> serde_json::Result<String> {
+    let mut text = serde_json::to_string_pretty(document)?;
+    text.push('\n');
+    Ok(text)
+}

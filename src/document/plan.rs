@@ -19,7 +19,7 @@ use crate::frame::{
 use crate::geometry::{ConvexPolygon, Ellipse};
 use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
 use crate::pipeline::{Relaxation, Run, Verdict};
-use crate::planner::{Objective, Plan, PlannerKind};
+use crate::planner::{Minimises, Objective, PLANNERS, Plan, planner_words};
 use crate::scenario::Scenario;
 use crate::tolerance;
 use crate::trajectory::{Segment, Steered, Trajectory};
@@ -99,7 +99,7 @@ impl PlanDocument {
         Self {
             format: PLAN_FORMAT.to_owned(),
             scenario: scenario.title.clone(),
-            planner: scenario.planner.word().to_owned(),
+            planner: scenario.planner.facts().name.to_owned(),
             search: scenario.search.word().to_owned(),
             compliance: scenario.compliance.word().to_owned(),
             thresholds: scenario.judged_by().name.to_string(),
@@ -151,12 +151,17 @@ impl PlanDocument {
     }
 }
 
-/// Name of the planner's objective.
+/// Name of the minimised quantity.
 pub(super) fn objective(scenario: &Scenario) -> &'static str {
-    match scenario.planner {
-        PlannerKind::OptimalControl => "stage-cost",
-        PlannerKind::SpaceTime | PlannerKind::PathTime => scenario.objective.word(),
+    match scenario.planner.facts().minimises {
+        Minimises::Own(name) => name,
+        Minimises::SpaceTimeError | Minimises::Objective => scenario.objective.word(),
     }
+}
+
+/// Names that `planner` may have.
+pub(crate) fn planner_names() -> [&'static str; PLANNERS.len()] {
+    planner_words().map(|(name, _)| name)
 }
 
 fn plan(run: &Run) -> Option<&Plan> {
@@ -190,39 +195,22 @@ pub(super) fn timing(run: &Run) -> TimingDocument {
 }
 
 fn relaxation(given_up: &Relaxation) -> RelaxationDocument {
-    match given_up {
-        Relaxation::Domain { target, amount } => RelaxationDocument {
-            kind: "domain".to_owned(),
-            target: target.clone(),
-            amount: *amount,
-            unit: "m".to_owned(),
-            until_s: None,
-        },
+    let (kind, target, amount, unit, until_s) = match given_up {
+        Relaxation::Domain { target, amount } => ("domain", target, *amount, "m", None),
         Relaxation::Risk {
             target,
             amount,
             until,
-        } => RelaxationDocument {
-            kind: "risk".to_owned(),
-            target: target.clone(),
-            amount: *amount,
-            unit: "1".to_owned(),
-            until_s: *until,
-        },
-        Relaxation::Arrival { target, amount } => RelaxationDocument {
-            kind: "arrival".to_owned(),
-            target: target.clone(),
-            amount: *amount,
-            unit: "m".to_owned(),
-            until_s: None,
-        },
-        Relaxation::Compliance { target, .. } => RelaxationDocument {
-            kind: "compliance".to_owned(),
-            target: target.clone(),
-            amount: 1.0,
-            unit: "1".to_owned(),
-            until_s: None,
-        },
+        } => ("risk", target, *amount, "1", *until),
+        Relaxation::Arrival { target, amount } => ("arrival", target, *amount, "m", None),
+        Relaxation::Compliance { target, .. } => ("compliance", target, 1.0, "1", None),
+    };
+    RelaxationDocument {
+        kind: kind.to_owned(),
+        target: target.clone(),
+        amount,
+        unit: unit.to_owned(),
+        until_s,
     }
 }
 
@@ -268,11 +256,9 @@ fn mission(run: &Run) -> MissionDocument {
 
 fn cost(run: &Run) -> Option<CostDocument> {
     let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
-    let arrived = run.control.is_none() && plan.to_go == 0.0;
     let trajectory = &plan.trajectory;
-    Some(cost_of(
-        trajectory, evaluation, plan.cost, arrived, &run.risks,
-    ))
+    let (arrived, risks) = (run.arrives(), &run.risks);
+    Some(cost_of(trajectory, evaluation, plan.cost, arrived, risks))
 }
 
 /// Costs of any motion.

@@ -29,7 +29,7 @@ pub use projection::{
 };
 pub(crate) use projection::{PathTimeObstacle, outer_faces_along};
 pub use representation::Obstacle;
-pub use risk::PeakRisk;
+pub use risk::{PeakRisk, level_sets};
 pub use slabs::{Slab, SlabError, SlabObstacle};
 pub use space_time_obstacle::{SpaceTimeObstacle, Support};
 pub use velocity_obstacle::{HalfPlane, VelocityObstacle};

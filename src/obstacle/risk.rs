@@ -1,7 +1,7 @@
 //! Risk: the factor by which a target's velocities must shrink until a point is out of reach, paper
 //! eqs. (22)-(25), docs/theory.md section 4.
 
-use super::HalfSpace;
+use super::{HalfSpace, Obstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::tolerance;
@@ -31,6 +31,15 @@ pub(super) fn level_of(risk: f64) -> f64 {
         1.0 - risk
     } else {
         1.0
+    }
+}
+
+/// Level sets of a risk; the whole sets where it is 0.
+pub fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
+    if risk > 0.0 {
+        whole.iter().map(|set| set.at_risk(risk)).collect()
+    } else {
+        whole.to_vec()
     }
 }
 

@@ -2,10 +2,8 @@
 
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use crate::planner::space_time::{self, NominalTarget};
-use crate::planner::{Outcome, Planned, PlannerKind, Problem, path_time};
-use crate::scenario::Scenario;
-use crate::target::Motion;
+use crate::planner::NominalTarget;
+use crate::target::{Motion, Target};
 use crate::tolerance::TOUCH_M;
 use crate::trajectory::{Segment, Trajectory};
 use crate::vessel::Hull;
@@ -19,47 +17,25 @@ const HALVINGS: usize = 30;
 /// Samples between two readings of the clock.
 const SAMPLES_PER_CLOCK_READING: u32 = 1000;
 
-/// The motion with the least harm, which may enter sets; along paths the one that does least harm.
-/// `None` where there is none within the horizon.
-pub(super) fn motion(scenario: &Scenario, problem: &Problem) -> Option<Planned> {
-    match scenario.planner {
-        PlannerKind::SpaceTime => {
-            let nominal = |index| nominal(scenario, problem, index);
-            let plan = space_time::escape(problem, nominal)?;
-            Some(Planned::of(Outcome::Solved(plan)))
-        }
-        PlannerKind::PathTime => path_time::least_harm(problem),
-        PlannerKind::OptimalControl => None,
-    }
-}
-
-/// A target without uncertainty: hull and set at its nominal velocity.
-fn nominal(scenario: &Scenario, problem: &Problem, index: usize) -> NominalTarget {
-    let (target, hard) = (&scenario.targets[index], &problem.obstacles[index]);
+/// A target without uncertainty: hull and set at its nominal velocity. `hard` is its hard set.
+pub(super) fn nominal(target: &Target, hard: &Obstacle, own: Hull) -> NominalTarget {
     let Motion::Ship(ship) = &target.motion else {
+        let (length, beam) = (0.0, 0.0);
         let set = hard.at_risk(1.0);
-        let own = Hull {
-            length: 0.0,
-            beam: 0.0,
-        };
         return NominalTarget {
             hull: set.clone(),
             set,
-            own,
+            own: Hull { length, beam },
         };
     };
     let moving = |initial: ConvexPolygon| {
         let velocity = ConvexPolygon::point(ship.velocity());
-        Obstacle::from(PolytopeObstacle::new(
-            target.name.clone(),
-            initial,
-            velocity,
-        ))
+        PolytopeObstacle::new(target.name.clone(), initial, velocity).into()
     };
     NominalTarget {
         hull: moving(ship.hull.polygon(&ship.pose)),
         set: moving(hard.outer_section(0.0)),
-        own: scenario.own_ship.hull,
+        own,
     }
 }
 

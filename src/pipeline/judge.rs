@@ -5,7 +5,6 @@ use crate::evaluation::{
     Evaluation, Freedom, Request, SpaceTimeSet, Steering, evaluate, evaluate_steered,
 };
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::planner::PlannerKind;
 use crate::scenario::Scenario;
 use crate::trajectory::Trajectory;
 
@@ -43,10 +42,10 @@ fn judge_plan(
 ) -> Evaluation {
     let mut paths = vec![scenario.desired.waypoints()];
     paths.extend_from_slice(&scenario.alternatives);
-    let freedom = match scenario.planner {
-        PlannerKind::SpaceTime | PlannerKind::OptimalControl => Freedom::Limits,
-        PlannerKind::PathTime if arrives => Freedom::Paths(&paths),
-        PlannerKind::PathTime => Freedom::PathsToHorizon(&paths),
+    let freedom = match scenario.planner.facts().follows_paths {
+        false => Freedom::Limits,
+        true if arrives => Freedom::Paths(&paths),
+        true => Freedom::PathsToHorizon(&paths),
     };
     judged(scenario, claims, trajectory, freedom)
 }
@@ -113,7 +112,7 @@ fn judged(
     };
     match trajectory.steered() {
         Some(motion) => {
-            let control = &scenario.control;
+            let control = &scenario.settings.optimal_control;
             let vessel = control.vessel.exact(control.length);
             let steering = Steering {
                 motion,

@@ -27,8 +27,7 @@ use std::time::{Duration, Instant};
 use crate::evaluation::Evaluation;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{LandObstacle, Obstacle, PeakRisk, SpaceTimeObstacle};
-use crate::planner::optimal_control::ControlReport;
-use crate::planner::{NoPlan, Outcome, Planned, PlannerKind, Problem};
+use crate::planner::{NoPlan, Outcome, Planned, Problem};
 use crate::scenario::{Compliance, Scenario};
 
 /// A scenario with its plan and the evaluation of that plan.
@@ -57,10 +56,6 @@ pub struct Run {
     pub planned: Planned,
     /// Why no plan satisfies the whole request; `None` where one does, or where there is no plan.
     pub why: Option<NoPlan>,
-    /// Report of the optimal-control planner; `None` for another planner.
-    pub control: Option<ControlReport>,
-    /// Names of targets whose polygonal sets are replaced by ellipsoids around them.
-    pub enclosed: Vec<String>,
     /// Requirements that were given up, most important first.
     pub relaxations: Vec<Relaxation>,
     /// The largest risk along the plan, per target in the same order, in the sets `whole`; empty
@@ -77,6 +72,12 @@ impl Run {
     pub fn is_shaped(&self) -> bool {
         let mut both = self.whole.iter().zip(&self.sets);
         both.any(|(whole, sets)| *whole != sets.hard)
+    }
+
+    /// True where the plan ends at the last waypoint. Motions under forces end at the horizon.
+    pub fn arrives(&self) -> bool {
+        let plan = self.planned.outcome.plan();
+        self.planned.control.is_none() && plan.is_some_and(|plan| plan.to_go == 0.0)
     }
 
     /// Why there is no plan, or only an unfinished or relaxed one; `None` for a plan that satisfies
@@ -129,13 +130,12 @@ pub fn run(scenario: Scenario) -> Run {
     let begun = Instant::now();
     let land = land_within_reach(&scenario);
     let around_land;
-    let land_obstacle: &LandObstacle = match scenario.planner {
-        PlannerKind::SpaceTime | PlannerKind::OptimalControl => {
-            around_land = land_obstacle(&scenario, &land);
-            &around_land
-        }
-        // reading a scenario checks that its paths are clear of land
-        PlannerKind::PathTime => LandObstacle::none(),
+    // reading a scenario checks that its paths are clear of land
+    let land_obstacle = if scenario.planner.facts().follows_paths {
+        LandObstacle::none()
+    } else {
+        around_land = land_obstacle(&scenario, &land);
+        &around_land
     };
     let relaxer = Relaxer {
         scenario: &scenario,
@@ -161,10 +161,6 @@ pub fn run(scenario: Scenario) -> Run {
     if scenario.compliance == Compliance::Rules && answer.level > RelaxationLevel::Rules {
         relaxations.extend(rules_given_up(&scenario, &sets));
     }
-    let forces = scenario.planner == PlannerKind::OptimalControl;
-    let is_ellipsoid = |set: &&Obstacle| matches!(set, Obstacle::Ellipsoid(_));
-    let enclosed = answer.whole.iter().filter(|s| forces && !is_ellipsoid(s));
-    let enclosed = enclosed.map(|s| s.name().to_owned()).collect();
     let evaluation = answer
         .trajectory()
         .map(|trajectory| judge_answer(&scenario, &answer, trajectory));
@@ -176,11 +172,9 @@ pub fn run(scenario: Scenario) -> Run {
         released: answer.released,
         planned: answer.planned,
         why: answer.why,
-        control: answer.control,
         scenario,
         sets,
         land,
-        enclosed,
         relaxations,
         risks,
         evaluation,

@@ -2,7 +2,7 @@
 
 use super::{Run, land_obstacle, problem};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::planner::{PlannerKind, space_time};
+use crate::planner::space_time;
 
 /// Accuracy of the time of no return, seconds.
 pub const NO_RETURN_STEP_S: f64 = 1.0;
@@ -39,7 +39,7 @@ impl Run {
     /// plans.
     pub fn no_return(&self) -> Option<NoReturn> {
         let scenario = &self.scenario;
-        if scenario.planner != PlannerKind::SpaceTime {
+        if !scenario.planner.facts().has_no_return {
             return None;
         }
         let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();

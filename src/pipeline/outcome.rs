@@ -101,17 +101,14 @@ impl Verdict {
             Outcome::Solved(_) => Self::Relaxed,
         }
     }
-
-    /// The word in documents.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Solved => "solved",
-            Self::Relaxed => "relaxed",
-            Self::Infeasible => "infeasible",
-            Self::Deadline => "deadline",
-        }
-    }
 }
+
+words!(Verdict {
+    Solved => "solved",
+    Relaxed => "relaxed",
+    Infeasible => "infeasible",
+    Deadline => "deadline",
+});
 
 impl Run {
     /// Safety of the plan from start to arrival; `None` without a plan. An unverified plan is

@@ -8,11 +8,8 @@ use std::time::{Duration, Instant};
 use super::entered;
 use super::rules::{encountered, first_turn};
 use super::sets::TargetSets;
-use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle};
-use crate::planner::optimal_control::{self, ControlReport, Controlled};
-use crate::planner::{
-    NoPlan, Objective, Outcome, Planned, PlannerKind, Problem, path_time, space_time,
-};
+use crate::obstacle::{LandObstacle, Obstacle, SpaceTimeObstacle, level_sets};
+use crate::planner::{NoPlan, Outcome, PlanRequest, Planned, Problem};
 use crate::scenario::{Compliance, Scenario};
 use crate::trajectory::Trajectory;
 
@@ -70,7 +67,6 @@ pub(super) struct Attempt {
     /// Seconds, per target: nothing is claimed of its set before.
     pub released: Vec<Option<f64>>,
     pub planned: Planned,
-    pub control: Option<ControlReport>,
     /// Why the levels above have no plan.
     pub why: Option<NoPlan>,
 }
@@ -118,8 +114,8 @@ impl Relaxer<'_> {
             &self.scales(scale),
             self.scenario.max_risk,
         );
-        if self.scenario.planner == PlannerKind::OptimalControl {
-            return self.under_forces(first, shaped);
+        if self.scenario.planner.facts().relaxes_domains_only {
+            return self.without_domains(first, shaped);
         }
         let why = match &first.planned.outcome {
             Outcome::Solved(_) | Outcome::Deadline(Some(_)) => return first,
@@ -187,7 +183,7 @@ impl Relaxer<'_> {
             return self.clear_of_scaled(0.0);
         }
         // a plan along paths for a larger set is also found for the smaller one
-        if self.is_monotone() {
+        if self.follows_paths() {
             return None;
         }
         let found = SCALES_ABOVE_HARD_SETS
@@ -199,22 +195,20 @@ impl Relaxer<'_> {
         Some(self.clear_of(&found, &self.scales(0.0), RelaxationLevel::Compliant))
     }
 
-    /// [`RelaxationLevel::ReducedDomains`] by a wide detour around the hard sets, from hybrid A*.
+    /// [`RelaxationLevel::ReducedDomains`] by a wide detour around the hard sets.
     fn around_hard_sets(&self, shaped: bool) -> Option<Attempt> {
-        if self.scenario.planner != PlannerKind::SpaceTime {
-            return None;
-        }
+        let planner = self.scenario.planner;
         let risk = self.scenario.max_risk;
         let whole: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let obstacles = level_sets(&whole, risk);
-        let wide = space_time::hybrid_a_star(&self.problem(&obstacles))?;
-        let refined = space_time::warm_started(&self.problem(&obstacles), &wide.trajectory).outcome;
-        let plan = match refined.plan() {
+        let wide = planner.wide_detour(&self.problem(&obstacles))?;
+        let refined = planner.warm_started(&self.problem(&obstacles), &wide.trajectory);
+        let plan = match refined.as_ref().and_then(Outcome::plan) {
             Some(refined) if refined.cost < wide.cost => refined.clone(),
             _ => wide,
         };
         let outcome = match refined {
-            Outcome::Deadline(_) => Outcome::Deadline(Some(plan)),
+            Some(Outcome::Deadline(_)) => Outcome::Deadline(Some(plan)),
             _ => Outcome::Solved(plan),
         };
         let level = if shaped {
@@ -230,7 +224,6 @@ impl Relaxer<'_> {
             obstacles,
             risk,
             planned: Planned::of(outcome),
-            control: None,
             why: None,
         };
         if !shaped {
@@ -243,13 +236,14 @@ impl Relaxer<'_> {
     /// [`RelaxationLevel::ReducedDomains`] from half of each domain: the planner may find a way
     /// around the larger sets that it misses for the smaller ones.
     fn clear_of_half_domains(&self, shaped: bool) -> Option<Attempt> {
-        (shaped && self.has_domains() && !self.is_monotone()).then(|| self.clear_of_scaled(HALF))?
+        (shaped && self.has_domains() && !self.follows_paths())
+            .then(|| self.clear_of_scaled(HALF))?
     }
 
     /// [`RelaxationLevel::Waiting`]: a motion along paths that does not arrive in time, clear of
     /// the hard sets and of as much of the domains as was found.
     fn waiting(&self, shaped: bool) -> Option<Attempt> {
-        if self.scenario.planner != PlannerKind::PathTime {
+        if !self.follows_paths() {
             return None;
         }
         let (level, risk) = (RelaxationLevel::Waiting, self.scenario.max_risk);
@@ -277,8 +271,7 @@ impl Relaxer<'_> {
         let hard = self.scales(0.0);
         let at = |risk: f64| {
             let found = self.attempt(level, &hard, risk);
-            let along = self.scenario.planner == PlannerKind::PathTime;
-            if along && found.is_infeasible() {
+            if self.follows_paths() && found.is_infeasible() {
                 return Attempt {
                     level,
                     ..self.attempt(RelaxationLevel::Waiting, &hard, risk)
@@ -320,7 +313,12 @@ impl Relaxer<'_> {
     fn leaving_sets(&self, attempt: Attempt) -> Attempt {
         let hard: Vec<Obstacle> = self.sets.iter().map(|s| s.hard.clone()).collect();
         let problem = self.problem(&hard);
-        let Some(planned) = entered::motion(self.scenario, &problem) else {
+        let own = self.scenario.own_ship.hull;
+        let targets = self.scenario.targets.iter().zip(&hard);
+        let nominal: Vec<_> = targets
+            .map(|(t, hard)| entered::nominal(t, hard, own))
+            .collect();
+        let Some(planned) = self.scenario.planner.leaving_sets(&problem, &nominal) else {
             return attempt;
         };
         let Some(plan) = planned.outcome.plan() else {
@@ -357,13 +355,12 @@ impl Relaxer<'_> {
                 path_time: planned.path_time,
                 ..attempt.planned
             },
-            control: None,
             why: attempt.why,
         }
     }
 
-    /// Optimal control has two levels: full domains, and none.
-    fn under_forces(&self, mut first: Attempt, shaped: bool) -> Attempt {
+    /// The only level below the first for a planner that relaxes domains only: the hard sets.
+    fn without_domains(&self, mut first: Attempt, shaped: bool) -> Attempt {
         let blocked = match &first.planned.outcome {
             // the ellipse around a domain may contain own ship where the domain does not
             Outcome::Infeasible(NoPlan::StartInside { .. }) => true,
@@ -396,9 +393,8 @@ impl Relaxer<'_> {
         self.sets.iter().any(TargetSets::has_domain)
     }
 
-    /// True for a planner that has a plan for every subset of the sets that it has a plan for.
-    fn is_monotone(&self) -> bool {
-        self.scenario.planner == PlannerKind::PathTime
+    fn follows_paths(&self) -> bool {
+        self.scenario.planner.facts().follows_paths
     }
 
     /// The planning problem of the scenario against these sets, with the time that is left.
@@ -414,13 +410,8 @@ impl Relaxer<'_> {
     /// Plans against domains of these scale factors at a risk.
     fn attempt(&self, level: RelaxationLevel, scales: &[f64], risk: f64) -> Attempt {
         let (whole, reductions) = self.scaled(scales);
-        let obstacles = level_sets(&whole, risk);
-        let forces = self.scenario.planner == PlannerKind::OptimalControl;
-        let obstacles = if forces {
-            optimal_control::outer_sets(&obstacles)
-        } else {
-            obstacles
-        };
+        let planner = self.scenario.planner;
+        let obstacles = planner.outer_sets(level_sets(&whole, risk));
         let mut problem = self.problem(&obstacles);
         let encounters = match (level, self.scenario.compliance) {
             (RelaxationLevel::Compliant | RelaxationLevel::Rules, Compliance::Rules) => {
@@ -429,29 +420,19 @@ impl Relaxer<'_> {
             _ => Vec::new(),
         };
         problem.encountered = &encounters;
-        let mut control = None;
+        let facts = planner.facts();
         let is_late = level != RelaxationLevel::Compliant && self.time_left().is_zero();
-        let planned = match (self.scenario.planner, self.scenario.objective) {
-            // along paths the planner looks at a few lines all the same
-            (PlannerKind::SpaceTime, _) if is_late => Planned::of(Outcome::Deadline(None)),
-            (PlannerKind::SpaceTime, _) => space_time::plan(&problem),
-            (PlannerKind::PathTime, _) if level == RelaxationLevel::Waiting => {
-                path_time::stay_clear(&problem, risk)
-            }
-            (PlannerKind::PathTime, Objective::LengthRisk { weight }) => {
-                let problem = Problem {
-                    obstacles: &whole,
-                    ..problem
-                };
-                path_time::plan_weighing_risk(&problem, weight, risk)
-            }
-            (PlannerKind::PathTime, _) => path_time::plan(&problem),
-            (PlannerKind::OptimalControl, _) => {
-                let Controlled { planned, report } =
-                    optimal_control::plan(&problem, &self.scenario.control);
-                control = Some(report);
-                planned
-            }
+        // along paths a few lines are tested all the same
+        let planned = if is_late && !facts.follows_paths && !facts.relaxes_domains_only {
+            Planned::of(Outcome::Deadline(None))
+        } else {
+            planner.plan(&PlanRequest {
+                problem,
+                whole: &whole,
+                max_risk: risk,
+                may_wait: level == RelaxationLevel::Waiting,
+                settings: &self.scenario.settings,
+            })
         };
         Attempt {
             level,
@@ -465,7 +446,6 @@ impl Relaxer<'_> {
             obstacles,
             risk,
             planned,
-            control,
             why: None,
         }
     }
@@ -490,12 +470,9 @@ impl Relaxer<'_> {
 
     /// The plan of an attempt refined for another risk, without a search; `None` where that fails.
     fn warm_started(&self, attempt: &Attempt, risk: f64) -> Option<Attempt> {
-        if self.scenario.planner != PlannerKind::SpaceTime {
-            return None;
-        }
         let obstacles = level_sets(&attempt.whole, risk);
-        let outcome =
-            space_time::warm_started(&self.problem(&obstacles), attempt.trajectory()?).outcome;
+        let (planner, problem) = (self.scenario.planner, self.problem(&obstacles));
+        let outcome = planner.warm_started(&problem, attempt.trajectory()?)?;
         let mut refined = Attempt {
             obstacles,
             risk,
@@ -564,17 +541,15 @@ impl Relaxer<'_> {
         let least = |scales: &[f64]| scales.iter().copied().fold(1.0, f64::min);
         let (mut best, mut retained) = (found, retained.to_vec());
         let (mut low, mut high) = (least(&retained), 1.0);
-        if self.scenario.planner != PlannerKind::SpaceTime {
-            return best;
-        }
         for _ in 0..SCALE_HALVINGS {
             let scale = 0.5 * (low + high);
             let scales: Vec<f64> = retained.iter().map(|k| k.max(scale)).collect();
             let obstacles = level_sets(&self.scaled(&scales).0, best.risk);
-            let Some(from) = best.trajectory() else {
+            let problem = self.problem(&obstacles);
+            let refined = |from| self.scenario.planner.warm_started(&problem, from);
+            let Some(outcome) = best.trajectory().and_then(refined) else {
                 return best;
             };
-            let outcome = space_time::warm_started(&self.problem(&obstacles), from).outcome;
             if matches!(outcome, Outcome::Deadline(_)) {
                 return out_of_time(best);
             }
@@ -588,15 +563,6 @@ impl Relaxer<'_> {
             best = self.clear_of(&best, &retained, RelaxationLevel::ReducedDomains);
         }
         best
-    }
-}
-
-/// The level sets of a risk.
-fn level_sets(whole: &[Obstacle], risk: f64) -> Vec<Obstacle> {
-    if risk > 0.0 {
-        whole.iter().map(|set| set.at_risk(risk)).collect()
-    } else {
-        whole.to_vec()
     }
 }
 

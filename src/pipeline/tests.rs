@@ -4,12 +4,13 @@ use super::*;
 use crate::colregs::Role;
 use crate::frame::{Pose, Vector};
 use crate::obstacle::PolytopeObstacle;
-use crate::planner::{ControlSettings, Objective, SearchKind};
+use crate::planner::path_time::PathTimePlanner;
+use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::scenario::Compliance;
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target, Uncertainty};
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
-use crate::vessel::{Hull, OwnShip, VesselKind};
+use crate::vessel::{Hull, OwnShip};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -40,9 +41,9 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
         },
         desired: DesiredTrajectory::new(&points, &[5.0]).expect("valid"),
         alternatives: Vec::new(),
-        planner: PlannerKind::SpaceTime,
+        planner: DEFAULT_PLANNER,
         objective: Objective::SpaceTimeError,
-        control: ControlSettings::of(VesselKind::CyberShip2),
+        settings: PlannerSettings::at_length(30.0),
         targets: vec![Target {
             name: "other".to_owned(),
             motion: Motion::Ship(target),
@@ -370,7 +371,7 @@ fn where_no_motion_leaves_the_sets_own_ship_continues_and_reports_it() {
     assert!(off_paths.evaluation.expect("judged").verified());
     // along its path it stops, and the box, 900 m to its edge at 5 m/s, moves away
     let along = run(Scenario {
-        planner: PlannerKind::PathTime,
+        planner: &PathTimePlanner,
         ..scenario
     });
     assert_eq!(along.level, RelaxationLevel::Inside);

@@ -4,6 +4,7 @@ mod clock;
 mod control_settings;
 pub mod cost;
 mod explored;
+mod interface;
 mod line_error;
 mod no_plan;
 pub mod optimal_control;
@@ -12,6 +13,7 @@ pub mod space_time;
 
 pub use control_settings::ControlSettings;
 pub use explored::{EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NodeKind};
+pub use interface::{Minimises, NominalTarget, PlanRequest, Planner, PlannerFacts, planner_words};
 pub use no_plan::NoPlan;
 
 use std::time::Duration;
@@ -20,7 +22,33 @@ use crate::colregs::{Duty, Encountered};
 use crate::frame::{Side, Vector};
 use crate::obstacle::{LandObstacle, Obstacle};
 use crate::trajectory::{DesiredTrajectory, Segment, Trajectory};
-use crate::vessel::OwnShip;
+use crate::vessel::{OwnShip, VesselKind};
+
+/// All planners, in the order of `compare`.
+pub const PLANNERS: [&dyn Planner; 3] = [
+    &space_time::SpaceTimePlanner,
+    &path_time::PathTimePlanner,
+    &optimal_control::OptimalControlPlanner,
+];
+
+/// The planner of a scenario that names none.
+pub const DEFAULT_PLANNER: &dyn Planner = PLANNERS[0];
+
+/// Settings of the planners that have some.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlannerSettings {
+    /// Settings of the optimal-control planner.
+    pub optimal_control: ControlSettings,
+}
+
+impl PlannerSettings {
+    /// Default settings for an own ship of the given length, metres.
+    pub fn at_length(length: f64) -> Self {
+        Self {
+            optimal_control: ControlSettings::at_length(VesselKind::CyberShip2, length),
+        }
+    }
+}
 
 /// Graph search algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,45 +59,19 @@ pub enum SearchKind {
     Dijkstra,
 }
 
-/// Planner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PlannerKind {
-    /// Chooses path and speed: [`space_time`].
-    SpaceTime,
-    /// Follows given paths and chooses the speed: [`path_time`].
-    PathTime,
-    /// Chooses forces: [`optimal_control`].
-    OptimalControl,
-}
-
-impl PlannerKind {
-    /// Each planner and its name in files and on the command line.
-    pub const WORDS: [(&'static str, Self); 3] = [
-        ("space-time", Self::SpaceTime),
-        ("path-time", Self::PathTime),
-        ("optimal-control", Self::OptimalControl),
-    ];
-
-    /// Name in files and on the command line.
-    pub fn word(self) -> &'static str {
-        word_of(&Self::WORDS, self)
-    }
-}
+words!(SearchKind {
+    AStar => "a-star",
+    Dijkstra => "dijkstra",
+});
 
 impl SearchKind {
-    /// Each search and its name in files and on the command line.
-    pub const WORDS: [(&'static str, Self); 2] =
-        [("a-star", Self::AStar), ("dijkstra", Self::Dijkstra)];
-
-    /// Name in files and on the command line.
-    pub fn word(self) -> &'static str {
-        word_of(&Self::WORDS, self)
+    /// Name in tables and figures.
+    pub(crate) fn label(self) -> &'static str {
+        match self {
+            Self::AStar => "A*",
+            Self::Dijkstra => "Dijkstra",
+        }
     }
-}
-
-fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
-    let known = words.iter().find(|(_, other)| *other == value);
-    known.map_or("", |(word, _)| word)
 }
 
 /// Quantity that a planner minimises.
@@ -110,25 +112,6 @@ impl Objective {
 }
 
 /// Planning problem: keep `own` clear of every obstacle and close to `desired` until the arrival.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::obstacle::LandObstacle;
-/// use searoom::pipeline;
-/// use searoom::planner::{Problem, space_time};
-/// use searoom::scenario::Scenario;
-///
-/// let scenario = Scenario::read("scenarios/colregs/give-way.toml".as_ref())?;
-/// let sets: Vec<_> = pipeline::sets(&scenario).into_iter().map(|target| target.hard).collect();
-/// let asked = pipeline::problem(&scenario, &sets, LandObstacle::none());
-/// let clear = space_time::plan(&asked).outcome;
-/// // the same without anybody else
-/// let alone = space_time::plan(&Problem { obstacles: &[], ..asked }).outcome;
-/// let cost = |outcome: &searoom::planner::Outcome| outcome.plan().map(|plan| plan.cost);
-/// assert!(cost(&clear) > cost(&alone) && cost(&alone) < Some(1.0));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     /// Own ship and its limits.
@@ -246,9 +229,7 @@ impl Outcome {
             Self::Infeasible(_) => None,
         }
     }
-}
 
-impl Outcome {
     fn into_plan(self) -> Option<Plan> {
         match self {
             Self::Solved(plan) => Some(plan),
@@ -277,6 +258,8 @@ pub struct Planned {
     pub explored: ExploredGraph,
     /// Path-time diagram of the path-time planner; boxed because most plans have none.
     pub path_time: Option<Box<path_time::PathTimeDiagram>>,
+    /// Report of a plan under forces.
+    pub control: Option<Box<optimal_control::ControlReport>>,
     /// Escape of a stand-on ship (Rule 17).
     pub escape: Option<Escape>,
 }
@@ -289,6 +272,7 @@ impl Planned {
             stats: SearchStats::default(),
             explored: ExploredGraph::new(),
             path_time: None,
+            control: None,
             escape: None,
         }
     }

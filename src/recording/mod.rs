@@ -13,7 +13,7 @@
 //!
 //! # Entities of a run
 //!
-//! - `summary`: verdict, manoeuvre, encounters, rules, costs and claims, as markdown
+//! - `summary`: the plan in the lines of `plan`, and what is claimed, as markdown
 //! - `plan_document`: the plan document, as JSON
 //!
 //! Chart, east and north; `chart/map` turns north up, as views of Rerun are y-down:

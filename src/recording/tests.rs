@@ -9,6 +9,7 @@ use rerun::{ChunkStore, ChunkStoreConfig};
 use super::canvas::ViewModel;
 use super::views::curves;
 use super::*;
+use crate::document::{self, PlanDocument};
 use crate::evaluation::Violation;
 use crate::pipeline::{self, Run};
 use crate::planner::{NoPlan, Outcome};
@@ -53,6 +54,10 @@ fn run() -> Run {
     let run = pipeline::run(scenario());
     assert!(run.planned.outcome.plan().is_some());
     run
+}
+
+fn write_run(run: &Run, path: &Path) -> Result<(), RecordingError> {
+    write(run, &PlanDocument::of(run), path)
 }
 
 fn run_without_plan() -> Run {
@@ -101,7 +106,7 @@ fn read(path: &Path) -> BTreeMap<String, (u64, Vec<String>)> {
 fn a_recording_reads_back_with_every_entity_on_one_timeline() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("new/deep/head-on.rrd");
-    write(&run(), None, &path).expect("writes");
+    write_run(&run(), &path).expect("writes");
     let entities = read(&path);
     let name = EntityPathPart::new(NAME).escaped_string();
     for expected in [
@@ -144,7 +149,7 @@ fn a_recording_reads_back_with_every_entity_on_one_timeline() {
 fn a_run_without_a_plan_is_recorded_too() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("none.rrd");
-    write(&run_without_plan(), None, &path).expect("writes");
+    write_run(&run_without_plan(), &path).expect("writes");
     let entities = read(&path);
     assert!(!entities.contains_key("/chart/map/planned"));
     assert!(entities.contains_key("/chart/map/conflict"));
@@ -157,7 +162,7 @@ fn a_failed_write_leaves_nothing_and_names_the_file() {
     // a folder of that name is in the way
     let path = folder.path().join("taken.rrd");
     std::fs::create_dir_all(path.join("inside")).expect("folder");
-    let error = write(&run(), None, &path).expect_err("a folder is in the way");
+    let error = write_run(&run(), &path).expect_err("a folder is in the way");
     assert!(error.to_string().contains("taken.rrd"), "{error}");
     let left: Vec<_> = std::fs::read_dir(folder.path()).expect("lists").collect();
     assert_eq!(left.len(), 1, "{left:?}");
@@ -174,7 +179,7 @@ fn targets_that_are_sets_and_plans_that_are_wrong_are_recorded() {
             time: 100.0,
         });
     }
-    write(&run, None, &path).expect("writes");
+    write_run(&run, &path).expect("writes");
     let entities = read(&path);
     for name in ["drifting", "round", "slabs"] {
         assert!(entities.contains_key(&format!("/chart/map/hard_sets/{name}")));
@@ -203,7 +208,7 @@ fn nothing_is_said_of_the_margin_after_arrival() {
     assert_eq!(margins.len(), before);
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("early.rrd");
-    write(&run, None, &path).expect("writes");
+    write_run(&run, &path).expect("writes");
     let recorded = Recorded::read(&path).expect("whole");
     let drawn = recorded.table("curves/margin_m").expect("there");
     let last = drawn.rows.last().expect("rows").times[0].expect("a time");
@@ -298,9 +303,9 @@ fn a_comparison_is_one_recording_with_every_motion() {
             format!("/space_time/methods/{name}/way"),
             format!("/curves/clearance_m/{name}"),
         ];
-        if let crate::study::compare::Method::Planner { kind, .. } = entry.candidate.method {
+        if let crate::study::compare::Method::Planner { planner, .. } = entry.candidate.method {
             // no graph is searched for forces
-            if kind != crate::planner::PlannerKind::OptimalControl {
+            if !planner.facts().relaxes_domains_only {
                 parts.push(format!("/chart/map/methods/{name}/explored/free"));
             }
             let target = EntityPathPart::new(NAME).escaped_string();
@@ -327,7 +332,7 @@ fn a_comparison_is_one_recording_with_every_motion() {
 fn a_refused_edge_says_what_it_meets_when_and_why() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("edges.rrd");
-    write(&run(), None, &path).expect("writes");
+    write_run(&run(), &path).expect("writes");
     let recorded = Recorded::read(&path).expect("whole");
     let reasons = labels(&recorded, "/chart/map/explored/blocked");
     assert!(!reasons.is_empty());
@@ -348,7 +353,7 @@ fn a_refused_edge_says_what_it_meets_when_and_why() {
 
     let shore = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/harbour/munkholmen.toml");
     let run = pipeline::run(Scenario::read(&shore).expect("valid"));
-    write(&run, None, &path).expect("writes");
+    write_run(&run, &path).expect("writes");
     let reasons = labels(
         &Recorded::read(&path).expect("whole"),
         "/chart/map/explored/blocked",
@@ -363,9 +368,9 @@ fn a_plan_of_forces_has_its_states_and_forces_as_curves() {
     let path = folder.path().join("figure_9.rrd");
     let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/paper/figure_9.toml");
     let run = pipeline::run(Scenario::read(&scenario).expect("valid"));
-    write(&run, None, &path).expect("writes");
+    write_run(&run, &path).expect("writes");
     let entities = read(&path);
-    let nodes = run.control.as_ref().expect("forces").intervals as u64 + 1;
+    let nodes = run.planned.control.as_ref().expect("forces").intervals as u64 + 1;
     for entity in ["/curves/states", "/curves/forces"] {
         assert_eq!(entities[entity].0, nodes, "{entity}");
     }
@@ -423,7 +428,7 @@ fn a_path_time_plan_has_its_diagram() {
         );
         let run = pipeline::run(Scenario::parse(&text).expect("a valid scenario"));
         assert_eq!(run.released.iter().all(Option::is_none), clear);
-        write(&run, None, &path).expect("writes");
+        write_run(&run, &path).expect("writes");
         let entities = read(&path);
         let name = EntityPathPart::new(NAME).escaped_string();
         let set = format!("obstacles/{name}");
@@ -434,7 +439,7 @@ fn a_path_time_plan_has_its_diagram() {
             );
         }
     }
-    write(&run(), None, &path).expect("writes");
+    write_run(&run(), &path).expect("writes");
     assert!(
         !read(&path)
             .keys()
@@ -446,9 +451,9 @@ fn a_path_time_plan_has_its_diagram() {
 #[test]
 fn the_same_run_has_the_same_name_and_another_has_another() {
     let folder = tempfile::tempdir().expect("folder");
-    let written = |run: &Run, document: Option<&str>| {
+    let written = |run: &Run, plan: &PlanDocument| {
         let path = folder.path().join("a.rrd");
-        write(run, document, &path).expect("writes");
+        write(run, plan, &path).expect("writes");
         std::fs::read(path).expect("a file")
     };
     let names = |bytes: &[u8]| -> BTreeSet<String> {
@@ -458,12 +463,14 @@ fn the_same_run_has_the_same_name_and_another_has_another() {
             .map(|id| format!("{id:?}"))
             .collect()
     };
-    let document = Some("{\"plan_s\": 0.25}");
-    let first = written(&run(), document);
-    assert_eq!(names(&first), names(&written(&run(), document)));
+    let plan = PlanDocument::of(&run());
+    let mut slower = plan.clone();
+    slower.timing.plan_s += 1.0;
+    let first = written(&run(), &plan);
+    assert_eq!(names(&first), names(&written(&run(), &plan)));
     for other in [
-        written(&run(), None),
-        written(&run_without_plan(), document),
+        written(&run(), &slower),
+        written(&run_without_plan(), &plan),
     ] {
         assert!(names(&first).is_disjoint(&names(&other)));
     }
@@ -474,7 +481,9 @@ fn the_same_run_has_the_same_name_and_another_has_another() {
 fn every_cut_and_every_changed_byte_is_an_error() {
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("a.rrd");
-    write(&run(), Some("{}"), &path).expect("writes");
+    let run = run();
+    let plan = PlanDocument::of(&run);
+    write(&run, &plan, &path).expect("writes");
     let whole = std::fs::read(&path).expect("a file");
     let refused = |bytes: &[u8], case: &str| {
         std::fs::write(&path, bytes).expect("written");
@@ -490,8 +499,6 @@ fn every_cut_and_every_changed_byte_is_an_error() {
     }
     refused(&[&whole[..], &whole].concat(), "two recordings");
     std::fs::write(&path, &whole).expect("written");
-    assert_eq!(
-        Recorded::read(&path).expect("whole").document().as_deref(),
-        Some("{}")
-    );
+    let kept = Recorded::read(&path).expect("whole").document();
+    assert_eq!(kept, document::json(&plan).ok());
 }

@@ -1,9 +1,10 @@
 //! Text of an assessment.
 
-use super::table::{Grid, plain, tenths};
+use super::table::{Grid, plain};
 use crate::document::{AssessmentDocument, SectionDocument};
 use crate::frame::course_deg_from_heading;
 use crate::study::assess::Situation;
+use crate::text::tenths;
 
 /// Formats the title and the sets, holding course, the least alteration, and a table for each
 /// further question.

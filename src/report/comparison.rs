@@ -1,12 +1,10 @@
 //! Comparison of planners as a table for a terminal, as markdown, and as rows of a CSV file.
 
 use super::plan::TIME_COLUMN;
-use super::table::{
-    Grid, Styled, Tone, in_cell, or_dash, plain, signed, square_metres, tenths, verdict, verified,
-    yes_or_no,
-};
+use super::table::{Grid, Styled, Tone, in_cell, or_dash, plain, verdict, verified, yes_or_no};
 use crate::document::{CostDocument, EntryDocument, ScenarioComparisonDocument};
 use crate::evaluation::risk_figure;
+use crate::text::{signed, square_metres, tenths};
 
 /// True if several risk levels were requested.
 fn is_sweep(entries: &[EntryDocument]) -> bool {

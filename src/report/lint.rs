@@ -1,7 +1,8 @@
 //! Text of scenario faults.
 
-use super::table::{Grid, or_dash, plain, tenths};
+use super::table::{Grid, or_dash, plain};
 use crate::document::LintDocument;
+use crate::text::tenths;
 
 /// Formats one row per target, then every finding and a summary.
 pub fn lint_text(document: &LintDocument, colour: bool) -> String {

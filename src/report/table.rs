@@ -129,24 +129,3 @@ pub(super) fn yes_or_no(fact: Option<bool>) -> Styled {
         None => or_dash(None),
     }
 }
-
-/// Formats a space-time error; small values have one decimal.
-pub(super) fn square_metres(value: f64) -> String {
-    if value.is_nan() {
-        "undefined".to_owned()
-    } else if value < 1000.0 {
-        format!("{value:.1}")
-    } else {
-        format!("{value:.0}")
-    }
-}
-
-/// Formats one decimal; values that round to zero have no sign.
-pub(super) fn tenths(value: f64) -> String {
-    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
-}
-
-/// Formats one decimal with a sign; values that round to zero give `+0.0`.
-pub(super) fn signed(value: f64) -> String {
-    format!("{:+.1}", (value * 10.0).round() / 10.0 + 0.0)
-}

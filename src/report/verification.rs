@@ -1,8 +1,8 @@
 //! Text of a plan document's verification.
 
-use super::table::{Grid, Tone, or_dash, plain, tenths};
+use super::table::{Grid, Tone, or_dash, plain};
 use crate::evaluation::{facts, outcome_word};
-use crate::text::printable;
+use crate::text::{printable, tenths};
 use crate::verification::Verification;
 
 /// Maximum number of violations listed; the rest is counted.

@@ -3,42 +3,42 @@
 use super::{Compliance, Land, Scenario};
 use crate::frame::{Vector, heading_of, wrap};
 use crate::input::Fault;
-use crate::planner::{Objective, PlannerKind};
+use crate::planner::{Minimises, Objective};
 use crate::tolerance;
 use crate::trajectory::{NetworkError, PathNetwork};
 
 /// Every field that the scenario's planner cannot honour; faults without lines.
 pub(super) fn unfit(scenario: &Scenario) -> Vec<Fault> {
-    let planner = scenario.planner;
-    let name = planner.word();
-    let mut faults = match planner {
-        PlannerKind::PathTime => for_path_time(scenario),
-        PlannerKind::SpaceTime | PlannerKind::OptimalControl => Vec::new(),
-    };
-    let follows_paths = planner == PlannerKind::PathTime;
-    if !follows_paths && scenario.objective != Objective::SpaceTimeError {
+    let planner = scenario.planner.facts();
+    let name = planner.name;
+    let mut faults = Vec::new();
+    if planner.follows_paths {
+        faults = for_paths(scenario);
+    }
+    if planner.minimises != Minimises::Objective && scenario.objective != Objective::SpaceTimeError
+    {
         let found = format!("\"{}\" for the {name} planner", scenario.objective.word());
-        let allowed = match planner {
-            PlannerKind::OptimalControl => "nothing: it minimises its own stage cost",
+        let allowed = match planner.minimises {
+            Minimises::Own(_) => "nothing: it minimises its own stage cost",
             _ => "\"space-time-error\", or the path-time planner",
         };
         faults.push(Fault::new("planner.objective", found, allowed));
     }
-    if !follows_paths && !scenario.alternatives.is_empty() {
+    if !planner.follows_paths && !scenario.alternatives.is_empty() {
         faults.push(Fault::new(
             "mission.alternatives",
             format_args!("other paths for the {name} planner"),
             "nothing: it chooses its way; or the path-time planner",
         ));
     }
-    if planner == PlannerKind::OptimalControl && scenario.land.is_some() {
+    if !planner.keeps_off_land && scenario.land.is_some() {
         faults.push(Fault::new(
             "map",
-            "land for the optimal-control planner",
+            format_args!("land for the {name} planner"),
             "nothing: it keeps off no land, this is not built yet",
         ));
     }
-    if planner != PlannerKind::SpaceTime && scenario.compliance == Compliance::Rules {
+    if !planner.keeps_rules && scenario.compliance == Compliance::Rules {
         faults.push(Fault::new(
             "planner.compliance",
             format_args!("\"rules\" for the {name} planner"),
@@ -53,7 +53,7 @@ fn micrometres(length: f64) -> f64 {
     (length * 1e6).round() / 1e6
 }
 
-fn for_path_time(scenario: &Scenario) -> Vec<Fault> {
+fn for_paths(scenario: &Scenario) -> Vec<Fault> {
     let mut faults = Vec::new();
     let first = scenario.desired.legs()[0].start;
     let away = (scenario.own_ship.pose.position - first).norm();

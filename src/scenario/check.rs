@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use super::plane::{POSITION, Plane};
-use super::planner::{PlannerSettings, planner};
+use super::planner::{PlannerTable, planner};
 use super::targets::targets;
 use super::{Compliance, Land, Scenario, land, limits};
 use crate::frame::{Pose, Vector, heading_from_course_deg};
 use crate::input::{Faults, Field, Node, Table, from_toml};
-use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::text::LINE;
 use crate::trajectory::DesiredTrajectory;
-use crate::vessel::{Hull, OwnShip, VesselKind};
+use crate::vessel::{Hull, OwnShip};
 
 /// Own ship's speeds if the file has none, as fractions of its own speed.
 const DEFAULT_SPEEDS: [f64; 3] = [0.5, 1.0, 1.2];
@@ -52,12 +52,9 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let mission = root
         .required_table("mission")
         .and_then(|table| mission(table, speed, &plane));
-    let model = VesselKind::CyberShip2;
     // without a length the file is faulty, and any length serves
-    let length = own_ship
-        .as_ref()
-        .map_or(model.length(), |own| own.hull.length);
-    let planner: PlannerSettings = root
+    let length = own_ship.as_ref().map_or(1.0, |own| own.hull.length);
+    let planner: PlannerTable = root
         .take("planner")
         .and_then(|field| field.table("a table"))
         .map(|table| planner(table, length))
@@ -89,11 +86,9 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
         desired,
         alternatives,
         targets: targets?,
-        planner: planner.kind.unwrap_or(PlannerKind::SpaceTime),
+        planner: planner.kind.unwrap_or(DEFAULT_PLANNER),
         objective: planner.objective.unwrap_or(Objective::SpaceTimeError),
-        control: planner
-            .control
-            .unwrap_or(ControlSettings::at_length(model, length)),
+        settings: (planner.settings).unwrap_or_else(|| PlannerSettings::at_length(length)),
         search: planner.search.unwrap_or(SearchKind::AStar),
         compliance: planner.compliance.unwrap_or(Compliance::Shape),
         max_risk: planner.max_risk.unwrap_or(0.0),

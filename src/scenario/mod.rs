@@ -21,7 +21,7 @@ use std::sync::Arc;
 use crate::colregs::Thresholds;
 use crate::frame::{Georeference, Vector};
 use crate::input::{Faults, read_text};
-use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use crate::planner::{Objective, Planner, PlannerSettings, SearchKind};
 use crate::target::Target;
 use crate::trajectory::DesiredTrajectory;
 use crate::vessel::OwnShip;
@@ -39,18 +39,6 @@ pub enum Compliance {
 }
 
 /// A checked scenario in SI units and the east-north plane.
-///
-/// ```
-/// use searoom::scenario::{Compliance, Fault, Scenario, ScenarioError};
-///
-/// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
-/// assert_eq!((scenario.title.as_str(), scenario.targets.len()), ("Head-on", 1));
-/// assert_eq!(scenario.compliance, Compliance::Shape);
-/// // every fault of a file at once
-/// let faults: Vec<Fault> = Scenario::parse("title = 3").expect_err("much is missing");
-/// assert!(faults.iter().any(|fault| fault.path == "title"), "{faults:?}");
-/// # Ok::<(), ScenarioError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// The scenario's title.
@@ -68,11 +56,11 @@ pub struct Scenario {
     /// The targets.
     pub targets: Vec<Target>,
     /// The planner.
-    pub planner: PlannerKind,
+    pub planner: &'static dyn Planner,
     /// The planner's objective.
     pub objective: Objective,
-    /// Settings of the optimal-control planner.
-    pub control: ControlSettings,
+    /// Settings of the planners that have some.
+    pub settings: PlannerSettings,
     /// The search algorithm.
     pub search: SearchKind,
     /// The sets to avoid.
@@ -138,23 +126,13 @@ impl Scenario {
     }
 }
 
+words!(Compliance {
+    None => "none",
+    Shape => "shape",
+    Rules => "rules",
+});
+
 impl Compliance {
-    /// Each level and its word in files and on the command line.
-    pub const WORDS: [(&'static str, Self); 3] = [
-        ("none", Self::None),
-        ("shape", Self::Shape),
-        ("rules", Self::Rules),
-    ];
-
-    /// The word for it in files and on the command line.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Shape => "shape",
-            Self::Rules => "rules",
-        }
-    }
-
     /// True if ship domains are avoided.
     pub fn shapes(self) -> bool {
         match self {

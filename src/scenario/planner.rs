@@ -2,15 +2,17 @@
 
 use super::{Compliance, limits};
 use crate::input::{Field, Range, Table};
-use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use crate::planner::{
+    ControlSettings, Objective, Planner, PlannerSettings, SearchKind, planner_words,
+};
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
 /// The fields of the table `[planner]` that a file has.
 #[derive(Debug, Default)]
-pub(super) struct PlannerSettings {
-    pub(super) kind: Option<PlannerKind>,
+pub(super) struct PlannerTable {
+    pub(super) kind: Option<&'static dyn Planner>,
     pub(super) objective: Option<Objective>,
-    pub(super) control: Option<ControlSettings>,
+    pub(super) settings: Option<PlannerSettings>,
     pub(super) search: Option<SearchKind>,
     pub(super) compliance: Option<Compliance>,
     pub(super) time_weight: Option<f64>,
@@ -19,13 +21,14 @@ pub(super) struct PlannerSettings {
 }
 
 /// Reads the table `[planner]` for an own ship of `length` metres.
-pub(super) fn planner(mut table: Table, length: f64) -> PlannerSettings {
-    let fields = PlannerSettings {
-        control: control_settings(&mut table, length),
-        kind: table.choice("kind", &PlannerKind::WORDS),
+pub(super) fn planner(mut table: Table, length: f64) -> PlannerTable {
+    let optimal_control = control_settings(&mut table, length);
+    let fields = PlannerTable {
+        settings: optimal_control.map(|optimal_control| PlannerSettings { optimal_control }),
+        kind: table.choice("kind", &planner_words()),
         objective: objective(&mut table),
-        search: table.choice("search", &SearchKind::WORDS),
-        compliance: table.choice("compliance", &Compliance::WORDS),
+        search: table.choice("search", SearchKind::WORDS),
+        compliance: table.choice("compliance", Compliance::WORDS),
         time_weight: table.number("time_weight_m2_per_s2", limits::TIME_WEIGHT),
         max_risk: table.number("max_risk", limits::RISK),
         deadline: table.number("deadline_s", limits::DURATION),
@@ -37,14 +40,15 @@ pub(super) fn planner(mut table: Table, length: f64) -> PlannerSettings {
 /// The objective; only the one that weighs risk has a weight, and needs it.
 fn objective(table: &mut Table) -> Option<Objective> {
     let weighed = Objective::LengthRisk { weight: 0.0 };
+    let all = [
+        Objective::SpaceTimeError,
+        Objective::Time,
+        Objective::Length,
+        weighed,
+    ];
     let objective = table.choice(
         "objective",
-        &[
-            ("space-time-error", Objective::SpaceTimeError),
-            ("time", Objective::Time),
-            ("length", Objective::Length),
-            ("length-risk", weighed),
-        ],
+        &all.map(|objective| (objective.word(), objective)),
     );
     if objective == Some(weighed) {
         let weight = table.required_number("risk_weight_m", limits::DISTANCE)?;

@@ -5,6 +5,7 @@ use nalgebra::Matrix2;
 use super::*;
 use crate::frame::mps_from_knots;
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
+use crate::planner::ControlSettings;
 use crate::target::{DomainKind, Motion, Representation, Uncertainty};
 use crate::vessel::{ForceVector, StateVector, VesselKind};
 
@@ -396,8 +397,8 @@ fn the_scenes_of_the_paper_have_its_numbers() {
     ] {
         let scene = read(name);
         assert_eq!(
-            (scene.planner, scene.own_ship.max_speed()),
-            (PlannerKind::PathTime, speed)
+            (scene.planner.facts().name, scene.own_ship.max_speed()),
+            ("path-time", speed)
         );
         assert_eq!(scene.targets.len(), 3);
     }
@@ -420,14 +421,19 @@ kind = "optimal-control"
 fn settings(table: &str) -> Result<ControlSettings, Vec<String>> {
     let text = format!("{OPTIMAL_CONTROL}[planner.optimal_control]\n{table}");
     let faults = |faults: Vec<Fault>| faults.into_iter().map(|f| f.path).collect();
-    Scenario::parse(&text).map(|s| s.control).map_err(faults)
+    Scenario::parse(&text)
+        .map(|s| s.settings.optimal_control)
+        .map_err(faults)
 }
 
 #[test]
 fn the_vessel_is_as_long_as_own_ship() {
     for length in [0.5, 1.255, 30.0, 300.0] {
         let text = OPTIMAL_CONTROL.replace("1.255", &length.to_string());
-        let found = Scenario::parse(&text).expect("valid").control;
+        let found = Scenario::parse(&text)
+            .expect("valid")
+            .settings
+            .optimal_control;
         let vessel = VesselKind::CyberShip2;
         assert_eq!(found, ControlSettings::at_length(vessel, length));
     }

@@ -9,11 +9,11 @@ use rand_chacha::ChaCha8Rng;
 use crate::colregs::{Role, Sectors};
 use crate::frame::{Pose, Vector, direction, heading_of, relative_bearing, to_port, wrap};
 use crate::geometry::outer_disc;
-use crate::planner::{ControlSettings, Objective, PlannerKind, SearchKind};
+use crate::planner::{DEFAULT_PLANNER, Objective, PlannerSettings, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::{DomainKind, Motion, Representation, ShipTrack, Target};
 use crate::trajectory::{DesiredTrajectory, TrajectoryError};
-use crate::vessel::{Hull, OwnShip, VesselKind};
+use crate::vessel::{Hull, OwnShip};
 
 /// m/s, own ship's desired speed.
 const OWN_SPEED: f64 = 5.0;
@@ -260,9 +260,9 @@ fn scene(
             desired: DesiredTrajectory::new(&waypoints, &[OWN_SPEED])?,
             alternatives: Vec::new(),
             targets: targets.collect(),
-            planner: PlannerKind::SpaceTime,
+            planner: DEFAULT_PLANNER,
             objective: Objective::SpaceTimeError,
-            control: ControlSettings::at_length(VesselKind::CyberShip2, OWN_HULL.length),
+            settings: PlannerSettings::at_length(OWN_HULL.length),
             search: SearchKind::AStar,
             compliance: Compliance::Shape,
             time_weight: TIME_WEIGHT,

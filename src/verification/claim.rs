@@ -4,6 +4,7 @@ use super::FORMAT;
 use super::file::{OwnShipFile, PlaceFile, PlanFile, SetFile, TargetFile};
 use super::motion;
 use super::sets;
+use crate::document::planner_names;
 use crate::evaluation::{SpaceTimeSet, StageWeights, Violation};
 use crate::frame::{Pose, Vector, heading_from_course_deg, radians_from_deg};
 use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, Polygon};
@@ -18,7 +19,6 @@ pub(super) const PATH_TIME: &str = "path-time";
 /// Name of the planner whose plans are motions under forces.
 pub(super) const OPTIMAL_CONTROL: &str = "optimal-control";
 
-const PLANNERS: [&str; 3] = ["space-time", PATH_TIME, OPTIMAL_CONTROL];
 const COMPLIANCES: [&str; 3] = ["none", "shape", "rules"];
 const OBJECTIVES: [&str; 5] = [
     "space-time-error",
@@ -118,7 +118,7 @@ impl Claim {
         if file.format != FORMAT {
             return Err(fault("format", format!("'{}'", file.format), FORMAT));
         }
-        word("planner", &file.planner, &PLANNERS)?;
+        word("planner", &file.planner, &planner_names())?;
         word("compliance", &file.compliance, &COMPLIANCES)?;
         word("objective", &file.objective, &OBJECTIVES)?;
         word("outcome", &file.outcome, &OUTCOMES)?;

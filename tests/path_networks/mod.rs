@@ -5,7 +5,8 @@ mod scene;
 
 use searoom::document::PlanDocument;
 use searoom::pipeline::{self, Relaxation, RelaxationLevel, Run};
-use searoom::planner::{Objective, Outcome, PlannerKind};
+use searoom::planner::path_time::PathTimePlanner;
+use searoom::planner::{Objective, Outcome};
 use searoom::scenario::Scenario;
 use searoom::trajectory::Trajectory;
 use searoom::verification::verify;
@@ -13,7 +14,7 @@ use serde_json::{Value, json};
 
 fn run(text: &str) -> Result<Run, String> {
     let mut scenario = Scenario::parse(text).map_err(|faults| format!("unreadable: {faults:?}"))?;
-    scenario.planner = PlannerKind::PathTime;
+    scenario.planner = &PathTimePlanner;
     Ok(pipeline::run(scenario))
 }
 
@@ -233,7 +234,7 @@ fn where_a_ship_comes_down_the_path_own_ship_stops() {
         Objective::Length,
     ] {
         let mut scenario = Scenario::parse(&text).expect("sound");
-        (scenario.planner, scenario.objective) = (PlannerKind::PathTime, objective);
+        (scenario.planner, scenario.objective) = (&PathTimePlanner, objective);
         let run = pipeline::run(scenario);
         assert_eq!(run.level, RelaxationLevel::Inside);
         assert_eq!(faults(&document(&run)), "");

@@ -7,7 +7,9 @@ use searoom::document::{PlanDocument, VerifiedPlanDocument};
 use searoom::evaluation::{Freedom, Request, evaluate};
 use searoom::frame::Vector;
 use searoom::pipeline;
-use searoom::planner::PlannerKind;
+use searoom::planner::Planner;
+use searoom::planner::path_time::PathTimePlanner;
+use searoom::planner::space_time::SpaceTimePlanner;
 use searoom::report::verification_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::Segment;
@@ -134,7 +136,7 @@ fn a_path_is_sailed_to_its_end() {
             );
         }
     }
-    for planner in [PlannerKind::SpaceTime, PlannerKind::PathTime] {
+    for planner in [&SpaceTimePlanner as &dyn Planner, &PathTimePlanner] {
         scenario.planner = planner;
         let plan = document(scenario.clone());
         assert!(plan["cost"]["length_m"].as_f64() > Some(2000.0));

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::super::args::InspectArgs;
 use super::super::output::Output;
-use super::super::output::status::Status;
+use super::super::output::status::ExitStatus;
 use super::read;
 
 /// Maximum number of plan document differences listed; the rest is counted.
@@ -43,7 +43,7 @@ struct PlanDifference {
 }
 
 /// Compares the plan documents, except the planning time, and the contents of every entity.
-pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<Status> {
+pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<ExitStatus> {
     let (first, second) = (read(&args.recording)?, read(other)?);
     let mut found = Difference {
         files: [args.recording.as_path(), other]
@@ -85,9 +85,9 @@ pub fn two(args: &InspectArgs, other: &Path, output: &Output) -> anyhow::Result<
     };
     // exit status as in other comparison tools
     let status = if found.equal {
-        Status::Good
+        ExitStatus::Good
     } else {
-        Status::NoPlan
+        ExitStatus::NoPlan
     };
     Ok(shown.max(status))
 }

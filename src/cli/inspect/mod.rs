@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::args::InspectArgs;
 use super::output::Output;
-use super::output::status::Status;
+use super::output::status::ExitStatus;
 use super::runner::guarded;
 use difference::two;
 
@@ -22,7 +22,7 @@ use difference::two;
 const OFFERED: usize = 3;
 
 /// Shows one recording, a part of it, or the differences of two.
-pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
+pub fn inspect(args: &InspectArgs, output: &Output) -> ExitStatus {
     let asked = || match &args.other {
         None => one(args, output),
         Some(other) => two(args, other, output),
@@ -31,11 +31,11 @@ pub fn inspect(args: &InspectArgs, output: &Output) -> Status {
         Ok(Ok(status)) => status,
         Ok(Err(error)) => {
             output.error(&format_args!("{error:#}"));
-            Status::BadInput
+            ExitStatus::BadInput
         }
         Err(fault) => {
             output.error(&fault);
-            Status::InternalFault
+            ExitStatus::InternalFault
         }
     }
 }
@@ -69,7 +69,7 @@ fn document_of(recorded: &Recorded, path: &Path) -> anyhow::Result<String> {
     })
 }
 
-fn one(args: &InspectArgs, output: &Output) -> anyhow::Result<Status> {
+fn one(args: &InspectArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let recorded = read(&args.recording)?;
     if args.plan {
         let document = document_of(&recorded, &args.recording)?;

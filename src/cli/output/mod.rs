@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use searoom::report::printable_lines;
 use serde::Serialize;
 
-use status::Status;
+use status::ExitStatus;
 
 /// Escape codes of red, green, yellow, and their ends, as used in tables.
 const COLOURS: [&str; 5] = [
@@ -40,15 +40,15 @@ impl Output {
     }
 
     /// Prints a result. Reports a bad status if printing fails; a closed pipe is not an error.
-    pub fn result(&self, text: &str) -> Status {
+    pub fn result(&self, text: &str) -> ExitStatus {
         let mut stdout = std::io::stdout().lock();
         let text = self.shown(text);
         match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
-            Ok(()) => Status::Good,
-            Err(error) if error.kind() == ErrorKind::BrokenPipe => Status::Good,
+            Ok(()) => ExitStatus::Good,
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => ExitStatus::Good,
             Err(error) => {
                 self.error(&format_args!("standard output: {error}"));
-                Status::BadInput
+                ExitStatus::BadInput
             }
         }
     }
@@ -76,12 +76,12 @@ impl Output {
     }
 
     /// Prints a document.
-    pub fn document(&self, document: &impl Serialize) -> Status {
+    pub fn document(&self, document: &impl Serialize) -> ExitStatus {
         match json(document) {
             Ok(text) => self.result(text.trim_end()),
             Err(error) => {
                 self.error(&format_args!("{error:#}"));
-                Status::InternalFault
+                ExitStatus::InternalFault
             }
         }
     }
@@ -111,10 +111,7 @@ impl Output {
 
 /// Serialises a document to JSON.
 pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
-    let mut text =
-        serde_json::to_string_pretty(document).context("a document cannot be written")?;
-    text.push('\n');
-    Ok(text)
+    searoom::document::json(document).context("a document cannot be written")
 }
 
 /// Prints help, the version, or an argument error.
@@ -122,8 +119,8 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     // an error of this stream cannot be reported
     let _ = error.print();
     if error.use_stderr() {
-        Status::BadInput.into()
+        ExitStatus::BadInput.into()
     } else {
-        Status::Good.into()
+        ExitStatus::Good.into()
     }
 }

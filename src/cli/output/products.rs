@@ -7,7 +7,7 @@ use anyhow::{Context, bail};
 use searoom::document::{ComparisonDocument, PlanDocument};
 use searoom::pipeline::Run;
 use searoom::report::figure::{FigureError, FigureFormat, plan_figure};
-use searoom::report::page::{Report, Subject, link_from};
+use searoom::report::page::{HtmlReport, Subject, link_from};
 use searoom::report::write_atomically;
 use searoom::scenario::Scenario;
 use searoom::study::compare::Entry;
@@ -15,7 +15,7 @@ use searoom::study::compare::Entry;
 use super::super::input::files::{Found, refuse_clashes};
 use super::super::runner::guarded;
 use super::json;
-use super::status::Status;
+use super::status::ExitStatus;
 
 /// Destinations of recordings, figures and plans.
 #[derive(Debug)]
@@ -140,7 +140,12 @@ impl Products {
     }
 
     /// Writes the report, if requested.
-    pub fn write_report(&self, report: &Report, title: &str, lead: &str) -> Result<(), Failure> {
+    pub fn write_report(
+        &self,
+        report: &HtmlReport,
+        title: &str,
+        lead: &str,
+    ) -> Result<(), Failure> {
         let Some(folder) = &self.report else {
             return Ok(());
         };
@@ -148,15 +153,15 @@ impl Products {
     }
 }
 
-/// Status and reason of a failed write.
-pub type Failure = (Status, String);
+/// Exit status and reason of a failed write.
+pub type Failure = (ExitStatus, String);
 
 fn attempt(work: impl FnOnce() -> anyhow::Result<()>) -> Result<(), Failure> {
     match guarded(work) {
         Ok(Ok(())) => Ok(()),
         // each error message already includes its cause
-        Ok(Err(error)) => Err((Status::BadInput, error.to_string())),
-        Err(fault) => Err((Status::InternalFault, fault)),
+        Ok(Err(error)) => Err((ExitStatus::BadInput, error.to_string())),
+        Err(fault) => Err((ExitStatus::InternalFault, fault)),
     }
 }
 
@@ -237,7 +242,7 @@ fn make(folder: &Path) -> anyhow::Result<()> {
 
 #[cfg(feature = "recording")]
 fn record(run: &Run, plan: &PlanDocument, file: &Path) -> anyhow::Result<()> {
-    Ok(searoom::recording::write(run, Some(&json(plan)?), file)?)
+    Ok(searoom::recording::write(run, plan, file)?)
 }
 
 #[cfg(feature = "recording")]

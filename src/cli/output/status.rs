@@ -4,9 +4,9 @@ use std::process::ExitCode;
 
 use searoom::pipeline::{Relaxation, Run};
 
-/// Status; the highest of a run is reported.
+/// Exit status; the highest of a run is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
+pub enum ExitStatus {
     /// All plans are found and verified.
     Good,
     /// A scenario has no plan that is clear of all sets and arrives.
@@ -17,8 +17,8 @@ pub enum Status {
     InternalFault,
 }
 
-impl Status {
-    /// Status of one run.
+impl ExitStatus {
+    /// Exit status of one run.
     pub fn of(run: &Run) -> Self {
         match (run.planned.outcome.plan(), &run.evaluation) {
             (None, _) => Self::NoPlan,
@@ -37,7 +37,7 @@ impl Status {
     }
 }
 
-impl Status {
+impl ExitStatus {
     /// Exit code of the process.
     fn code(self) -> u8 {
         match self {
@@ -49,8 +49,8 @@ impl Status {
     }
 }
 
-impl From<Status> for ExitCode {
-    fn from(status: Status) -> Self {
+impl From<ExitStatus> for ExitCode {
+    fn from(status: ExitStatus) -> Self {
         Self::from(status.code())
     }
 }
@@ -72,7 +72,7 @@ mod tests {
             "/scenarios/colregs/head-on.toml"
         );
         let sound = pipeline::run(Scenario::read(file.as_ref()).expect("no faults"));
-        assert_eq!(Status::of(&sound).code(), 0);
+        assert_eq!(ExitStatus::of(&sound).code(), 0);
         let mut spoilt = sound.clone();
         let violation = Violation {
             what: "a gap".to_owned(),
@@ -80,16 +80,20 @@ mod tests {
         };
         let judged = spoilt.evaluation.as_mut().expect("judged");
         judged.violations.push(violation);
-        assert_eq!(Status::of(&spoilt).code(), 3);
+        assert_eq!(ExitStatus::of(&spoilt).code(), 3);
         let mut unjudged = sound.clone();
         unjudged.evaluation = None;
-        assert_eq!(Status::of(&unjudged).code(), 3);
+        assert_eq!(ExitStatus::of(&unjudged).code(), 3);
         let mut none = sound;
         none.planned.outcome = Outcome::Infeasible(NoPlan::NoRoute);
-        assert_eq!(Status::of(&none).code(), 1);
-        assert_eq!(Status::BadInput.code(), 2);
+        assert_eq!(ExitStatus::of(&none).code(), 1);
+        assert_eq!(ExitStatus::BadInput.code(), 2);
         // the highest of several runs is reported
-        let all = [Status::InternalFault, Status::Good, Status::BadInput];
-        assert_eq!(all.into_iter().max(), Some(Status::InternalFault));
+        let all = [
+            ExitStatus::InternalFault,
+            ExitStatus::Good,
+            ExitStatus::BadInput,
+        ];
+        assert_eq!(all.into_iter().max(), Some(ExitStatus::InternalFault));
     }
 }

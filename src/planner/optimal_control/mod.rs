@@ -29,9 +29,42 @@ pub mod transcription;
 pub use attempt::{Attempt, Inside, attempt};
 pub use guess::{Start, family, profile_along};
 pub use keep_out::{Keep, KeepOut};
-pub use plan::{outer_sets, plan};
+pub use plan::plan;
 pub use receding::{Measured, RecedingHorizon};
-pub use report::{ControlReport, Controlled, HomotopyClass, StartReport};
+pub use report::{ControlReport, HomotopyClass, StartReport};
 pub use solver::{Report, Settings, Status};
 pub use task::{Controls, Profile, Task};
 pub use transcription::Weights;
+
+use super::{Minimises, PlanRequest, Planned, Planner, PlannerFacts, SearchKind};
+use crate::obstacle::Obstacle;
+
+/// Chooses the forces on a ship with dynamics.
+pub struct OptimalControlPlanner;
+
+impl Planner for OptimalControlPlanner {
+    fn facts(&self) -> &'static PlannerFacts {
+        &PlannerFacts {
+            name: "optimal-control",
+            label: "optimal control",
+            minimises: Minimises::Own("stage-cost"),
+            follows_paths: false,
+            keeps_off_land: false,
+            keeps_rules: false,
+            uses_ellipses: true,
+            relaxes_domains_only: true,
+            has_no_return: false,
+            searches: &[SearchKind::AStar],
+        }
+    }
+
+    fn plan(&self, request: &PlanRequest) -> Planned {
+        plan(&request.problem, &request.settings.optimal_control)
+    }
+
+    fn outer_sets(&self, sets: Vec<Obstacle>) -> Vec<Obstacle> {
+        // ellipsoids as they are, others by the smallest ellipses around their two sets
+        let outer = |set| KeepOut::outer_of(set).set().clone().into();
+        sets.iter().map(outer).collect()
+    }
+}

@@ -11,12 +11,12 @@ use super::grid::{GridResult, Refined, refine_grid};
 use super::guess::{Start, family, profile_along};
 use super::keep_out::KeepOut;
 use super::passing::passing_sides;
-use super::report::{ControlReport, Controlled, HomotopyClass, StartReport};
+use super::report::{ControlReport, HomotopyClass, StartReport};
 use super::solver::{Settings, Status};
 use super::task::{Controls, Profile, Task};
 use super::transcription::Weights;
 use crate::frame::Vector;
-use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::obstacle::SpaceTimeObstacle;
 use crate::planner::{ControlSettings, NoPlan, Outcome, Plan, Planned, Problem, space_time};
 use crate::tolerance;
 use crate::trajectory::{Steered, Trajectory};
@@ -32,36 +32,28 @@ const SPACE_TIME_SHARE: f64 = 0.25;
 /// Relative difference of the objective below which two plans are the same.
 const SAME_OBJECTIVE: f64 = 1e-6;
 
-/// Outer sets that the planner keeps out of. Ellipsoids are taken unchanged; other sets by the
-/// smallest ellipses around their two sets, at least a millimetre wide.
-pub fn outer_sets(obstacles: &[Obstacle]) -> Vec<Obstacle> {
-    obstacles
-        .iter()
-        .map(|o| KeepOut::outer_of(o).set().clone().into())
-        .collect()
-}
-
-/// Plans forces that keep own ship clear of [`outer_sets`] over the whole horizon at least cost
+/// Plans forces that keep own ship clear of the ellipses around all sets over the whole horizon at least cost
 /// near the desired trajectory.
 ///
-/// The plan is a local optimum, the cheapest over all initial guesses. These are the space-time
+/// The cost of a plan is the integral of the stage cost up to the problem's horizon. The plan is a
+/// local optimum, the cheapest over all initial guesses. These are the space-time
 /// planner's trajectory, the desired one bent to the sides, and the desired one bent around the
 /// worst sets on either side in every combination.
 ///
 /// The cubics between the nodes are clear of every set. The ship model without smoothing meets the
 /// next node to [`tolerance::DEFECT`] of its units. The same problem gives the same plan with any
 /// number of threads, unless the deadline is reached.
-pub fn plan(problem: &Problem, settings: &ControlSettings) -> Controlled {
+pub fn plan(problem: &Problem, settings: &ControlSettings) -> Planned {
     match settings.vessel {
         VesselKind::CyberShip2 => {
             let [smooth, exact] = [CyberShip2::SMOOTH, CyberShip2::EXACT]
                 .map(|model| model.at_length(settings.length));
-            Planner::new(problem, settings, smooth, exact).plan()
+            Planning::new(problem, settings, smooth, exact).plan()
         }
     }
 }
 
-struct Planner<'a, V> {
+struct Planning<'a, V> {
     problem: &'a Problem<'a>,
     controls: Controls,
     intervals: usize,
@@ -71,7 +63,7 @@ struct Planner<'a, V> {
     started: Instant,
 }
 
-impl<'a, V: Manoeuvring> Planner<'a, V> {
+impl<'a, V: Manoeuvring> Planning<'a, V> {
     fn new(problem: &'a Problem, settings: &ControlSettings, smooth: V, exact: V) -> Self {
         Self {
             problem,
@@ -119,7 +111,7 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
         }
     }
 
-    fn plan(&self) -> Controlled {
+    fn plan(&self) -> Planned {
         let mut report = ControlReport {
             starts: Vec::new(),
             classes: Vec::new(),
@@ -131,9 +123,9 @@ impl<'a, V: Manoeuvring> Planner<'a, V> {
             Some(reason) => Outcome::Infeasible(reason),
             None => self.find(&mut report),
         };
-        Controlled {
-            planned: Planned::of(outcome),
-            report,
+        Planned {
+            control: Some(Box::new(report)),
+            ..Planned::of(outcome)
         }
     }
 

@@ -3,7 +3,6 @@
 use super::guess::Start;
 use super::solver::Status;
 use crate::frame::Side;
-use crate::planner::Planned;
 
 /// Result of one initial guess.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,13 +47,4 @@ pub struct ControlReport {
     /// Largest deviation at the end of an interval on that grid, in the ship's units; NaN where no
     /// initial guess led to a plan.
     pub defect: f64,
-}
-
-/// Optimal-control plan with its report.
-#[derive(Debug, Clone)]
-pub struct Controlled {
-    /// Result; a plan's cost is the integral of the stage cost up to the problem's horizon.
-    pub planned: Planned,
-    /// Report.
-    pub report: ControlReport,
 }

@@ -28,8 +28,9 @@ use petgraph::graph::NodeIndex;
 
 use super::clock::Clock;
 use super::{
-    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, NoPlan, NodeKind, Objective, Outcome,
-    Plan, Planned, Problem, SearchStats,
+    EdgeVerdict, ExploredEdge, ExploredGraph, ExploredNode, Minimises, NoPlan, NodeKind,
+    NominalTarget, Objective, Outcome, Plan, PlanRequest, Planned, Planner, PlannerFacts, Problem,
+    SearchKind, SearchStats,
 };
 use crate::frame::{Pose, heading_of};
 use crate::obstacle::{PathTime, SpaceTimeObstacle};
@@ -53,6 +54,45 @@ const FEW: usize = 100;
 const HARD: usize = 2_000;
 const MOST_LINES: usize = 500_000;
 
+/// Follows given paths and chooses the speed.
+pub struct PathTimePlanner;
+
+impl Planner for PathTimePlanner {
+    fn facts(&self) -> &'static PlannerFacts {
+        &PlannerFacts {
+            name: "path-time",
+            label: "path-time",
+            minimises: Minimises::Objective,
+            follows_paths: true,
+            keeps_off_land: true,
+            keeps_rules: false,
+            uses_ellipses: false,
+            relaxes_domains_only: false,
+            has_no_return: false,
+            searches: &[SearchKind::AStar],
+        }
+    }
+
+    fn plan(&self, request: &PlanRequest) -> Planned {
+        let problem = &request.problem;
+        match problem.objective {
+            _ if request.may_wait => planned(problem, Aim::Last, request.max_risk),
+            Objective::LengthRisk { weight } => {
+                let whole = Problem {
+                    obstacles: request.whole,
+                    ..problem.clone()
+                };
+                plan_weighing_risk(&whole, weight, request.max_risk)
+            }
+            _ => plan(problem),
+        }
+    }
+
+    fn leaving_sets(&self, problem: &Problem, _nominal: &[NominalTarget]) -> Option<Planned> {
+        least_harm(problem)
+    }
+}
+
 /// Plans one problem along its desired path and the alternative paths.
 ///
 /// The plan starts at the first waypoint at t = 0 and ends at the last waypoint before the horizon.
@@ -67,13 +107,8 @@ pub fn plan(problem: &Problem) -> Planned {
     planned(problem, Aim::Arrive, 0.0)
 }
 
-/// Plans a motion that stays clear of every obstacle up to the horizon, if own ship cannot arrive
-/// in time. It minimises the remaining distance, whatever the objective. `risk` is the risk level
-/// of the obstacles.
-pub fn stay_clear(problem: &Problem, risk: f64) -> Planned {
-    planned(problem, Aim::Last, risk)
-}
-
+/// Plans a motion to the last waypoint, or one to the horizon with the shortest remaining distance,
+/// whatever the objective. `risk` is the risk level of the obstacles.
 fn planned(problem: &Problem, aim: Aim, risk: f64) -> Planned {
     let refuse = |reason| Planned::of(Outcome::Infeasible(reason));
     let first = problem.desired.legs()[0].start;
@@ -237,11 +272,10 @@ fn search_for(
     let idle = Profile::new();
     let drawn = found.as_ref().map_or(&idle, |found| &found.profile);
     Planned {
-        outcome,
         stats,
         explored: explored(&graph, search, clock),
         path_time: Some(Box::new(drawn.diagram(scene, problem.own.pose))),
-        escape: None,
+        ..Planned::of(outcome)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Trade-off between path length and accepted risk.
 
 use super::plan;
-use crate::obstacle::{Obstacle, SpaceTimeObstacle};
+use crate::obstacle::level_sets;
 use crate::planner::clock::Clock;
 use crate::planner::{Objective, Outcome, Planned, Problem};
 
@@ -29,14 +29,9 @@ impl Level {
 pub fn plan_weighing_risk(problem: &Problem, weight: f64, max_risk: f64) -> Planned {
     let clock = Clock::new(problem.deadline);
     let at = |risk: f64| {
-        let level_sets: Vec<Obstacle> = if risk > 0.0 {
-            problem.obstacles.iter().map(|o| o.at_risk(risk)).collect()
-        } else {
-            problem.obstacles.to_vec()
-        };
         let planned = plan(&Problem {
             objective: Objective::Length,
-            obstacles: &level_sets,
+            obstacles: &level_sets(problem.obstacles, risk),
             deadline: clock.left(),
             ..problem.clone()
         });

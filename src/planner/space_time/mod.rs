@@ -23,16 +23,18 @@ mod selection;
 mod settings;
 mod similarity;
 
-pub(crate) use fallback::escape::{NominalTarget, escape};
 pub use fallback::escape::{after_holding, nominal_motion};
 pub use selection::warm_start::warm_started;
 
 use super::clock::Clock;
-use super::{NoPlan, Outcome, Plan, Planned, Problem, SearchStats};
+use super::{
+    Minimises, NoPlan, NominalTarget, Outcome, Plan, PlanRequest, Planned, Planner, PlannerFacts,
+    Problem, SearchKind, SearchStats,
+};
 use crate::obstacle::{LAND, SpaceTimeObstacle};
 use crate::search::{Search, Stop};
 use crate::tolerance;
-use crate::trajectory::Segment;
+use crate::trajectory::{Segment, Trajectory};
 use fallback::{hybrid_a_star, sequential};
 use graph::{Graph, node};
 use piece::pieces;
@@ -46,6 +48,47 @@ use selection::budget::SearchBudget;
 use selection::initial_guess::Conflict;
 use similarity::Similarity;
 
+/// Searches a graph, and refines the result.
+pub struct SpaceTimePlanner;
+
+impl Planner for SpaceTimePlanner {
+    fn facts(&self) -> &'static PlannerFacts {
+        &PlannerFacts {
+            name: "space-time",
+            label: "space-time",
+            minimises: Minimises::SpaceTimeError,
+            follows_paths: false,
+            keeps_off_land: true,
+            keeps_rules: true,
+            uses_ellipses: false,
+            relaxes_domains_only: false,
+            has_no_return: true,
+            searches: &[SearchKind::AStar, SearchKind::Dijkstra],
+        }
+    }
+
+    fn plan(&self, request: &PlanRequest) -> Planned {
+        plan(&request.problem)
+    }
+
+    fn warm_started(&self, problem: &Problem, from: &Trajectory) -> Option<Outcome> {
+        Some(warm_started(problem, from).outcome)
+    }
+
+    fn wide_detour(&self, problem: &Problem) -> Option<Plan> {
+        let planned = plan_normalised(problem, |problem, _, _| {
+            let wide = hybrid_a_star::hybrid_a_star(problem);
+            Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
+        });
+        planned.outcome.into_plan()
+    }
+
+    fn leaving_sets(&self, problem: &Problem, nominal: &[NominalTarget]) -> Option<Planned> {
+        let plan = fallback::escape::escape(problem, nominal)?;
+        Some(Planned::of(Outcome::Solved(plan)))
+    }
+}
+
 /// Plans one problem.
 ///
 /// The plan is clear of every obstacle to rounding (never deeper than 1e-7 m), keeps the turning
@@ -57,17 +100,6 @@ pub fn plan(problem: &Problem) -> Planned {
     plan_normalised(problem, |problem, proxies, _| {
         plan_clear_of(problem, proxies, clock)
     })
-}
-
-/// Plan by hybrid A* that is clear of every set and of land; `None` where none was found within the
-/// budget. The plan is not refined: use it only where nothing else is found. Ten to several hundred
-/// milliseconds.
-pub fn hybrid_a_star(problem: &Problem) -> Option<Plan> {
-    let planned = plan_normalised(problem, |problem, _, _| {
-        let wide = hybrid_a_star::hybrid_a_star(problem);
-        Planned::of(wide.map_or(Outcome::Infeasible(NoPlan::NoTrajectory), Outcome::Solved))
-    });
-    planned.outcome.into_plan()
 }
 
 /// Plans a problem in normalised coordinates. Where the restored plan touches a set, plans it
@@ -262,11 +294,9 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         (None, false) => Outcome::Infeasible(no_candidate(problem, contact, grounding)),
     };
     Planned {
-        outcome,
         stats,
         explored: node::explored(search),
-        path_time: None,
-        escape: None,
+        ..Planned::of(outcome)
     }
 }
 

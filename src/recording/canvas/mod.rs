@@ -6,7 +6,7 @@ pub mod simplify;
 pub mod style;
 mod view_model;
 
-pub use motion::{Motion, desired_leg};
+pub use motion::{ShownMotion, desired_leg};
 pub use view_model::ViewModel;
 
 use rerun::{Color, TimeColumn};
@@ -103,7 +103,7 @@ impl<'a> Canvas<'a> {
     pub fn new(
         scenario: &'a Scenario,
         sets: &'a [TargetSets],
-        motions: &[Motion],
+        motions: &[ShownMotion],
         end: f64,
         palette: Palette,
     ) -> Self {
@@ -198,7 +198,7 @@ fn steps(end: f64, step: f64) -> Vec<f64> {
 }
 
 /// The desired trajectory, the motions, and every target while it is near one of them.
-fn bounds(scenario: &Scenario, motions: &[Motion], times: &[f64]) -> Bounds {
+fn bounds(scenario: &Scenario, motions: &[ShownMotion], times: &[f64]) -> Bounds {
     let desired = &scenario.desired;
     let near = 0.6 * desired.length();
     let mut points = desired.waypoints();

@@ -6,7 +6,7 @@ use crate::trajectory::{DesiredLeg, DesiredTrajectory, Trajectory};
 
 /// The motion that the views show.
 #[derive(Debug, Clone, Copy)]
-pub enum Motion<'a> {
+pub enum ShownMotion<'a> {
     /// The plan.
     Planned(&'a Trajectory),
     /// Without a plan: own ship as if it followed the desired trajectory. The views then show what
@@ -14,7 +14,7 @@ pub enum Motion<'a> {
     Nominal(&'a DesiredTrajectory),
 }
 
-impl Motion<'_> {
+impl ShownMotion<'_> {
     pub fn is_planned(&self) -> bool {
         matches!(self, Self::Planned(_))
     }

@@ -1,6 +1,6 @@
 //! One run, prepared for the views.
 
-use super::{Canvas, Motion, Palette};
+use super::{Canvas, Palette, ShownMotion};
 use crate::colregs::compliance::ComplianceReport;
 use crate::pipeline::Run;
 
@@ -8,7 +8,7 @@ use crate::pipeline::Run;
 #[derive(Debug)]
 pub struct ViewModel<'a> {
     pub run: &'a Run,
-    pub motion: Motion<'a>,
+    pub motion: ShownMotion<'a>,
     /// It ends at arrival, or at the end of the desired trajectory if that is later. Nothing is
     /// claimed after arrival, and the sets only grow.
     pub canvas: Canvas<'a>,
@@ -21,8 +21,8 @@ impl<'a> ViewModel<'a> {
     pub fn new(run: &'a Run) -> Self {
         let desired = &run.scenario.desired;
         let motion = match run.planned.outcome.plan() {
-            Some(plan) => Motion::Planned(&plan.trajectory),
-            None => Motion::Nominal(desired),
+            Some(plan) => ShownMotion::Planned(&plan.trajectory),
+            None => ShownMotion::Nominal(desired),
         };
         let end = motion.end().max(desired.duration());
         let end = end.min(run.scenario.horizon);

@@ -10,14 +10,14 @@ use crate::recording::canvas::Canvas;
 /// A moving vertex of a section: `place + time * velocity`. These lines are the edges of the
 /// space-time polytope.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MovingVertex {
+pub struct MeshVertex {
     /// Its position at t = 0, metres.
     pub place: Vector,
     /// m/s.
     pub velocity: Vector,
 }
 
-impl MovingVertex {
+impl MeshVertex {
     pub fn at(&self, time: f64) -> Vector {
         self.place + self.velocity * time
     }
@@ -33,7 +33,7 @@ pub struct Prism {
     from: f64,
     to: f64,
     /// Counter-clockwise.
-    vertices: Vec<MovingVertex>,
+    vertices: Vec<MeshVertex>,
     /// The normal and the outward speed of the side that ends at each vertex.
     sides: Vec<(Vector, f64)>,
     /// The sides are chords of a surface without edges.
@@ -42,7 +42,7 @@ pub struct Prism {
 
 impl Prism {
     fn polytope(set: &PolytopeObstacle, from: f64, to: f64) -> Self {
-        let from_zero = |v: MovingVertex| MovingVertex {
+        let from_zero = |v: MeshVertex| MeshVertex {
             place: v.place - v.velocity * from,
             ..v
         };
@@ -64,7 +64,7 @@ impl Prism {
             let normal = direction(step * (k as f64 + 0.5));
             let [a, b] = [&first, &last].map(|e| e.boundary_point(normal));
             let velocity = (b - a) / (to - from).max(f64::MIN_POSITIVE);
-            MovingVertex {
+            MeshVertex {
                 place: a - velocity * from,
                 velocity,
             }
@@ -85,7 +85,7 @@ impl Prism {
 
     /// The section at a time, closed.
     pub fn ring(&self, canvas: &Canvas, time: f64) -> Vec<[f32; 3]> {
-        let lifted = |v: &MovingVertex| canvas.lifted(v.at(time), time);
+        let lifted = |v: &MeshVertex| canvas.lifted(v.at(time), time);
         let mut ring: Vec<_> = self.vertices.iter().map(lifted).collect();
         ring.extend(ring.first().copied());
         ring
@@ -125,14 +125,14 @@ fn prisms_between(set: &Obstacle, from: f64, to: f64) -> Vec<Prism> {
 
 /// The moving vertex between each face and the next. Between two neighbouring normals one vertex of
 /// each of the two sets is extreme, so this is exact. O((n + m)²).
-pub fn moving_vertices(set: &PolytopeObstacle) -> Vec<MovingVertex> {
+pub fn moving_vertices(set: &PolytopeObstacle) -> Vec<MeshVertex> {
     let faces = set.faces();
     (0..faces.len())
         .map(|i| {
             let here = heading_of(faces[i].normal);
             let next = heading_of(faces[(i + 1) % faces.len()].normal);
             let between = direction(here + wrap_positive(next - here) / 2.0);
-            MovingVertex {
+            MeshVertex {
                 place: extreme(set.initial(), between),
                 velocity: extreme(set.velocity(), between),
             }

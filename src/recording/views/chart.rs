@@ -3,16 +3,16 @@
 use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStreamResult};
 
 use super::ships::{HARD_RADIUS, SHAPED_RADIUS, shaped_color};
-use super::summary::approach;
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{
-    Bounds, Canvas, Motion, Palette, ViewModel, desired_leg, flat, round_down,
+    Bounds, Canvas, Palette, ShownMotion, ViewModel, desired_leg, flat, round_down,
 };
 use crate::recording::write::Recorder;
 use crate::recording::{MAP, path};
 use crate::target::Target;
+use crate::tolerance;
 use crate::trajectory::{Cubic, Segment, Trajectory};
 
 /// Turn between two drawn points of an arc, radians.
@@ -247,8 +247,8 @@ const PIECE_POINTS: usize = 4;
 /// The plan's segments, or pieces, as polylines through `(position, time)`. Empty without a plan.
 pub fn planned_strips(model: &ViewModel) -> Vec<(SpeedClass, Vec<(Vector, f64)>)> {
     match model.motion {
-        Motion::Planned(trajectory) => strips(model, trajectory),
-        Motion::Nominal(_) => Vec::new(),
+        ShownMotion::Planned(trajectory) => strips(model, trajectory),
+        ShownMotion::Nominal(_) => Vec::new(),
     }
 }
 
@@ -395,6 +395,16 @@ fn log_closest_points(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamR
     rec.log_static(path(&[MAP, "closest_points"]), &parts)
 }
 
+/// A closest approach in words: metres between the hulls, negative in overlap, and seconds.
+/// Touching is no collision.
+fn approach(distance: f64, time: f64) -> String {
+    if distance < -tolerance::DEPTH_M {
+        format!("collision at {time:.0} s")
+    } else {
+        format!("{:.0} m at {time:.0} s", distance.max(0.0))
+    }
+}
+
 /// Logs, without a plan, where own ship on the desired trajectory first enters a set.
 fn log_conflict(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     if model.motion.is_planned() {
@@ -442,4 +452,16 @@ fn log_violations(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResul
             .with_labels(evaluation.violations.iter().map(|v| v.what.clone()))
             .with_show_labels(true),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn touching_is_no_collision() {
+        assert_eq!(approach(-1e-8, 600.0), "0 m at 600 s");
+        assert_eq!(approach(-1e-5, 600.0), "collision at 600 s");
+        assert_eq!(approach(0.6, 12.0), "1 m at 12 s");
+    }
 }

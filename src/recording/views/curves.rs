@@ -5,7 +5,7 @@ use rerun::{EntityPath, RecordingStreamResult, Scalars, SeriesLines, TimeColumn}
 
 use crate::frame::{course_deg_from_heading, deg_from_radians, heading_of, knots_from_mps, wrap};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Canvas, Motion, ViewModel, desired_leg, style};
+use crate::recording::canvas::{Canvas, ShownMotion, ViewModel, desired_leg, style};
 use crate::recording::write::Recorder;
 use crate::recording::{TIMELINE, path};
 use crate::target::Target;
@@ -155,7 +155,7 @@ pub fn safety_margin(canvas: &Canvas) -> Series {
 
 /// Metres between own hull and the target's expected hull, at every sample until arrival; negative
 /// in overlap. For a target that is a set: from own ship's centre, as the set includes its hull.
-pub fn clearances(canvas: &Canvas, motion: &Motion, target: &Target) -> Vec<f64> {
+pub fn clearances(canvas: &Canvas, motion: &ShownMotion, target: &Target) -> Vec<f64> {
     let own = &canvas.scenario.own_ship.hull;
     let at = |&time: &f64| {
         let pose = motion.pose_at(time);
@@ -292,7 +292,7 @@ fn risks(model: &ViewModel, set: &Obstacle, times: &[f64]) -> Vec<f64> {
 }
 
 fn log_speed(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
-    let wanted = Motion::Nominal(&model.scenario.desired);
+    let wanted = ShownMotion::Nominal(&model.scenario.desired);
     let mut shown = vec![(wanted, "desired", style::desired(), 1.0)];
     if model.motion.is_planned() {
         shown.push((model.motion, "own ship", style::own_ship(), 2.0));
@@ -317,7 +317,10 @@ fn log_speed(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()>
 }
 
 /// Times at which one of the speeds changes or ends, seconds.
-pub fn step_times<'a>(canvas: &Canvas, motions: impl Iterator<Item = &'a Motion<'a>>) -> Vec<f64> {
+pub fn step_times<'a>(
+    canvas: &Canvas,
+    motions: impl Iterator<Item = &'a ShownMotion<'a>>,
+) -> Vec<f64> {
     let mut times: Vec<f64> = motions
         .flat_map(|motion| [motion.speed_changes(), vec![motion.end()]].concat())
         .collect();
@@ -329,7 +332,7 @@ pub fn step_times<'a>(canvas: &Canvas, motions: impl Iterator<Item = &'a Motion<
 }
 
 /// Speeds at every one of the times, knots; 0 where the motion has ended and own ship is at rest.
-pub fn speeds(motion: &Motion, times: &[f64]) -> Vec<f64> {
+pub fn speeds(motion: &ShownMotion, times: &[f64]) -> Vec<f64> {
     let last = times.last().copied().unwrap_or(0.0);
     let end = motion.end();
     // a motion that lasts as long as the plot keeps its speed

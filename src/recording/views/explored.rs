@@ -24,7 +24,7 @@ pub const POINT_BUDGET: usize = 2400;
 
 /// How much of the graph is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Drawn {
+pub struct DrawnGraph {
     /// Edges in the recording.
     pub edges: usize,
     /// Edges that the search tested, without those that take no time.
@@ -50,7 +50,7 @@ pub fn log_explored(
     run: &Run,
     folders: [EntityPath; 2],
     budget: usize,
-) -> RecordingStreamResult<Drawn> {
+) -> RecordingStreamResult<DrawnGraph> {
     let kind = |name, color| Kind {
         name,
         color,
@@ -62,7 +62,7 @@ pub fn log_explored(
         kind(BLOCKED, style::graph_blocked()),
     ];
     let judge = Judge::new(run);
-    let mut drawn = Drawn {
+    let mut drawn = DrawnGraph {
         edges: 0,
         tested: 0,
     };

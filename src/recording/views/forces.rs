@@ -4,7 +4,7 @@ use rerun::components::{AggregationPolicy, InterpolationMode};
 use rerun::{RecordingStreamResult, Scalars, SeriesLines, TimeColumn};
 
 use crate::frame::clockwise_deg_per_s;
-use crate::recording::canvas::{Motion, ViewModel, style};
+use crate::recording::canvas::{ShownMotion, ViewModel, style};
 use crate::recording::write::Recorder;
 use crate::recording::{TIMELINE, path};
 use crate::trajectory::{Node, Steered};
@@ -17,8 +17,8 @@ pub const FORCES: &str = "curves/forces";
 /// The motion under forces, where the plan is one.
 pub fn steered<'a>(model: &ViewModel<'a>) -> Option<&'a Steered> {
     match model.motion {
-        Motion::Planned(trajectory) => trajectory.steered(),
-        Motion::Nominal(_) => None,
+        ShownMotion::Planned(trajectory) => trajectory.steered(),
+        ShownMotion::Nominal(_) => None,
     }
 }
 

@@ -6,8 +6,8 @@ use rerun::{
 };
 
 use super::chart::Lines;
-use crate::colregs::compliance::{ComplianceReport, Measure, MonitorResult, Verdict};
-use crate::frame::{Side, Vector, clockwise_deg, deg_from_radians, knots_from_mps};
+use crate::colregs::compliance::{ComplianceReport, MonitorResult, Verdict};
+use crate::frame::{Side, Vector, clockwise_deg, knots_from_mps};
 use crate::planner::Escape;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{ViewModel, flat};
@@ -52,38 +52,25 @@ impl Lane {
     }
 }
 
-/// A rule that is broken, or a monitor that is violated.
-struct Broken {
+/// A violation of a rule or of a monitor.
+struct Violated {
     time: f64,
-    /// Its short name.
+    /// Short name of the rule.
     rule: String,
-    what: String,
 }
 
-fn broken(conduct: &ComplianceReport) -> Vec<Broken> {
-    let breaches = conduct.violations.iter().map(|breach| Broken {
-        time: breach.time,
-        rule: breach.rule.to_owned(),
-        what: format!("{} at {:.0} s: {}", breach.rule, breach.time, breach.what),
+fn violated(conduct: &ComplianceReport) -> Vec<Violated> {
+    let rules = conduct.violations.iter().map(|violation| Violated {
+        time: violation.time,
+        rule: violation.rule.to_owned(),
     });
     let is_violated = |f: &&MonitorResult| f.verdict == Verdict::Violated;
-    let monitors = conduct.monitors.iter().filter(is_violated).map(|finding| {
-        let time = finding.time.unwrap_or(0.0);
-        // 0.0 - x is never a negative zero
-        let short = 0.0 - finding.robustness.unwrap_or(0.0);
-        let short = match finding.measure {
-            Measure::Distance => format!("{short:.1} m"),
-            Measure::Angle => format!("{:.0}°", deg_from_radians(short)),
-            Measure::Time => format!("{short:.0} s"),
-        };
-        let rule = format!("monitor {}", finding.monitor);
-        Broken {
-            time,
-            what: format!("{rule} at {time:.0} s, by {short}"),
-            rule,
-        }
+    let monitors = conduct.monitors.iter().filter(is_violated);
+    let monitors = monitors.map(|monitor| Violated {
+        time: monitor.time.unwrap_or(0.0),
+        rule: format!("monitor {}", monitor.monitor),
     });
-    let mut all: Vec<Broken> = breaches.chain(monitors).collect();
+    let mut all: Vec<Violated> = rules.chain(monitors).collect();
     all.sort_by(|a, b| a.time.total_cmp(&b.time));
     all
 }
@@ -95,7 +82,7 @@ fn judged<'a>(
     let both = model.scenario.targets.iter().zip(&model.conduct);
     both.enumerate().filter_map(|(index, (target, conduct))| {
         let conduct = conduct.as_ref()?;
-        let silent = conduct.roles.is_empty() && broken(conduct).is_empty();
+        let silent = conduct.roles.is_empty() && violated(conduct).is_empty();
         (!silent).then_some((index, target.name.as_str(), conduct))
     })
 }
@@ -122,7 +109,7 @@ fn lanes(model: &ViewModel) -> Vec<Lane> {
         lanes.extend((!conduct.roles.is_empty()).then_some(roles));
         let mut rules: Vec<String> = Vec::new();
         let mut breaks = Lane::new();
-        for each in broken(conduct) {
+        for each in violated(conduct) {
             if !rules.contains(&each.rule) {
                 rules.push(each.rule);
             }
@@ -254,48 +241,6 @@ fn manoeuvre(escape: &Escape) -> String {
     }
 }
 
-/// Roles, scores and broken rules as a table, and until when own ship stands on; empty where no
-/// rule applies.
-pub fn text(model: &ViewModel) -> String {
-    let mut parts = Vec::new();
-    if let Some(escape) = model.run.planned.escape {
-        parts.push(format!(
-            "**Own ship stands on:** it holds course and speed until {:.1} s, the latest time from \
-             which an escape is known to be clear, and escapes then: {}.",
-            escape.latest,
-            manoeuvre(&escape)
-        ));
-    }
-    let rows: Vec<String> = judged(model)
-        .map(|(_, name, conduct)| {
-            let roles = conduct
-                .roles
-                .iter()
-                .map(|s| format!("{} {:.0} to {:.0} s", s.role.name(), s.from, s.until));
-            let scores = conduct.scores.by_name().into_iter();
-            let scores =
-                scores.map(|(rule, score)| format!("{} {score:.2}", rule.replace('_', " ")));
-            let broken = broken(conduct);
-            let broken: Vec<&str> = broken.iter().map(|b| b.what.as_str()).collect();
-            let broken = if broken.is_empty() {
-                "nothing".to_owned()
-            } else {
-                format!("**{}**", broken.join("; "))
-            };
-            let [roles, scores] =
-                [roles.collect::<Vec<_>>(), scores.collect()].map(|l| l.join(", "));
-            format!("| {name} | {roles} | {scores} | {broken} |")
-        })
-        .collect();
-    if !rows.is_empty() {
-        parts.push(format!(
-            "| rules: toward | own ship is | scores | breaks |\n|---|---|---|---|\n{}",
-            rows.join("\n")
-        ));
-    }
-    parts.join("\n\n")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -325,12 +270,6 @@ mod tests {
         assert!(!broken.at(breach.time - 1e-6).contains("17(c)"));
         assert!(broken.at(breach.time).contains("17(c)"));
         assert_eq!(broken.at(model.motion.end()), "");
-        let text = super::text(&model);
-        let expected = format!("17(c) at {:.0} s: ", breach.time);
-        assert!(
-            text.contains(&expected) && text.contains("rule 17"),
-            "{text}"
-        );
     }
 
     #[test]
@@ -342,6 +281,5 @@ mod tests {
         assert_eq!(own.at(0.0), "own ship holds course and speed");
         assert_eq!(own.at(latest - 1e-6), own.at(0.0));
         assert!(own.at(latest).starts_with("own ship escapes: "));
-        assert!(text(&model).contains("**Own ship stands on:**"));
     }
 }

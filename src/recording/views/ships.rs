@@ -9,7 +9,7 @@ use super::chart::{Lines, Strip};
 use crate::frame::{Pose, Vector};
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Canvas, Motion, ViewModel, flat, round_down, style};
+use crate::recording::canvas::{Canvas, ShownMotion, ViewModel, flat, round_down, style};
 use crate::recording::write::Recorder;
 use crate::recording::{MAP, TIMELINE, TRAILS, path};
 use crate::target::Target;
@@ -26,8 +26,8 @@ pub fn shaped_color(canvas: &Canvas, index: usize) -> Color {
 
 /// Own ship on one of the motions that are shown.
 #[derive(Debug, Clone)]
-pub struct OwnShip<'a> {
-    pub motion: Motion<'a>,
+pub struct DrawnShip<'a> {
+    pub motion: ShownMotion<'a>,
     /// Shown beside it on the chart, or, where there is no room, when it is pointed at.
     pub name: String,
     pub color: Color,
@@ -48,7 +48,7 @@ pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult
     } else {
         "Own ship (no plan)"
     };
-    let own = OwnShip {
+    let own = DrawnShip {
         motion: model.motion,
         name: name.to_owned(),
         color: style::own_ship(),
@@ -142,7 +142,7 @@ pub fn log_own_ship(
     rec: &mut Recorder,
     canvas: &Canvas,
     entity: EntityPath,
-    own: &OwnShip,
+    own: &DrawnShip,
     named: bool,
 ) -> RecordingStreamResult<()> {
     let name = label(canvas, own.color, &own.name, canvas.ahead(), Side::West);
@@ -174,7 +174,7 @@ fn log_places(
 pub fn log_trails(
     rec: &mut Recorder,
     canvas: &Canvas,
-    own: &[OwnShip],
+    own: &[DrawnShip],
 ) -> RecordingStreamResult<()> {
     let targets = &canvas.scenario.targets;
     let entity = path(&[TRAILS]);
@@ -201,7 +201,7 @@ fn log_own_hull(
     rec: &mut Recorder,
     canvas: &Canvas,
     entity: EntityPath,
-    own: &OwnShip,
+    own: &DrawnShip,
 ) -> RecordingStreamResult<()> {
     let style = LineStrips2D::update_fields()
         .with_colors([own.color])

@@ -7,7 +7,7 @@ use rerun::{
 
 use super::body::{mesh, prisms};
 use super::chart::{grid_spacing, mark_step, multiples, planned_strips};
-use super::ships::OwnShip;
+use super::ships::DrawnShip;
 use crate::frame::{Vector, to_port};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{Bounds, Canvas, ViewModel, style};
@@ -48,7 +48,7 @@ impl Lines {
 pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> RecordingStreamResult<()> {
     log_waters(rec, model)?;
     log_planned(rec, model)?;
-    let own = OwnShip {
+    let own = DrawnShip {
         motion: model.motion,
         name: "Own ship".to_owned(),
         color: style::own_ship(),
@@ -205,7 +205,11 @@ fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> RecordingStreamResult<()
 }
 
 /// Logs the plane of the cursor, and the ships in it.
-pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[OwnShip]) -> RecordingStreamResult<()> {
+pub fn log_now(
+    rec: &mut Recorder,
+    canvas: &Canvas,
+    own: &[DrawnShip],
+) -> RecordingStreamResult<()> {
     let Bounds { low, high } = canvas.bounds;
     let frame = [
         [low.x, low.y],

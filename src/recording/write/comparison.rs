@@ -12,15 +12,15 @@ use super::{Recorder, RecordingError, Stores, put};
 use crate::frame::{Vector, knots_from_mps};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
-use crate::recording::canvas::{Canvas, Motion, Palette, flat, style};
+use crate::recording::canvas::{Canvas, Palette, ShownMotion, flat, style};
 use crate::recording::views::chart::{self, Key};
 use crate::recording::views::curves::{self, CLEARANCE, SPEED, Series};
 use crate::recording::views::explored::log_explored;
-use crate::recording::views::ships::{self, OwnShip};
+use crate::recording::views::ships::{self, DrawnShip};
 use crate::recording::views::{land, space_time};
 use crate::recording::{COMPARISON, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, EntryResult, LineStyle, Method};
+use crate::study::compare::{Entry, LineStyle, Method};
 
 /// The folder of the candidates, on the chart and in the volume.
 const METHODS: &str = "methods";
@@ -81,7 +81,7 @@ pub struct Compared<'a> {
 /// ```
 pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), RecordingError> {
     let title = &compared.scenario.title;
-    put(path, title, Some((COMPARISON, compared.document)), || {
+    put(path, title, (COMPARISON, compared.document), || {
         log(compared)
     })
 }
@@ -89,7 +89,7 @@ pub fn write_comparison(compared: &Compared, path: &Path) -> Result<(), Recordin
 /// One motion and its style.
 struct Candidate<'a> {
     entry: &'a Entry,
-    own: OwnShip<'a>,
+    own: DrawnShip<'a>,
     style: LineStyle,
 }
 
@@ -102,19 +102,19 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
     let candidates = candidates(entries);
     let sets = pipeline::sets(scenario);
     let is_plan = |c: &&Candidate| matches!(c.entry.candidate.method, Method::Planner { .. });
-    let plans: Vec<Motion> = candidates
+    let plans: Vec<ShownMotion> = candidates
         .iter()
         .filter(is_plan)
         .map(|c| c.own.motion)
         .collect();
     // baselines go on to the horizon, far away
-    let end = plans.iter().map(Motion::end).fold(0.0, f64::max);
+    let end = plans.iter().map(ShownMotion::end).fold(0.0, f64::max);
     let end = end.max(scenario.desired.duration()).min(scenario.horizon);
     let canvas = Canvas::new(scenario, &sets, &plans, end, Palette::OwnShips);
 
     let legend = legend(&canvas, &candidates, &sets);
     let rows = legend.len().div_ceil(KEYS);
-    let own: Vec<OwnShip> = candidates.iter().map(|c| c.own.clone()).collect();
+    let own: Vec<DrawnShip> = candidates.iter().map(|c| c.own.clone()).collect();
     land::log_land(rec, &canvas)?;
     chart::log_waters(rec, &canvas)?;
     chart::log_legend(rec, &canvas, legend, rows)?;
@@ -130,7 +130,7 @@ fn log(compared: &Compared) -> RecordingStreamResult<Stores> {
         log_way(rec, &canvas, candidate, order)?;
         let ship = path(&[MAP, METHODS, &candidate.own.name, "own_ship"]);
         ships::log_own_ship(rec, &canvas, ship, &candidate.own, false)?;
-        let EntryResult::Planned(run) = &candidate.entry.result else {
+        let Some(run) = &candidate.entry.run else {
             continue;
         };
         let folders =
@@ -167,7 +167,7 @@ fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
         of_method.map(|e| e.candidate.max_risk)
     };
     let sailing = entries.iter().filter_map(|entry| {
-        let motion = Motion::Planned(entry.trajectory()?);
+        let motion = ShownMotion::Planned(entry.trajectory()?);
         let candidate = entry.candidate;
         let style = LineStyle::of(candidate.method);
         let all: Vec<f64> = risks(candidate.method).collect();
@@ -180,7 +180,7 @@ fn candidates(entries: &[Entry]) -> Vec<Candidate<'_>> {
         } else {
             candidate.method.to_string()
         };
-        let own = OwnShip {
+        let own = DrawnShip {
             motion,
             name,
             color: style::toward_background(color, 1.0 - share * (1.0 - WEAKEST)),
@@ -231,10 +231,8 @@ fn legend(canvas: &Canvas, candidates: &[Candidate], sets: &[TargetSets]) -> Vec
         .iter()
         .map(|c| (c.own.name.clone(), c.own.color, radius(&c.style)))
         .collect();
-    let of_its_own = |c: &Candidate| match &c.entry.result {
-        EntryResult::Planned(run) => has_sets_of_its_own(run, sets),
-        EntryResult::Baseline(_) | EntryResult::Nothing(_) => false,
-    };
+    let of_its_own =
+        |c: &Candidate| (c.entry.run.as_deref()).is_some_and(|run| has_sets_of_its_own(run, sets));
     if let Some(first) = candidates.iter().find(|c| of_its_own(c)) {
         let color = style::toward_background(first.own.color, SET_STRENGTH);
         let name = "a method's own sets".to_owned();
@@ -253,7 +251,7 @@ fn log_way(
     order: f32,
 ) -> RecordingStreamResult<()> {
     let Candidate { own, style, .. } = candidate;
-    let Motion::Planned(trajectory) = own.motion else {
+    let ShownMotion::Planned(trajectory) = own.motion else {
         return Ok(());
     };
     let mut line: Vec<(Vector, f64)> = Vec::new();

@@ -19,6 +19,7 @@ use super::views::{
     chart, curves, explored, forces, land, path_time, rules, ships, space_time, summary, velocities,
 };
 use super::{DOCUMENT, EXPLORED, VOLUME, layout, path};
+use crate::document::{self, PlanDocument};
 use crate::output::{folder_of, write_whole};
 use crate::pipeline::Run;
 
@@ -49,29 +50,38 @@ pub(super) type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// Writes `run` as a recording with its layout to `path`, in full or not at all.
 ///
 /// The bytes go to a temporary name in the same folder first, which is then renamed. Missing parent
-/// folders are made, an older file is replaced. `document`, the text of the plan document, is kept
-/// in the recording: [`super::Recorded::document`] gives it back.
+/// folders are made, an older file is replaced. The recording keeps the plan document of the run:
+/// [`super::Recorded::document`] gives it back as JSON.
 ///
 /// # Examples
 ///
 /// ```
+/// use searoom::document::PlanDocument;
 /// use searoom::recording::{Recorded, write};
 /// use searoom::{pipeline, scenario::Scenario};
 ///
 /// let scenario = Scenario::read("scenarios/colregs/head-on.toml".as_ref())?;
 /// # let folder = tempfile::tempdir()?;
 /// let file = folder.path().join("head-on.rrd");
-/// write(&pipeline::run(scenario), Some("{}"), &file)?;
+/// let run = pipeline::run(scenario);
+/// write(&run, &PlanDocument::of(&run), &file)?;
 /// let recorded = Recorded::read(&file)?;
-/// assert_eq!(recorded.document().as_deref(), Some("{}"));
+/// assert!(recorded.document().is_some());
 /// assert!(recorded.table("curves/speed_kn").is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn write(run: &Run, document: Option<&str>, path: &Path) -> Result<(), RecordingError> {
-    let document = document.map(|text| (DOCUMENT, text));
-    put(path, &run.scenario.title, document, || {
-        log_run(&ViewModel::new(run))
+pub fn write(run: &Run, plan: &PlanDocument, path: &Path) -> Result<(), RecordingError> {
+    let text = document::json(plan).map_err(|source| encoding_error(path, source))?;
+    put(path, &run.scenario.title, (DOCUMENT, &text), || {
+        log_run(&ViewModel::new(run), plan)
     })
+}
+
+fn encoding_error(path: &Path, source: impl Into<Failure>) -> RecordingError {
+    RecordingError::Encode {
+        path: path.to_owned(),
+        source: source.into(),
+    }
 }
 
 /// The two stores of a file.
@@ -84,13 +94,10 @@ struct Stores {
 fn put(
     path: &Path,
     title: &str,
-    document: Option<(&str, &str)>,
+    document: (&str, &str),
     log: impl FnOnce() -> RecordingStreamResult<Stores>,
 ) -> Result<(), RecordingError> {
-    let bytes = bytes(title, document, log).map_err(|source| RecordingError::Encode {
-        path: path.to_owned(),
-        source,
-    })?;
+    let bytes = bytes(title, document, log).map_err(|source| encoding_error(path, source))?;
     let written = std::fs::create_dir_all(folder_of(path)).and_then(|()| write_whole(path, &bytes));
     written.map_err(|source| RecordingError::Write {
         path: path.to_owned(),
@@ -100,17 +107,15 @@ fn put(
 
 fn bytes(
     title: &str,
-    document: Option<(&str, &str)>,
+    (entity, document): (&str, &str),
     log: impl FnOnce() -> RecordingStreamResult<Stores>,
 ) -> Result<Vec<u8>, Failure> {
     let Stores { recording, layout } = log()?;
     let mut whole = Recorder::of_section(0);
     let name = RecordingInfo::update_fields().with_name(title);
     whole.log_static(EntityPath::properties(), &name)?;
-    if let Some((entity, document)) = document {
-        let document = TextDocument::new(document).with_media_type(MediaType::from(JSON));
-        whole.log_static(entity, &document)?;
-    }
+    let document = TextDocument::new(document).with_media_type(MediaType::from(JSON));
+    whole.log_static(entity, &document)?;
     whole.append(recording);
     encoding::encode(whole, layout)
 }
@@ -118,38 +123,38 @@ fn bytes(
 const JSON: &str = "application/json";
 
 /// A part of the views of a run.
-type Section = fn(&mut Recorder, &ViewModel, &Curves) -> RecordingStreamResult<()>;
+type Section = fn(&mut Recorder, &ViewModel, &Curves, &PlanDocument) -> RecordingStreamResult<()>;
 
 /// The sections, which are logged in parallel, the longest first.
 const SECTIONS: [Section; 6] = [
-    |rec, model, _| ships::log_ships(rec, model),
-    |rec, model, _| velocities::log_velocities(rec, model),
-    |rec, model, _| {
+    |rec, model, _, _| ships::log_ships(rec, model),
+    |rec, model, _, _| velocities::log_velocities(rec, model),
+    |rec, model, _, _| {
         land::log_land(rec, model)?;
         chart::log_chart(rec, model)?;
         space_time::log_volume(rec, model)
     },
-    |rec, model, curves| {
+    |rec, model, curves, _| {
         curves::log_curves(rec, model, curves)?;
         forces::log_forces(rec, model)
     },
-    |rec, model, _| {
+    |rec, model, _, document| {
         let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
         let budget = explored::POINT_BUDGET;
         let drawn = explored::log_explored(rec, model, model.run, folders, budget)?;
-        summary::log_summary(rec, model, drawn)
+        summary::log_summary(rec, model, document, drawn)
     },
-    |rec, model, _| {
+    |rec, model, _, _| {
         path_time::log_path_time(rec, model)?;
         rules::log_rules(rec, model)
     },
 ];
 
-fn log_run(model: &ViewModel) -> RecordingStreamResult<Stores> {
+fn log_run(model: &ViewModel, document: &PlanDocument) -> RecordingStreamResult<Stores> {
     let curves = Curves::of(model);
     let logged = |(index, log): (usize, &Section)| {
         let mut rec = Recorder::of_section(index + 1);
-        log(&mut rec, model, &curves)?;
+        log(&mut rec, model, &curves, document)?;
         Ok(rec)
     };
     let sections = SECTIONS.par_iter().enumerate().map(logged);

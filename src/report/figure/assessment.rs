@@ -4,7 +4,7 @@ use super::field::{self, VelocityWindow, dcpa_panel, risk_panel};
 use super::outline::{Stroke, curve, mark};
 use super::panel::AREA;
 use super::sections::{seconds, sections_beside};
-use super::{Figure, Panel, Window};
+use super::{Figure, Panel, PlotWindow};
 use crate::frame::Vector;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::study::assess::Situation;
@@ -45,7 +45,7 @@ pub fn assessment_figure(situation: &Situation, times: &[f64]) -> Figure {
     let window = sections.window();
     let limit = FASTEST * situation.max_speed.max(situation.speed).max(1.0);
     let velocities = VelocityWindow {
-        window: Window::around([Vector::repeat(-limit), Vector::repeat(limit)], 0.0),
+        window: PlotWindow::around([Vector::repeat(-limit), Vector::repeat(limit)], 0.0),
         own: Some(velocity),
     };
     let mut panels = vec![

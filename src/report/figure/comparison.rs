@@ -5,13 +5,13 @@ use super::outline::{SYMBOLS, Stroke, area, curve, sampled_boundary, symbols};
 use super::path_time::{ProfileLine, path_time_panel};
 use super::plan::{DESIRED, LAND, land_areas};
 use super::sections::PLAN;
-use super::{Figure, Panel, Window};
+use super::{Figure, Panel, PlotWindow};
 use crate::evaluation::{Safety, outcome_word};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::scenario::Scenario;
-use crate::study::compare::{Entry, EntryResult, LineStyle, Method};
+use crate::study::compare::{Entry, LineStyle, Method};
 
 /// Colour of the targets' sets.
 const SETS: &str = "#888888";
@@ -52,9 +52,9 @@ pub fn comparison_panels(scenario: &Scenario, entries: &[Entry], sweep: bool) ->
 pub fn diagram_panels(entries: &[Entry]) -> Vec<Panel> {
     entries
         .iter()
-        .filter_map(|entry| match &entry.result {
-            EntryResult::Planned(run) => Some((entry, run, run.planned.path_time.as_deref()?)),
-            EntryResult::Baseline(_) | EntryResult::Nothing(_) => None,
+        .filter_map(|entry| {
+            let run = entry.run.as_deref()?;
+            Some((entry, run, run.planned.path_time.as_deref()?))
         })
         .map(|(entry, run, diagram)| {
             let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
@@ -114,12 +114,11 @@ fn keys(panel: &mut Panel, entries: &[Entry]) {
 /// Name of a method, with its worst result if one of its motions is not safe.
 fn named(method: Method, entries: &[Entry]) -> String {
     let own = entries.iter().filter(|e| e.candidate.method == method);
-    let risk = |e: &Entry| e.risks().iter().map(|peak| peak.risk).fold(0.0, f64::max);
     let unsafe_ones = own.filter(|e| e.safety() > Some(Safety::Safe));
     match unsafe_ones.max_by_key(|e| e.safety()) {
         Some(entry) => format!(
             "{method}: {}",
-            outcome_word("relaxed", entry.safety(), risk(entry))
+            outcome_word("relaxed", entry.safety(), entry.largest_risk())
         ),
         None => method.to_string(),
     }
@@ -139,15 +138,15 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
     let waypoints = scenario.desired.waypoints();
     let end = scenario.desired.duration();
     // a motion that continues to the horizon would shrink all others
-    let reach = Window::around(waypoints.iter().copied(), 0.35);
+    let reach = PlotWindow::around(waypoints.iter().copied(), 0.35);
     let within = |p: &Vector| {
         p.x > reach.low.x && p.x < reach.high.x && p.y > reach.low.y && p.y < reach.high.y
     };
     let mut shown: Vec<Vector> = waypoints.clone();
     shown.extend(ways.iter().flat_map(|(_, way)| way).copied().filter(within));
     let mut sets: Vec<Vec<Vector>> = Vec::new();
-    let first = entries.iter().find(|e| e.trajectory().is_some());
-    for obstacle in first.map_or(&[][..], Entry::obstacles) {
+    let first = entries.iter().find_map(|e| e.motion.as_ref());
+    for obstacle in first.iter().flat_map(|motion| &motion.obstacles) {
         for k in 0..MOMENTS {
             let time = end * k as f64 / (MOMENTS - 1) as f64;
             let boundary = sampled_boundary(&obstacle.section(time.min(scenario.horizon)));
@@ -158,7 +157,7 @@ fn chart(scenario: &Scenario, entries: &[Entry]) -> Panel {
         }
     }
     let title = format!("{}: trajectories", scenario.title);
-    let mut panel = Panel::plan(title, PLAN, Window::around(shown, 0.06));
+    let mut panel = Panel::plan(title, PLAN, PlotWindow::around(shown, 0.06));
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
     for boundary in &sets {
@@ -221,7 +220,7 @@ fn distances(scenario: &Scenario, entries: &[Entry]) -> Panel {
         .flat_map(|(_, line)| line)
         .filter(|p| p.y <= top);
     let end = near.map(|p| p.x).fold(1.0, f64::max);
-    let window = Window {
+    let window = PlotWindow {
         low: Vector::new(0.0, 0.0),
         high: Vector::new(end, if top > 0.0 { top } else { 1.0 }),
     };
@@ -285,7 +284,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
         right = right.max(p.x);
         top = top.max(p.y);
     }
-    let window = Window {
+    let window = PlotWindow {
         low: Vector::zeros(),
         high: Vector::new(
             if right > 0.0 { right * 1.05 } else { 1.0 },
@@ -321,9 +320,7 @@ fn pareto(scenario: &Scenario, entries: &[Entry]) -> Panel {
 
 /// Cost of a verified plan that respects the accepted risk and arrives.
 fn cost_within_risk(entry: &Entry) -> Option<f64> {
-    let EntryResult::Planned(run) = &entry.result else {
-        return None;
-    };
+    let run = entry.run.as_deref()?;
     let enters = run.released.iter().any(Option::is_some);
     let is_left = run.planned.outcome.plan().is_some_and(|p| p.to_go > 0.0);
     if enters || is_left || run.max_risk > entry.candidate.max_risk {
@@ -340,7 +337,9 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::planner::{PlannerKind, SearchKind};
+    use crate::planner::path_time::PathTimePlanner;
+    use crate::planner::space_time::SpaceTimePlanner;
+    use crate::planner::{Planner, SearchKind};
     use crate::study::compare::Candidate;
     use crate::target::Representation;
 
@@ -349,12 +348,13 @@ mod tests {
     fn what_goes_beyond_the_risk_has_no_point() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let scenario = Scenario::read(&root.join("scenarios/colregs/head-on.toml")).expect("valid");
-        let entries: Vec<Entry> = [PlannerKind::SpaceTime, PlannerKind::PathTime]
+        let planners: [&dyn Planner; 2] = [&SpaceTimePlanner, &PathTimePlanner];
+        let entries: Vec<Entry> = planners
             .into_iter()
-            .flat_map(|kind| [0.1, 0.0].map(|max_risk| (kind, max_risk)))
-            .map(|(kind, max_risk)| {
+            .flat_map(|planner| [0.1, 0.0].map(|max_risk| (planner, max_risk)))
+            .map(|(planner, max_risk)| {
                 let method = Method::Planner {
-                    kind,
+                    planner,
                     search: SearchKind::AStar,
                     representation: Some(Representation::Polytope),
                 };

@@ -9,7 +9,7 @@ use super::outline::{
     Approaching, Stroke, area, curve, mark, outer_velocities_within, sampled_boundary, square,
 };
 use super::sections::PLAN;
-use super::{Panel, Window};
+use super::{Panel, PlotWindow};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -41,14 +41,14 @@ pub(super) const OWN: &str = "#d55e00";
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VelocityWindow {
     /// Window in m/s.
-    pub window: Window,
+    pub window: PlotWindow,
     /// Own velocity in m/s, if it is marked.
     pub own: Option<Vector>,
 }
 
 /// Draws the largest risk of any target at `time` in seconds, in steps of 1/20, with the boundaries
 /// of the sections. The colour scale always covers risk 0 to 1.
-pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: Window) -> Panel {
+pub fn risk_panel(title: &str, targets: &[Obstacle], time: f64, window: PlotWindow) -> Panel {
     let mut panel = Panel::plan(title.to_owned(), PLAN, window);
     panel.plots.push(scale(panel.window(), 1.0, "risk"));
     let bands = RISK_BANDS as f64;
@@ -131,8 +131,8 @@ fn bands(panel: &mut Panel, targets: &[Obstacle], approach: &Approaching) {
 }
 
 /// Colour bar from 0 to `top`, with the window filled in its first colour.
-fn scale(window: Window, top: f64, name: &str) -> Plot {
-    let Window { low, high } = window;
+fn scale(window: PlotWindow, top: f64, name: &str) -> Plot {
+    let PlotWindow { low, high } = window;
     let corners = ContourPlot::new()
         .with_grid(
             vec![vec![0.0, 0.0], vec![0.0, top]],

@@ -1,7 +1,7 @@
 //! Velocities and forces over time of a plan under forces.
 
 use super::outline::{Stroke, curve};
-use super::{Panel, Window};
+use super::{Panel, PlotWindow};
 use crate::frame::{Vector, deg_from_radians};
 use crate::trajectory::{Node, Steered};
 use crate::vessel::ForceVector;
@@ -135,11 +135,11 @@ fn over_time(quantities: Quantities) -> Panel {
         curves,
     } = quantities;
     let all = curves.iter().flat_map(|c| c.values.iter().copied());
-    let shown = Window::around(all, 0.0);
+    let shown = PlotWindow::around(all, 0.0);
     let size = shown.size();
     let wider = 0.5 * (least_span - size.y).max(0.0);
     let air = Vector::new(0.02 * size.x, wider + 0.08 * size.y.max(least_span));
-    let window = Window {
+    let window = PlotWindow {
         low: shown.low - air,
         high: shown.high + air,
     };

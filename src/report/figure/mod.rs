@@ -26,4 +26,4 @@ pub(super) use plan::plan_panels;
 pub use plan::{chart_panel, explored_panel, path_panel, plan_figure};
 pub use render::{Figure, FigureError, FigureFormat};
 pub use sections::{extent_panel, sections_panel, set_panel};
-pub use window::Window;
+pub use window::PlotWindow;

@@ -6,7 +6,7 @@ use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 
-use super::Window;
+use super::PlotWindow;
 use super::outline::Stroke;
 use crate::frame::Vector;
 
@@ -36,7 +36,7 @@ const NOTE_SIZE: u32 = 11;
 pub struct Panel {
     title: String,
     axes: [String; 2],
-    window: Window,
+    window: PlotWindow,
     equal: bool,
     pub(super) plots: Vec<Plot>,
     legend: Vec<LegendEntry>,
@@ -46,7 +46,7 @@ pub struct Panel {
 impl Panel {
     /// Creates a panel with equal axes. The window is widened to fill the panel. `axes` include
     /// units.
-    pub(super) fn plan(title: String, axes: [&str; 2], window: Window) -> Self {
+    pub(super) fn plan(title: String, axes: [&str; 2], window: PlotWindow) -> Self {
         Self {
             window: window.with_ratio(AREA[0] / AREA[1]),
             equal: true,
@@ -55,7 +55,7 @@ impl Panel {
     }
 
     /// Creates a panel whose axes have different units.
-    pub(super) fn free(title: String, axes: [&str; 2], window: Window) -> Self {
+    pub(super) fn free(title: String, axes: [&str; 2], window: PlotWindow) -> Self {
         Self {
             title,
             axes: axes.map(str::to_owned),
@@ -73,7 +73,7 @@ impl Panel {
     }
 
     /// Visible part of the plane.
-    pub fn window(&self) -> Window {
+    pub fn window(&self) -> PlotWindow {
         self.window
     }
 
@@ -135,7 +135,7 @@ impl Panel {
 
     /// Layout in a cell, with the pixels to the right of the area and below it.
     pub(super) fn layout(&self, right: f64, below: f64) -> Layout {
-        let Window { low, high } = self.window;
+        let PlotWindow { low, high } = self.window;
         let [left, _, top] = MARGIN;
         let mut layout = Layout::new((low.x, high.x), (low.y, high.y))
             .with_title(self.title.as_str())

@@ -2,7 +2,7 @@
 //! 6b.
 
 use super::outline::{Stroke, area, curve};
-use super::{Panel, Window};
+use super::{Panel, PlotWindow};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
 use crate::obstacle::PathTime;
@@ -66,7 +66,7 @@ pub fn path_time_panel(title: &str, names: &[&str], profiles: &[ProfileLine]) ->
     } else {
         horizon
     };
-    let window = Window {
+    let window = PlotWindow {
         low: Vector::zeros(),
         high: Vector::new(diagram.map_or(1.0, PathTimeDiagram::length), top),
     };

@@ -7,7 +7,7 @@ use super::forces::force_panels;
 use super::outline::{Stroke, area, curve, mark, sampled_boundary};
 use super::path_time::{ProfileLine, path_time_panel, target_colour};
 use super::sections::{PLAN, seconds, sections_beside};
-use super::{Figure, Panel, Window};
+use super::{Figure, Panel, PlotWindow};
 use crate::document;
 use crate::evaluation::Safety;
 use crate::frame::Vector;
@@ -79,7 +79,10 @@ pub fn plan_panels(run: &Run) -> Vec<Panel> {
     let plan = run.planned.outcome.plan();
     let mut panels = vec![chart_panel("Chart", run)];
     if let Some(motion) = plan.and_then(|plan| plan.trajectory.steered()) {
-        panels.extend(force_panels(motion, &scenario.control.force_limits));
+        panels.extend(force_panels(
+            motion,
+            &scenario.settings.optimal_control.force_limits,
+        ));
     }
     if let Some(diagram) = run.planned.path_time.as_deref() {
         let names: Vec<&str> = run.obstacles.iter().map(|o| o.name()).collect();
@@ -135,7 +138,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
         .collect();
     let paths = scenario.alternatives.iter().flatten();
     let mut shown: Vec<Vector> = waypoints.iter().chain(&way).chain(paths).copied().collect();
-    let reach = Window::around(shown.iter().copied(), 0.3);
+    let reach = PlotWindow::around(shown.iter().copied(), 0.3);
     // distant sets are clipped
     let within = |p: &Vector| reach.contains(*p);
     let mut sets: Vec<(usize, usize, Vec<Vector>)> = Vec::new();
@@ -148,7 +151,7 @@ fn chart(title: &str, run: &Run, others: Vec<Plot>) -> Panel {
             }
         }
     }
-    let mut panel = Panel::plan(title.to_owned(), PLAN, Window::around(shown, 0.06));
+    let mut panel = Panel::plan(title.to_owned(), PLAN, PlotWindow::around(shown, 0.06));
     let land = scenario.land.as_ref();
     panel.plots.extend(land_areas(land, panel.window()));
     for (index, k, boundary) in &sets {
@@ -220,7 +223,7 @@ pub fn explored_panel(title: &str, run: &Run) -> Panel {
 
 /// Filled land within a window, piece by piece. Each piece has an outline, to hide gaps between
 /// adjacent pieces.
-pub(super) fn land_areas(land: Option<&Land>, shown: Window) -> Vec<Plot> {
+pub(super) fn land_areas(land: Option<&Land>, shown: PlotWindow) -> Vec<Plot> {
     let window = geometry::Window {
         low: shown.low,
         high: shown.high,

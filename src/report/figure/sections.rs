@@ -1,7 +1,7 @@
 //! Figures of target sets: the two sets, and sections over time.
 
 use super::outline::{Stroke, area, curve, sampled_boundary};
-use super::{Panel, Window};
+use super::{Panel, PlotWindow};
 use crate::frame::Vector;
 use crate::geometry::{ConvexPolygon, ConvexSet};
 use crate::obstacle::Obstacle;
@@ -43,7 +43,7 @@ const MARGIN: f64 = 0.1;
 /// Draws one set, `O_0` or `V`, with its unit in `axes`.
 pub fn set_panel(title: &str, axes: [&str; 2], set: &ConvexSet) -> Panel {
     let boundary = sampled_boundary(set);
-    let window = Window::around(boundary.iter().copied(), 0.25);
+    let window = PlotWindow::around(boundary.iter().copied(), 0.25);
     let mut panel = Panel::plan(title.to_owned(), axes, window);
     panel.plots.extend(
         ConvexPolygon::hull(&boundary)
@@ -70,7 +70,7 @@ pub(super) fn sections_beside(
     let last = times.iter().copied().fold(0.0, f64::max);
     let covered: Vec<Vec<Vector>> = targets.iter().flat_map(|t| covered(t, last)).collect();
     let shown = covered.iter().flatten().chain(others).copied();
-    let mut panel = Panel::plan(title.to_owned(), PLAN, Window::around(shown, MARGIN));
+    let mut panel = Panel::plan(title.to_owned(), PLAN, PlotWindow::around(shown, MARGIN));
     for boundary in &covered {
         panel.plots.push(curve(boundary, true, COVERED));
     }
@@ -113,9 +113,9 @@ pub fn extent_panel(title: &str, target: &Obstacle, times: &[f64], end: f64) -> 
             .collect()
     };
     let [west, east] = [side(0), side(1)];
-    let shown = Window::around(west.iter().chain(&east).copied(), 0.0);
+    let shown = PlotWindow::around(west.iter().chain(&east).copied(), 0.0);
     let margin = Vector::new(MARGIN * shown.size().x, 0.0);
-    let window = Window {
+    let window = PlotWindow {
         low: shown.low - margin,
         high: shown.high + margin + Vector::new(0.0, 0.04 * end),
     };

@@ -4,14 +4,14 @@ use crate::frame::Vector;
 
 /// Rectangle in the units of the panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
+pub struct PlotWindow {
     /// Corner with the least coordinates.
     pub low: Vector,
     /// Corner with the greatest coordinates.
     pub high: Vector,
 }
 
-impl Window {
+impl PlotWindow {
     /// Bounding box of points, with a margin of `share` of its longer side. Without finite points,
     /// a window of size 1 around the origin.
     pub fn around(points: impl IntoIterator<Item = Vector>, share: f64) -> Self {

@@ -11,10 +11,12 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::comparison::{comparison_grid, remarks};
 use super::figure::{Figure, Panel, comparison_panels, diagram_panels, plan_panels};
-use super::plan::{TIME_COLUMN, TIME_LINE, headline, plan_lines, suite_grid};
+use super::plan::{TIME_COLUMN, suite_grid};
 use super::table::{Grid, Styled, Tone, verdict};
 use super::write::{WriteError, write_atomically};
-use crate::document::{PlanDocument, ScenarioComparisonDocument, SuiteRunDocument};
+use crate::document::{
+    PlanDocument, ScenarioComparisonDocument, SuiteRunDocument, TIME_LINE, headline, plan_lines,
+};
 use crate::pipeline::Run;
 use crate::scenario::Scenario;
 use crate::study::compare::Entry;
@@ -38,16 +40,16 @@ pub struct Subject {
     pub links: Vec<(String, String)>,
 }
 
-/// Report, built scenario by scenario.
+/// Report as HTML pages, built scenario by scenario.
 #[derive(Debug, Default)]
-pub struct Report {
+pub struct HtmlReport {
     /// Rows of the table over all plans; row i belongs to section i.
     runs: Vec<SuiteRunDocument>,
     sections: Vec<Markup>,
     figures: Vec<(String, String)>,
 }
 
-impl Report {
+impl HtmlReport {
     /// Creates an empty report.
     pub fn new() -> Self {
         Self::default()

@@ -32,14 +32,14 @@ fn subject(stem: &str) -> Subject {
     }
 }
 
-fn add(report: &mut Report, stem: &str, kind: &str) {
+fn add(report: &mut HtmlReport, stem: &str, kind: &str) {
     let run = pipeline::run(scenario(kind));
     report.add_run(&subject(stem), &PlanDocument::of(&run), &run);
 }
 
 /// Checks that texts are escaped, every figure on the page exists, and nothing is loaded from
 /// elsewhere.
-fn assert_sound(report: &Report, page: &str) {
+fn assert_sound(report: &HtmlReport, page: &str) {
     assert!(!page.contains("<script") && !page.contains("alert(\"x\")"));
     assert!(page.contains("&lt;script&gt;"));
     assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("//"));
@@ -63,7 +63,7 @@ fn assert_sound(report: &Report, page: &str) {
 #[test]
 fn a_report_of_plans_has_rows_sections_and_figures() {
     let build = || {
-        let mut report = Report::new();
+        let mut report = HtmlReport::new();
         add(&mut report, "a", "space-time");
         add(&mut report, "b", "path-time");
         report.add_failure(NASTY, "unreadable", NASTY);
@@ -92,7 +92,7 @@ fn a_report_of_plans_has_rows_sections_and_figures() {
 fn a_report_of_a_comparison_has_a_table_and_the_diagrams() {
     let scenario = scenario("space-time");
     let entries = crate::study::compare::compare(&scenario, &[0.0, 0.2]);
-    let mut report = Report::new();
+    let mut report = HtmlReport::new();
     let compared = ScenarioComparisonDocument::of("c".to_owned(), &scenario, &entries, &[]);
     report.add_comparison(&subject("c"), &compared, &scenario, &entries);
     let page = report.html("Compared", "");
@@ -108,7 +108,7 @@ fn a_report_of_a_comparison_has_a_table_and_the_diagrams() {
 fn a_report_is_written_whole_and_its_links_lead_from_its_folder() {
     let folder = tempfile::tempdir().expect("a folder");
     let inside = folder.path().join("deep/report");
-    let mut report = Report::new();
+    let mut report = HtmlReport::new();
     add(&mut report, "a", "space-time");
     report.write(&inside, "A", "b").expect("written");
     let mut names: Vec<String> = std::fs::read_dir(&inside)

@@ -1,7 +1,6 @@
 //! Selection of the methods that apply to a scenario.
 
 use super::Method;
-use crate::planner::{PlannerKind, SearchKind};
 use crate::scenario::Scenario;
 use crate::target::{Motion, Representation, Target};
 
@@ -34,30 +33,7 @@ pub fn methods(scenario: &Scenario) -> Methods {
     } else {
         &[None]
     };
-    let planner = |kind, search, representation| Method::Planner {
-        kind,
-        search,
-        representation,
-    };
-    let mut all = Vec::new();
-    for &representation in representations {
-        for search in [SearchKind::AStar, SearchKind::Dijkstra] {
-            all.push(planner(PlannerKind::SpaceTime, search, representation));
-        }
-    }
-    for &representation in representations {
-        all.push(planner(
-            PlannerKind::PathTime,
-            SearchKind::AStar,
-            representation,
-        ));
-    }
-    // the obstacles are ellipsoids for every representation
-    all.push(planner(
-        PlannerKind::OptimalControl,
-        SearchKind::AStar,
-        None,
-    ));
+    let mut all = Method::of_planners(representations);
     all.extend([Method::HoldCourse, Method::ConstantVelocity]);
     let mut found = Methods {
         methods: Vec::new(),

@@ -1,33 +1,49 @@
 //! Two baselines without a planner: constant course and speed, and one constant velocity outside
 //! every velocity obstacle.
 
-use crate::evaluation::Evaluation;
+use crate::evaluation::{Evaluation, Safety};
 use crate::frame::{Pose, direction};
-use crate::obstacle::{Obstacle, PeakRisk, SpaceTimeObstacle};
-use crate::pipeline::{self, TargetSets};
+use crate::obstacle::{Obstacle, PeakRisk, level_sets};
+use crate::pipeline::{self, Run, TargetSets};
 use crate::scenario::{Compliance, Scenario};
 use crate::study::assess::{Situation, least_alteration};
 use crate::tolerance;
 use crate::trajectory::{Segment, Trajectory};
 
-/// Constant velocity from t = 0, up to the last waypoint if it leads there, else to the horizon.
+/// Motion of a plan or of a baseline. A baseline is one segment from t = 0, up to the last waypoint
+/// if it leads there, else to the horizon.
 #[derive(Debug, Clone)]
-pub struct Baseline {
-    /// Motion with a single segment.
+pub struct ComparedMotion {
+    /// The motion.
     pub trajectory: Trajectory,
     /// Level sets of the accepted risk, in the order of the targets.
     pub obstacles: Vec<Obstacle>,
-    /// Evaluation against sets, hulls and land. Own limits are not checked, because the velocity
-    /// changes at once.
+    /// Evaluation. Own limits of a baseline are not checked, because its velocity changes at once.
     pub evaluation: Evaluation,
+    /// Whether the motion enters sets, hulls or land.
+    pub safety: Safety,
     /// Largest risk per target.
     pub risks: Vec<PeakRisk>,
     /// True if the motion ends at the last waypoint.
     pub arrived: bool,
 }
 
+impl ComparedMotion {
+    /// The plan of a run, if it has one.
+    pub(super) fn of(run: &Run) -> Option<Self> {
+        Some(Self {
+            trajectory: run.planned.outcome.plan()?.trajectory.clone(),
+            obstacles: run.obstacles.clone(),
+            evaluation: run.evaluation.clone()?,
+            safety: run.safety()?,
+            risks: run.risks.clone(),
+            arrived: run.arrives(),
+        })
+    }
+}
+
 /// Baseline with own course and speed, regardless of obstacles.
-pub fn hold_course(scenario: &Scenario) -> Baseline {
+pub fn hold_course(scenario: &Scenario) -> ComparedMotion {
     let own = &scenario.own_ship;
     baseline(scenario, &Sets::of(scenario), own.pose.heading, own.speed)
 }
@@ -41,7 +57,7 @@ pub fn hold_course(scenario: &Scenario) -> Baseline {
 /// course to the last waypoint, to cover missions off the course. Returns `None` when no such
 /// velocity exists, for example inside a set. A velocity that runs aground is selected only if all
 /// do.
-pub fn constant_velocity(scenario: &Scenario) -> Option<Baseline> {
+pub fn constant_velocity(scenario: &Scenario) -> Option<ComparedMotion> {
     let own = &scenario.own_ship;
     let sets = Sets::of(scenario);
     let away = scenario.desired.end() - own.pose.position;
@@ -75,8 +91,8 @@ pub fn constant_velocity(scenario: &Scenario) -> Option<Baseline> {
         .filter(|b| b.evaluation.space_time_error.is_finite())
         // first of equal candidates: own course before others, starboard before port
         .min_by(|a, b| {
-            let cost = |b: &Baseline| b.evaluation.space_time_error;
-            let bad = |b: &Baseline| !b.evaluation.verified();
+            let cost = |b: &ComparedMotion| b.evaluation.space_time_error;
+            let bad = |b: &ComparedMotion| !b.evaluation.verified();
             bad(a).cmp(&bad(b)).then(cost(a).total_cmp(&cost(b)))
         })
 }
@@ -94,18 +110,18 @@ impl Sets {
             Compliance::None => sets.hard,
         };
         let whole: Vec<Obstacle> = pipeline::sets(scenario).into_iter().map(used).collect();
-        let risk = scenario.max_risk;
-        let level = if risk > 0.0 {
-            whole.iter().map(|set| set.at_risk(risk)).collect()
-        } else {
-            whole.clone()
-        };
+        let level = level_sets(&whole, scenario.max_risk);
         Self { level, whole }
     }
 }
 
 /// Evaluates a velocity held from t = 0.
-pub(super) fn baseline(scenario: &Scenario, sets: &Sets, heading: f64, speed: f64) -> Baseline {
+pub(super) fn baseline(
+    scenario: &Scenario,
+    sets: &Sets,
+    heading: f64,
+    speed: f64,
+) -> ComparedMotion {
     let own = &scenario.own_ship;
     let along = direction(heading).dot(&(scenario.desired.end() - own.pose.position));
     let least = (scenario.desired.end() - own.pose.position - direction(heading) * along).norm();
@@ -123,9 +139,10 @@ pub(super) fn baseline(scenario: &Scenario, sets: &Sets, heading: f64, speed: f6
     super::count_alike(&mut evaluation, scenario, &trajectory);
     let risk = |set| pipeline::peak_risk(set, &trajectory, scenario.max_risk);
     let risks = sets.whole.iter().map(risk).collect();
-    Baseline {
+    ComparedMotion {
         trajectory,
         obstacles: sets.level.clone(),
+        safety: evaluation.safety,
         evaluation,
         risks,
         arrived,

@@ -1,7 +1,6 @@
 //! Line style of each method in figures and recordings.
 
 use super::Method;
-use crate::planner::{PlannerKind, SearchKind};
 use crate::target::Representation;
 
 /// Line style of a method. Any two styles differ in lightness, width or dashes, so they are
@@ -25,37 +24,35 @@ const STRONG: f64 = 2.6;
 /// Width in pixels of a pale line that is often covered by another one.
 const WIDE: f64 = 6.0;
 
+/// Colours and widths of the planners' methods, in the order of [`Method::of_planners`]; a longer
+/// list of methods starts again.
+const STYLES: [(&str, f64); 8] = [
+    ("#0072b2", STRONG),
+    ("#56b4e9", WIDE),
+    ("#12ad81", THIN),
+    ("#a6dba0", WIDE),
+    ("#d55e00", THIN),
+    ("#e69f00", THIN),
+    ("#e29ac3", STRONG),
+    ("#b9b227", STRONG),
+];
+
 impl LineStyle {
     /// Returns the style of a method, independent of the other methods shown.
     pub fn of(method: Method) -> Self {
-        let (colour, width, dashed) = match method {
-            Method::Planner {
-                kind,
-                search,
-                representation,
-            } => {
-                let ellipsoid = representation == Some(Representation::Ellipsoid);
-                match (kind, search) {
-                    (PlannerKind::SpaceTime, SearchKind::AStar) if ellipsoid => {
-                        ("#12ad81", THIN, false)
-                    }
-                    (PlannerKind::SpaceTime, SearchKind::AStar) => ("#0072b2", STRONG, false),
-                    (PlannerKind::SpaceTime, SearchKind::Dijkstra) if ellipsoid => {
-                        ("#a6dba0", WIDE, false)
-                    }
-                    (PlannerKind::SpaceTime, SearchKind::Dijkstra) => ("#56b4e9", WIDE, false),
-                    (PlannerKind::PathTime, _) if ellipsoid => ("#e69f00", THIN, false),
-                    (PlannerKind::PathTime, _) => ("#d55e00", THIN, false),
-                    (PlannerKind::OptimalControl, _) => ("#e29ac3", STRONG, false),
-                }
+        let (colour, width) = match method {
+            Method::Planner { .. } => {
+                let all = Method::of_planners(&[None, Some(Representation::Ellipsoid)]);
+                let same = |known: &Method| known.to_string() == method.to_string();
+                STYLES[all.iter().position(same).unwrap_or_default() % STYLES.len()]
             }
-            Method::HoldCourse => ("#cc5de8", THIN, true),
-            Method::ConstantVelocity => ("#8c6d31", THIN, true),
+            Method::HoldCourse => ("#cc5de8", THIN),
+            Method::ConstantVelocity => ("#8c6d31", THIN),
         };
         Self {
             colour,
             width,
-            dashed,
+            dashed: !matches!(method, Method::Planner { .. }),
         }
     }
 

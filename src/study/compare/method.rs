@@ -1,6 +1,6 @@
 //! Methods of a comparison and their names.
 
-use crate::planner::{Objective, PlannerKind, SearchKind};
+use crate::planner::{Minimises, Objective, PLANNERS, Planner, SearchKind};
 use crate::scenario::{Compliance, Scenario};
 use crate::target::Representation;
 
@@ -9,9 +9,9 @@ use crate::target::Representation;
 pub enum Method {
     /// Planner.
     Planner {
-        /// Kind of planner.
-        kind: PlannerKind,
-        /// Graph search; without effect on optimal control.
+        /// The planner.
+        planner: &'static dyn Planner,
+        /// Graph search; without effect on a planner without a graph.
         search: SearchKind,
         /// Representation of the sets; `None` if the targets determine it.
         representation: Option<Representation>,
@@ -23,19 +23,38 @@ pub enum Method {
 }
 
 impl Method {
-    /// Returns the scenario with the settings of this method. Only the space-time planner filters
-    /// by rules; the others use ship domains alone. Only the path-time planner uses the objective
-    /// and the alternative paths.
+    /// Every planner with each of its searches and each of these representations.
+    pub(super) fn of_planners(representations: &[Option<Representation>]) -> Vec<Self> {
+        let mut all = Vec::new();
+        for planner in PLANNERS {
+            let facts = planner.facts();
+            let representations = match facts.uses_ellipses {
+                true => &[None],
+                false => representations,
+            };
+            for &representation in representations {
+                all.extend(facts.searches.iter().map(|&search| Self::Planner {
+                    planner,
+                    search,
+                    representation,
+                }));
+            }
+        }
+        all
+    }
+
+    /// Returns the scenario with the settings of this method, without those that the planner cannot
+    /// honour: ship domains replace the rules, and the space-time error replaces the objective.
     pub fn asked(self, scenario: &Scenario) -> Scenario {
         let mut asked = scenario.clone();
         if let Self::Planner {
-            kind,
+            planner,
             search,
             representation,
         } = self
         {
-            asked.planner = kind;
-            if kind != PlannerKind::SpaceTime && asked.compliance == Compliance::Rules {
+            asked.planner = planner;
+            if !planner.facts().keeps_rules && asked.compliance == Compliance::Rules {
                 asked.compliance = Compliance::Shape;
             }
             asked.search = search;
@@ -44,8 +63,10 @@ impl Method {
                     target.representation = representation;
                 }
             }
-            if kind != PlannerKind::PathTime {
+            if planner.facts().minimises != Minimises::Objective {
                 asked.objective = Objective::SpaceTimeError;
+            }
+            if !planner.facts().follows_paths {
                 asked.alternatives.clear();
             }
         }
@@ -57,16 +78,15 @@ impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Planner {
-                kind,
+                planner,
                 search,
                 representation,
             } => {
-                f.write_str(match (kind, search) {
-                    (PlannerKind::SpaceTime, SearchKind::AStar) => "space-time, A*",
-                    (PlannerKind::SpaceTime, SearchKind::Dijkstra) => "space-time, Dijkstra",
-                    (PlannerKind::PathTime, _) => "path-time",
-                    (PlannerKind::OptimalControl, _) => "optimal control",
-                })?;
+                let facts = planner.facts();
+                f.write_str(facts.label)?;
+                if facts.searches.len() > 1 {
+                    write!(f, ", {}", search.label())?;
+                }
                 match representation {
                     Some(Representation::Ellipsoid) => f.write_str(", ellipsoids"),
                     Some(Representation::Polytope) | None => Ok(()),

@@ -10,16 +10,14 @@ mod line_style;
 mod method;
 
 pub use applies::{Inapplicable, Methods, methods};
-pub use baseline::{Baseline, constant_velocity, hold_course};
+pub use baseline::{ComparedMotion, constant_velocity, hold_course};
 pub(crate) use line_style::LineStyle;
 pub use method::Method;
 
 use crate::colregs::compliance::{ComplianceReport, EncounterSamples};
 use crate::evaluation::{Evaluation, Safety, counted_error};
 use crate::frame::Vector;
-use crate::obstacle::{Obstacle, PeakRisk};
 use crate::pipeline::{self, Run};
-use crate::planner::PlannerKind;
 use crate::scenario::Scenario;
 use crate::trajectory::Trajectory;
 
@@ -37,19 +35,10 @@ pub struct Candidate {
 pub struct Entry {
     /// Method and accepted risk.
     pub candidate: Candidate,
-    /// Result.
-    pub result: EntryResult,
-}
-
-/// Motion of a candidate, if it has one.
-#[derive(Debug, Clone)]
-pub enum EntryResult {
-    /// Run of a planner, with or without a plan.
-    Planned(Box<Run>),
-    /// Baseline with a motion.
-    Baseline(Box<Baseline>),
-    /// Baseline without a motion; the reason.
-    Nothing(&'static str),
+    /// Run of a planner, with or without a plan; `None` for a baseline.
+    pub run: Option<Box<Run>>,
+    /// Motion; `None` without one.
+    pub motion: Option<ComparedMotion>,
 }
 
 /// Lists every candidate of a scenario, by method, then by risk. Holding course accepts no risk, so
@@ -82,28 +71,24 @@ impl Candidate {
     /// Plans and evaluates the candidate. The space-time error of all methods is counted alike.
     /// Results are deterministic except for the planning time. Candidates may run in parallel.
     pub fn run(self, scenario: &Scenario) -> Entry {
-        let result = match self.method {
+        let asked = self.scenario(scenario);
+        let (run, motion) = match self.method {
             Method::Planner { .. } => {
-                let mut run = pipeline::run(self.scenario(scenario));
+                let mut run = pipeline::run(asked);
                 if let (Some(plan), Some(found)) = (run.planned.outcome.plan(), &mut run.evaluation)
                 {
                     count_alike(found, scenario, &plan.trajectory);
                 }
-                EntryResult::Planned(Box::new(run))
+                let motion = ComparedMotion::of(&run);
+                (Some(Box::new(run)), motion)
             }
-            Method::HoldCourse => {
-                EntryResult::Baseline(Box::new(hold_course(&self.scenario(scenario))))
-            }
-            Method::ConstantVelocity => match constant_velocity(&self.scenario(scenario)) {
-                Some(found) => EntryResult::Baseline(Box::new(found)),
-                None => {
-                    EntryResult::Nothing("no constant velocity is out of every velocity obstacle")
-                }
-            },
+            Method::HoldCourse => (None, Some(hold_course(&asked))),
+            Method::ConstantVelocity => (None, constant_velocity(&asked)),
         };
         Entry {
             candidate: self,
-            result,
+            run,
+            motion,
         }
     }
 
@@ -118,49 +103,20 @@ impl Candidate {
 }
 
 impl Entry {
-    /// Motion; `None` without one.
+    /// Trajectory; `None` without a motion.
     pub fn trajectory(&self) -> Option<&Trajectory> {
-        match &self.result {
-            EntryResult::Planned(run) => run.planned.outcome.plan().map(|plan| &plan.trajectory),
-            EntryResult::Baseline(baseline) => Some(&baseline.trajectory),
-            EntryResult::Nothing(_) => None,
-        }
-    }
-
-    /// Evaluation; `None` without a motion.
-    pub fn evaluation(&self) -> Option<&Evaluation> {
-        match &self.result {
-            EntryResult::Planned(run) => run.evaluation.as_ref(),
-            EntryResult::Baseline(baseline) => Some(&baseline.evaluation),
-            EntryResult::Nothing(_) => None,
-        }
+        self.motion.as_ref().map(|motion| &motion.trajectory)
     }
 
     /// Reports whether the motion enters sets, hulls or land; `None` without a motion.
     pub fn safety(&self) -> Option<Safety> {
-        match &self.result {
-            EntryResult::Planned(run) => run.safety(),
-            EntryResult::Baseline(baseline) => Some(baseline.evaluation.safety),
-            EntryResult::Nothing(_) => None,
-        }
+        self.motion.as_ref().map(|motion| motion.safety)
     }
 
-    /// Obstacles; empty without a motion.
-    pub fn obstacles(&self) -> &[Obstacle] {
-        match &self.result {
-            EntryResult::Planned(run) => &run.obstacles,
-            EntryResult::Baseline(baseline) => &baseline.obstacles,
-            EntryResult::Nothing(_) => &[],
-        }
-    }
-
-    /// Largest risk along the motion per target; empty without a motion.
-    pub fn risks(&self) -> &[PeakRisk] {
-        match &self.result {
-            EntryResult::Planned(run) => &run.risks,
-            EntryResult::Baseline(baseline) => &baseline.risks,
-            EntryResult::Nothing(_) => &[],
-        }
+    /// Largest risk along the motion over all targets; 0 without a motion.
+    pub fn largest_risk(&self) -> f64 {
+        let risks = self.motion.iter().flat_map(|motion| &motion.risks);
+        risks.map(|peak| peak.risk).fold(0.0, f64::max)
     }
 
     /// Rule violations and compliance monitors toward each target that is a ship; empty without a
@@ -177,19 +133,6 @@ impl Entry {
         samples
             .map(|samples| ComplianceReport::judge(&samples, thresholds))
             .collect()
-    }
-
-    /// True when the motion ends at the last waypoint.
-    pub fn arrived(&self) -> bool {
-        match &self.result {
-            EntryResult::Planned(run) => {
-                let plan = run.planned.outcome.plan();
-                plan.is_some_and(|plan| plan.to_go == 0.0)
-                    && run.scenario.planner != PlannerKind::OptimalControl
-            }
-            EntryResult::Baseline(baseline) => baseline.arrived,
-            EntryResult::Nothing(_) => false,
-        }
     }
 
     /// Position at a time in metres; after the end, the last position.

@@ -6,7 +6,8 @@ use super::*;
 use crate::evaluation::counted_error;
 use crate::frame::{Side, wrap};
 use crate::obstacle::SpaceTimeObstacle;
-use crate::planner::SearchKind;
+use crate::planner::optimal_control::OptimalControlPlanner;
+use crate::planner::{DEFAULT_PLANNER, PLANNERS, Planner, SearchKind};
 use crate::target::Representation;
 
 fn scenario(name: &str) -> Scenario {
@@ -134,24 +135,20 @@ fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
     for name in ["head-on", "give-way", "overtaking", "stand-on"] {
         let scenario = scenario(&format!("colregs/{name}"));
         let methods = methods(&scenario).methods;
-        let kinds = [
-            PlannerKind::SpaceTime,
-            PlannerKind::PathTime,
-            PlannerKind::OptimalControl,
-        ];
-        let first = |kind| {
-            let is = |m: &&Method| matches!(m, Method::Planner { kind: k, .. } if *k == kind);
+        let first = |wanted: &'static dyn Planner| {
+            let is =
+                |m: &&Method| matches!(m, Method::Planner { planner, .. } if *planner == wanted);
             *methods.iter().find(is).expect("applies")
         };
         let baselines = [Method::HoldCourse, Method::ConstantVelocity];
-        for method in kinds.map(first).into_iter().chain(baselines) {
+        for method in PLANNERS.map(first).into_iter().chain(baselines) {
             let candidate = Candidate {
                 method,
                 max_risk: 0.0,
             };
             let entry = candidate.run(&scenario);
-            let found = entry.evaluation().expect("a motion");
-            let trajectory = entry.trajectory().expect("a motion");
+            let motion = entry.motion.expect("a motion");
+            let (found, trajectory) = (&motion.evaluation, &motion.trajectory);
             let (desired, q) = (&scenario.desired, scenario.time_weight);
             let (error, counted) = counted_error(trajectory, desired, q, 30.0);
             assert_eq!(
@@ -165,7 +162,7 @@ fn every_method_is_ranked_by_an_error_that_is_counted_alike() {
                 counted.arrived || late <= 0.0,
                 "{name} {method}: {counted:?}"
             );
-            if method == first(PlannerKind::OptimalControl) {
+            if method == first(&OptimalControlPlanner) {
                 assert!(found.verified(), "{name}: {:?}", found.violations);
             }
         }
@@ -179,7 +176,7 @@ fn a_contender_is_what_a_run_of_its_own_is() {
     let entries = compare(&scenario, &risks);
     assert_eq!(entries.len(), 8 * 2 + 1);
     let method = Method::Planner {
-        kind: PlannerKind::SpaceTime,
+        planner: DEFAULT_PLANNER,
         search: SearchKind::Dijkstra,
         representation: Some(Representation::Ellipsoid),
     };
@@ -202,10 +199,13 @@ fn a_contender_is_what_a_run_of_its_own_is() {
         entry.trajectory(),
         alone.planned.outcome.plan().map(|p| &p.trajectory)
     );
-    assert!(entry.arrived() && entry.evaluation().is_some_and(|e| e.verified()));
+    assert!((entry.motion.as_ref()).is_some_and(|m| m.arrived && m.evaluation.verified()));
     // a higher accepted risk never increases the cost
     for pair in entries.chunks(2).take(6) {
-        let cost = |e: &Entry| e.evaluation().map_or(f64::INFINITY, |e| e.space_time_error);
+        let cost = |e: &Entry| {
+            let motion = e.motion.as_ref();
+            motion.map_or(f64::INFINITY, |m| m.evaluation.space_time_error)
+        };
         assert!(
             cost(&pair[1]) <= cost(&pair[0]) * 1.001,
             "{}",

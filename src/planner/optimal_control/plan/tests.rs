@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::super::defect::largest_defect;
 use super::*;
-use crate::obstacle::LandObstacle;
+use crate::obstacle::{LandObstacle, Obstacle};
 use crate::pipeline;
 use crate::scenario::Scenario;
 
@@ -20,7 +20,12 @@ fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
         ..pipeline::problem(&scenario, &obstacles, LandObstacle::none())
     };
     let exact = CyberShip2::EXACT;
-    let planner = Planner::new(&problem, &scenario.control, CyberShip2::SMOOTH, exact);
+    let planner = Planning::new(
+        &problem,
+        &scenario.settings.optimal_control,
+        CyberShip2::SMOOTH,
+        exact,
+    );
     let task = planner.task(planner.intervals);
     let attempts: Vec<Attempt> = family(&task)
         .into_iter()
@@ -31,7 +36,7 @@ fn after_the_deadline_a_costlier_plan_on_a_fine_grid_is_returned() {
     let ordered = cheapest_first(&attempts);
     assert!(!is_fine(ordered[0]));
     let fine = ordered.iter().find(|a| is_fine(a)).expect("one of many");
-    let mut report = planner.plan().report;
+    let mut report = *planner.plan().control.expect("forces");
     let Outcome::Solved(plan) = planner.cheapest_on_fine_grid(&attempts, &mut report) else {
         panic!("no plan");
     };

@@ -17,10 +17,10 @@ use crate::planner::space_time::piece::pieces as parts_of;
 use crate::planner::space_time::proxy::{Proxy, within_reach};
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::settings::{EVASIVE_HOLDS_S, EXIT_HOLDS_S};
-use crate::planner::{Plan, Problem};
+use crate::planner::{NominalTarget, Plan, Problem};
 use crate::tolerance::TOUCH_M;
 use crate::trajectory::{DesiredTrajectory, Segment};
-use crate::vessel::{Hull, OwnShip};
+use crate::vessel::OwnShip;
 
 /// Radians between two candidate turns, up to a half circle. Coarse turns are tried first, each
 /// turn once.
@@ -44,17 +44,6 @@ const MAX_EXITS: usize = 4;
 /// Motions that are compared even after the deadline.
 const MIN_COMPARED: usize = 12;
 
-/// Target on its nominal track, without uncertainty.
-#[derive(Debug, Clone)]
-pub(crate) struct NominalTarget {
-    /// Hull of the target; for a target without one, its set.
-    pub hull: Obstacle,
-    /// Hard set of the target.
-    pub set: Obstacle,
-    /// Own hull; of zero size where the set already contains it.
-    pub own: Hull,
-}
-
 /// Motion from own ship's start to the last waypoint within the horizon that leaves the sets it
 /// starts in.
 ///
@@ -65,7 +54,7 @@ pub(crate) struct NominalTarget {
 ///
 /// Cost: some milliseconds and up to twenty plans. A few motions are compared even after the
 /// deadline.
-pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget) -> Option<Plan> {
+pub(crate) fn escape(problem: &Problem, nominal: &[NominalTarget]) -> Option<Plan> {
     let clock = Clock::new(problem.deadline);
     if crate::planner::space_time::has_arrived(problem) {
         return crate::planner::space_time::arrived_plan(problem);
@@ -74,9 +63,9 @@ pub(crate) fn escape(problem: &Problem, nominal: impl Fn(usize) -> NominalTarget
     let proxies = within_reach(problem, &pieces);
     let mut near: Vec<usize> = proxies.iter().map(|h| h.obstacle).collect();
     near.dedup();
-    let targets: Vec<NominalTarget> = near.into_iter().map(nominal).collect();
-    let (hulls, own): (Vec<_>, Vec<_>) = targets.iter().map(|t| (t.hull.clone(), t.own)).unzip();
-    let sets: Vec<Obstacle> = targets.into_iter().map(|t| t.set).collect();
+    let targets = near.iter().map(|index| &nominal[*index]);
+    let (hulls, own): (Vec<_>, Vec<_>) = targets.clone().map(|t| (t.hull.clone(), t.own)).unzip();
+    let sets: Vec<Obstacle> = targets.map(|t| t.set.clone()).collect();
     let hulls = parts_of(&hulls, problem.horizon);
     let nominal_hulls = NominalHulls::new(&hulls, &own);
     let nominal = Problem {
@@ -447,6 +436,7 @@ fn append(
 mod tests {
     use super::*;
     use crate::frame::Vector;
+    use crate::vessel::Hull;
     use std::cell::Cell;
 
     fn own_ship(speeds: Vec<f64>) -> OwnShip {

@@ -1,0 +1,316 @@
+//! The plan document in named lines: the one wording of a plan for a terminal, a page and a
+//! recording.
+
+use super::{
+    ControlDocument, CostDocument, EncounterDocument, EscapeDocument, PlanDocument,
+    RelaxationDocument,
+};
+use crate::evaluation::facts;
+use crate::text::{printable, signed, square_metres, tenths};
+
+/// Maximum number of passing sides that are listed; the rest is counted.
+const LISTED: usize = 3;
+
+/// Name of the line with the planning time.
+pub(crate) const TIME_LINE: &str = "time";
+
+/// Title, outcome, and whether the plan is verified and safe.
+pub(crate) fn headline(plan: &PlanDocument) -> String {
+    let facts = match plan.trajectory {
+        Some(_) => format!(" ({})", facts(plan.verified, plan.safe)),
+        None => String::new(),
+    };
+    printable(&format!("{}: {}{facts}", plan.scenario, plan.verdict))
+}
+
+/// Named lines of a plan. A line without a name continues the previous one.
+pub(crate) fn plan_lines(plan: &PlanDocument) -> Vec<(&'static str, String)> {
+    let mut lines: Vec<(&'static str, String)> = Vec::new();
+    let mut add = |name: &'static str, value: String| lines.push((name, printable(&value)));
+    add("planner", format!("{}, {}", plan.planner, plan.search));
+    if let Some(reason) = &plan.reason {
+        add("reason", reason.clone());
+    }
+    for relaxation in &plan.relaxations {
+        let (name, text) = relaxed(plan, relaxation);
+        add(name, text);
+    }
+    if let Some(escape) = &plan.escape {
+        add("stands on", stand_on(escape));
+    }
+    encounter_lines(plan, &mut add);
+    if let Some(cost) = &plan.cost {
+        cost_lines(plan, cost, &mut add);
+    }
+    for violation in &plan.violations {
+        let time = violation.t_s.unwrap_or(f64::NAN);
+        add("violation", format!("{} (at {time:.1} s)", violation.what));
+    }
+    if let Some(control) = &plan.optimal_control {
+        control_lines(plan, control, &mut add);
+    } else {
+        let stats = &plan.search_stats;
+        let (expanded, generated) = (stats.expanded, stats.generated);
+        let checked = stats.edges_checked;
+        add(
+            "search",
+            format!("{expanded} expanded, {generated} generated, {checked} edges checked"),
+        );
+    }
+    add(TIME_LINE, format!("{:.2} ms", 1e3 * plan.timing.plan_s));
+    lines
+}
+
+/// Relaxation as a sentence, and the name of its line.
+fn relaxed(plan: &PlanDocument, relaxation: &RelaxationDocument) -> (&'static str, String) {
+    let RelaxationDocument { target, amount, .. } = relaxation;
+    let text = match relaxation.kind.as_str() {
+        "domain" => format!("the domain of '{target}', which is reduced by {amount:.1} m"),
+        "risk" => {
+            let until = relaxation.until_s.map_or(String::new(), |time| {
+                format!("; the plan is clear of it only from {time:.1} s on")
+            });
+            let text = format!("the set of '{target}', at a risk of up to {amount:.3}{until}");
+            return ("enters", text);
+        }
+        "arrival" => {
+            format!("the arrival: {amount:.0} m are left at the horizon, '{target}' is in the way")
+        }
+        _ => {
+            let role = plan.encounters.iter().find(|e| e.target == *target);
+            let role = role.map_or("unknown", |e| &e.role);
+            format!("the rules: no plan complies with them as {role} to '{target}'")
+        }
+    };
+    ("relaxes", text)
+}
+
+/// Time until which own ship holds course and speed, and the subsequent manoeuvre.
+fn stand_on(escape: &EscapeDocument) -> String {
+    let EscapeDocument {
+        latest_s,
+        turn_deg,
+        speed_mps,
+        ..
+    } = escape;
+    let turn = match *turn_deg {
+        0.0 => String::new(),
+        turn => {
+            let side = if turn > 0.0 { "starboard" } else { "port" };
+            format!("a turn of {:.0}° to {side} at ", turn.abs())
+        }
+    };
+    format!(
+        "course and speed are held until {latest_s:.1} s, the latest time at which an escape is known to be clear: {turn}{speed_mps:.2} m/s"
+    )
+}
+
+fn encounter_lines(plan: &PlanDocument, add: &mut impl FnMut(&'static str, String)) {
+    let met = met(&plan.encounters);
+    if met.is_empty() {
+        add("encounter", "none".to_owned());
+    }
+    for encounter in met {
+        let undisturbed = match encounter.undisturbed_dcpa_m {
+            Some(distance) if distance > 0.0 => format!("{distance:.1} m"),
+            _ => "collision".to_owned(),
+        };
+        let (role, target) = (&encounter.role, &encounter.target);
+        let time = encounter.undisturbed_tcpa_s.unwrap_or(f64::NAN);
+        add(
+            "encounter",
+            format!("{role} with '{target}': undisturbed {undisturbed} at {time:.0} s"),
+        );
+        if let (Some(dcpa), Some(tcpa)) = (encounter.dcpa_m, encounter.tcpa_s) {
+            let passing = passing(encounter);
+            add(
+                "",
+                format!("planned {dcpa:.1} m at {tcpa:.0} s, passing {passing}"),
+            );
+        }
+    }
+    for encounter in &plan.encounters {
+        let Some(conduct) = encounter.conduct.as_ref().filter(|c| !c.roles.is_empty()) else {
+            continue;
+        };
+        let roles = conduct.roles.iter();
+        let roles = roles.map(|r| format!("{} {:.0} to {:.0} s", r.role, r.from_s, r.until_s));
+        let roles = roles.collect::<Vec<_>>().join(", ");
+        add("rules", format!("'{}': {roles}", encounter.target));
+        let scores = conduct.scores.iter();
+        let scores = scores.map(|(name, score)| format!("{} {score:.2}", name.replace('_', " ")));
+        let scores = scores.collect::<Vec<_>>().join(", ");
+        add("", format!("scores: {scores}"));
+        for breach in &conduct.breaches {
+            let (rule, time, what) = (&breach.rule, breach.t_s, &breach.what);
+            add("", format!("violates {rule} at {time:.0} s: {what}"));
+        }
+        for monitor in conduct.monitors.iter().filter(|m| m.verdict == "violated") {
+            // avoids a negative zero
+            let short = 0.0 - monitor.robustness.unwrap_or(f64::NAN);
+            let short = match monitor.unit.as_str() {
+                "m" => format!("{short:.1} m"),
+                "deg" => format!("{short:.0}°"),
+                unit => format!("{short:.0} {unit}"),
+            };
+            let time = monitor.t_s.unwrap_or(f64::NAN);
+            let name = &monitor.monitor;
+            add(
+                "",
+                format!("monitor {name} is violated at {time:.0} s by {short}"),
+            );
+        }
+    }
+}
+
+fn cost_lines(
+    plan: &PlanDocument,
+    cost: &CostDocument,
+    add: &mut impl FnMut(&'static str, String),
+) {
+    add("turn", turn(cost));
+    let error = square_metres(cost.space_time_error_m2);
+    let by_length = square_metres(cost.space_time_error_arc_length_m2);
+    add("J", format!("{error} m² ({by_length} m² by arc length)"));
+    let way = format!("{:.1} s and {:.0} m", cost.duration_s, cost.length_m);
+    match cost.delay_s {
+        Some(delay) => add(
+            "delay",
+            format!("{} s (arrives after {way})", signed(delay)),
+        ),
+        None if plan.optimal_control.is_some() => {
+            add("horizon", format!("{way}; no arrival is asked for"));
+            let until = cost.space_time_error_until_s;
+            add("", format!("J is counted until {until:.1} s"));
+        }
+        None => add("delay", format!("does not arrive ({way} at the horizon)")),
+    }
+    if let Some(clearance) = cost.min_clearance_m {
+        let end = if cost.delay_s.is_some() {
+            "arrival"
+        } else {
+            "the end"
+        };
+        let after = cost.hold_clearance_m.map_or("–".to_owned(), tenths);
+        let (clearance, hold) = (tenths(clearance), cost.arrival_hold_s);
+        add(
+            "clearance",
+            format!("{clearance} m; after {end} {after} m within {hold} s"),
+        );
+    }
+    if let Some(distance) = cost.min_land_distance_m {
+        add("land", format!("{distance:.1} m off"));
+    }
+    if !plan.encounters.is_empty() {
+        add("risk", risk(plan, cost.max_risk));
+    }
+}
+
+/// Largest risk, with its targets and time.
+fn risk(plan: &PlanDocument, largest: f64) -> String {
+    let mut text = format!("{largest:.3} at most");
+    if plan.max_risk > 0.0 {
+        text += &format!(" ({} accepted)", plan.max_risk);
+    }
+    for encounter in &plan.encounters {
+        if let (Some(risk), Some(time)) = (encounter.max_risk, encounter.max_risk_t_s) {
+            let name = &encounter.target;
+            text += &format!(", {risk:.3} with '{name}' at {time:.0} s");
+        }
+    }
+    text
+}
+
+/// Lines on the solution of a plan under forces.
+fn control_lines(
+    plan: &PlanDocument,
+    control: &ControlDocument,
+    add: &mut impl FnMut(&'static str, String),
+) {
+    if !control.enclosed_targets.is_empty() {
+        let names = control.enclosed_targets.join("', '");
+        add(
+            "sets",
+            format!("of '{names}' by the smallest ellipse around each"),
+        );
+    }
+    let [first, last] = [control.start_intervals, control.intervals];
+    if let Some(cost) = &plan.cost {
+        add("stage cost", stage_cost(cost.objective));
+        let coarse = match first {
+            _ if first == last => String::new(),
+            _ => format!(", {first} were too coarse"),
+        };
+        let defect = control.defect.unwrap_or(f64::NAN);
+        add(
+            "grid",
+            format!(
+                "{last} intervals{coarse}; at their ends the ship is within {defect:.1e} of its units"
+            ),
+        );
+    }
+    if control.starts.is_empty() {
+        return;
+    }
+    let feasible = control.starts.iter().filter(|s| s.feasible).count();
+    let steps: usize = control.starts.iter().map(|s| s.iterations).sum();
+    let all = control.starts.len();
+    add(
+        "starts",
+        format!(
+            "on {first} intervals: {feasible} of {all} led to a plan, in {steps} steps of the solver"
+        ),
+    );
+    let mut names: Vec<&str> = plan.obstacles.iter().map(|o| o.name.as_str()).collect();
+    names.dedup();
+    let ways = control.homotopy_classes.len();
+    if ways > 0 && !names.is_empty() {
+        let more = if ways > LISTED { ", the cheapest" } else { "" };
+        let names = names.join("', '");
+        add(
+            "ways to pass",
+            format!("'{names}': {ways} on {first} intervals{more}"),
+        );
+        for class in control.homotopy_classes.iter().take(LISTED) {
+            let sides = class.sides.iter();
+            let sides: Vec<&str> = sides.map(|s| s.as_deref().unwrap_or("far")).collect();
+            let cost = stage_cost(class.objective);
+            add("", format!("{cost}: {}", sides.join(", ")));
+        }
+    }
+}
+
+/// Formats four decimals if they are significant.
+fn stage_cost(value: f64) -> String {
+    if value == 0.0 || (1e-2..1e6).contains(&value.abs()) {
+        format!("{value:.4}")
+    } else {
+        format!("{value:.4e}")
+    }
+}
+
+/// Targets toward which own ship has a role, in order of nominal closest approach.
+pub(crate) fn met(encounters: &[EncounterDocument]) -> Vec<&EncounterDocument> {
+    let mut met: Vec<_> = encounters.iter().filter(|e| e.role != "none").collect();
+    let time = |e: &EncounterDocument| e.undisturbed_tcpa_s.unwrap_or(f64::INFINITY);
+    met.sort_by(|a, b| time(a).total_cmp(&time(b)));
+    met
+}
+
+pub(crate) fn turn(cost: &CostDocument) -> String {
+    match &cost.first_turn {
+        Some(turn) => format!("{} {:.0}°", turn.side, turn.turn_deg),
+        None => "none".to_owned(),
+    }
+}
+
+/// Side of own ship on which the target lies at the closest approach. In a crossing, it also states
+/// whether own ship crosses ahead or astern.
+pub(crate) fn passing(encounter: &EncounterDocument) -> String {
+    match (&encounter.passing_side, encounter.crosses_astern) {
+        (None, _) => "–".to_owned(),
+        (Some(side), Some(true)) => format!("{side}, astern"),
+        (Some(side), Some(false)) => format!("{side}, ahead"),
+        (Some(side), None) => side.clone(),
+    }
+}
