@@ -187,8 +187,16 @@ pub const fn radians_from_deg(degrees: f64) -> f64 {
 }
 
 /// Degrees from radians, for angles without a direction or already clockwise.
+///
+/// Radians that were read from degrees give these degrees back, or others that are read as the same
+/// radians: a document then describes the same sets to the last digit.
 pub fn deg_from_radians(radians: f64) -> f64 {
-    radians.to_degrees()
+    let degrees = radians.to_degrees();
+    let (above, below) = (degrees.next_up(), degrees.next_down());
+    [degrees, above, below, above.next_up(), below.next_down()]
+        .into_iter()
+        .find(|near| radians_from_deg(*near) == radians)
+        .unwrap_or(degrees)
 }
 
 /// Metres per second from knots.

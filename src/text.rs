@@ -35,13 +35,6 @@ pub(crate) fn is_unprintable(c: char) -> bool {
 }
 
 /// An untrusted text on one line: control characters appear as their codes, `\u001b` as in JSON.
-///
-/// ```
-/// use searoom::report::printable;
-///
-/// assert_eq!(printable("ferry\n\u{1b}[8m\u{202e}"), r"ferry\u000a\u001b[8m\u202e");
-/// assert_eq!(printable("Trondheimsfjorden ø"), "Trondheimsfjorden ø");
-/// ```
 pub fn printable(text: &str) -> String {
     shown(text, |_| false)
 }
@@ -98,5 +91,12 @@ mod tests {
             (tenths(-0.06), signed(0.06)),
             ("-0.1".into(), "+0.1".into())
         );
+    }
+
+    #[test]
+    fn control_characters_appear_as_their_codes() {
+        let text = "ferry\n\u{1b}[8m\u{202e}";
+        assert_eq!(printable(text), r"ferry\u000a\u001b[8m\u202e");
+        assert_eq!(printable("Trondheimsfjorden ø"), "Trondheimsfjorden ø");
     }
 }

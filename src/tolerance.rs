@@ -19,8 +19,17 @@ pub const POSITION_SIGMAS: f64 = 3.0;
 /// some hundred segments.
 pub const JOINT_M: f64 = 1e-6;
 
-/// Radians. Headings at the joint of two segments may differ by this.
+/// Radians. Headings at the joint of two segments may differ by this; see [`joint_rad`].
 pub const JOINT_RAD: f64 = 1e-9;
+
+/// Radians. Upper limit of [`joint_rad`].
+const LARGEST_JOINT_RAD: f64 = 1e-7;
+
+/// Allowed difference of headings at the joint of two segments, radians: the turn of two arcs of
+/// [`LENGTH_M`], which planners leave out. It exceeds [`JOINT_RAD`] for turning radii below 2 m.
+pub fn joint_rad(turning_radius: f64) -> f64 {
+    (2.0 * LENGTH_M / turning_radius).clamp(JOINT_RAD, LARGEST_JOINT_RAD)
+}
 
 /// Radians. A recommended turn ends this far beyond the boundary of a velocity obstacle: a
 /// millimetre at a thousand kilometres, and far more than rounding.
@@ -41,6 +50,10 @@ pub const COLLINEAR_RAD: f64 = 1e-9;
 /// Relative. A shape matrix may deviate from symmetry, and its eigenvalues from zero, by this
 /// fraction of its largest entry: nine digits from a person or another program.
 pub const SHAPE: f64 = 1e-9;
+
+/// Relative. An ellipse narrower than this fraction of its length counts as a segment: a shape
+/// matrix, as documents state it, loses shorter semi-axes to rounding.
+pub const THIN_ELLIPSE: f64 = 1e-7;
 
 /// Absolute, in a condition of value 3: the smallest enclosing ellipse may deviate from optimality
 /// by this. Its area is then within 1e-8 of the minimum.

@@ -1,23 +1,22 @@
 //! A target whose velocity ellipse changes with time: its set contains every position that it may
 //! reach, and plans, checker and verification of a document agree on it.
 
-mod set_generators;
-
 use std::path::Path;
 
-use rand::Rng;
+use nalgebra::Matrix2;
+use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use searoom::document::PlanDocument;
-use searoom::frame::{direction, to_port};
+use searoom::frame::{Pose, Vector, direction, to_port};
 use searoom::geometry::Ellipse;
 use searoom::obstacle::{EllipsoidObstacle, Obstacle, SpaceTimeObstacle};
 use searoom::pipeline;
 use searoom::scenario::Scenario;
 use searoom::target::{Motion, TimedVelocitySet, Uncertainty};
 use searoom::tolerance;
+use searoom::trajectory::Segment;
 use searoom::verification::verify;
 use serde_json::{Value, json};
-use set_generators::{ellipse, seeded, segment, vector};
 
 /// Changes of the velocities, seconds.
 const ENDS: [f64; 3] = [20.0, 45.0, f64::INFINITY];
@@ -26,6 +25,37 @@ fn changing(initial: Ellipse, velocities: [Ellipse; 3]) -> Obstacle {
     let timed = ENDS.iter().zip(velocities);
     let timed = timed.map(|(until, set)| TimedVelocitySet::new(*until, set));
     Obstacle::new("x", Uncertainty::new(initial, timed.collect())).expect("increasing")
+}
+
+fn seeded(seed: u64) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
+fn vector(rng: &mut ChaCha8Rng, scale: f64) -> Vector {
+    let mut number = || rng.random_range(-scale..scale);
+    Vector::new(number(), number())
+}
+
+/// An ellipse, sometimes a segment or a point.
+fn ellipse(rng: &mut ChaCha8Rng, scale: f64) -> Ellipse {
+    let set = round(rng, scale);
+    let [along, _] = set.semi_axes();
+    match rng.random_range(0..6) {
+        0 => Ellipse::point(set.center()),
+        1 => Ellipse::new(set.center(), along * along.transpose()).expect("a shape"),
+        2 => Ellipse::new(set.center(), Matrix2::identity() * scale).expect("a shape"),
+        _ => set,
+    }
+}
+
+fn segment(rng: &mut ChaCha8Rng, straight: bool) -> Segment {
+    Segment {
+        start: Pose::new(vector(rng, 200.0), rng.random_range(-3.0..3.0)),
+        start_time: rng.random_range(0.0..30.0),
+        duration: rng.random_range(1.0..60.0),
+        speed: rng.random_range(0.0..8.0),
+        turn_rate: if straight { 0.0 } else { 0.05 },
+    }
 }
 
 /// An ellipse with an interior.

@@ -1,5 +1,6 @@
 //! Tests that the interior-point iteration does not allocate.
 
+#[path = "campaigns/control_scenes.rs"]
 mod optimal_control_scenes;
 
 use std::alloc::{GlobalAlloc, Layout, System};

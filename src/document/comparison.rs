@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::alteration::largest_alteration;
 use super::parts::{CostDocument, PositionDocument, SearchStatsDocument, TimingDocument};
-use super::plan::{cost_of, finite, objective, position, stats, timing};
+use super::plan::{cost_of, finite, minimised, objective, position, stats, timing};
 use crate::evaluation::{Safety, outcome_word};
 use crate::pipeline::Verdict;
 use crate::scenario::Scenario;
@@ -154,7 +154,10 @@ impl EntryDocument {
             cost: motion.map(|motion| {
                 // a baseline has no other objective
                 let found = &motion.evaluation;
-                let objective = plan.map_or(found.space_time_error, |plan| plan.cost);
+                let run = entry.run.as_ref();
+                let objective = run.zip(plan).map_or(found.space_time_error, |(run, plan)| {
+                    minimised(&run.scenario, plan, found)
+                });
                 let (way, risks) = (&motion.trajectory, &motion.risks);
                 let mut cost = cost_of(way, found, objective, motion.arrived, risks);
                 cost.delay_s = cost.delay_s.filter(|_| cost.arrived);

@@ -9,7 +9,7 @@ use crate::colregs::Role;
 use crate::colregs::compliance::{ComplianceReport, Measure};
 use crate::frame::deg_from_radians;
 use crate::pipeline::Run;
-use crate::target::{ShipTrack, Target};
+use crate::target::ShipTrack;
 use crate::trajectory::Trajectory;
 
 /// Time step in seconds for the search of a track crossing.
@@ -85,7 +85,7 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
             let encounter = &sets.encounter;
             let crossing = passage
                 .zip(trajectory)
-                .filter(|_| is_crossing(encounter.role));
+                .filter(|_| is_crossing(encounter.role.name()));
             EncounterDocument {
                 target: target.name.clone(),
                 role: encounter.role.name().to_owned(),
@@ -94,7 +94,9 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
                 undisturbed_dcpa_m: finite(encounter.undisturbed_dcpa),
                 undisturbed_tcpa_s: finite(encounter.undisturbed_tcpa),
                 passing_side: passage.map(|p| p.passing_side.to_string()),
-                crosses_astern: crossing.and_then(|(p, t)| crosses_astern(t, target, p.tcpa)),
+                crosses_astern: crossing
+                    .zip(target.ship())
+                    .and_then(|((p, t), ship)| crosses_astern(t, ship, p.tcpa)),
                 max_risk: peak.map(|peak| peak.risk),
                 max_risk_t_s: peak.filter(|peak| peak.risk > 0.0).map(|peak| peak.time),
                 conduct: (conduct.get(index))
@@ -105,14 +107,15 @@ pub(super) fn encounters(run: &Run) -> Vec<EncounterDocument> {
         .collect()
 }
 
-fn is_crossing(role: Role) -> bool {
-    matches!(role, Role::GiveWay | Role::StandOn | Role::BothGiveWay)
+/// True for the names of the roles in a crossing.
+pub(crate) fn is_crossing(role: &str) -> bool {
+    let crossing = [Role::GiveWay, Role::StandOn, Role::BothGiveWay];
+    crossing.iter().any(|known| known.name() == role)
 }
 
 /// True when own ship crosses the nominal target's centre line abaft its centre, false when ahead.
 /// Of several crossings, the one nearest in time to `tcpa` counts.
-fn crosses_astern(trajectory: &Trajectory, target: &Target, tcpa: f64) -> Option<bool> {
-    let ship = target.ship()?;
+pub(crate) fn crosses_astern(trajectory: &Trajectory, ship: &ShipTrack, tcpa: f64) -> Option<bool> {
     let relative = |ship: &ShipTrack, time: f64| {
         ship.pose_at(time)
             .body_coordinates(trajectory.pose_at(time).position)

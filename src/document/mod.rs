@@ -18,6 +18,7 @@ mod suite;
 mod targets;
 mod verification;
 
+pub(crate) use alteration::first_alteration;
 pub use assessment::*;
 pub use comparison::{
     ComparisonDocument, EntryDocument, InapplicableDocument, ScenarioComparisonDocument,
@@ -29,6 +30,7 @@ pub use control::{
 pub use encounter::{
     BreachDocument, ConductDocument, EncounterDocument, MonitorDocument, RoleDocument,
 };
+pub(crate) use encounter::{crosses_astern, is_crossing};
 pub(crate) use lines::{TIME_LINE, headline, met, passing, plan_lines, turn};
 pub use lint::{LintDocument, LintScenarioDocument, LintSummaryDocument, LintTargetDocument};
 pub use parts::*;

@@ -257,8 +257,20 @@ fn mission(run: &Run) -> MissionDocument {
 fn cost(run: &Run) -> Option<CostDocument> {
     let (plan, evaluation) = plan(run).zip(run.evaluation.as_ref())?;
     let trajectory = &plan.trajectory;
+    let minimised = minimised(&run.scenario, plan, evaluation);
     let (arrived, risks) = (run.arrives(), &run.risks);
-    Some(cost_of(trajectory, evaluation, plan.cost, arrived, risks))
+    Some(cost_of(trajectory, evaluation, minimised, arrived, risks))
+}
+
+/// Minimised quantity. Where it is a property of the motion, it is that of the evaluation: the
+/// planner sums it in other coordinates, so the last digits differ.
+pub(super) fn minimised(scenario: &Scenario, plan: &Plan, evaluation: &Evaluation) -> f64 {
+    match (scenario.planner.facts().minimises, scenario.objective) {
+        (Minimises::Own(_), _) | (_, Objective::LengthRisk { .. }) => plan.cost,
+        (_, Objective::SpaceTimeError) => evaluation.space_time_error,
+        (_, Objective::Time) => evaluation.duration,
+        (_, Objective::Length) => evaluation.length,
+    }
 }
 
 /// Costs of any motion.

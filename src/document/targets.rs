@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::{InitialSetDocument, PositionDocument, VelocitySetDocument};
 use super::plan::{plain, rows, vertices};
-use crate::frame::{clockwise_deg_per_s, course_deg_from_heading, deg_from_radians};
+use crate::frame::{course_deg_from_heading, deg_from_radians};
 use crate::geometry::ConvexSet;
 use crate::target::{Representation, ShipTrack, Target, TimedVelocitySet};
 
@@ -82,7 +82,7 @@ fn ship(track: &ShipTrack) -> ShipDocument {
         position_std_m: track.position_std,
         speed_spread_mps: track.speed_spread,
         course_spread_deg: deg_from_radians(track.course_spread),
-        turn_rate_deg_per_s: clockwise_deg_per_s(track.turn_rate).abs(),
+        turn_rate_deg_per_s: deg_from_radians(track.turn_rate.abs()),
     }
 }
 

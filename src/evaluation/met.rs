@@ -88,7 +88,7 @@ pub(super) fn passage<P: Piece>(
             let slabs = MovingSlabs::new(sets);
             let least = slabs.least_distance(pieces, Body::POINT);
             let hold = slabs.least_distance(&lying, Body::POINT);
-            let safety = claim.of_set(request, &least, slabs.has_interior());
+            let safety = claim.of_set(request, &least, slabs.edge(least.time));
             (least, least, least, hold, safety)
         }
     };

@@ -61,7 +61,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
             "rad from own ship's",
             first.start_time,
             turn,
-            tolerance::JOINT_RAD,
+            tolerance::joint_rad(own.turning_radius),
         );
     }
     for (index, pair) in segments.windows(2).enumerate() {
@@ -85,7 +85,7 @@ pub(super) fn check(request: &Request) -> Vec<Violation> {
                 "rad",
                 after.start_time,
                 turn,
-                tolerance::JOINT_RAD,
+                tolerance::joint_rad(own.turning_radius),
             );
         }
         let pause = (before.end_time() - after.start_time).abs();

@@ -56,14 +56,13 @@ pub(super) fn grounding(least: &Least, margin: f64) -> Option<Violation> {
     })
 }
 
-/// Violation of a set by a least distance, if any. A set without interior has no depth, so there a
-/// distance below the tolerance is a violation.
-pub(super) fn collision(label: &str, least: &Least, has_interior: bool) -> Option<Violation> {
-    let allowed = if has_interior {
-        -tolerance::DEPTH_M
-    } else {
-        tolerance::DEPTH_M
-    };
+/// Allowed depth inside a hull or a polygon, metres.
+pub(super) const EDGE: Option<f64> = Some(tolerance::DEPTH_M);
+
+/// Violation of a set by a least distance, if any. `edge` is the allowed depth. A set without
+/// interior has no depth, so there a distance below the tolerance is a violation.
+pub(super) fn collision(label: &str, least: &Least, edge: Option<f64>) -> Option<Violation> {
+    let allowed = edge.map_or(tolerance::DEPTH_M, |depth| -depth);
     let what = if !(least.value >= allowed) {
         format!(
             "{label}: distance {:.6e} m, allowed {allowed:.0e}",
@@ -125,19 +124,19 @@ impl Claim {
         if !(closest.value >= -tolerance::DEPTH_M) {
             return Safety::Collides;
         }
-        if collision("", worst, true).is_some() {
+        if collision("", worst, EDGE).is_some() {
             return Safety::Unsafe;
         }
         self.of_hard_set(request, || {
             let mut least = centre();
             least.value -= request.own.hull.half_diagonal() + request.own.safety_margin;
-            collision("", &least, true).is_none()
+            collision("", &least, EDGE).is_none()
         })
     }
 
     /// Safety with respect to a target with an explicit set, which is its hard set.
-    pub fn of_set(&self, request: &Request, least: &Least, has_interior: bool) -> Safety {
-        self.of_hard_set(request, || collision("", least, has_interior).is_none())
+    pub fn of_set(&self, request: &Request, least: &Least, edge: Option<f64>) -> Safety {
+        self.of_hard_set(request, || collision("", least, edge).is_none())
     }
 
     fn of_hard_set(&self, request: &Request, clear: impl FnOnce() -> bool) -> Safety {

@@ -365,7 +365,7 @@ fn what_is_not_a_number_is_never_verified() {
         time_weight: 25.0,
         max_risk: 0.0,
     });
-    assert_eq!(words(&found), ["start", "turn", "arrival"]);
+    assert_eq!(words(&found), ["start", "heading", "turn", "arrival"]);
 }
 
 #[test]

@@ -7,19 +7,6 @@ use super::Safety;
 /// `outcome` is the word in the documents, `safety` the safety of the motion (`None` without a
 /// motion), and `risk` the largest risk taken. The outcome of a baseline may also be `"clear"`, or
 /// `"collides"` where it enters a set.
-///
-/// # Examples
-///
-/// ```
-/// use searoom::evaluation::Safety;
-/// use searoom::evaluation::outcome_word;
-///
-/// assert_eq!(outcome_word("relaxed", Some(Safety::Collides), 1.0), "COLLIDES");
-/// assert_eq!(outcome_word("relaxed", Some(Safety::AtRisk), 0.2), "at risk 0.20");
-/// assert_eq!(outcome_word("relaxed", Some(Safety::Safe), 0.0), "relaxed");
-/// assert_eq!(outcome_word("deadline", Some(Safety::Unsafe), 1.0), "NOT SAFE, deadline");
-/// assert_eq!(outcome_word("deadline", None, 0.0), "deadline");
-/// ```
 pub fn outcome_word(outcome: &str, safety: Option<Safety>, risk: f64) -> String {
     let word = match safety {
         // Sets larger than the hard sets are entered, at a risk above the accepted one.
@@ -52,16 +39,23 @@ pub(crate) fn risk_figure(risk: f64) -> String {
 }
 
 /// Returns the two properties of a plan, verified and safe, as one text.
-///
-/// # Examples
-///
-/// ```
-/// assert_eq!(searoom::evaluation::facts(true, false), "verified, not safe");
-/// ```
 pub fn facts(verified: bool, safe: bool) -> &'static str {
     match (verified, safe) {
         (true, true) => "verified, safe",
         (true, false) => "verified, not safe",
         (false, _) => "FAILED ITS VERIFICATION, not safe",
+    }
+}
+
+#[test]
+fn the_word_of_an_outcome_says_the_worst_first() {
+    for (outcome, safety, risk, word) in [
+        ("relaxed", Some(Safety::Collides), 1.0, "COLLIDES"),
+        ("relaxed", Some(Safety::AtRisk), 0.2, "at risk 0.20"),
+        ("relaxed", Some(Safety::Safe), 0.0, "relaxed"),
+        ("deadline", Some(Safety::Unsafe), 1.0, "NOT SAFE, deadline"),
+        ("deadline", None, 0.0, "deadline"),
+    ] {
+        assert_eq!(outcome_word(outcome, safety, risk), word);
     }
 }

@@ -102,7 +102,8 @@ impl ConvexPolygon {
     /// written by a user.
     pub fn from_vertices(points: &[Vector]) -> Result<Self, GeometryError> {
         let hull = Self::hull(points)?;
-        let limit = 1e-9 * extent(points);
+        let farthest = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
+        let limit = 1e-9 * extent(points) + 2.0 * f64::EPSILON * farthest;
         let by_place = |a: &Vector, b: &Vector| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
         let mut corners = hull.vertices.clone();
         corners.sort_by(by_place);
@@ -168,12 +169,7 @@ impl ConvexPolygon {
         if v.is_empty() {
             v.push(Vector::zeros());
         }
-        // lowest, then leftmost first: a polygon has one representation
-        let first = (0..v.len())
-            .min_by(|&i, &j| v[i].y.total_cmp(&v[j].y).then(v[i].x.total_cmp(&v[j].x)))
-            .unwrap_or(0);
-        v.rotate_left(first);
-        Self { vertices: v }
+        Self::from_lowest(v)
     }
 
     /// Counter-clockwise vertices, lowest first.
@@ -300,6 +296,15 @@ impl ConvexPolygon {
         if vertices.len() > 1 && vertices.iter().zip(next).any(|(a, b)| a == b) {
             return Self::from_ccw(vertices);
         }
+        Self::from_lowest(vertices)
+    }
+
+    /// Starts with the lowest, then leftmost vertex: a polygon has one representation, and its
+    /// edges are in order of their angle, as [`Self::minkowski_sum`] requires.
+    fn from_lowest(mut vertices: Vec<Vector>) -> Self {
+        let by_place = |a: &Vector, b: &Vector| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x));
+        let lowest = (0..vertices.len()).min_by(|&i, &j| by_place(&vertices[i], &vertices[j]));
+        vertices.rotate_left(lowest.unwrap_or(0));
         Self { vertices }
     }
 

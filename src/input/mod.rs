@@ -88,11 +88,17 @@ impl InputError {
 /// Maximum number of faults that a message lists; the rest is counted.
 const LISTED: usize = 100;
 
+/// Maximum number of faults that are counted; reading a file with more keeps no others.
+const COUNTED: usize = 1000;
+
 /// The number of faults, then one fault on each line.
 fn listed(faults: &[Fault]) -> String {
     let plural = if faults.len() == 1 { "" } else { "s" };
     let shown = faults.iter().take(LISTED);
     let lines: String = shown.map(|fault| format!("\n  {fault}")).collect();
+    if faults.len() > COUNTED {
+        return format!("more than {COUNTED} faults{lines}\n  and more");
+    }
     let more = match faults.len().saturating_sub(LISTED) {
         0 => String::new(),
         more => format!("\n  and {more} more"),
@@ -105,15 +111,23 @@ fn listed(faults: &[Fault]) -> String {
 pub(crate) struct Faults(RefCell<Vec<Fault>>);
 
 impl Faults {
+    /// Adds a fault; without effect where there are too many already.
     pub(crate) fn note(&self, fault: Fault) {
-        self.0.borrow_mut().push(fault);
+        if !self.is_full() {
+            self.0.borrow_mut().push(fault);
+        }
+    }
+
+    /// True where there are more faults than a message counts.
+    fn is_full(&self) -> bool {
+        self.0.borrow().len() > COUNTED
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.0.borrow().is_empty()
     }
 
-    /// Every fault noted so far, in order of lines; afterwards there is none.
+    /// The faults noted so far, in order of lines; afterwards there is none.
     pub(crate) fn take(&self) -> Vec<Fault> {
         let mut faults = self.0.take();
         faults.sort_by_key(|fault| fault.line);
@@ -172,8 +186,20 @@ mod tests {
         let message = |count| InputError::faults(Path::new("a.toml"), faults(count)).to_string();
         assert_eq!(message(100).lines().count(), 101);
         assert!(!message(100).contains("more"));
-        assert!(message(5_000).starts_with("a.toml: 5000 faults\n"));
-        assert!(message(5_000).ends_with("\n  and 4900 more"));
-        assert_eq!(message(5_000).lines().count(), 102);
+        assert!(message(1_000).starts_with("a.toml: 1000 faults\n"));
+        assert!(message(1_000).ends_with("\n  and 900 more"));
+        assert_eq!(message(1_000).lines().count(), 102);
+    }
+
+    #[test]
+    fn a_file_of_nothing_but_faults_is_not_listed_to_its_end() {
+        let noted = Faults::default();
+        let text = "a b = 0x\n".repeat(100_000);
+        assert!(from_toml(&text, &noted).is_none());
+        let faults = noted.take();
+        assert_eq!(faults.len(), 1001);
+        let message = InputError::faults(Path::new("a.toml"), faults).to_string();
+        assert!(message.starts_with("a.toml: more than 1000 faults\n  line 1: "));
+        assert!(message.ends_with("\n  and more") && message.lines().count() == 102);
     }
 }

@@ -109,6 +109,9 @@ pub(crate) fn from_toml(text: &str, faults: &Faults) -> Option<Node> {
     let mut reported = BTreeSet::new();
     let mut too_deep = false;
     for error in errors {
+        if faults.is_full() {
+            break;
+        }
         let (message, offset) = (error.message(), error.span().map(|span| span.start));
         // the rest of a value that is nested too deep is not read, so it is never closed
         let follows = too_deep && message.starts_with(UNCLOSED);

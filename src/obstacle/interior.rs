@@ -17,7 +17,9 @@ impl Obstacle {
             Self::Slabs(o) => {
                 let grown = match &o.sets().initial {
                     ConvexSet::Polygon(initial) => outer_grown(initial).map(ConvexSet::from),
-                    ConvexSet::Ellipse(initial) => outer_widened(initial).map(ConvexSet::from),
+                    ConvexSet::Ellipse(initial) => {
+                        outer_widened(initial, self.is_flat_for_a_while()).map(ConvexSet::from)
+                    }
                 };
                 match grown {
                     Some(grown) => o.with_initial(grown).into(),
@@ -49,7 +51,7 @@ impl Obstacle {
             Self::Polytope(o) => flat(o.initial(), o.velocity()),
             // sections do not become flat again
             Self::Slabs(o) => o.slabs()[0].obstacle().is_flat_for_a_while(),
-            Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
+            Self::Ellipsoid(o) => o.is_thin(),
         }
     }
 }
@@ -76,16 +78,17 @@ fn widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
 }
 
 fn widened_ellipsoid(obstacle: &EllipsoidObstacle) -> EllipsoidObstacle {
-    match outer_widened(obstacle.initial()) {
+    let thin = obstacle.is_thin();
+    match outer_widened(obstacle.initial(), thin) {
         Some(grown) => EllipsoidObstacle::new(obstacle.name(), grown, *obstacle.velocity()),
         None => obstacle.clone(),
     }
 }
 
-/// [`outer_grown`] for an ellipse.
-fn outer_widened(initial: &Ellipse) -> Option<Ellipse> {
-    let [a, b] = initial.semi_axes();
-    (a.norm().min(b.norm()) < HALF_WIDTH_M).then(|| {
+/// [`outer_grown`] for an ellipse; grown in any case where the set is thin.
+fn outer_widened(initial: &Ellipse, thin: bool) -> Option<Ellipse> {
+    let [_, b] = initial.semi_axes();
+    (b.norm() < HALF_WIDTH_M || thin).then(|| {
         let axes = [
             Vector::new(HALF_WIDTH_M, 0.0),
             Vector::new(0.0, HALF_WIDTH_M),

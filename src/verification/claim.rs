@@ -204,6 +204,9 @@ impl Claim {
     }
 }
 
+/// Greatest speed of own ship at the start in m/s, equal to that of scenarios.
+const FASTEST_MPS: f64 = 100.0;
+
 /// Longest arrival hold in seconds, equal to that of scenarios.
 const LONGEST_HOLD_S: f64 = 1e6;
 
@@ -310,7 +313,7 @@ fn own_ship(own: &OwnShipFile) -> Result<OwnShip, ClaimError> {
     not_negative("own_ship.land_margin_m", own.land_margin_m)?;
     Ok(OwnShip {
         pose: Pose::new(point(own.position), heading_from_course_deg(own.course_deg)),
-        speed: not_negative("own_ship.speed_mps", own.speed_mps)?,
+        speed: within("own_ship.speed_mps", own.speed_mps, 0.0, FASTEST_MPS)?,
         hull: Hull {
             length: not_negative("own_ship.length_m", own.length_m)?,
             beam: not_negative("own_ship.beam_m", own.beam_m)?,

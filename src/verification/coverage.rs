@@ -9,7 +9,8 @@
 //!   possible turn.
 //!
 //! Explicit sets have to be contained unchanged. If risk was accepted, the level set has to contain
-//! the known velocities scaled to that level. Scaled back, it has to contain all of them.
+//! the known velocities scaled to that level. The level set of a ship, scaled back, has to contain
+//! all of them.
 //!
 //! Polygons are compared by their sections. The support of a section in a direction is linear in
 //! time between two changes of its velocities. The support of the target's reachable set is linear
@@ -71,7 +72,9 @@ fn lacks(claim: &Claim, target: &Target, set: &SpaceTimeSet) -> Vec<(String, f64
         ConvexSet::Polygon(initial) => {
             let mut scales = vec![level];
             // The set around a scaled polygon has a centre of its own, so it cannot be scaled back.
-            if level < 1.0 && claim.file.optimal_control.is_none() {
+            // Explicit sets are known as they are: the first check is complete.
+            let ship = target.ship().is_some();
+            if level < 1.0 && ship && claim.file.optimal_control.is_none() {
                 scales.push(1.0);
             }
             let short = |scale| in_sections(claim, target, set, initial, scale);
@@ -117,8 +120,15 @@ fn in_sections(
         .filter(|time| (from..=horizon).contains(time))
         .collect();
     times.sort_by(f64::total_cmp);
-    let rates: Vec<Vec<f64>> = (velocities.iter())
-        .map(|polygon| about_centroid(polygon, factor).supports(&normals))
+    let starts = std::iter::once(from).chain(ends.iter().copied());
+    let rates: Vec<Vec<f64>> = (velocities.iter().zip(starts.zip(&ends)))
+        .map(|(polygon, (start, end))| {
+            // The centroid of a narrow level set is not that of the whole set, to rounding.
+            let middle = 0.5 * (start + end.min(horizon));
+            let center = known.center_at(middle);
+            let center = center.unwrap_or_else(|| polygon.centroid());
+            scaled_about(polygon, center, factor).supports(&normals)
+        })
         .collect();
     let mut section = initial.supports(&normals);
     let mut wanted = known.at(from);
@@ -285,10 +295,13 @@ pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
-/// Scales a polygon about its centroid, as a level of risk scales a velocity set.
-pub(super) fn about_centroid(set: &ConvexPolygon, factor: f64) -> ConvexPolygon {
-    let center = set.centroid();
-    set.translated(-center).scaled(factor).translated(center)
+/// Scales a polygon about a point; unchanged by the factor 1.
+pub(super) fn scaled_about(set: &ConvexPolygon, center: Vector, factor: f64) -> ConvexPolygon {
+    if factor == 1.0 {
+        set.clone()
+    } else {
+        set.translated(-center).scaled(factor).translated(center)
+    }
 }
 
 /// Evenly spaced unit vectors, and the normals of an ellipse at points around it. For a thin

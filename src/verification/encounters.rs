@@ -1,16 +1,19 @@
 //! Checks the encounters of a document against its motion.
 
 use super::claim::{Claim, ClaimedMotion};
-use super::figures::near;
+use super::figures::near_to;
+use super::file::EncounterFile;
 use super::untrue;
-use crate::evaluation::{Evaluation, Violation};
+use crate::document::{crosses_astern, is_crossing};
+use crate::evaluation::{Body, Evaluation, MovingSlabs, Violation};
 use crate::frame::{Pose, Vector, wrap};
-use crate::geometry::{ConvexSet, Ellipse};
-use crate::target::{Target, Uncertainty};
+use crate::geometry::ConvexSet;
+use crate::target::{Motion, Target};
 use crate::tolerance;
-use nalgebra::Matrix2;
+use crate::trajectory::{Segment, Trajectory};
 
-/// Checks for each target the least distance, the distance at the given time, and the passing side.
+/// Checks for each target the least distance, the distance at the given time, the passing side and
+/// the crossing of its track.
 pub(super) fn check(
     claim: &Claim,
     motion: &ClaimedMotion,
@@ -32,11 +35,12 @@ pub(super) fn check(
         ));
         return found;
     }
+    let trajectory = motion.trajectory();
     let all = said.iter().zip(&claim.targets).zip(&evaluation.passages);
     for ((said, target), passage) in all {
         let label = |key: &str| format!("encounter with '{}', {key}", target.name);
-        let dcpa = passage.dcpa;
-        if !said.dcpa_m.is_some_and(|d| near(d, dcpa)) {
+        let (dcpa, rounding) = (passage.dcpa, shape_rounding(target, passage.tcpa));
+        if !said.dcpa_m.is_some_and(|d| near_to(d, dcpa, rounding)) {
             let value = said
                 .dcpa_m
                 .map_or_else(|| "nothing".to_owned(), |d| d.to_string());
@@ -52,7 +56,7 @@ pub(super) fn check(
             [before, .., after] => then.min(while_turning(claim, target, (before, after), tcpa)),
             _ => then,
         };
-        if !(then.is_finite() && near(then, dcpa)) {
+        if !(then.is_finite() && near_to(then, dcpa, rounding)) {
             found.push(untrue(
                 &label("tcpa_s"),
                 tcpa,
@@ -76,8 +80,43 @@ pub(super) fn check(
             let so = if to_port { "port" } else { "starboard" };
             found.push(untrue(&label("passing_side"), side_said, so));
         }
+        let crossing = trajectory.as_ref().and_then(|t| crossing(t, said, target));
+        if let Some(so) = crossing {
+            let word =
+                |astern: Option<bool>| astern.map_or("nothing".to_owned(), |a| a.to_string());
+            let (said, so) = (word(said.crosses_astern), word(so));
+            found.push(untrue(&label("crosses_astern"), said, so));
+        }
     }
     found
+}
+
+/// The right value of `crosses_astern` where the document has another one.
+///
+/// Own ship may be on the target's centre line or abeam of it to rounding. So the value is also
+/// accepted if it is right for a track shifted by [`tolerance::DEPTH_M`].
+fn crossing(
+    trajectory: &Trajectory,
+    said: &EncounterFile,
+    target: &Target,
+) -> Option<Option<bool>> {
+    let role = said.role.as_deref().unwrap_or_default();
+    let ship = target.ship().filter(|_| is_crossing(role));
+    let shifted = |east: f64, north: f64| {
+        let mut ship = ship?.clone();
+        ship.pose.position += Vector::new(east, north) * tolerance::DEPTH_M;
+        crosses_astern(trajectory, &ship, said.tcpa_s?)
+    };
+    let mut shifts = [
+        [0.0, 0.0],
+        [1.0, 1.0],
+        [-1.0, 1.0],
+        [-1.0, -1.0],
+        [1.0, -1.0],
+    ]
+    .into_iter();
+    let right = shifts.any(|[east, north]| shifted(east, north) == said.crosses_astern);
+    (!right).then(|| shifted(0.0, 0.0))
 }
 
 /// Offset of a place to port of the line ahead through a pose, metres.
@@ -96,16 +135,40 @@ pub(super) fn distance(claim: &Claim, target: &Target, pose: &Pose, time: f64) -
             .polygon(pose)
             .separation(&ship.hull.polygon(&ship.pose_at(time))),
         None => {
-            let distance = |sets: &Uncertainty| match &sets.initial {
-                ConvexSet::Polygon(_) => {
-                    Some(sets.outer_section(time).signed_distance(pose.position))
-                }
-                ConvexSet::Ellipse(initial) => {
-                    let section = least_trace_sum(initial, sets, time)?;
-                    Some(section.signed_distance(pose.position).distance)
-                }
+            let Some(sets) = target.sets() else {
+                return f64::NAN;
             };
-            target.sets().and_then(distance).unwrap_or(f64::NAN)
+            match &sets.initial {
+                ConvexSet::Polygon(_) => sets.outer_section(time).signed_distance(pose.position),
+                ConvexSet::Ellipse(_) => {
+                    let here = Segment {
+                        start: *pose,
+                        start_time: time,
+                        duration: 0.0,
+                        speed: 0.0,
+                        turn_rate: 0.0,
+                    };
+                    MovingSlabs::new(sets)
+                        .least_distance(&[here], Body::POINT)
+                        .value
+                }
+            }
+        }
+    }
+}
+
+/// Largest difference of two distances from an explicit set at a time, metres; 0 for ships.
+///
+/// It is that of the shape matrices of ellipses. Sums of polygons omit corners at which the
+/// boundary turns by less than [`tolerance::COLLINEAR_RAD`].
+pub(super) fn shape_rounding(target: &Target, time: f64) -> f64 {
+    let across = |set: &ConvexSet| set.as_polygon().map_or(0.0, |set| set.across());
+    match &target.motion {
+        Motion::Ship(_) => 0.0,
+        Motion::Sets(sets) => {
+            let fastest = sets.velocities.iter().map(|set| across(&set.velocities));
+            let extent = across(&sets.initial) + fastest.fold(0.0, f64::max) * time;
+            tolerance::COLLINEAR_RAD * extent + MovingSlabs::new(sets).rounding(time)
         }
     }
 }
@@ -137,24 +200,4 @@ fn while_turning(claim: &Claim, target: &Target, turn: (&Pose, &Pose), time: f64
         }
     }
     least
-}
-
-/// Ellipse of least trace around a sum of ellipses, docs/theory.md section 3.
-pub(super) fn least_trace_sum(initial: &Ellipse, sets: &Uncertainty, time: f64) -> Option<Ellipse> {
-    let (mut center, mut shape, mut sum) = (Vector::zeros(), Matrix2::zeros(), 0.0);
-    let mut add = |ellipse: &Ellipse, factor: f64| {
-        let scaled = ellipse.shape() * (factor * factor);
-        let root = scaled.trace().sqrt();
-        // Negated on purpose: a NaN is included.
-        if !(root <= 0.0) {
-            shape += scaled / root;
-            sum += root;
-        }
-        center += ellipse.center() * factor;
-    };
-    add(initial, 1.0);
-    for (duration, velocities) in sets.durations(time) {
-        add(velocities.as_ellipse()?, duration);
-    }
-    Ellipse::new(center, shape * sum).ok()
 }

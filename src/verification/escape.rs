@@ -97,7 +97,7 @@ fn is_on_her_way(claim: &Claim) -> bool {
     let offset = own.pose.position - leg.start;
     let heading = crate::frame::heading_of(leg.direction);
     offset.norm() <= tolerance::JOINT_M
-        && wrap(own.pose.heading - heading).abs() <= tolerance::JOINT_RAD
+        && wrap(own.pose.heading - heading).abs() <= tolerance::joint_rad(own.turning_radius)
         && own.speeds.iter().any(|u| near(*u, leg.speed))
 }
 

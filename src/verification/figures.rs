@@ -1,7 +1,9 @@
 //! Checks the figures of a document against its motion.
 
 use super::claim::{ARRIVAL, Claim, ClaimedMotion};
+use super::encounters::shape_rounding;
 use super::untrue;
+use crate::document::first_alteration;
 use crate::evaluation::{Evaluation, Steering, Violation, stage_costs};
 use crate::frame::Vector;
 use crate::tolerance;
@@ -11,16 +13,17 @@ use crate::trajectory::{Node, Segment};
 pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     let mut found = Vec::new();
     let file = &claim.file;
-    let mut same = |what: &str, said: Option<f64>, so: f64| {
+    let mut same_to = |what: &str, said: Option<f64>, so: f64, rounding: f64| {
         let so = so.is_finite().then_some(so);
         let agree = match (said, so) {
-            (Some(said), Some(so)) => near(said, so),
+            (Some(said), Some(so)) => near_to(said, so, rounding),
             (said, so) => said.is_none() && so.is_none(),
         };
         if !agree {
             found.push(untrue(what, words(said), words(so)));
         }
     };
+    let mut same = |what: &str, said: Option<f64>, so: f64| same_to(what, said, so, 0.0);
     same(
         "mission.duration_s",
         Some(file.mission.duration_s),
@@ -35,6 +38,11 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
         found.push(untrue("cost", "nothing", "that of a motion"));
         return found;
     };
+    let end = evaluation.duration + claim.arrival_hold();
+    let targets = claim.targets.iter();
+    let rounding = targets
+        .map(|target| shape_rounding(target, end))
+        .fold(0.0, f64::max);
     let forces = file.optimal_control.is_some();
     same(
         "cost.space_time_error_m2",
@@ -57,19 +65,6 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     );
     same("cost.length_m", Some(cost.length_m), evaluation.length);
     same("cost.delay_s", cost.delay_s, evaluation.delay);
-    same(
-        "cost.min_clearance_m",
-        cost.min_clearance_m,
-        evaluation.min_clearance,
-    );
-    // A figure that the document omits is not checked.
-    if cost.arrival_hold_s.is_some() || cost.hold_clearance_m.is_some() {
-        same(
-            "cost.hold_clearance_m",
-            cost.hold_clearance_m,
-            evaluation.hold_clearance,
-        );
-    }
     let minimised = match file.objective.as_str() {
         _ if forces => driven(claim, cost.objective),
         "space-time-error" => Some(evaluation.space_time_error),
@@ -79,6 +74,21 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     };
     if let Some(so) = minimised {
         same("cost.objective", Some(cost.objective), so);
+    }
+    same_to(
+        "cost.min_clearance_m",
+        cost.min_clearance_m,
+        evaluation.min_clearance,
+        rounding,
+    );
+    // A figure that the document omits is not checked.
+    if cost.arrival_hold_s.is_some() || cost.hold_clearance_m.is_some() {
+        same_to(
+            "cost.hold_clearance_m",
+            cost.hold_clearance_m,
+            evaluation.hold_clearance,
+            rounding,
+        );
     }
     let arrives = !forces && !claim.gives_up_arrival();
     if cost.arrived != arrives {
@@ -105,9 +115,29 @@ pub(super) fn check(claim: &Claim, evaluation: &Evaluation) -> Vec<Violation> {
     if cost.min_land_distance_m.is_none() && land.is_finite() {
         found.push(untrue("cost.min_land_distance_m", "nothing", land));
     }
+    found.extend(first_turn(claim));
     found.extend(profile(claim));
     found.extend(way_left(claim, evaluation));
     found
+}
+
+/// Checks the first alteration of course.
+fn first_turn(claim: &Claim) -> Option<Violation> {
+    let said = claim.file.cost.as_ref()?.first_turn.as_ref();
+    let so = first_alteration(&claim.motion.as_ref()?.trajectory()?);
+    let agree = match (said, &so) {
+        (Some(said), Some(so)) => {
+            said.side == so.side.to_string()
+                && near(said.turn_deg, so.degrees)
+                && near(said.t_s, so.start)
+        }
+        (said, so) => said.is_none() && so.is_none(),
+    };
+    let turn = |side: &str, degrees: f64, time: f64| format!("{degrees}° to {side} at {time} s");
+    let words = |turn: Option<String>| turn.unwrap_or_else(|| "nothing".to_owned());
+    let said = said.map(|t| turn(&t.side, t.turn_deg, t.t_s));
+    let so = so.map(|t| turn(&t.side.to_string(), t.degrees, t.start));
+    (!agree).then(|| untrue("cost.first_turn", words(said), words(so)))
 }
 
 /// Checks the remaining distance of a plan that does not arrive. It is at least the straight
@@ -194,7 +224,12 @@ fn driven(claim: &Claim, said: f64) -> Option<f64> {
 
 /// Returns true for figures that are equal to [`tolerance::FIGURE`], relative above one.
 pub(super) fn near(said: f64, so: f64) -> bool {
-    (said - so).abs() <= tolerance::FIGURE * so.abs().max(1.0)
+    near_to(said, so, 0.0)
+}
+
+/// Returns true for figures that are [`near`] up to an additional rounding.
+pub(super) fn near_to(said: f64, so: f64, rounding: f64) -> bool {
+    (said - so).abs() <= tolerance::FIGURE * so.abs().max(1.0) + rounding
 }
 
 fn words(value: Option<f64>) -> String {

@@ -134,11 +134,19 @@ pub(super) struct CostFile {
     pub duration_s: f64,
     pub length_m: f64,
     pub delay_s: Option<f64>,
+    pub first_turn: Option<TurnFile>,
     pub max_risk: f64,
     pub min_clearance_m: Option<f64>,
     pub hold_clearance_m: Option<f64>,
     pub arrival_hold_s: Option<f64>,
     pub min_land_distance_m: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct TurnFile {
+    pub side: String,
+    pub turn_deg: f64,
+    pub t_s: f64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -183,11 +191,13 @@ pub(super) struct SampleFile {
 #[derive(Debug, Deserialize)]
 pub(super) struct EncounterFile {
     pub target: String,
+    pub role: Option<String>,
     pub dcpa_m: Option<f64>,
     pub tcpa_s: Option<f64>,
     pub undisturbed_dcpa_m: Option<f64>,
     pub undisturbed_tcpa_s: Option<f64>,
     pub passing_side: Option<String>,
+    pub crosses_astern: Option<bool>,
     pub max_risk: Option<f64>,
     pub max_risk_t_s: Option<f64>,
 }

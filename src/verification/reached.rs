@@ -1,7 +1,7 @@
 //! Support functions of the region that a target may reach by a time, with the required distance.
 
 use super::claim::Claim;
-use super::coverage::largest;
+use super::coverage::{largest, scaled_about};
 use crate::evaluation::TurnedHull;
 use crate::frame::{Vector, direction, heading_of, wrap};
 use crate::geometry::{ConvexSet, Ellipse, outer_enclosing_ellipse};
@@ -35,18 +35,24 @@ pub(super) fn at_level(target: &Target, level: f64, horizon: f64) -> Vec<TimedVe
         Motion::Ship(ship) => ship.outer_velocity_sets(ship.turn_rate, horizon),
         Motion::Sets(sets) => sets.velocities.clone(),
     };
-    let scaled = |set: ConvexSet| match (&set, target.representation) {
-        _ if level == 1.0 => set,
-        (ConvexSet::Polygon(polygon), Representation::Ellipsoid) => {
-            let center = outer_enclosing_ellipse(polygon).center();
-            let about = polygon.translated(-center);
-            about.scaled(level).translated(center).into()
-        }
-        _ => set.scaled_about_center(level),
+    let scaled = |set: ConvexSet| match &set {
+        ConvexSet::Polygon(polygon) => scaled_about(polygon, center(target, &set), level).into(),
+        ConvexSet::Ellipse(_) if level == 1.0 => set,
+        ConvexSet::Ellipse(_) => set.scaled_about_center(level),
     };
     sets.into_iter()
         .map(|set| TimedVelocitySet::new(set.until, scaled(set.velocities)))
         .collect()
+}
+
+/// Centre of a velocity set of a target, about which a level of risk scales it.
+fn center(target: &Target, set: &ConvexSet) -> Vector {
+    match (target.representation, set) {
+        (Representation::Ellipsoid, ConvexSet::Polygon(set)) => {
+            outer_enclosing_ellipse(set).center()
+        }
+        _ => set.center(),
+    }
 }
 
 /// Known reachable set of a target with the required distance, by its supports in given directions.
@@ -57,6 +63,8 @@ pub(super) struct Known<'a> {
     /// Upper bound of the diameter at t = 0, metres.
     across: f64,
     motion: Moving,
+    /// Ends of a ship's velocity sets and their centres.
+    centers: Vec<(f64, Vector)>,
 }
 
 /// Further motion of the target.
@@ -96,12 +104,27 @@ impl<'a> Known<'a> {
                 Moving::Sets(sets.iter().map(timed).collect())
             }
         };
+        let held = match &target.motion {
+            Motion::Ship(_) if scale == 1.0 => at_level(target, 1.0, claim.file.horizon_s),
+            _ => Vec::new(),
+        };
+        let centers = held.iter();
         Self {
             normals,
             initial,
             across,
             motion,
+            centers: centers
+                .map(|s| (s.until, center(target, &s.velocities)))
+                .collect(),
         }
+    }
+
+    /// Centre of a ship's velocities at a time.
+    pub fn center_at(&self, time: f64) -> Option<Vector> {
+        let mut centers = self.centers.iter();
+        let held = centers.find(|(until, _)| time < *until);
+        held.map(|(_, center)| *center)
     }
 
     /// Times at which the velocities change instantly.

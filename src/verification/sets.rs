@@ -2,13 +2,14 @@
 
 use super::claim::{ClaimError, fault, plane_set};
 use super::coverage::{largest, sampled_directions};
-use super::encounters::least_trace_sum;
 use super::file::{ObstacleFile, RelaxationFile};
 use super::reached::{in_order, widest};
 use crate::evaluation::{SpaceTimeSet, Violation};
-use crate::geometry::{ConvexPolygon, ConvexSet};
+use crate::frame::Vector;
+use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse};
 use crate::target::{TimedVelocitySet, Uncertainty};
 use crate::tolerance;
+use nalgebra::Matrix2;
 
 /// Reads the sets, and reports inconsistent entries of one name.
 ///
@@ -116,11 +117,31 @@ pub(super) fn read(
 /// Section of a slab at its end: the Minkowski sum of polygons, or the ellipse of least trace
 /// around the sum of ellipses.
 fn section_after(initial: &ConvexSet, velocity: &ConvexSet, duration: f64) -> Option<ConvexSet> {
-    let slab = Uncertainty::constant(initial.clone(), velocity.clone());
-    Some(match initial {
-        ConvexSet::Polygon(_) => slab.outer_section(duration).into(),
-        ConvexSet::Ellipse(initial) => least_trace_sum(initial, &slab, duration)?.into(),
+    Some(match (initial, velocity) {
+        (ConvexSet::Ellipse(initial), ConvexSet::Ellipse(velocity)) => {
+            least_trace_sum([(initial, 1.0), (velocity, duration)])?.into()
+        }
+        _ => {
+            let slab = Uncertainty::constant(initial.clone(), velocity.clone());
+            slab.outer_section(duration).into()
+        }
     })
+}
+
+/// Ellipse of least trace around a sum of ellipses with factors, docs/theory.md section 3.
+fn least_trace_sum(terms: [(&Ellipse, f64); 2]) -> Option<Ellipse> {
+    let (mut center, mut shape, mut sum) = (Vector::zeros(), Matrix2::zeros(), 0.0);
+    for (ellipse, factor) in terms {
+        let scaled = ellipse.shape() * (factor * factor);
+        let root = scaled.trace().sqrt();
+        // Negated on purpose: a NaN is included.
+        if !(root <= 0.0) {
+            shape += scaled / root;
+            sum += root;
+        }
+        center += ellipse.center() * factor;
+    }
+    Ellipse::new(center, shape * sum).ok()
 }
 
 /// Release time of a set that is entered, seconds. The set is valid from then on.

@@ -1,8 +1,8 @@
 //! Checks the nominal closest approaches of a document against its mission.
 
 use super::claim::Claim;
-use super::encounters::distance;
-use super::figures::near;
+use super::encounters::{distance, shape_rounding};
+use super::figures::near_to;
 use super::untrue;
 use crate::evaluation::{Violation, nominal_distance, nominal_legs};
 use crate::target::{Motion, Target};
@@ -23,6 +23,8 @@ pub(super) fn check(claim: &Claim) -> Vec<Violation> {
     let all = claim.file.encounters.iter().zip(&claim.targets);
     all.filter_map(|(said, target)| {
         let label = |key: &str| format!("encounter with '{}', {key}", target.name);
+        let rounding = shape_rounding(target, said.undisturbed_tcpa_s.unwrap_or(0.0));
+        let near = |said: f64, so: f64| near_to(said, so, rounding);
         let missed = RESOLUTION * legs.iter().map(|leg| way(target, leg)).sum::<f64>();
         let (least, most) = match nominal_distance(&claim.own, &legs, target) {
             Some(so) => (so, so + missed),

@@ -10,6 +10,9 @@ use searoom::scenario::{Fault, ScenarioError};
 /// Maximum size of a CSV file in bytes.
 const FILE_BYTES: u64 = 16 * 1024 * 1024;
 
+/// Maximum number of rows of a CSV file: an answer takes some kilobytes per row.
+const ROWS: usize = 100_000;
+
 /// Maximum number of faults reported per file; the rest is counted.
 const REPORTED: usize = 20;
 
@@ -184,6 +187,11 @@ fn rows<const N: usize>(
             faults.push(fault(Some(line), "", found, &format!("{N}: {names}")));
             continue;
         }
+        if rows.len() == ROWS {
+            let found = format!("more than {ROWS} rows");
+            faults.push(fault(Some(line), "", found, &format!("at most {ROWS}")));
+            return rows;
+        }
         let mut row = [0.0; N];
         for ((number, column), at) in row.iter_mut().zip(columns).zip(order) {
             let read = match record.get(at) {
@@ -299,6 +307,18 @@ mod tests {
         assert_eq!(
             (read, faults),
             (vec![[1.0, 2.0, 3.0], [-4.0, 5.0, 6.0]], vec![])
+        );
+    }
+
+    #[test]
+    fn too_many_rows_are_one_fault() {
+        let mut text = "east_m,north_m,t_s\n".to_owned();
+        text.push_str(&"0,0,0\n".repeat(ROWS));
+        assert!(faults(text.as_bytes()).is_empty());
+        text.push_str("0,0,0\nx,y,z\n");
+        assert_eq!(
+            faults(text.as_bytes()),
+            ["line 100002: found more than 100000 rows; allowed: at most 100000"]
         );
     }
 

@@ -4,6 +4,7 @@ use crate::evaluation::distance::least::{Least, Probe};
 use crate::evaluation::distance::piece::Piece;
 use crate::frame::{Vector, cross, direction};
 use crate::geometry::Ellipse;
+use crate::tolerance;
 
 /// Number of directions of the initial scan.
 const DIRECTIONS: usize = 64;
@@ -14,6 +15,9 @@ const STEP: f64 = std::f64::consts::TAU / DIRECTIONS as f64;
 /// Golden-section steps around the best direction. They determine the direction to 4e-8, so the
 /// distance to 1e-15 of the set's size.
 const GOLDEN_STEPS: usize = 32;
+
+/// Relative rounding of a shape matrix and of its eigenvalues.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Ellipse of least trace around `O_0 + sum of d_j V_j + t V` for durations `d_j`, docs/theory.md
 /// section 3, by its support function
@@ -93,15 +97,37 @@ impl MovingEllipse {
         }
     }
 
-    /// Returns false when every section is a point or a segment.
+    /// Returns false when every section is a point or a segment, to [`tolerance::THIN_ELLIPSE`].
     pub fn has_interior(&self) -> bool {
-        let earlier = self.earlier.iter().map(|(e, _)| e);
-        let axes: Vec<Vector> = earlier
+        let terms = self.earlier.iter().map(|(e, _)| e);
+        let axes: Vec<(Vector, f64)> = terms
             .chain([&self.velocity])
-            .flat_map(|e| e.axes)
+            .flat_map(|e| e.axes.map(|axis| (axis, e.axes[0].norm())))
             .collect();
+        let spans = |(p, long): &(Vector, f64), (q, other): &(Vector, f64)| {
+            // Negated on purpose: a NaN has an interior.
+            !(cross(*p, *q).abs() <= tolerance::THIN_ELLIPSE * (long * other))
+        };
         let mut pairs = axes.iter().enumerate();
-        pairs.any(|(k, a)| axes[k..].iter().any(|b| cross(*a, *b) != 0.0))
+        pairs.any(|(k, a)| axes[k + 1..].iter().any(|b| spans(a, b)))
+    }
+
+    /// Largest effect of the rounding of the shape matrices on a distance at a time, metres.
+    ///
+    /// A document states an ellipse with the semi-axes `a >= b` by its shape matrix. Rounding of
+    /// the entries changes `b²` by some epsilons of `a²`, so `b` by that fraction of `a² / b`, or
+    /// of `a²` by the square root where `b` is smaller still.
+    pub fn rounding(&self, time: f64) -> f64 {
+        let [long, short] = [0, 1].map(|axis| {
+            let terms = self.earlier.iter();
+            let still = terms.map(|(e, factor)| e.axes[axis].norm() * factor);
+            still.sum::<f64>() + self.velocity.axes[axis].norm() * time
+        });
+        if long > 0.0 {
+            ROUNDING * long * long / (short + ROUNDING.sqrt() * long)
+        } else {
+            0.0
+        }
     }
 
     fn line(&self, normal: Vector, time: f64) -> Line {

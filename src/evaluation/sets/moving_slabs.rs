@@ -100,10 +100,31 @@ impl MovingSlabs {
         })
     }
 
+    /// Depth at a time within which a motion is on the edge of the set, metres; `None` without an
+    /// interior.
+    pub fn edge(&self, time: f64) -> Option<f64> {
+        self.has_interior()
+            .then(|| tolerance::DEPTH_M + self.rounding(time))
+    }
+
+    /// Largest effect of the rounding of the shape matrices of ellipses on a distance at a time,
+    /// metres.
+    pub fn rounding(&self, time: f64) -> f64 {
+        let slab = self.slab_at(time);
+        match &slab.set {
+            Moving::Polygon(_) => 0.0,
+            Moving::Ellipse(set) => set.rounding(time - slab.start),
+        }
+    }
+
+    fn slab_at(&self, time: f64) -> &Slab {
+        let index = self.slabs.partition_point(|slab| slab.end < time);
+        &self.slabs[index.min(self.slabs.len() - 1)]
+    }
+
     /// The section at a time, as a fixed set; `None` for ellipses.
     pub fn section_at(&self, time: f64) -> Option<MovingSet> {
-        let index = self.slabs.partition_point(|slab| slab.end < time);
-        let slab = &self.slabs[index.min(self.slabs.len() - 1)];
+        let slab = self.slab_at(time);
         match &slab.set {
             Moving::Polygon(set) => Some(set.still_at(time - slab.start)),
             Moving::Ellipse(_) => None,

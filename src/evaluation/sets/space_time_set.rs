@@ -34,6 +34,12 @@ impl SpaceTimeSet {
         }
     }
 
+    /// Depth at a time within which a motion is on the edge of the set, metres; `None` where the
+    /// sections are points or segments over some time interval, and so have no depth.
+    pub(crate) fn edge(&self, time: f64) -> Option<f64> {
+        MovingSlabs::new(&self.sets).edge(time)
+    }
+
     /// Returns false when the sections are points or segments over some time interval.
     pub(crate) fn has_interior(&self) -> bool {
         MovingSlabs::new(&self.sets).has_interior()

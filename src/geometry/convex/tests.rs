@@ -1,6 +1,7 @@
 use super::*;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::f64::consts::TAU;
 
 fn random_polygon(rng: &mut ChaCha8Rng) -> ConvexPolygon {
     let n = rng.random_range(1..8);
@@ -69,6 +70,32 @@ fn minkowski_sums_match_the_hull_of_all_vertex_sums() {
             assert!((sum.support(n) - a.support(n) - b.support(n)).abs() < 1e-9);
         }
         assert_eq!(sum.vertices().len(), hull.vertices().len(), "{a:?} + {b:?}");
+    }
+}
+
+/// After a translation, rounding decides which end of a horizontal edge is the lower one.
+#[test]
+fn a_translated_polygon_has_the_same_sums() {
+    let north = Vector::new(0.0, 1.0);
+    for sides in [4, 16, 36] {
+        let of = |radius: f64| {
+            let corner = |k| crate::frame::direction(TAU * (f64::from(k) + 0.5) / f64::from(sides));
+            let corners: Vec<Vector> = (0..sides).map(|k| corner(k) * radius).collect();
+            ConvexPolygon::hull(&corners).expect("finite")
+        };
+        let (disc, velocities) = (of(40.0), of(1200.0));
+        let sum = disc.minkowski_sum(&velocities);
+        for far in [1e3, 123456.789, -7654321.25, 9.9e6] {
+            let moved = disc.translated(Vector::new(-far, far));
+            let found = moved.minkowski_sum(&velocities);
+            assert!(
+                (found.area() / sum.area() - 1.0).abs() < 1e-6,
+                "{sides} {far}"
+            );
+            assert_eq!(found.vertices().len(), sum.vertices().len());
+            let lowest = moved.vertices().iter().map(|p| p.dot(&north));
+            assert_eq!(moved.vertices()[0].y, lowest.fold(f64::INFINITY, f64::min));
+        }
     }
 }
 

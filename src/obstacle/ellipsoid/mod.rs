@@ -57,6 +57,13 @@ struct Section {
     minor: f64,
 }
 
+/// True where the squared area of each pair of semi-axes is below a fraction of its upper bound.
+fn is_thinner(determinant: [f64; 3], roots: [f64; 2], fraction: f64) -> bool {
+    let [still, growing] = roots;
+    let largest = [still * still, still * growing, growing * growing];
+    (determinant.iter().zip(largest)).all(|(area, largest)| *area <= fraction * largest)
+}
+
 impl EllipsoidObstacle {
     /// From the positions at t = 0, metres, and the velocities, m/s. O(1).
     pub fn new(name: impl Into<String>, initial: Ellipse, velocity: Ellipse) -> Self {
@@ -84,10 +91,7 @@ impl EllipsoidObstacle {
             .sum();
         let determinant = [cross(a[0], a[1]).powi(2), mixed, cross(b[0], b[1]).powi(2)];
         let thin = tolerance::THIN * tolerance::THIN;
-        let is_flat = determinant[0] <= thin * roots[0] * roots[0]
-            && determinant[1] <= thin * roots[0] * roots[1]
-            && determinant[2] <= thin * roots[1] * roots[1];
-        let flat = is_flat.then(|| {
+        let flat = is_thinner(determinant, roots, thin).then(|| {
             let polygon = |e: &Ellipse| e.outer_polygon(DISC_SIDES);
             PolytopeObstacle::new(name.clone(), polygon(&initial), polygon(&velocity))
         });
@@ -114,6 +118,13 @@ impl EllipsoidObstacle {
     /// True when both sets are points or lie on parallel segments.
     pub fn is_flat(&self) -> bool {
         self.flat.is_some()
+    }
+
+    /// True when both sets are points or lie on parallel segments, to
+    /// [`tolerance::THIN_ELLIPSE`].
+    pub(crate) fn is_thin(&self) -> bool {
+        let thin = tolerance::THIN_ELLIPSE * tolerance::THIN_ELLIPSE;
+        is_thinner(self.determinant, self.roots, thin)
     }
 
     /// The exact polytope of a flat set.

@@ -159,6 +159,10 @@ impl EllipsoidVelocityObstacle<'_> {
     /// True when the velocity, m/s, is in the region. NaN is inside. By the cubic at distance 0,
     /// otherwise by the closest approach.
     pub fn contains(&self, velocity: Vector) -> bool {
+        // a flat set without interior holds its own centre up to rounding only
+        if self.sides.is_none() {
+            return true;
+        }
         let (x, horizon) = (self.position, self.horizon);
         if self.distance == 0.0 {
             return self.obstacle.in_velocity_obstacle(x, velocity, horizon);

@@ -248,7 +248,8 @@ impl Route {
             let on_leg = leg.filter(|(_, l)| {
                 curvature == 0.0
                     && cross(l.direction, pose.position - l.start).abs() < tolerance::JOINT_M
-                    && wrap(pose.heading - heading_of(l.direction)).abs() < 1e-7
+                    && wrap(pose.heading - heading_of(l.direction)).abs()
+                        <= tolerance::joint_rad(radius)
             });
             let piece = RoutePiece {
                 start: on_leg.map_or(pose, |(_, l)| {

@@ -36,18 +36,6 @@ pub enum Format {
 }
 
 /// Contents of a file.
-///
-/// ```
-/// use searoom::scenario::import::{Assumed, Contents, Format};
-///
-/// let file = "scenarios/dnv/traffic_situation_01.json".as_ref();
-/// let contents = Contents::read(file, &Assumed::default())?;
-/// let Contents::Situations { format, situations } = contents else {
-///     panic!("situations");
-/// };
-/// assert_eq!((format, situations.len()), (Format::Dnv, 1));
-/// # Ok::<(), searoom::scenario::ScenarioError>(())
-/// ```
 #[derive(Debug)]
 pub enum Contents {
     /// A scenario file, or a text that can only be meant as one; to be read by

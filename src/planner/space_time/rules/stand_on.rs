@@ -7,7 +7,7 @@
 //! before `t` own ship has an escape that is known to be clear, whatever the other ship does.
 
 use crate::colregs::{APPARENT_TIME, APPARENT_TURN};
-use crate::frame::{Side, heading_of};
+use crate::frame::{Side, heading_of, wrap};
 use crate::planner::clock::Clock;
 use crate::planner::cost::space_time_error;
 use crate::planner::space_time::chain::Chain;
@@ -18,7 +18,7 @@ use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::rules::compliance::{apparent_slow_speed, complies};
 use crate::planner::space_time::settings::{ESCAPE_HOLDS_S, ESCAPE_RETURN_ANGLES};
 use crate::planner::{Escape, NoPlan, Outcome, Plan, Planned, Problem};
-use crate::tolerance::TOUCH_M;
+use crate::tolerance::{self, TOUCH_M};
 use crate::trajectory::Segment;
 
 /// Turns of an escape, as multiples of the least readily apparent turn.
@@ -59,6 +59,9 @@ pub(crate) fn hold(
     contact: f64,
     clock: Clock,
 ) -> Option<StandOnPlan> {
+    if hurries(context.problem, nominal_motion) {
+        return None;
+    }
     let search = Escapes {
         context,
         nominal_motion,
@@ -82,6 +85,19 @@ pub(crate) fn hold(
         }
     }
     search.from(latest).min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+/// True where own ship starts on the path and could keep the desired speed, but the nominal motion
+/// does not, because the horizon requires an earlier arrival: that is no hold.
+fn hurries(problem: &Problem, nominal_motion: &[Segment]) -> bool {
+    let (own, leg) = (problem.own, &problem.desired.legs()[0]);
+    let off = (own.pose.position - leg.start).norm();
+    let turn = wrap(own.pose.heading - heading_of(leg.direction)).abs();
+    let desired = |speed: f64| (speed - leg.speed).abs() <= tolerance::FIGURE * leg.speed;
+    off <= tolerance::JOINT_M
+        && turn <= tolerance::joint_rad(own.turning_radius)
+        && own.speeds.iter().any(|speed| desired(*speed))
+        && !nominal_motion.first().is_some_and(|s| desired(s.speed))
 }
 
 /// Cheapest such motion from a few instants on, to any side that complies with the rules. Used

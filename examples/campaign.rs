@@ -1,0 +1,132 @@
+//! Runs a campaign over random scenes, prints its table, and checks its bounds.
+//!
+//! ```text
+//! cargo run --release --no-default-features --example campaign -- encounters --count 10000 --seed 0
+//! ```
+//!
+//! The exit status is 1 if a bound is missed. Scenes have the seeds `--seed`, `--seed` + 1, ….
+
+#[path = "../tests/campaigns/mod.rs"]
+mod campaigns;
+
+use std::panic::catch_unwind;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use campaigns::{
+    Report, compliance, control, dense_search, encounters, harbour, invariance, mutations,
+    path_time, wild,
+};
+use clap::{Args, Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(about = "Runs a campaign over random scenes, prints its table, and checks its bounds")]
+struct Options {
+    #[command(subcommand)]
+    campaign: Campaign,
+}
+
+#[derive(Subcommand)]
+enum Campaign {
+    /// Encounters with one target, a quarter of each kind
+    Encounters(Scenes<10_000>),
+    /// Scenes with 2, 4 and 10 targets, a third of each
+    Traffic(Scenes<3_000>),
+    /// Costs against a dense search over east, north, heading and time
+    DenseSearch(Scenes<200>),
+    /// Plans that keep to the rules, a quarter of each kind of encounter
+    Compliance(Scenes<12_000>),
+    /// Traffic among land, as many scenes in each of three waters
+    Harbour(Scenes<100>),
+    /// The path-time planner against a fine grid
+    PathTime(Scenes<3_000>),
+    /// The optimal-control planner on random scenes and from random starts
+    Control {
+        /// Scenes with three ellipsoids, and as many with six
+        #[arg(long, default_value_t = 200)]
+        count: usize,
+        /// Random starts of each shipped scenario
+        #[arg(long, default_value_t = 40)]
+        starts: usize,
+    },
+    /// Scenes moved, turned, mirrored and scaled
+    Invariance(Scenes<300>),
+    /// Numbers of plan documents altered, each alone
+    Mutations {
+        /// Numbers of each document; all of them if not given
+        #[arg(long, default_value_t = usize::MAX)]
+        count: usize,
+    },
+    /// Scenes of every planner and setting, from text to verification
+    Wild {
+        #[command(flatten)]
+        scenes: Scenes<10_000>,
+        /// Only this planner
+        #[arg(long, value_parser = wild::PLANNERS)]
+        planner: Option<String>,
+        /// Folder for the scenes with a fault
+        #[arg(long)]
+        keep: Option<PathBuf>,
+    },
+}
+
+#[derive(Args)]
+struct Scenes<const COUNT: u64> {
+    /// Number of scenes
+    #[arg(long, default_value_t = COUNT)]
+    count: u64,
+    /// Seed of the first scene
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+impl<const COUNT: u64> Scenes<COUNT> {
+    /// Seeds where every scene occurs in `kinds` kinds.
+    fn of_each(&self, kinds: u64) -> campaigns::Seeds {
+        self.seed..self.seed + self.count.div_ceil(kinds)
+    }
+}
+
+fn run(campaign: Campaign) -> Report {
+    match campaign {
+        Campaign::Encounters(scenes) => encounters::run(scenes.of_each(4)),
+        Campaign::Traffic(scenes) => encounters::run_among_many(scenes.of_each(3)),
+        Campaign::DenseSearch(scenes) => dense_search::run(scenes.of_each(4)),
+        Campaign::Compliance(scenes) => compliance::run(scenes.of_each(4)),
+        Campaign::Harbour(scenes) => harbour::run(scenes.of_each(1)),
+        Campaign::PathTime(scenes) => path_time::run(scenes.of_each(1)),
+        Campaign::Control { count, starts } => {
+            let mut report = control::run_scenes(count);
+            report.missed.extend(control::run_starts(starts).missed);
+            report
+        }
+        Campaign::Invariance(scenes) => {
+            let report = invariance::run(scenes.of_each(1));
+            invariance::print_larger_sets(scenes.of_each(5));
+            report
+        }
+        Campaign::Mutations { count } => mutations::run(count),
+        Campaign::Wild {
+            scenes,
+            planner,
+            keep,
+        } => wild::run(
+            scenes.seed,
+            scenes.count,
+            planner.as_deref(),
+            keep.as_deref(),
+        ),
+    }
+}
+
+fn main() -> ExitCode {
+    let campaign = Options::parse().campaign;
+    // a wrong plan may panic with its seed
+    let Ok(report) = catch_unwind(|| run(campaign)) else {
+        return ExitCode::FAILURE;
+    };
+    for missed in &report.missed {
+        eprintln!("missed: {missed}");
+    }
+    ExitCode::from(u8::from(!report.missed.is_empty()))
+}

@@ -1,0 +1,104 @@
+//! Costs of plans over those of the dense search.
+
+use rayon::prelude::*;
+use searoom::obstacle::LandObstacle;
+use searoom::pipeline::problem;
+use searoom::planner::Problem;
+use searoom::simulation::{EncounterKind, Placement, random_encounter};
+
+use super::{Answer, DenseSearch, recheck};
+use crate::campaigns::encounters::planned;
+use crate::campaigns::statistics::quantile;
+use crate::campaigns::{Report, Seeds};
+
+/// Cost difference in m² below which small costs are equal.
+const TINY: f64 = 5.0;
+
+/// Cost in m² above which the search finds no alternative where the planner has no plan.
+const WORTH_FINDING: f64 = 200_000.0;
+
+/// Maximum ratio of J to that of the dense search.
+const WORST_RATIO: f64 = 1.10;
+
+/// Runs the coarse search, then the fine search below its cost; the fine one takes ten times as
+/// long.
+fn searched(problem: &Problem, cost: f64, thorough: bool) -> Answer {
+    let coarse = DenseSearch::coarse(cost).cheaper_than(problem, cost);
+    if !thorough {
+        return coarse;
+    }
+    let below = coarse.cheaper.as_ref().map_or(cost, |f| f.cost);
+    let fine = DenseSearch::default().cheaper_than(problem, below);
+    Answer {
+        cheaper: fine.cheaper.or(coarse.cheaper),
+        ..fine
+    }
+}
+
+/// Encounters with one target: `seeds` of each kind. With more than two of each, the fine search
+/// follows the coarse one.
+pub fn run(seeds: Seeds) -> Report {
+    let thorough = seeds.clone().count() > 2;
+    let each = |kind| seeds.clone().map(move |seed| (kind, seed));
+    let scenes: Vec<(EncounterKind, u64)> = EncounterKind::ALL.into_iter().flat_map(each).collect();
+    let compared: Vec<_> = scenes
+        .par_iter()
+        .map(|&(kind, seed)| {
+            let drawn = random_encounter(kind, seed, Placement::Origin).expect("drawn");
+            let record = planned(seed, drawn);
+            let scenario = &record.drawn.scenario;
+            let problem = problem(scenario, &record.obstacles, LandObstacle::none());
+            let cost = record.plan.map_or(f64::INFINITY, |p| p.1);
+            let thorough = thorough && cost.is_finite();
+            let answer = searched(&problem, cost.min(WORTH_FINDING), thorough);
+            if let Some(found) = &answer.cheaper {
+                recheck(&problem, found);
+            }
+            (kind, seed, cost, answer)
+        })
+        .collect();
+    let mut report = Report::default();
+    let (mut ratios, mut cut_short) = (Vec::new(), 0);
+    for (kind, seed, cost, answer) in &compared {
+        let name = format!("{} {seed}", kind.name());
+        let found = answer.cheaper.as_ref().map(|f| f.cost);
+        if cost.is_infinite() {
+            let short = if answer.complete { "" } else { ", cut short" };
+            println!("{name}: no plan; dense search below {WORTH_FINDING:.0} m²: {found:?}{short}");
+            report.require(found.is_none(), || {
+                format!("{name}: no plan, {found:?} m² found")
+            });
+            continue;
+        }
+        cut_short += usize::from(!answer.complete);
+        let cheaper = found.unwrap_or(*cost);
+        let alike = cost - cheaper <= TINY;
+        let ratio = if alike { 1.0 } else { cost / cheaper };
+        ratios.push(ratio);
+        if ratio > 1.0 || !thorough {
+            println!(
+                "{name}: J {cost:.0} m², ratio {ratio:.3}, {} states",
+                answer.states
+            );
+        }
+        report.require(ratio <= WORST_RATIO, || {
+            format!("{name}: {cost:.1} m², {cheaper:.1} m² found")
+        });
+    }
+    let [half, most, worst] = [0.5, 0.95, 1.0].map(|share| quantile(&ratios, share));
+    println!(
+        "J over dense search (1 where nothing cheaper is found): {} scenes, median {half:.3}, \
+         95 % {most:.3}, worst {worst:.3}; {} above 1.05; {cut_short} searches cut short",
+        ratios.len(),
+        ratios.iter().filter(|r| **r > 1.05).count(),
+    );
+    let all = compared.len();
+    report.require(20 * ratios.len() >= 19 * all, || {
+        format!("{} of {all} compared", ratios.len())
+    });
+    report.require(most <= 1.05, || format!("{ratios:?}"));
+    report.require(2 * cut_short <= all, || {
+        format!("{cut_short} of {all} cut short")
+    });
+    report
+}

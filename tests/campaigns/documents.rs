@@ -1,0 +1,134 @@
+//! Plan documents of every kind, and what the check says of a changed one.
+#![allow(dead_code, reason = "tests and campaigns use a part each")]
+
+use std::path::{Path, PathBuf};
+
+use searoom::document::PlanDocument;
+use searoom::frame::Vector;
+use searoom::pipeline;
+use searoom::planner::Objective;
+use searoom::scenario::{Compliance, Scenario};
+use searoom::target::{Motion, Representation};
+use searoom::verification::{Verification, verify};
+use serde_json::Value;
+
+pub fn file(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenarios")
+        .join(path)
+}
+
+pub fn scenario(path: &str) -> Scenario {
+    Scenario::read(&file(path)).expect(path)
+}
+
+pub fn document(scenario: Scenario) -> Value {
+    let run = pipeline::run(scenario);
+    assert!(run.evaluation.as_ref().is_some_and(|e| e.verified()));
+    // serialise and parse, as for a file
+    let text = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+pub fn checked(document: &Value) -> Verification {
+    verify(&document.to_string()).expect("a plan document")
+}
+
+pub fn is_caught(document: &Value) -> bool {
+    match verify(&document.to_string()) {
+        Ok(found) => !found.verified(),
+        Err(_) => true,
+    }
+}
+
+/// Own ship stands on, holds course and speed, and escapes.
+pub fn stand_on() -> Value {
+    let mut scenario = scenario("colregs/stand-on.toml");
+    scenario.compliance = Compliance::Rules;
+    document(scenario)
+}
+
+/// Own ship starts inside the set of a ship that it must avoid, and leaves it.
+pub fn inside() -> Value {
+    let text = std::fs::read_to_string(file("colregs/head-on.toml")).expect("a scenario");
+    let mut scenario = Scenario::parse(&text).expect("a scenario");
+    scenario.own_ship.safety_margin = 80.0;
+    let Motion::Ship(ship) = &mut scenario.targets[0].motion else {
+        panic!("a ship");
+    };
+    ship.pose.position = Vector::new(70.0, 20.0);
+    ship.pose.heading = 0.4;
+    ship.speed = 3.0;
+    document(scenario)
+}
+
+/// The end is blocked: own ship stops before it at an accepted risk. It passes a ship that may
+/// cross early or late.
+pub fn barred() -> Value {
+    let text = r#"
+        title = "barred"
+        horizon_s = 300.0
+        own_ship = { position = { east_m = 0.0, north_m = 0.0 }, course_deg = 90.0, speed_mps = 5.0, length_m = 30.0,
+            beam_m = 8.0, turning_radius_m = 100.0, safety_margin_m = 10.0 }
+        mission = { waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1000.0, north_m = 0.0 }] }
+        planner = { kind = "path-time", max_risk = 0.6 }
+        [[targets]]
+        name = "at the end"
+        initial_set = { vertices_m = [[980.0, -2.0], [1080.0, -2.0], [1080.0, 2.0], [980.0, 2.0]] }
+        velocity_set = { vertices_mps = [[0.3, -0.3], [0.3, 0.3], [-0.3, 0.3], [-0.3, -0.3]] }
+        [[targets]]
+        name = "beside"
+        initial_set = { vertices_m = [[480.0, 60.0], [520.0, 60.0], [520.0, 70.0], [480.0, 70.0]] }
+        velocity_set = { vertices_mps = [[0.0, 0.0], [0.1, -2.0], [-0.1, -2.0]] }
+    "#;
+    document(Scenario::parse(text).expect("a scenario"))
+}
+
+/// One document of each kind: space-time, land, slabs, ellipses, accepted risk, path-time, forces,
+/// stand-on, and a start inside a set.
+pub fn documents() -> Vec<(&'static str, Value)> {
+    let mut risky = scenario("colregs/give-way.toml");
+    risky.max_risk = 0.4;
+    let mut round = scenario("colregs/head-on.toml");
+    round.targets[0].representation = Representation::Ellipsoid;
+    let mut quick = scenario("harbour/ferry-crossing.toml");
+    quick.objective = Objective::Time;
+    let mut one = scenario("paper/figure_9.toml");
+    one.targets.truncate(1);
+    vec![
+        ("head-on", document(scenario("colregs/head-on.toml"))),
+        ("at a risk", document(risky)),
+        ("ellipsoid", document(round)),
+        ("munkholmen", document(scenario("harbour/munkholmen.toml"))),
+        ("turning", document(scenario("uncertainty/turning.toml"))),
+        (
+            "changing velocities",
+            document(scenario("uncertainty/changing-velocities.toml")),
+        ),
+        ("ellipses", document(scenario("uncertainty/ellipse.toml"))),
+        ("canal", document(scenario("harbour/canal-transit.toml"))),
+        ("quick ferry", document(quick)),
+        ("figure 9", document(scenario("paper/figure_9.toml"))),
+        ("one ellipsoid", document(one)),
+        ("stand-on", stand_on()),
+        ("inside", inside()),
+    ]
+}
+
+/// Collects every number below `value` as JSON pointers.
+pub fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Number(_) => found.push(at.to_owned()),
+        Value::Array(list) => {
+            for (i, v) in list.iter().enumerate() {
+                numbers(v, &format!("{at}/{i}"), found);
+            }
+        }
+        Value::Object(map) => {
+            for (key, v) in map {
+                numbers(v, &format!("{at}/{key}"), found);
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,200 @@
+//! A search over (distance, time) that is small, slow and obviously right: what the path-time
+//! planner's arrival is held against.
+//!
+//! The path is cut into `cells` pieces and time into steps in which one piece is sailed at full
+//! speed. In every step own ship sails one piece or waits. With the sets as they are every step is
+//! tested as a motion, so what comes out is a plan, and no arrival can be better than the least: an
+//! upper bound. With the sets two pieces smaller on every side only the grid's points are tested.
+//! Rounded down to the grid every motion is one of the grid's and never more than two pieces away
+//! from itself at the same time, so no motion arrives earlier than that: a lower bound, less a
+//! step.
+//!
+//! Shared with the program: membership and contact of a set in the plane and time, not along a
+//! path.
+
+use searoom::frame::{Pose, Vector, heading_of};
+use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
+use searoom::trajectory::{DesiredTrajectory, Segment};
+
+/// A polyline by distance.
+pub struct Path {
+    pub points: Vec<Vector>,
+}
+
+impl Path {
+    pub fn length(&self) -> f64 {
+        self.points.windows(2).map(|p| (p[1] - p[0]).norm()).sum()
+    }
+
+    /// Waypoints passed by a distance, and the place there.
+    pub fn at(&self, distance: f64) -> (usize, Vector) {
+        let mut left = distance;
+        for (leg, pair) in self.points.windows(2).enumerate() {
+            let length = (pair[1] - pair[0]).norm();
+            if left <= length || leg + 2 == self.points.len() {
+                return (leg, pair[0] + (pair[1] - pair[0]) * (left / length));
+            }
+            left -= length;
+        }
+        unreachable!("the last leg ends it")
+    }
+
+    /// The motion between two distances in a span of time, straight pieces.
+    pub fn motion(&self, from: f64, to: f64, start: f64, duration: f64) -> Vec<Segment> {
+        let mut stops = vec![from];
+        let mut run = 0.0;
+        for pair in self.points.windows(2) {
+            run += (pair[1] - pair[0]).norm();
+            if run > from + 1e-9 && run < to - 1e-9 {
+                stops.push(run);
+            }
+        }
+        stops.push(to);
+        let time = |s: f64| {
+            if to > from {
+                start + duration * (s - from) / (to - from)
+            } else {
+                start
+            }
+        };
+        stops
+            .windows(2)
+            .map(|s| {
+                let (a, b) = (self.at(s[0]).1, self.at(s[1]).1);
+                let end = if to > from {
+                    time(s[1])
+                } else {
+                    start + duration
+                };
+                Segment {
+                    start: Pose::new(a, heading_of(b - a)),
+                    start_time: time(s[0]),
+                    duration: end - time(s[0]),
+                    speed: (b - a).norm() / (end - time(s[0])),
+                    turn_rate: 0.0,
+                }
+            })
+            .collect()
+    }
+}
+
+/// Metres that a motion may be inside a set. Those without interior block, too: planned around as
+/// sets a millimetre wide.
+fn depth(obstacle: &Obstacle) -> f64 {
+    let searoom::geometry::ConvexSet::Polygon(initial) = obstacle.section(0.0) else {
+        return 1e-7;
+    };
+    let width = |n: &Vector| initial.support(*n) + initial.support(-n);
+    if initial.normals().iter().any(|n| width(n) < 1.1e-3) {
+        -6e-4
+    } else {
+        1e-7
+    }
+}
+
+/// The earliest arrival on the grid, seconds; `None` when there is none before the horizon.
+/// `shrunk` asks for the lower bound.
+pub fn earliest(
+    path: &Path,
+    obstacles: &[Obstacle],
+    speed: f64,
+    horizon: f64,
+    cells: usize,
+    shrunk: bool,
+) -> Option<f64> {
+    let piece = path.length() / cells as f64;
+    let step = piece / speed;
+    let steps = (horizon / step).floor() as usize + usize::from(shrunk);
+    let margin = 2.0 * piece;
+    let depths: Vec<f64> = obstacles.iter().map(depth).collect();
+    let clear_point = |i: usize, k: usize| {
+        let (_, place) = path.at(i as f64 * piece);
+        obstacles
+            .iter()
+            .all(|o| o.signed_distance(place, k as f64 * step).distance > -margin)
+    };
+    let clear_step = |i: usize, j: usize, k: usize| {
+        let (from, to) = (i as f64 * piece, j as f64 * piece);
+        let clear = |s: &Segment| {
+            let mut each = obstacles.iter().zip(&depths);
+            each.all(|(o, depth)| o.first_contact(s, *depth).is_none())
+        };
+        path.motion(from, to, k as f64 * step, step)
+            .iter()
+            .all(clear)
+    };
+    let mut reached = vec![false; cells + 1];
+    reached[0] = !shrunk || clear_point(0, 0);
+    for k in 0..steps {
+        let mut next = vec![false; cells + 1];
+        for (i, _) in reached.iter().enumerate().filter(|(_, here)| **here) {
+            for j in [i, i + 1] {
+                if j > cells || next[j] {
+                    continue;
+                }
+                next[j] = if shrunk {
+                    clear_point(j, k + 1)
+                } else {
+                    clear_step(i, j, k)
+                };
+            }
+        }
+        reached = next;
+        if reached[cells] {
+            return Some((k + 1) as f64 * step);
+        }
+        if !reached.contains(&true) {
+            return None;
+        }
+    }
+    None
+}
+
+/// The least space-time error on the grid, m²; `None` when the end is not reached before the
+/// horizon. What it finds is a plan, so nothing is the least that costs more. The error is
+/// integrated by Simpson's rule over each step.
+pub fn least_error(
+    path: &Path,
+    obstacles: &[Obstacle],
+    desired: &DesiredTrajectory,
+    time_weight: f64,
+    speed: f64,
+    horizon: f64,
+    cells: usize,
+) -> Option<f64> {
+    let piece = path.length() / cells as f64;
+    let step = piece / speed;
+    let steps = (horizon / step).floor() as usize;
+    let depths: Vec<f64> = obstacles.iter().map(depth).collect();
+    let error = |s: f64, t: f64| desired.nearest(path.at(s).1, t, time_weight).error;
+    let mut cost = vec![f64::INFINITY; cells + 1];
+    cost[0] = 0.0;
+    let mut best = f64::INFINITY;
+    for k in 0..steps {
+        let mut next = vec![f64::INFINITY; cells + 1];
+        for (i, before) in cost.iter().enumerate().filter(|(_, c)| **c < best) {
+            for j in [i, i + 1] {
+                if j > cells || *before >= next[j] {
+                    continue;
+                }
+                let (from, to) = (i as f64 * piece, j as f64 * piece);
+                let start = k as f64 * step;
+                let clear = |s: &Segment| {
+                    let mut each = obstacles.iter().zip(&depths);
+                    each.all(|(o, depth)| o.first_contact(s, *depth).is_none())
+                };
+                let (middle, end) = (start + 0.5 * step, start + step);
+                let mean =
+                    (error(from, start) + 4.0 * error(0.5 * (from + to), middle) + error(to, end))
+                        / 6.0;
+                let total = before + mean * step;
+                if total < next[j] && path.motion(from, to, start, step).iter().all(clear) {
+                    next[j] = total;
+                }
+            }
+        }
+        best = best.min(next[cells]);
+        cost = next;
+    }
+    best.is_finite().then_some(best / desired.duration())
+}

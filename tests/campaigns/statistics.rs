@@ -1,0 +1,64 @@
+//! Quantiles, and bounds on a proportion.
+
+/// The value below which the fraction `p` of the values lies; NaN without values.
+pub fn quantile(values: &[f64], p: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().saturating_sub(1);
+    sorted
+        .get((p * last as f64).ceil() as usize)
+        .copied()
+        .unwrap_or(f64::NAN)
+}
+
+/// Median, 95th percentile and maximum in words.
+pub fn spread(values: &[f64]) -> String {
+    let [half, most, worst] = [0.5, 0.95, 1.0].map(|p| quantile(values, p));
+    format!("median {half:.2}, 95 % {most:.2}, worst {worst:.2}")
+}
+
+/// Clopper–Pearson, one-sided, 95 %: the largest failure probability at which `failures` or fewer
+/// in `trials` still has a chance of 5 %. Clopper & Pearson 1934, doi:10.1093/biomet/26.4.404. By
+/// bisection of the binomial distribution function; O(failures · 60).
+pub fn failure_bound(failures: usize, trials: usize) -> f64 {
+    if failures >= trials {
+        return 1.0;
+    }
+    let (mut low, mut high) = (failures as f64 / trials as f64, 1.0);
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if at_most(failures, trials, middle) > 0.05 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// Probability of at most `k` events in `n` trials of probability `0 < p < 1`, terms in logarithms.
+fn at_most(k: usize, n: usize, p: f64) -> f64 {
+    let mut log_term = n as f64 * (1.0 - p).ln();
+    let mut sum = log_term.exp();
+    for i in 0..k {
+        log_term += ((n - i) as f64 / (i + 1) as f64).ln() + p.ln() - (1.0 - p).ln();
+        sum += log_term.exp();
+    }
+    sum
+}
+
+#[test]
+fn bounds_match_published_values() {
+    // docs/colregs.md section 4.1
+    for (failures, trials, bound) in [
+        (0, 299, 9.97e-3),
+        (0, 10_000, 3.0e-4),
+        (1, 10_000, 4.74e-4),
+        (3, 10_000, 7.75e-4),
+    ] {
+        let found = failure_bound(failures, trials);
+        assert!((found / bound - 1.0).abs() < 5e-3, "{found} {bound}");
+    }
+    assert_eq!(failure_bound(5, 5), 1.0);
+    assert!((quantile(&[3.0, 1.0, 2.0], 0.5) - 2.0).abs() < 1e-12);
+}

@@ -1,0 +1,99 @@
+//! Checks that docs/documents.md names every key of the documents, and docs/verify.md those of a
+//! verification.
+
+use std::collections::BTreeSet;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+const PAGE: &str = include_str!("../../docs/documents.md");
+const VERIFICATION: &str = include_str!("../../docs/verify.md");
+
+fn keys(value: &Value, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(map) => {
+            for (key, inner) in map {
+                found.insert(key.clone());
+                // its content has a separate page
+                if key != "optimal_control" {
+                    keys(inner, found);
+                }
+            }
+        }
+        Value::Array(list) => list.iter().for_each(|inner| keys(inner, found)),
+        _ => {}
+    }
+}
+
+fn printed(args: &[&str]) -> Vec<u8> {
+    let output = Command::new(env!("CARGO_BIN_EXE_searoom"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(args)
+        .output()
+        .expect("runs");
+    output.stdout
+}
+
+fn keys_of(args: &[&str]) -> BTreeSet<String> {
+    let document: Value = serde_json::from_slice(&printed(args)).expect("one document");
+    let mut found = BTreeSet::new();
+    keys(&document, &mut found);
+    found
+}
+
+#[test]
+fn every_key_is_on_the_page() {
+    let mut all = keys_of(&["suite", "scenarios/colregs", "--json"]);
+    for scenario in [
+        "scenarios/colregs/head-on.toml",
+        "scenarios/paper/figure_9.toml",
+        "scenarios/harbour/alternative-path.toml",
+        "scenarios/uncertainty/changing-velocities.toml",
+    ] {
+        all.extend(keys_of(&["plan", scenario, "--json"]));
+    }
+    all.extend(keys_of(&["compare", "scenarios/colregs", "--json"]));
+    assert!(all.len() > 90, "{all:?}");
+    named(PAGE, &all);
+}
+
+#[test]
+fn every_key_of_a_verification_is_on_its_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plan = folder.path().join("plan.json");
+    let printed = printed(&["plan", "scenarios/harbour/munkholmen.toml", "--json"]);
+    std::fs::write(&plan, printed).expect("written");
+    let plan = plan.to_str().expect("text");
+    named(VERIFICATION, &keys_of(&["verify", plan, "--json"]));
+}
+
+#[cfg(feature = "recording")]
+#[test]
+fn every_key_of_a_recording_is_on_the_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).to_str().expect("text").to_owned();
+    let [first, second] = ["head-on", "give-way"].map(|name| {
+        let recording = file(&format!("{name}.rrd"));
+        let scenario = format!("scenarios/colregs/{name}.toml");
+        printed(&["plan", &scenario, "--rrd", &recording]);
+        recording
+    });
+    let mut all = keys_of(&["inspect", "--json", &first]);
+    all.extend(keys_of(&[
+        "inspect",
+        "--json",
+        "--csv",
+        "curves/clearance_m",
+        &first,
+    ]));
+    all.extend(keys_of(&["inspect", "--json", &first, &second]));
+    named(PAGE, &all);
+}
+
+fn named(page: &str, keys: &BTreeSet<String>) {
+    let missing: Vec<_> = keys
+        .iter()
+        .filter(|key| !page.contains(&format!("`{key}`")))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}

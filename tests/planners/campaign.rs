@@ -1,0 +1,60 @@
+//! Each campaign with few scenes; `examples/campaign.rs` runs more.
+
+use crate::campaigns::{
+    compliance, control, dense_search, encounters, harbour, invariance, mutations, path_time, wild,
+};
+
+#[test]
+fn plans_of_random_encounters_are_clear_of_whatever_the_target_may_do() {
+    encounters::run(0..75).assert_met();
+}
+
+#[test]
+fn plans_among_many_targets_are_clear_of_all() {
+    encounters::run_among_many(0..10).assert_met();
+}
+
+#[test]
+fn a_dense_search_finds_hardly_anything_cheaper() {
+    dense_search::run(0..2).assert_met();
+}
+
+#[test]
+fn plans_keep_to_the_rules() {
+    compliance::run(0..100).assert_met();
+}
+
+#[test]
+fn plans_keep_off_land_and_targets_in_the_harbour() {
+    harbour::run(0..30).assert_met();
+}
+
+#[test]
+fn plans_on_paths_are_those_of_a_fine_grid() {
+    path_time::run(0..300).assert_met();
+}
+
+#[test]
+fn plans_by_forces_are_the_ships_and_clear_between_the_nodes() {
+    control::run_scenes(5).assert_met();
+}
+
+#[test]
+fn no_random_start_finds_a_cheaper_plan_by_forces() {
+    control::run_starts(10).assert_met();
+}
+
+#[test]
+fn a_scene_elsewhere_another_way_or_of_another_size_has_the_same_plan() {
+    invariance::run(0..60).assert_met();
+}
+
+#[test]
+fn wild_scenes_are_planned_and_verified_without_a_fault() {
+    wild::run(1, 100, None, None).assert_met();
+}
+
+#[test]
+fn every_number_of_a_motion_and_its_figures_is_held() {
+    mutations::run(120).assert_met();
+}

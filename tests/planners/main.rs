@@ -1,0 +1,14 @@
+//! Tests of the planners, from a scenario to the verdict of the independent checker.
+
+#[path = "../campaigns/mod.rs"]
+mod campaigns;
+
+mod campaign;
+mod encounters;
+mod harbour;
+mod land;
+mod long_routes;
+mod optimal_control;
+mod path_networks;
+mod path_time;
+mod roles;

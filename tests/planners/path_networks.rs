@@ -1,0 +1,313 @@
+//! The path-time planner through the whole program: what is planned is right by its own judgement
+//! and by that of its document.
+
+mod scene;
+
+use searoom::document::PlanDocument;
+use searoom::pipeline::{self, Relaxation, RelaxationLevel, Run};
+use searoom::planner::path_time::PathTimePlanner;
+use searoom::planner::{Objective, Outcome};
+use searoom::scenario::Scenario;
+use searoom::trajectory::Trajectory;
+use searoom::verification::verify;
+use serde_json::{Value, json};
+
+fn run(text: &str) -> Result<Run, String> {
+    let mut scenario = Scenario::parse(text).map_err(|faults| format!("unreadable: {faults:?}"))?;
+    scenario.planner = &PathTimePlanner;
+    Ok(pipeline::run(scenario))
+}
+
+fn document(run: &Run) -> Value {
+    serde_json::to_value(PlanDocument::of(run)).expect("JSON")
+}
+
+/// What is wrong with a document; empty where nothing is.
+fn faults(document: &Value) -> String {
+    match verify(&document.to_string()) {
+        Ok(found) if found.verified() => String::new(),
+        Ok(found) => format!("{:?}", found.violations),
+        Err(error) => error.to_string(),
+    }
+}
+
+fn verified(text: &str) -> Result<Run, String> {
+    let run = run(text)?;
+    if run.planned.outcome.plan().is_none() {
+        return Ok(run);
+    }
+    let judged = run.evaluation.as_ref().expect("every plan is judged");
+    if !judged.verified() {
+        return Err(format!("by itself: {:?}", judged.violations));
+    }
+    let faults = faults(&document(&run));
+    if faults.is_empty() {
+        Ok(run)
+    } else {
+        Err(format!("by its document: {faults}"))
+    }
+}
+
+fn shipped(name: &str) -> String {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(folder.join(name)).expect("readable")
+}
+
+fn trajectory(run: &Run) -> &Trajectory {
+    &run.planned.outcome.plan().expect("a plan").trajectory
+}
+
+/// Networks of paths that share places and come back to their own, among ships over the start, over
+/// the end and anywhere: every answer is a plan that passes its checks, or says why there is none.
+/// What does not arrive says so.
+#[test]
+fn plans_on_random_networks_pass_their_checks() {
+    let count = 200;
+    let (mut read, mut solved, mut waiting, mut inside, mut none) = (0, 0, 0, 0, 0);
+    let (mut late, mut wrong) = (0, Vec::new());
+    for seed in 0..count {
+        let text = scene::draw(seed);
+        let run = match verified(&text) {
+            Ok(run) => run,
+            Err(fault) if fault.starts_with("unreadable: ") => continue,
+            Err(fault) => {
+                wrong.push(format!("{seed}: {fault}\n{text}"));
+                continue;
+            }
+        };
+        read += 1;
+        if matches!(run.planned.outcome, Outcome::Deadline(_)) {
+            println!("{seed}: out of time\n{text}");
+            late += 1;
+        }
+        let Some(plan) = run.planned.outcome.plan() else {
+            none += 1;
+            continue;
+        };
+        let short = |r: &Relaxation| matches!(r, Relaxation::Arrival { .. });
+        assert_eq!(
+            run.relaxations.iter().any(short),
+            plan.to_go > 0.0,
+            "{seed}"
+        );
+        assert!(
+            plan.to_go > 0.0 || run.level != RelaxationLevel::Waiting,
+            "{seed}"
+        );
+        match run.level {
+            RelaxationLevel::Waiting => waiting += 1,
+            RelaxationLevel::Inside => inside += 1,
+            _ => solved += 1,
+        }
+    }
+    let told = format!(
+        "{read} of {count}: {solved} arrive, {waiting} wait, {inside} enter, {none} without, {late} late"
+    );
+    println!("{told}");
+    assert!(wrong.is_empty(), "{}\n{}", wrong.len(), wrong.join("\n"));
+    assert!(2 * read > count && 2 * solved > read, "{told}");
+    assert!(40 * waiting > read && 10 * inside > read, "{told}");
+    assert!(20 * none < read, "{told}");
+}
+
+/// A start in a set, on a network that is cut where its path meets itself: she leaves it, and
+/// arrives at the end.
+#[test]
+fn out_of_a_set_the_plan_goes_on_to_the_end() {
+    let run = verified(include_str!("../faults/exit3-path-time-stops-short.toml")).expect("sound");
+    assert_eq!(run.level, RelaxationLevel::Inside);
+    let plan = run.planned.outcome.plan().expect("a plan");
+    let off = (plan.trajectory.end().position - run.scenario.desired.end()).norm();
+    assert!(plan.to_go == 0.0 && off < 1e-6, "{off}");
+    let until = run.released[0].expect("it starts inside");
+    assert!(until > 0.0 && until < 20.0, "{until}");
+}
+
+/// A path that comes to a place twice, and an alternative that does: from one pass to the other
+/// only by sailing the alternative.
+#[test]
+fn one_pass_of_a_place_is_not_another() {
+    verified(include_str!("../faults/exit3-path-time-place-twice.toml")).expect("sound");
+    verified(include_str!(
+        "../faults/exit3-path-time-millimetre-leg.toml"
+    ))
+    .expect("sound");
+}
+
+/// Who waits at the start on another course than that of the first leg turns when it moves off.
+#[test]
+fn a_wait_at_the_start_is_not_turned() {
+    let text = include_str!("../faults/exit3-path-time-wait-turned.toml");
+    let run = verified(text).expect("sound");
+    let first = trajectory(&run).segments()[0];
+    assert_eq!(
+        (first.speed, first.start.heading),
+        (0.0, run.scenario.own_ship.pose.heading)
+    );
+}
+
+/// The error of a plan is that against the mission, on whatever path it sails: so the mission
+/// itself, which nobody bars, is sailed.
+#[test]
+fn the_error_on_an_alternative_is_that_against_the_mission() {
+    let text = include_str!("../faults/verify-rejects-path-time-alternative.toml");
+    let run = verified(text).expect("sound");
+    assert!((trajectory(&run).length() - run.scenario.desired.length()).abs() < 1e-6);
+    let cost = |run: &Run| run.planned.outcome.plan().expect("a plan").cost;
+    assert!(cost(&run) < 1e-9, "{}", cost(&run));
+    // with a wreck on the last leg of the mission alone the alternative is taken, at its price
+    let wreck = "\n[[targets]]\nname = \"wreck\"\nposition = { east_m = 100.0, north_m = 75.0 }\ncourse_deg = 0.0\n\
+                 speed_mps = 0.0\nlength_m = 10.0\nbeam_m = 6.0\n";
+    let run = verified(&format!("{text}{wreck}")).expect("sound");
+    let error = run.evaluation.as_ref().expect("judged").space_time_error;
+    assert!(run.relaxations.is_empty() && error > 1000.0, "{error}");
+    assert!((cost(&run) - error).abs() < 1e-6 * error);
+    let mut less = document(&run);
+    less["cost"]["objective"] = json!(1.01 * error);
+    assert!(faults(&less).contains("cost.objective"));
+}
+
+/// A slower ship ahead on a path without a way past: own ship follows, clear of the whole shape up
+/// to the horizon, and says that it does not arrive.
+#[test]
+fn behind_a_slower_ship_own_ship_follows_and_says_that_it_does_not_arrive() {
+    let run = verified(&shipped("scenarios/colregs/overtaking.toml")).expect("sound");
+    assert_eq!(run.level, RelaxationLevel::Waiting);
+    let judged = run.evaluation.as_ref().expect("judged");
+    assert!(
+        judged.min_clearance > 20.0 && run.max_risk == 0.0,
+        "{}",
+        judged.min_clearance
+    );
+    assert!(judged.delay.is_nan() && judged.duration == run.scenario.horizon);
+    let [Relaxation::Arrival { target, amount }] = &run.relaxations[..] else {
+        panic!("{:?}", run.relaxations);
+    };
+    assert_eq!(target, "target");
+    assert!((amount - (1500.0 - judged.length)).abs() < 1e-6, "{amount}");
+    let reason = run.reason().expect("why");
+    assert!(
+        reason.contains("is there or ahead up to the horizon"),
+        "{reason}"
+    );
+    let document = document(&run);
+    assert_eq!(document["cost"]["arrived"], false);
+    assert_eq!(document["outcome"], "relaxed");
+    // who says that it arrives, or that more of the way is done, or goes on for less than the
+    // horizon, is found out
+    let altered = |alter: &dyn Fn(&mut Value)| {
+        let mut altered = document.clone();
+        alter(&mut altered);
+        faults(&altered)
+    };
+    assert!(altered(&|d| d["cost"]["arrived"] = json!(true)).contains("cost.arrived"));
+    let silent = altered(&|d| {
+        d["outcome"] = json!("solved");
+        (d["relaxation"], d["relaxations"]) = (Value::Null, json!([]));
+        d["cost"]["arrived"] = json!(true);
+    });
+    assert!(silent.contains("arrival"), "{silent}");
+    let nearer = altered(&|d| {
+        d["relaxations"][0]["amount"] = json!(100.0);
+        d["relaxation"]["amount"] = json!(100.0);
+    });
+    assert!(nearer.contains("relaxation of arrival, amount"), "{nearer}");
+    let shorter = altered(&|d| {
+        let segments = d["trajectory"]["segments"]
+            .as_array_mut()
+            .expect("segments");
+        let last = segments.last_mut().expect("some");
+        last["duration_s"] = json!(last["duration_s"].as_f64().expect("a number") - 1.0);
+    });
+    assert!(shorter.contains("s from the horizon"), "{shorter}");
+}
+
+/// Ships that come the other way, where nothing along the path is clear: own ship stops and lets
+/// itself be passed; inside the set it makes no way, and when the ship is past it goes on to the
+/// end.
+#[test]
+fn where_a_ship_comes_down_the_path_own_ship_stops() {
+    let text = shipped("scenarios/colregs/head-on.toml");
+    for objective in [
+        Objective::SpaceTimeError,
+        Objective::Time,
+        Objective::Length,
+    ] {
+        let mut scenario = Scenario::parse(&text).expect("sound");
+        (scenario.planner, scenario.objective) = (&PathTimePlanner, objective);
+        let run = pipeline::run(scenario);
+        assert_eq!(run.level, RelaxationLevel::Inside);
+        assert_eq!(faults(&document(&run)), "");
+        let until = run.released[0].expect("it is entered");
+        let hard = &run.sets[0].hard;
+        let trajectory = trajectory(&run);
+        let mut inside = 0;
+        for time in trajectory.sample_times(0.5, 10_000) {
+            use searoom::obstacle::SpaceTimeObstacle;
+            let at = trajectory.pose_at(time).position;
+            if hard.signed_distance(at, time).distance < -1e-3 {
+                inside += 1;
+                assert_eq!(trajectory.speed_at(time), 0.0, "at {time} s");
+                assert!(time <= until);
+            }
+        }
+        assert!(inside > 20 && trajectory.segments()[1].start_time < until);
+        assert_eq!(run.planned.outcome.plan().expect("a plan").to_go, 0.0);
+    }
+}
+
+/// A ship at anchor over the last waypoint: own ship stays off, and says so; at a horizon that ends
+/// before it gets there as well.
+#[test]
+fn before_a_ship_over_the_end_own_ship_stops() {
+    let anchored = |horizon: f64| {
+        let text = format!(
+            "title = \"anchored\"\nhorizon_s = {horizon}\n[own_ship]\nposition = {{ east_m = 0.0, north_m = 0.0 }}\ncourse_deg = 90.0\n\
+             speed_mps = 5.0\nlength_m = 20.0\nbeam_m = 6.0\nturning_radius_m = 50.0\n[mission]\n\
+             waypoints = [{{ east_m = 0.0, north_m = 0.0 }}, {{ east_m = 600.0, north_m = 0.0 }}]\n[planner]\ncompliance = \"none\"\n\
+             [[targets]]\nname = \"anchored\"\nposition = {{ east_m = 600.0, north_m = 0.0 }}\ncourse_deg = 0.0\nspeed_mps = 0.0\n\
+             length_m = 40.0\nbeam_m = 8.0\n"
+        );
+        verified(&text).expect("sound")
+    };
+    for horizon in [130.0, 1000.0] {
+        let run = anchored(horizon);
+        assert_eq!(run.level, RelaxationLevel::Waiting);
+        let judged = run.evaluation.as_ref().expect("judged");
+        assert!(judged.min_clearance >= run.scenario.own_ship.safety_margin - 1e-6);
+        assert!(
+            judged.length > 500.0 && judged.duration == horizon,
+            "{}",
+            judged.length
+        );
+    }
+}
+
+/// The shipped scenario does what it says: the other path, on which it sails slower for the ship
+/// that crosses; without the dredger its own, without the coaster at full speed.
+#[test]
+fn on_the_alternative_path_the_ferry_lets_the_coaster_pass() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let file = file.join("scenarios/harbour/alternative-path.toml");
+    let run = |left_out: &str| {
+        let mut scenario = Scenario::read(&file).expect("sound");
+        scenario.targets.retain(|target| target.name != left_out);
+        pipeline::run(scenario)
+    };
+    let arrival = |run: &Run| {
+        assert!(
+            run.relaxations.is_empty() && run.evaluation.as_ref().is_some_and(|e| e.verified())
+        );
+        let diagram = run.planned.path_time.as_ref().expect("a diagram");
+        let other = diagram.legs.iter().any(|leg| leg.path == 1);
+        (other, trajectory(run).end_time(), trajectory(run).length())
+    };
+    let (other, both, length) = arrival(&run(""));
+    let (without_coaster, alone, _) = arrival(&run("coaster"));
+    let (without_dredger, ..) = arrival(&run("dredger"));
+    assert!(other && without_coaster && !without_dredger);
+    assert!(
+        (alone - length / 5.0).abs() < 1e-6 && both > alone + 5.0,
+        "{both} {alone}"
+    );
+}

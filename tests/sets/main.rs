@@ -1,0 +1,11 @@
+//! Tests of sets in space and time, each question against a slow definition or a known relation.
+
+mod assessment;
+mod definitions;
+mod ellipsoid_velocity_obstacle;
+mod generators;
+mod metamorphic;
+mod obstacles;
+mod outer_excess;
+mod relations;
+mod representations;

@@ -1,0 +1,328 @@
+//! Altered settings, sets and figures: every one is detected.
+
+use searoom::scenario::{Compliance, Scenario};
+use serde_json::{Value, json};
+
+use crate::alter::{alter, assert_rejected, assert_word, at, give_up, list, segments};
+use crate::documents::{checked, document, inside, is_caught, scenario, stand_on};
+
+/// Alterations that increase the danger.
+const SETTING: &str = r#"
+a set less | /obstacles/0 remove |
+a set for nobody | /obstacles/0/name = "nobody" | no target
+a target less | /targets/0 remove |
+no sets and no targets | /obstacles = []; /targets = [] | encounters
+no targets at all | /obstacles = []; /targets = []; /encounters = [] | cost.min_clearance_m
+a set that ends before the horizon | /obstacles/0/valid_s/1 + -300 |
+a set that begins late | /obstacles/0/valid_s/0 + 1 | valid from
+a turning radius above the plan's | /own_ship/turning_radius_m * 1.000001 | turning radius
+a turn on the spot | /trajectory/segments/*/speed_mps = 0 | turning radius
+a speed that own ship has not | /own_ship/speeds_mps/* * 0.9 | speed
+a horizon before arrival | /horizon_s = 100 | arrival time
+own ship elsewhere | /own_ship/position/north_m + 0.01 | start position
+own ship on another course | /own_ship/course_deg + 0.01 | start heading
+a longer ship | /own_ship/length_m + 5 | cost.min_clearance_m
+a wider margin | /own_ship/safety_margin_m + 300 | too small for the hull
+another mission | /mission/waypoints/1/north_m + 1 | arrival
+a target elsewhere | /targets/0/ship/position/north_m + 100 | encounter
+a longer target | /targets/0/ship/length_m + 200 | too small for the hull
+a target less well known | /targets/0/ship/position_std_m + 40 | too small for the hull
+a target on another course | /targets/0/ship/course_deg + 1 | too small for her velocities
+a faster target | /targets/0/ship/speed_mps + 0.1 | too small for her velocities
+more course spread | /targets/0/ship/course_spread_deg + 1 | too small for her velocities
+more speed spread | /targets/0/ship/speed_spread_mps + 0.1 | too small for her velocities
+a target that may turn | /targets/0/ship/turn_rate_deg_per_s + 0.1 | too small for her velocities
+a set over the plan | /obstacles/0/initial_set/vertices_m/*/0 * 1.2; /obstacles/0/initial_set/vertices_m/*/1 * 5 | set of 'target'
+fewer velocities | /obstacles/0/velocity_set/vertices_mps/*/1 * 0.9 | too small for her velocities
+one encounter less | /encounters/0 remove | encounters
+another side | /encounters/0/passing_side = "starboard" | passing_side
+a mission that was not fulfilled | /cost/arrived = false | cost.arrived
+no cost | /cost = null | cost
+samples cut off | /trajectory/samples/last remove | samples
+a sample cut out | /trajectory/samples/40 remove | samples
+no samples | /trajectory/samples = [] | samples
+"#;
+
+/// Alterations of slabs, entered sets, risk, land, forces and paths.
+const TURNING: &str = r#"
+a slab less | /obstacles/1 remove | valid from
+the last slab less | /obstacles/last remove | valid until
+a slab elsewhere | /obstacles/1/initial_set/vertices_m/0/0 + 0.1 |
+a slab that lags | /obstacles/1/initial_set/vertices_m/*/1 + 5 | does not begin with the final section
+a target that turns faster | /targets/0/ship/turn_rate_deg_per_s * 1.2 | too small for her velocities
+"#;
+const TIMED_SETS: &str = r#"
+velocities that begin earlier | /targets/0/velocity_sets/0/until_s + -20 | too small for the velocity set
+a larger set | /targets/0/initial_set/vertices_m/0/0 * 1.5 |
+farther apart | /encounters/0/undisturbed_dcpa_m + 0.001 | undisturbed_dcpa_m
+"#;
+const ELLIPSES: &str = r#"
+a larger target | /targets/0/initial_set/shape_m2/0/0 * 1.1 | too small for the initial set
+a faster target | /targets/0/velocity_sets/0/shape_m2_per_s2/1/1 * 1.1 | too small for the velocity set
+a larger ellipse | /obstacles/0/initial_set/shape_m2/*/* * 9 | set of 'tracked': distance
+farther apart | /encounters/0/undisturbed_dcpa_m = 5000 | undisturbed_dcpa_m
+nearer | /encounters/0/undisturbed_dcpa_m + -0.001 | undisturbed_tcpa_s
+"#;
+const RISK: &str = r#"
+less risk than was taken | /cost/max_risk * 0.9 | cost.max_risk
+less risk accepted | /max_risk = 0.1 |
+more risk accepted | /max_risk = 0.6 |
+no risk | /cost/max_risk = 0 | cost.max_risk
+"#;
+const LAND: &str = r#"
+a margin to land that is not kept | /own_ship/land_margin_m = 70 | land
+land moved | /land/*/*/1 + 60 | land
+farther from land | /cost/min_land_distance_m + 1 | cost.min_land_distance_m
+nearer to land | /cost/min_land_distance_m * 0.5 | min_land_distance_m
+no land to be far from | /cost/min_land_distance_m = null | cost.min_land_distance_m
+"#;
+const FIGURE_9: &str = r#"
+weaker engines | /optimal_control/force_limits/surge_n * 0.01 | surge force
+a weaker rudder | /optimal_control/force_limits/yaw_nm * 0.01 | yaw moment
+a cheaper plan | /cost/objective * 0.9999 | cost.objective
+other weights | /optimal_control/control_weights/1 * 1.001 | cost.objective
+a ship of another size | /own_ship/length_m * 1.01 | off the plan
+an error counted for longer | /cost/space_time_error_until_s * 1.01 | cost.space_time_error_until_s
+a larger ellipse | /obstacles/0/initial_set/shape_m2/*/* * 1.5 | set of
+"#;
+const CANAL: &str = r#"
+another profile | /path_time/profile/3/1 + 1 | path_time.profile
+a corner moved in time while waiting | /path_time/profile/8/1 + -0.4 | path_time.profile
+a profile cut off | /path_time/profile/last remove | path_time.profile
+off the path | /mission/waypoints/1/east_m + 0.5 | path
+a slower ship | /own_ship/speeds_mps/* * 0.5 | speed
+"#;
+
+#[test]
+fn every_altered_setting_is_caught() {
+    let original = document(scenario("colregs/head-on.toml"));
+    assert_rejected(&original, SETTING);
+    let mut swapped = original;
+    list(&mut swapped, "/trajectory/samples").swap(30, 31);
+    assert_word(&swapped, "samples in another order", "samples");
+}
+
+#[test]
+fn what_only_some_plans_have_is_held_too() {
+    let turning = document(scenario("uncertainty/turning.toml"));
+    assert!(
+        turning["obstacles"]
+            .as_array()
+            .is_some_and(|slabs| slabs.len() > 1)
+    );
+    let mut risky = scenario("colregs/give-way.toml");
+    risky.max_risk = 0.4;
+    assert_rejected(&turning, TURNING);
+    assert_rejected(
+        &document(scenario("uncertainty/changing-velocities.toml")),
+        TIMED_SETS,
+    );
+    assert_rejected(&document(scenario("uncertainty/ellipse.toml")), ELLIPSES);
+    assert_rejected(&document(risky), RISK);
+    assert_rejected(&document(scenario("harbour/munkholmen.toml")), LAND);
+    assert_rejected(&document(scenario("harbour/canal-transit.toml")), CANAL);
+    let forces = document(scenario("paper/figure_9.toml"));
+    assert_rejected(&forces, FIGURE_9);
+    let has_force = |s: &Value| s["surge_n"].is_number();
+    let mut weaker = forces.clone();
+    for sample in list(&mut weaker, "/trajectory/samples") {
+        if let Some(surge) = sample["surge_n"].as_f64() {
+            sample["surge_n"] = json!(0.9 * surge);
+        }
+    }
+    assert_word(&weaker, "other forces", "off the plan");
+    let mut fewer = forces;
+    let nodes = list(&mut fewer, "/trajectory/samples");
+    let late = |s: &&mut Value| s["t_s"].as_f64() > Some(20.0) && has_force(s);
+    let node = nodes.iter_mut().find(late).expect("one");
+    node.as_object_mut().expect("a sample").remove("surge_n");
+    assert_word(&fewer, "a node less", "off the plan");
+}
+
+const ESCAPE: &str = r#"
+later | /escape/latest_s + 1 | escape.latest_s
+earlier | /escape/latest_s + -1 | escape.latest_s
+another segment | /escape/first_segment = 2 | escape.latest_s
+a segment that is not there | /escape/first_segment = 99 | no segment
+another turn | /escape/turn_deg * 1.01 | escape.turn_deg
+another speed | /escape/speed_mps * 1.01 | escape.speed_mps
+by less speed, which it is not | /escape/turn_deg = 0 | at most
+another policy | /escape/policy = "hope" | escape.policy
+no rules to stand on by | /compliance = "shape" | compliance
+a target that is nowhere near | /obstacles/0/initial_set/vertices_m/*/1 + 9000 | needless
+"#;
+
+/// Checks the hold of a stand-on ship, the end of the hold, and the subsequent manoeuvre.
+#[test]
+fn an_escape_is_what_it_is_said_to_be() {
+    let original = stand_on();
+    let latest = original["escape"]["latest_s"].as_f64().expect("a time");
+    assert!(latest > 60.0 && original["escape"]["turn_deg"].as_f64() >= Some(30.0));
+    assert_rejected(&original, ESCAPE);
+    let altered = |change: &dyn Fn(&mut Value), word: &str| {
+        let mut document = original.clone();
+        change(&mut document);
+        assert_word(&document, word, word);
+    };
+    // a turn later, in all words of the document
+    let next = original["trajectory"]["segments"][2]["start"]["t_s"].clone();
+    altered(
+        &|d| {
+            *at(d, "/escape/first_segment") = json!(2);
+            *at(d, "/escape/latest_s") = next.clone();
+        },
+        "course and speed are held",
+    );
+    // a set over the escape
+    altered(
+        &|d| {
+            let corners = list(d, "/obstacles/0/initial_set/vertices_m");
+            let count = corners.len() as f64;
+            for axis in [0, 1] {
+                let all = corners.iter().map(|v| v[axis].as_f64().expect("m"));
+                let middle = all.sum::<f64>() / count;
+                for v in corners.iter_mut() {
+                    let grown = middle + 1.3 * (v[axis].as_f64().expect("m") - middle);
+                    v[axis] = json!(grown);
+                }
+            }
+        },
+        "escape: the document says clear",
+    );
+    // a set that is in force after the escape alone
+    let target = &original["targets"][0]["name"];
+    altered(
+        &|d| {
+            *at(d, "/relaxations") = json!([{ "kind": "risk", "target": target, "amount": 1.0,
+                "unit": "1", "until_s": latest + 10.0 }]);
+        },
+        "escape: the document says clear from",
+    );
+    // even turns of a tenth of a degree to both sides within the hold count
+    altered(
+        &|d| segments(d)[0]["turn_rate_deg_per_s"] = json!(1e-3),
+        "are held",
+    );
+}
+
+const CLAIMS: &str = r#"
+solved as infeasible | /outcome = "infeasible" | outcome
+solved as relaxed | /outcome = "relaxed" | outcome
+no plan | /trajectory = null; /cost = null | it is infeasible or deadline
+as of forces | /planner = "optimal-control" | planner
+farther apart | /encounters/0/undisturbed_dcpa_m = 5000 | undisturbed_dcpa_m
+no distance | /encounters/0/undisturbed_dcpa_m = null | undisturbed_dcpa_m
+before the start | /encounters/0/undisturbed_tcpa_s = -1 | undisturbed_tcpa_s
+at the start | /encounters/0/undisturbed_tcpa_s = 0 | undisturbed_tcpa_s
+land where none is | /cost/min_land_distance_m = 7 | min_land_distance_m
+another objective | /objective = "stage-cost" | objective
+another planner's objective | /objective = "length-risk" | objective
+another relaxation | /relaxation = {"kind": "risk", "target": "target", "amount": 0.9} | relaxation
+"#;
+
+/// Checks that the words of a document agree with its content, and that figures independent of the
+/// motion are recomputed.
+#[test]
+fn every_claim_of_a_document_is_held() {
+    let clear = document(scenario("colregs/head-on.toml"));
+    assert_rejected(&clear, CLAIMS);
+    let relaxed = inside();
+    assert_eq!(relaxed["outcome"], "relaxed");
+    assert_rejected(
+        &relaxed,
+        r#"relaxed as solved | /outcome = "solved" | outcome
+        relaxed as infeasible | /outcome = "infeasible" | outcome"#,
+    );
+    for file in ["harbour/ferry-crossing.toml", "forces/give-way.toml"] {
+        let free = r#"as free | /planner = "space-time" | planner"#;
+        assert_rejected(&document(scenario(file)), free);
+    }
+    for (compliance, given_up, word) in [
+        (
+            "shape",
+            &[("risk", 0.0)][..],
+            "amount: the document says 0, it is nothing",
+        ),
+        (
+            "shape",
+            &[("compliance", 1.0)],
+            "no part of compliance 'shape'",
+        ),
+        ("none", &[("domain", 1.0)], "no part of compliance 'none'"),
+        (
+            "shape",
+            &[("domain", 1.0), ("domain", 2.0)],
+            "'domain' twice",
+        ),
+        ("shape", &[("domain", 0.0)], "drawn back by 0"),
+    ] {
+        let mut document = clear.clone();
+        document["compliance"] = json!(compliance);
+        document["outcome"] = json!("relaxed");
+        for (kind, amount) in given_up {
+            give_up(&mut document, kind, "target", *amount);
+        }
+        assert_word(&document, word, word);
+    }
+    let mut late = clear;
+    for outcome in ["solved", "deadline"] {
+        alter(
+            &mut late,
+            &format!("/outcome = \"{outcome}\"; /verdict = \"{outcome}\""),
+        );
+        assert!(!is_caught(&late), "{outcome}");
+    }
+}
+
+/// A ship at rest on the last waypoint is neither to port nor to starboard of an arriving own ship.
+#[test]
+fn a_ship_on_the_last_waypoint_may_lie_on_either_side() {
+    let rules = r#"
+        title = "berth"
+        horizon_s = 863.0
+        [own_ship]
+        position = { east_m = 0.0, north_m = 0.0 }
+        course_deg = 351.0
+        speed_mps = 5.0
+        length_m = 30.0
+        beam_m = 8.0
+        turning_radius_m = 100.0
+        safety_margin_m = 0.0
+        [mission]
+        waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1500.0, north_m = 0.0 }, { east_m = 1371.0, north_m = -647.0 }]
+        [[targets]]
+        name = "t0"
+        position = { east_m = 1371.0, north_m = -647.0 }
+        course_deg = 136.0
+        speed_mps = 0.0
+        length_m = 60
+        beam_m = 12
+    "#;
+    let shape = r#"
+        title = "berth"
+        horizon_s = 1008.0
+        [own_ship]
+        position = { east_m = 0.0, north_m = 0.0 }
+        course_deg = 90.0
+        speed_mps = 5.0
+        length_m = 30.0
+        beam_m = 8.0
+        turning_radius_m = 100.0
+        safety_margin_m = 20.0
+        [mission]
+        waypoints = [{ east_m = 0.0, north_m = 0.0 }, { east_m = 1500.0, north_m = 0.0 }, { east_m = 1098.0, north_m = -938.0 }]
+        [[targets]]
+        name = "t0"
+        position = { east_m = 1098.0, north_m = -938.0 }
+        course_deg = 342.0
+        speed_mps = 0.0
+        length_m = 60
+        beam_m = 12
+    "#;
+    for (text, compliance) in [(rules, Compliance::Rules), (shape, Compliance::Shape)] {
+        let mut scenario = Scenario::parse(text).expect("a scenario");
+        scenario.compliance = compliance;
+        let found = checked(&document(scenario));
+        assert!(found.violations.is_empty(), "{:#?}", found.violations);
+    }
+}

@@ -1,0 +1,12 @@
+//! Tests of the plan document check: documents from the planners pass, and every alteration is
+//! detected.
+
+mod alter;
+mod claims;
+#[path = "../campaigns/documents.rs"]
+mod documents;
+mod extremes;
+mod input;
+mod motion;
+mod risk;
+mod unsound;

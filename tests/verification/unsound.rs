@@ -1,0 +1,422 @@
+//! Documents that agree with themselves in all figures and are unsound, and plans that are sound
+//! and nearly did not seem so.
+
+use std::f64::consts::TAU;
+
+use searoom::document::{PlanDocument, VerifiedPlanDocument};
+use searoom::evaluation::{Freedom, Request, evaluate};
+use searoom::frame::Vector;
+use searoom::pipeline;
+use searoom::planner::Planner;
+use searoom::planner::path_time::PathTimePlanner;
+use searoom::planner::space_time::SpaceTimePlanner;
+use searoom::report::verification_text;
+use searoom::scenario::Scenario;
+use searoom::trajectory::Segment;
+use searoom::verification::verify;
+use serde_json::{Value, json};
+
+use crate::alter::{at, list};
+use crate::documents::{checked, document, inside, scenario};
+
+fn fault(name: &str) -> String {
+    let path = format!("{}/tests/faults/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).expect("a fault")
+}
+
+/// True where a violation says so.
+pub fn said(document: &Value, expected: &str) -> bool {
+    let found = checked(document).violations;
+    let told = found.iter().any(|v| v.what.contains(expected));
+    assert!(told, "'{expected}' is not among {found:#?}");
+    told
+}
+
+fn pairs(value: &Value) -> Vec<[f64; 2]> {
+    serde_json::from_value(value.clone()).expect("pairs of numbers")
+}
+
+fn scaled(corners: &Value, factor: f64) -> Value {
+    let corners = pairs(corners);
+    let count = corners.len() as f64;
+    let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / count);
+    let scaled = |c: &[f64; 2]| [0, 1].map(|k| middle[k] + factor * (c[k] - middle[k]));
+    json!(corners.iter().map(scaled).collect::<Vec<_>>())
+}
+
+/// A slab of half a nanosecond that carries the set aside; a level set to one side of the
+/// velocities, in two slabs; a jump through a wall during a turn of many circles; a round trip that
+/// nobody sails.
+#[test]
+fn unsound_documents_are_rejected() {
+    for (name, expected) in [
+        ("tiny-slab", "set of 'log': too small for the velocity set"),
+        (
+            "lopsided",
+            "too small for the velocities at the accepted risk",
+        ),
+        ("teleport", "position at the joint of segments 3 and 4"),
+        ("null-plan", "0 m sailed, with the path still ahead"),
+    ] {
+        let document: Value = serde_json::from_str(&fault(&format!("{name}.json"))).expect("JSON");
+        assert!(said(&document, expected), "{name}");
+    }
+}
+
+/// At any risk: the set does not go where she does, and was said to be the level set.
+#[test]
+fn sets_under_forces_hold_the_velocities_at_a_risk() {
+    let mut plan = document(scenario("forces/give-way.toml"));
+    plan["max_risk"] = json!(1e-12);
+    let horizon = plan["horizon_s"].clone();
+    let center = pairs(&json!([plan["obstacles"][0]["initial_set"]["center_m"]]))[0];
+    let corner = |x: f64, y: f64| [center[0] + 700.0 * x, center[1] + 700.0 * y];
+    let square = json!([
+        corner(-1.0, -1.0),
+        corner(1.0, -1.0),
+        corner(1.0, 1.0),
+        corner(-1.0, 1.0)
+    ]);
+    let set = |velocity: [f64; 2]| {
+        json!([{ "name": plan["targets"][0]["name"], "valid_s": [0.0, horizon],
+            "initial_set": { "vertices_m": square }, "velocity_set": { "vertices_mps": [velocity] } }])
+    };
+    let mut away = plan.clone();
+    away["obstacles"] = set([35.0, -35.0]);
+    assert!(said(
+        &away,
+        "too small for the velocities at the accepted risk"
+    ));
+    let mut round = plan.clone();
+    *at(&mut round, "/obstacles/0/velocity_set/center_mps") = json!([3.0, -3.0]);
+    assert!(said(
+        &round,
+        "too small for the velocities at the accepted risk"
+    ));
+}
+
+/// Along a path out and back that is not sailed to its end.
+#[test]
+fn a_path_is_sailed_to_its_end() {
+    let text = r#"
+        title = "round"
+        horizon_s = 900.0
+        own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }
+        mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1000, north_m = 0 }, { east_m = 500, north_m = 600 }, { east_m = 0, north_m = 0 }] }
+    "#;
+    let mut scenario = Scenario::parse(text).expect("a scenario");
+    let own = &scenario.own_ship;
+    let wait = |duration: f64| Segment {
+        start: own.pose,
+        start_time: 0.0,
+        duration,
+        speed: 0.0,
+        turn_rate: 0.0,
+    };
+    let waypoints = [scenario.desired.waypoints()];
+    for freedom in [Freedom::Limits, Freedom::Paths(&waypoints)] {
+        for duration in [0.0, 100.0] {
+            let request = Request {
+                segments: &[wait(duration)],
+                own,
+                freedom,
+                desired: &scenario.desired,
+                targets: &[],
+                sets: &[],
+                land: &[],
+                land_margin: 0.0,
+                horizon: 900.0,
+                time_weight: 25.0,
+                max_risk: 0.0,
+                arrival_hold: 60.0,
+            };
+            let found = evaluate(&request).violations;
+            assert!(
+                found.iter().any(|v| v.what.starts_with("arrival: ")),
+                "{found:?}"
+            );
+        }
+    }
+    for planner in [&SpaceTimePlanner as &dyn Planner, &PathTimePlanner] {
+        scenario.planner = planner;
+        let plan = document(scenario.clone());
+        assert!(plan["cost"]["length_m"].as_f64() > Some(2000.0));
+        assert!(checked(&plan).verified());
+    }
+    // at the crossing of a figure of eight, with the second half still to be sailed
+    let text = text.replace(
+        "{ east_m = 500, north_m = 600 }, { east_m = 0, north_m = 0 }",
+        "{ east_m = 500, north_m = 600 }, { east_m = 500, north_m = 0 }",
+    );
+    let mut scenario = Scenario::parse(&text).expect("a scenario");
+    scenario.own_ship.pose.position = Vector::new(500.0, 0.0);
+    let plan = document(scenario);
+    assert!(plan["cost"]["length_m"].as_f64() > Some(100.0) && checked(&plan).verified());
+}
+
+/// In 10 nanoseconds a ship of a million metres a second is through a set of a millimetre.
+#[test]
+fn the_fastest_ship_is_looked_at_in_the_shortest_times() {
+    let mut scenario = scenario("colregs/head-on.toml");
+    scenario.own_ship.speeds = vec![1e6];
+    let run = [Segment {
+        start: scenario.own_ship.pose,
+        start_time: 0.0,
+        duration: 1500.0 / 1e6,
+        speed: 1e6,
+        turn_rate: 0.0,
+    }];
+    let place = scenario.own_ship.pose.position + Vector::new(700.123_456, 0.0);
+    let corners = [(0.0, -1.0), (1e-3, 0.0), (0.0, 1.0)].map(|(x, y)| place + Vector::new(x, y));
+    let [wall, still] = [&corners[..], &[Vector::zeros()]]
+        .map(|points| searoom::geometry::ConvexPolygon::hull(points).expect("finite"));
+    let sets = [searoom::evaluation::SpaceTimeSet::constant(
+        "wall", wall, still,
+    )];
+    let found = evaluate(&Request {
+        segments: &run,
+        own: &scenario.own_ship,
+        freedom: Freedom::Any,
+        desired: &scenario.desired,
+        targets: &[],
+        sets: &sets,
+        land: &[],
+        land_margin: 0.0,
+        horizon: 900.0,
+        time_weight: 25.0,
+        max_risk: 0.0,
+        arrival_hold: 60.0,
+    });
+    let through = |v: &searoom::evaluation::Violation| v.what.contains("'wall': distance");
+    assert!(
+        found.violations.iter().any(through),
+        "{:?}",
+        found.violations
+    );
+}
+
+/// Of several velocity sets each one after the first, too small alone: given outright, of a ship
+/// that may turn, and at a risk.
+#[test]
+fn each_later_velocity_set_that_is_too_small_is_found() {
+    let mut at_risk = scenario("uncertainty/turning.toml");
+    at_risk.max_risk = 0.3;
+    let mut found = 0;
+    for plan in [
+        document(scenario("uncertainty/turning.toml")),
+        document(scenario("uncertainty/changing-velocities.toml")),
+        document(at_risk),
+    ] {
+        assert!(checked(&plan).verified());
+        let slabs = plan["obstacles"].as_array().expect("slabs").len();
+        assert!(slabs > 1);
+        for slab in 1..slabs {
+            let mut altered = plan.clone();
+            let corners = &mut altered["obstacles"][slab]["velocity_set"]["vertices_mps"];
+            *corners = scaled(corners, 0.9);
+            assert!(said(&altered, "too small for "), "slab {slab}");
+            found += 1;
+        }
+    }
+    assert!(found > 5, "{found}");
+}
+
+/// Numbers whose squares are none.
+#[test]
+fn what_is_known_may_be_too_large_for_any_set() {
+    let plan = document(scenario("uncertainty/changing-velocities.toml"));
+    for key in ["initial_set/vertices_m", "velocity_sets/0/vertices_mps"] {
+        let mut huge = plan.clone();
+        *at(&mut huge, &format!("/targets/0/{key}/0")) = json!([1e300, 0.0]);
+        match verify(&huge.to_string()) {
+            Ok(_) => assert!(said(&huge, "too small for")),
+            Err(error) => assert!(error.to_string().contains("vertices"), "{error}"),
+        }
+    }
+}
+
+/// A slab that ends before it begins, within the slack of a long horizon.
+#[test]
+fn slabs_follow_one_another_to_the_digit() {
+    let mut plan = document(scenario("uncertainty/changing-velocities.toml"));
+    let slabs = list(&mut plan, "/obstacles");
+    let end = slabs[0]["valid_s"][1].as_f64().expect("an end");
+    let mut between = slabs[0].clone();
+    between["valid_s"] = json!([end - 2e-8, end - 1e-8]);
+    slabs.insert(1, between);
+    assert!(said(&plan, "expected"));
+    let mut plan = document(scenario("uncertainty/changing-velocities.toml"));
+    plan["targets"][0]["velocity_sets"][0]["until_s"] = json!(-1.0);
+    let error = verify(&plan.to_string()).expect_err("a set until before the start");
+    assert!(error.to_string().contains("do not increase"), "{error}");
+}
+
+/// Own position at a time, and the time from which something is claimed of the first target's set.
+fn after_release(plan: &Value, later: f64) -> ([f64; 2], f64) {
+    let until = plan["relaxations"][0]["until_s"]
+        .as_f64()
+        .expect("a release");
+    let samples = plan["trajectory"]["samples"].as_array().expect("samples");
+    let then = samples
+        .iter()
+        .find(|s| s["t_s"].as_f64() >= Some(until + later));
+    let then = then.expect("a sample");
+    let place = ["east_m", "north_m"].map(|key| then[key].as_f64().expect("a number"));
+    (place, then["t_s"].as_f64().expect("a time"))
+}
+
+/// A plan that is within the set again, or within the hull, some seconds after it has left the set.
+#[test]
+fn what_is_entered_after_a_release_is_found() {
+    let plan = inside();
+    assert!(checked(&plan).verified());
+    for later in [3.0, 30.0] {
+        let (place, time) = after_release(&plan, later);
+        // the set fast across her way
+        let mut set = plan.clone();
+        let obstacle = &mut set["obstacles"][0];
+        let from = obstacle["valid_s"][0].as_f64().expect("a start");
+        let side = |x: f64, y: f64| [place[0] + x, place[1] + y - 50.0 * (time - from)];
+        obstacle["initial_set"]["vertices_m"] = json!([
+            side(-9.0, -9.0),
+            side(9.0, -9.0),
+            side(9.0, 9.0),
+            side(-9.0, 9.0)
+        ]);
+        obstacle["velocity_set"]["vertices_mps"] = json!([[0.0, 50.0]]);
+        let found = checked(&set).violations;
+        let entered = found
+            .iter()
+            .find(|v| v.what.contains("set of 'target': distance"));
+        assert!(
+            entered.is_some_and(|v| (v.time - time).abs() < 1.0),
+            "{found:#?}"
+        );
+        // her hull fast across her way
+        let mut hull = plan.clone();
+        let ship = &mut hull["targets"][0]["ship"];
+        ship["position"] = json!({ "east_m": place[0], "north_m": place[1] - 50.0 * time });
+        ship["course_deg"] = json!(0.0);
+        ship["speed_mps"] = json!(50.0);
+        for spread in [
+            "speed_spread_mps",
+            "course_spread_deg",
+            "turn_rate_deg_per_s",
+        ] {
+            ship[spread] = json!(0.0);
+        }
+        let found = checked(&hull).violations;
+        let entered = found
+            .iter()
+            .find(|v| v.what.contains("hull of 'target': distance"));
+        assert!(
+            entered.is_some_and(|v| (v.time - time).abs() < 3.0),
+            "{found:#?}"
+        );
+    }
+}
+
+/// Three ships pass on parallel courses: every view says of each what is hers.
+#[test]
+fn each_target_has_its_own_clearance_in_every_view() {
+    let ship = |name: &str, north: f64| {
+        format!(
+            "[[targets]]\nname = \"{name}\"\nposition = {{ east_m = 1000, north_m = {north} }}\ncourse_deg = 270\nspeed_mps = 5\nlength_m = 60\nbeam_m = 12\n"
+        )
+    };
+    let text = format!(
+        "title = \"three\"\nhorizon_s = 400.0\n{}{}{}{}{}",
+        "own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 90, speed_mps = 5, length_m = 30, beam_m = 8, turning_radius_m = 100 }\n",
+        "mission = { waypoints = [{ east_m = 0, north_m = 0 }, { east_m = 1000, north_m = 0 }] }\nplanner = { compliance = \"none\" }\n",
+        ship("far", 410.0),
+        ship("near", 210.0),
+        ship("middle", -310.0),
+    );
+    let scenario = Scenario::parse(&text).expect("a scenario");
+    let run = pipeline::run(scenario);
+    let plan = serde_json::to_string(&PlanDocument::of(&run)).expect("a document");
+    let found = verify(&plan).expect("a plan document");
+    assert!(found.verified(), "{:?}", found.violations);
+    let entry = VerifiedPlanDocument::of("plan.json".to_owned(), &found);
+    let text = verification_text(&found, false);
+    for (index, (name, clearance)) in [("far", 400.0), ("near", 200.0), ("middle", 300.0)]
+        .into_iter()
+        .enumerate()
+    {
+        let close = |value: f64| (value - clearance).abs() < 1e-6;
+        assert_eq!(found.targets[index], name);
+        let passages = &found.evaluation.as_ref().expect("a motion").passages;
+        assert!(
+            close(passages[index].min_clearance),
+            "{:?}",
+            passages[index]
+        );
+        let margin = &entry.targets[index];
+        assert_eq!(margin.target, name);
+        assert!(
+            margin.min_clearance_m.is_some_and(close) && margin.dcpa_m.is_some_and(close),
+            "{margin:?}"
+        );
+        let row = text
+            .lines()
+            .find(|line| line.trim_start().starts_with(name));
+        let row: Vec<&str> = row.expect("a row").split_whitespace().collect();
+        assert_eq!(
+            row[3..5],
+            [format!("{clearance:.1}"), format!("{clearance:.1}")],
+            "{text}"
+        );
+    }
+    assert_eq!(
+        found.evaluation.expect("a motion").min_clearance,
+        entry.targets[1].min_clearance_m.expect("one")
+    );
+}
+
+/// Plans that are what they say: something given up when the time was out, a node at a rounding
+/// past a whole second, ellipses and sets at the ends of the numbers, an arc of a millimetre at the
+/// end of a long way; a ship that stands on from beside her leg by a rounding; one that has arrived
+/// within a set; a plan until the horizon near a ship that turns.
+#[test]
+fn sound_plans_at_the_ends_of_the_numbers_are_verified() {
+    for name in [
+        "deadline-without-relaxation",
+        "forces-node",
+        "ellipse-1e-300",
+        "left-set",
+        "millimetre-radius",
+        "hold-with-a-rounding",
+        "arrived-inside",
+        "horizon-at-a-turn",
+        "leg-ends-at-the-horizon",
+    ] {
+        let scenario = Scenario::parse(&fault(&format!("{name}.toml"))).expect(name);
+        let found = checked(&document(scenario));
+        assert!(found.verified(), "{name}: {:#?}", found.violations);
+    }
+}
+
+/// A hundred thousand corners are not looked at each with each.
+#[test]
+fn a_set_of_very_many_corners_is_checked() {
+    const CORNERS: u32 = 100_000;
+    let mut plan = document(scenario("uncertainty/changing-velocities.toml"));
+    let corner = |k: u32| {
+        let (sin, cos) = (TAU * f64::from(k) / f64::from(CORNERS)).sin_cos();
+        [3e5 + 1e4 * cos, 3e5 + 1e4 * sin]
+    };
+    let corners: Vec<_> = (0..CORNERS).map(corner).collect();
+    plan["targets"][0] = json!({ "name": plan["targets"][0]["name"], "representation": "polytope",
+        "initial_set": { "vertices_m": corners }, "velocity_sets": [{ "until_s": null, "vertices_mps": [[0.0, 0.0]] }] });
+    plan["obstacles"] = json!([{ "name": plan["targets"][0]["name"], "valid_s": [0.0, plan["horizon_s"]],
+        "initial_set": { "vertices_m": corners }, "velocity_set": { "vertices_mps": [[0.0, 0.0]] } }]);
+    let begun = std::time::Instant::now();
+    let found = checked(&plan);
+    println!("{:?}", begun.elapsed());
+    let wrong = |what: &str| found.violations.iter().any(|v| v.what.contains(what));
+    assert!(
+        !wrong("too small") && !wrong("set of '"),
+        "{:#?}",
+        found.violations
+    );
+}
