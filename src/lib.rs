@@ -64,7 +64,7 @@
 //! | [`target`] | a tracked ship or explicit sets, with their uncertainty |
 //! | [`colregs`] | roles under the COLREGs; ship domains |
 //! | [`obstacle`] | space-time sets: polytopes, ellipsoids, slabs; contact, risk, closest approach, velocity obstacles |
-//! | [`planner`] | problem, plan, outcome; the space-time, the path-time and the optimal-control planner |
+//! | [`planner`] | problem, plan, outcome; the list of planners: space-time, path-time, optimal control |
 //! | [`evaluation`] | independent evaluation of a trajectory, without the planner's sets and contact tests |
 //! | [`verification`] | checks a plan document alone, without scenario and planner |
 //! | [`input`] | reading of files: bounded text, values with their positions, all faults at once |

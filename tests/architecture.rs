@@ -479,6 +479,10 @@ fn every_border_can_be_broken() {
             "use crate::planner::{SearchKind, space_time};",
         ),
         ("pipeline.rs", "use crate::report::table;"),
+        (
+            "pipeline/mod.rs",
+            "use crate::planner::path_time::PathTimePlanner;",
+        ),
         ("report/table.rs", "use crate::recording::Recording;"),
         ("colregs/domain.rs", "use crate::cli::output;"),
         ("target.rs", "use rerun::RecordingStream;"),

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
 use crate::frame::Vector;
-use crate::geometry::{ConvexPolygon, ConvexSet, Ellipse, outer_disc};
+use crate::geometry::{ConvexPolygon, ConvexSet, DISC_SIDES, Ellipse, outer_disc};
 use crate::tolerance::HALF_WIDTH_M;
 
 impl Obstacle {
@@ -17,9 +17,7 @@ impl Obstacle {
             Self::Slabs(o) => {
                 let grown = match &o.sets().initial {
                     ConvexSet::Polygon(initial) => outer_grown(initial).map(ConvexSet::from),
-                    ConvexSet::Ellipse(initial) => {
-                        outer_widened(initial, self.is_flat_for_a_while()).map(ConvexSet::from)
-                    }
+                    ConvexSet::Ellipse(initial) => outer_widened(initial).map(ConvexSet::from),
                 };
                 match grown {
                     Some(grown) => o.with_initial(grown).into(),
@@ -28,6 +26,7 @@ impl Obstacle {
             }
             Self::Ellipsoid(o) => match o.flat() {
                 Some(flat) => widened(flat).into(),
+                None if o.is_thin() => widened_needle(o).into(),
                 None => widened_ellipsoid(o).into(),
             },
         }
@@ -43,6 +42,14 @@ impl Obstacle {
         }
     }
 
+    /// [`Obstacle::outer_where_flat`], also of a set too thin for its shape matrices.
+    pub(crate) fn outer_where_thin(&self) -> Cow<'_, Self> {
+        match self {
+            Self::Ellipsoid(o) if o.is_thin() => Cow::Owned(self.outer_with_interior()),
+            _ => self.outer_where_flat(),
+        }
+    }
+
     fn is_flat_for_a_while(&self) -> bool {
         let flat = |initial: &ConvexPolygon, velocity: &ConvexPolygon| {
             initial.minkowski_sum(velocity).vertices().len() < 3
@@ -51,7 +58,7 @@ impl Obstacle {
             Self::Polytope(o) => flat(o.initial(), o.velocity()),
             // sections do not become flat again
             Self::Slabs(o) => o.slabs()[0].obstacle().is_flat_for_a_while(),
-            Self::Ellipsoid(o) => o.is_thin(),
+            Self::Ellipsoid(o) => o.flat().is_some_and(|o| flat(o.initial(), o.velocity())),
         }
     }
 }
@@ -77,18 +84,24 @@ fn widened(obstacle: &PolytopeObstacle) -> PolytopeObstacle {
     }
 }
 
+/// Polygons around both ellipses: the ellipse around a needle and a disc is very much wider.
+fn widened_needle(obstacle: &EllipsoidObstacle) -> PolytopeObstacle {
+    let polygon = |e: &Ellipse| e.outer_polygon(DISC_SIDES);
+    let grown = polygon(obstacle.initial()).minkowski_sum(&outer_disc(HALF_WIDTH_M, 0.0));
+    PolytopeObstacle::new(obstacle.name(), grown, polygon(obstacle.velocity()))
+}
+
 fn widened_ellipsoid(obstacle: &EllipsoidObstacle) -> EllipsoidObstacle {
-    let thin = obstacle.is_thin();
-    match outer_widened(obstacle.initial(), thin) {
+    match outer_widened(obstacle.initial()) {
         Some(grown) => EllipsoidObstacle::new(obstacle.name(), grown, *obstacle.velocity()),
         None => obstacle.clone(),
     }
 }
 
-/// [`outer_grown`] for an ellipse; grown in any case where the set is thin.
-fn outer_widened(initial: &Ellipse, thin: bool) -> Option<Ellipse> {
+/// [`outer_grown`] for an ellipse.
+fn outer_widened(initial: &Ellipse) -> Option<Ellipse> {
     let [_, b] = initial.semi_axes();
-    (b.norm() < HALF_WIDTH_M || thin).then(|| {
+    (b.norm() < HALF_WIDTH_M).then(|| {
         let axes = [
             Vector::new(HALF_WIDTH_M, 0.0),
             Vector::new(0.0, HALF_WIDTH_M),

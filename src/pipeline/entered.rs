@@ -50,7 +50,7 @@ pub(super) fn left_for_good(
 ) -> Option<f64> {
     let end = trajectory.end_time();
     // a set without an interior must not be touched, not even crossed
-    let set = set.outer_where_flat();
+    let set = set.outer_where_thin();
     let contact = |from: f64| {
         let later = trajectory.segments().iter().filter(|s| s.end_time() > from);
         let mut later = later.map(|s: &Segment| s.between(from, s.end_time()));

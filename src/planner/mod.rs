@@ -4,6 +4,8 @@ mod clock;
 mod control_settings;
 pub mod cost;
 mod explored;
+#[cfg(test)]
+mod fixtures;
 mod interface;
 mod line_error;
 mod no_plan;
@@ -143,6 +145,12 @@ pub struct Problem<'a> {
 }
 
 impl Problem<'_> {
+    /// Space-time error of a motion at the accuracy of the searches, m².
+    pub(crate) fn error_of(&self, motion: &[Segment]) -> f64 {
+        let error = |s| cost::space_time_error(self.desired, s, self.time_weight);
+        motion.iter().map(error).sum()
+    }
+
     /// Duty of own ship toward all encountered targets.
     pub(crate) fn duty(&self) -> Duty {
         Duty::of(self.encountered.iter().map(|e| e.role))

@@ -65,6 +65,11 @@ impl OwnShip {
         self.speeds.last().copied().unwrap_or(0.0)
     }
 
+    /// The positive speeds, m/s, increasing.
+    pub fn moving_speeds(&self) -> impl Iterator<Item = f64> + Clone + '_ {
+        self.speeds.iter().copied().filter(|u| *u > 0.0)
+    }
+
     /// The smallest speed, m/s; zero when own ship may stop.
     pub fn min_speed(&self) -> f64 {
         self.speeds.first().copied().unwrap_or(0.0)

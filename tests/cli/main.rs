@@ -1,5 +1,6 @@
 //! The program, run as a user runs it.
 
+mod assessing;
 mod bad_input;
 mod documents;
 mod figures;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::program::{HEAD_ON, document, searoom, stdout, text, untimed, write};
+use super::program::{HEAD_ON, assert_values, document, searoom, stdout, text, untimed, write};
 use assert_cmd::assert::Assert;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::{contains, is_empty};
@@ -258,73 +258,65 @@ fn two_results_never_share_a_file() {
     assert!(!plans.exists());
 }
 
+/// Values of the plan document of the head-on scenario.
+const PLAN: &str = r#"
+/format "searoom-plan/1"
+/scenario "Head-on"
+/planner "space-time"
+/search "a-star"
+/compliance "shape"
+/outcome "solved"
+/encounters/0/target "target"
+/encounters/0/role "head-on"
+/encounters/0/passing_side "port"
+/obstacles/0/name "target"
+/encounters/0/roles/0/role "head-on"
+/verified true
+/cost/arrived true
+/relaxation null
+/land []
+/horizon_s number
+/own_ship/turning_radius_m number
+/own_ship/speeds_mps/2 number
+/mission/waypoints/1/east_m number
+/mission/leg_speeds_mps/0 number
+/cost/objective number
+/cost/space_time_error_m2 number
+/cost/space_time_error_arc_length_m2 number
+/cost/duration_s number
+/cost/length_m number
+/cost/delay_s number
+/cost/max_risk number
+/cost/min_clearance_m number
+/search_stats/expanded number
+/search_stats/generated number
+/search_stats/edges_checked number
+/timing/plan_s number
+/trajectory/segments/0/start/t_s number
+/trajectory/segments/0/start/course_deg number
+/trajectory/segments/0/duration_s number
+/trajectory/segments/0/speed_mps number
+/trajectory/segments/0/turn_rate_deg_per_s number
+/trajectory/samples/0/east_m number
+/trajectory/samples/0/speed_mps number
+/obstacles/0/valid_s/1 number
+/obstacles/0/initial_set/vertices_m/0/1 number
+/obstacles/0/velocity_set/vertices_mps/0/1 number
+/encounters/0/dcpa_m number
+/encounters/0/tcpa_s number
+/encounters/0/undisturbed_dcpa_m number
+/encounters/0/undisturbed_tcpa_s number
+/encounters/0/scores/safety number
+/encounters/0/scores/rule_8 number
+/encounters/0/scores/rule_14 number
+/encounters/0/roles/0/until_s number
+/encounters/0/monitors/3/robustness number
+"#;
+
 #[test]
 fn a_plan_document_has_what_the_contract_names() {
     let plan = document(&searoom(&["plan", "scenarios/colregs/head-on.toml", "--json"]).success());
-    for (pointer, value) in [
-        ("/format", "searoom-plan/1"),
-        ("/scenario", "Head-on"),
-        ("/planner", "space-time"),
-        ("/search", "a-star"),
-        ("/compliance", "shape"),
-        ("/outcome", "solved"),
-        ("/encounters/0/target", "target"),
-        ("/encounters/0/role", "head-on"),
-        ("/encounters/0/passing_side", "port"),
-        ("/obstacles/0/name", "target"),
-    ] {
-        assert_eq!(
-            plan.pointer(pointer),
-            Some(&Value::from(value)),
-            "{pointer}"
-        );
-    }
-    for pointer in [
-        "/horizon_s",
-        "/own_ship/turning_radius_m",
-        "/own_ship/speeds_mps/2",
-        "/mission/waypoints/1/east_m",
-        "/mission/leg_speeds_mps/0",
-        "/cost/objective",
-        "/cost/space_time_error_m2",
-        "/cost/space_time_error_arc_length_m2",
-        "/cost/duration_s",
-        "/cost/length_m",
-        "/cost/delay_s",
-        "/cost/max_risk",
-        "/cost/min_clearance_m",
-        "/search_stats/expanded",
-        "/search_stats/generated",
-        "/search_stats/edges_checked",
-        "/timing/plan_s",
-        "/trajectory/segments/0/start/t_s",
-        "/trajectory/segments/0/start/course_deg",
-        "/trajectory/segments/0/duration_s",
-        "/trajectory/segments/0/speed_mps",
-        "/trajectory/segments/0/turn_rate_deg_per_s",
-        "/trajectory/samples/0/east_m",
-        "/trajectory/samples/0/speed_mps",
-        "/obstacles/0/valid_s/1",
-        "/obstacles/0/initial_set/vertices_m/0/1",
-        "/obstacles/0/velocity_set/vertices_mps/0/1",
-        "/encounters/0/dcpa_m",
-        "/encounters/0/tcpa_s",
-        "/encounters/0/undisturbed_dcpa_m",
-        "/encounters/0/undisturbed_tcpa_s",
-        "/encounters/0/scores/safety",
-        "/encounters/0/scores/rule_8",
-        "/encounters/0/scores/rule_14",
-        "/encounters/0/roles/0/until_s",
-        "/encounters/0/monitors/3/robustness",
-    ] {
-        let found = plan.pointer(pointer);
-        assert!(found.is_some_and(Value::is_number), "{pointer}: {found:?}");
-    }
-    assert_eq!(plan["verified"], true);
-    assert_eq!(plan["cost"]["arrived"], true);
-    assert_eq!(plan["relaxation"], Value::Null);
-    assert_eq!(plan["land"], Value::Array(Vec::new()));
-    assert_eq!(plan["encounters"][0]["roles"][0]["role"], "head-on");
+    assert_values(&plan, PLAN);
     assert_eq!(plan["encounters"][0]["scores"].get("rule_15"), None);
     // own ship goes east and turns to starboard first: positive, toward the south
     let segments = plan["trajectory"]["segments"].as_array().expect("a list");
@@ -356,33 +348,6 @@ fn the_same_scenario_gives_the_same_document() {
     };
     // not assert_eq: a failure would print both documents
     assert!(lines(searoom(&args)) == lines(searoom(&args)));
-}
-
-#[test]
-fn the_four_scenarios_are_planned_and_verified() {
-    let assert = searoom(&["suite", "scenarios/colregs", "--json"]).success();
-    let suite = document(&assert);
-    assert_eq!(suite["summary"]["scenarios"], 4);
-    assert_eq!(suite["summary"]["verified"], 4);
-    let roles: Vec<_> = suite["runs"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .map(|run| run["encounters"][0]["role"].as_str().expect("text"))
-        .collect();
-    assert_eq!(roles, ["give-way", "head-on", "overtaking", "stand-on"]);
-    let table = searoom(&["suite", "scenarios/colregs"])
-        .success()
-        .stderr(is_empty())
-        .stdout(contains("4 scenarios: 4 solved; 4 verified, 4 safe"))
-        .stdout(contains("\u{1b}").not());
-    let table = stdout(&table);
-    let row = |title: &str| {
-        let found = table.lines().find(|line| line.contains(title));
-        found.unwrap_or_else(|| panic!("{title}: {table}"))
-    };
-    assert!(row("Give-way").contains("port, astern") && row("Give-way").contains("starboard "));
-    assert!(row("Head-on").contains("port") && row("Head-on").contains("starboard "));
 }
 
 #[test]
@@ -495,51 +460,6 @@ fn a_plan_that_does_not_arrive_says_so() {
     );
     let file = write(folder.path(), "plan.json", &text);
     searoom(&["verify", &file]).success();
-}
-
-/// Targets that hold course and speed, on lines parallel to that of own ship: what is left between
-/// the hulls is the distance of the lines without half of both beams, 4 m and 6 m.
-#[test]
-fn the_clearance_of_a_plan_is_that_of_the_nearest_target_in_every_view() {
-    let (alone, target) = HEAD_ON.split_once("[[targets]]").expect("a target");
-    let exact = target
-        .replace("speed_spread_mps = 0.5", "")
-        .replace("course_spread_deg = 5.0", "");
-    let beside = |name: &str, north: f64| {
-        let place = format!("north_m = {north:.1}");
-        let target = exact.replacen("\"target\"", &format!("\"{name}\""), 1);
-        format!("[[targets]]{}", target.replacen("north_m = 0.0", &place, 1))
-    };
-    let folder = tempfile::tempdir().expect("a folder");
-    for (title, lines) in [
-        ("near first", [300.0, -500.0]),
-        ("near last", [-710.0, 620.0]),
-    ] {
-        let scene = alone.replacen("\"Head-on\"", &format!("\"{title}\""), 1);
-        let scene = format!("{scene}{}{}", beside("a", lines[0]), beside("b", lines[1]));
-        write(folder.path(), &format!("{title}.toml"), scene);
-    }
-    let args = ["suite", text(folder.path())];
-    let suite = document(&searoom(&[args[0], args[1], "--json"]).success());
-    let table = stdout(&searoom(&args).success());
-    for (run, (title, clearance)) in [("near first", 290.0), ("near last", 610.0)]
-        .into_iter()
-        .enumerate()
-    {
-        let found = &suite["runs"][run];
-        assert_eq!(found["scenario"], title);
-        let is_near = |value: &Value| value.as_f64().is_some_and(|v| (v - clearance).abs() < 1e-6);
-        assert!(is_near(&found["cost"]["min_clearance_m"]), "{found}");
-        let cell = format!("{clearance:.1}");
-        let row = table.lines().find(|line| line.contains(title));
-        let row = row.unwrap_or_else(|| panic!("{title}: {table}"));
-        assert!(row.split_whitespace().any(|c| c == cell), "{row}");
-        let file = folder.path().join(format!("{title}.toml"));
-        let plan = document(&searoom(&["plan", text(&file), "--json"]).success());
-        assert!(is_near(&plan["cost"]["min_clearance_m"]), "{plan}");
-        let shown = stdout(&searoom(&["plan", text(&file)]).success());
-        assert!(shown.contains(&format!("{cell} m")), "{shown}");
-    }
 }
 
 #[test]
@@ -707,288 +627,5 @@ fn a_plan_at_an_accepted_risk_is_relaxed_and_says_so() {
         assert_eq!(obstacles.len(), entries, "{change}");
         assert!(obstacles.iter().all(|o| o["initial_set"][key].is_array()));
         assert_eq!(plan["cost"]["max_risk"], 0.0);
-    }
-}
-
-#[test]
-fn an_assessment_document_has_what_the_contract_names() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let points = write(folder.path(), "points.csv", "t_s,east_m,north_m\n300,0,0\n");
-    let velocities = write(
-        folder.path(),
-        "velocities.csv",
-        "east_mps,north_mps\n0,6\n5,0\n",
-    );
-    let args = [
-        "assess",
-        "scenarios/colregs/give-way.toml",
-        "--at",
-        "-10,5.5,0",
-        "--points",
-        &points,
-        "--velocity",
-        "-5,0",
-        "--velocities",
-        &velocities,
-        "--section",
-        "0",
-        "--section",
-        "60",
-        "--json",
-    ];
-    let assert = searoom(&args).success().stderr(is_empty());
-    let assessment = document(&assert);
-    for (pointer, value) in [
-        ("/scenario", Value::from("Give-way")),
-        ("/targets/0/name", "target".into()),
-        ("/targets/0/representation", "polytope".into()),
-        ("/targets/0/sections/0/t_s", 0.0.into()),
-        ("/targets/0/sections/1/t_s", 60.0.into()),
-        ("/points/0/east_m", (-10.0).into()),
-        ("/points/0/north_m", 5.5.into()),
-        ("/points/0/t_s", 0.0.into()),
-        ("/points/0/targets/0/inside", false.into()),
-        ("/points/0/targets/0/alpha", Value::Null),
-        ("/points/0/targets/0/risk", 0.0.into()),
-        ("/points/1/t_s", 300.0.into()),
-        ("/hold_course/targets/0/name", "target".into()),
-        ("/hold_course/targets/0/dcpa_m", 0.0.into()),
-        ("/velocities/0/east_mps", (-5.0).into()),
-        ("/velocities/0/targets/0/in_velocity_obstacle", false.into()),
-        ("/velocities/1/north_mps", 6.0.into()),
-        ("/velocities/2/targets/0/in_velocity_obstacle", true.into()),
-    ] {
-        assert_eq!(assessment.pointer(pointer), Some(&value), "{pointer}");
-    }
-    for pointer in [
-        "/targets/0/sections/0/vertices_m/0/1",
-        "/points/1/targets/0/alpha",
-        "/hold_course/targets/0/tcpa_s",
-        "/hold_course/targets/0/max_risk",
-        "/alteration/starboard_deg",
-        "/alteration/port_deg",
-        "/alteration/speed_mps",
-        "/velocities/0/targets/0/dcpa_m",
-        "/velocities/0/targets/0/tcpa_s",
-    ] {
-        assert!(
-            assessment.pointer(pointer).is_some_and(Value::is_number),
-            "{pointer}"
-        );
-    }
-    assert_eq!(stdout(&assert), stdout(&searoom(&args)), "the same bytes");
-    let area = |document: &Value| {
-        let vertices = document["targets"][0]["sections"][0]["vertices_m"].clone();
-        let north = |v: &Value| v[1].as_f64().expect("a number");
-        let norths: Vec<f64> = vertices
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(north)
-            .collect();
-        norths.iter().fold(f64::MIN, |a, b| a.max(*b))
-            - norths.iter().fold(f64::MAX, |a, b| a.min(*b))
-    };
-    let shaped = document(&searoom(&[&args[..], &["--shaped"]].concat()).success());
-    assert!(area(&shaped) > area(&assessment));
-}
-
-/// The velocity that the document recommends is in no velocity obstacle, and one a little less far
-/// is.
-#[test]
-fn a_recommended_alteration_leaves_every_velocity_obstacle() {
-    for name in ["give-way", "head-on", "overtaking", "stand-on"] {
-        let file = format!("scenarios/colregs/{name}.toml");
-        let assessed = |velocity: [f64; 2]| {
-            let [east, north] = velocity;
-            let option = format!("{east},{north}");
-            let found = searoom(&["assess", &file, "--json", "--velocity", &option]).success();
-            document(&found)
-        };
-        let scenario = searoom::scenario::Scenario::read(file.as_ref()).expect("good");
-        let (speed, heading) = (scenario.own_ship.speed, scenario.own_ship.pose.heading);
-        let free = |heading: f64, speed: f64| {
-            let found = assessed([heading.cos() * speed, heading.sin() * speed]);
-            let targets = found["velocities"][0]["targets"]
-                .as_array()
-                .expect("a list")
-                .clone();
-            targets.iter().all(|t| t["in_velocity_obstacle"] == false)
-        };
-        let alteration = assessed([0.0, 0.0])["alteration"].clone();
-        for (key, sign) in [("starboard_deg", -1.0), ("port_deg", 1.0)] {
-            if let Some(turn) = alteration[key].as_f64() {
-                let turned = |share: f64| heading + sign * share * turn.to_radians();
-                assert!(free(turned(1.0), speed), "{name} {key} {turn}");
-                assert!(
-                    turn == 0.0 || !free(turned(0.999), speed),
-                    "{name} {key} {turn}"
-                );
-            }
-        }
-        if let Some(change) = alteration["speed_mps"].as_f64() {
-            assert!(free(heading, speed + change), "{name} {change}");
-            assert!(change == 0.0 || !free(heading, speed + 0.999 * change));
-        }
-    }
-}
-
-#[test]
-fn an_assessment_reads_as_a_table() {
-    searoom(&[
-        "assess",
-        "scenarios/colregs/give-way.toml",
-        "--at",
-        "0,0,0",
-        "--velocity",
-        "-1,0",
-        "--section",
-        "1.5",
-    ])
-    .success()
-    .stderr(is_empty())
-    .stdout(
-        contains("Give-way: 1 target, hard sets, 0 to 400 s")
-            .and(contains("Holding course 090.0° at 5.00 m/s"))
-            .and(contains("to starboard").and(contains("to port").and(contains("slower"))))
-            .and(contains("Points").and(contains("Velocities").and(contains("Sections")))),
-    );
-}
-
-#[test]
-fn what_an_assessment_cannot_read_is_named() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let scenario = "scenarios/colregs/head-on.toml";
-    let allowed = "allowed: a header line east_m,north_m,t_s and at least one row";
-    let wide = "allowed: a number from -10000000 to 10000000";
-    for (name, contents, said) in [
-        (
-            "empty.csv",
-            "",
-            vec!["line 1: found an empty file", allowed],
-        ),
-        (
-            "bare.csv",
-            "east_m,north_m,t_s\n",
-            vec!["found no rows", allowed],
-        ),
-        (
-            "short.csv",
-            "east_m,north_m,t_s\n1,2,3\n4,5\n",
-            vec!["line 3: t_s: found no value: the row has 2 of 3", "1 fault"],
-        ),
-        (
-            "long.csv",
-            "east_m,north_m,t_s\n1,2,3,4\n",
-            vec!["line 2: found 4 values; allowed: 3: east_m,north_m,t_s"],
-        ),
-        (
-            "early.csv",
-            "east_m,north_m,t_s\n1,2,-0.5\nx,,3\n",
-            vec![
-                "2: t_s: found -0.5; allowed: a number from 0 to 1000000",
-                "3: east_m: found the text \"x\"",
-                "3: north_m: found nothing",
-                wide,
-            ],
-        ),
-        (
-            "other.csv",
-            "east_mps,north_mps\n1,2\n",
-            vec![
-                "line 1: found an unknown column \"east_mps\"",
-                "line 1: t_s: found no such column",
-            ],
-        ),
-    ] {
-        let file = write(folder.path(), name, contents);
-        let mut assert = searoom(&["assess", scenario, "--points", &file])
-            .code(2)
-            .stdout(is_empty())
-            .stderr(contains(name));
-        for said in said {
-            assert = assert.stderr(contains(said));
-        }
-    }
-    let missing = text(&folder.path().join("missing.csv")).to_owned();
-    searoom(&["assess", scenario, "--velocities", &missing])
-        .code(2)
-        .stderr(contains("missing.csv: cannot be read"));
-    searoom(&["assess", scenario, "--velocities", text(folder.path())])
-        .code(2)
-        .stderr(contains("not a regular file"));
-    for (option, value, said) in [
-        (
-            "--at",
-            "1,2",
-            "found 2 values; allowed: 3: east_m,north_m,t_s",
-        ),
-        ("--at", "1,2,-1", "t_s: found -1; allowed: a number from 0"),
-        ("--at", "nan,2,1", "east_m: found NaN"),
-        ("--velocity", "1,101", "north_mps: found 101"),
-        ("--section", "-1", "t_s: found -1"),
-    ] {
-        searoom(&["assess", scenario, option, value])
-            .code(2)
-            .stdout(is_empty())
-            .stderr(contains(option).and(contains(said)));
-    }
-    // faults of the scenario and of the rows together
-    let bad = write(folder.path(), "bad.toml", "title = 3");
-    let empty = text(&folder.path().join("empty.csv")).to_owned();
-    searoom(&["assess", &bad, "--points", &empty])
-        .code(2)
-        .stderr(contains("title: found 3").and(contains("an empty file")));
-    searoom(&["assess", text(folder.path())])
-        .code(2)
-        .stderr(contains("a folder"));
-    // polygons given velocities that are an ellipse
-    let mixed = format!(
-        "{HEAD_ON}\n[[targets]]\nname = \"mixed\"\ninitial_set = {{ vertices_m = [[900, 900]] }}\n\
-         velocity_set = {{ center_mps = [1, 0], shape_m2_per_s2 = [[0.04, 0], [0, 0.06]] }}\n"
-    );
-    let file = write(folder.path(), "mixed.toml", mixed);
-    searoom(&["assess", &file])
-        .code(2)
-        .stdout(is_empty())
-        .stderr(contains("mixed.toml").and(contains("targets[1].velocity_set")));
-}
-
-#[test]
-fn an_assessment_can_be_drawn() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let scenario = "scenarios/colregs/give-way.toml";
-    let drawn = |name: &str| {
-        let file = folder.path().join(name);
-        searoom(&[
-            "assess",
-            scenario,
-            "--section",
-            "0",
-            "--section",
-            "100",
-            "--figure",
-            text(&file),
-        ])
-        .success()
-        .stderr(is_empty())
-        .stdout(contains("Give-way"));
-        fs::read(&file).expect("written")
-    };
-    let svg = drawn("new/a.svg");
-    assert!(svg.starts_with(b"<svg"));
-    assert_eq!(svg, drawn("b.SVG"), "the same bytes");
-    assert!(drawn("a.png").starts_with(b"\x89PNG\r\n\x1a\n"));
-    for (name, said) in [
-        ("a.pdf", "allowed: one of the two"),
-        ("a", "neither in .svg nor in .png"),
-        ("a.svg/b.svg", "the folder cannot be made"),
-        (".", "neither"),
-    ] {
-        let path = folder.path().join("new").join(name);
-        searoom(&["assess", scenario, "--figure", text(&path)])
-            .code(2)
-            .stdout(is_empty())
-            .stderr(contains(said));
     }
 }

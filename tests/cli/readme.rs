@@ -17,7 +17,7 @@ const ASSESS: &[&str] = &[
     "--velocity",
     "4.8,-1.4",
 ];
-const ASSESS_BEGIN: &str = "<!-- assess: checked by tests/readme.rs -->\n```text\n";
+const ASSESS_BEGIN: &str = "<!-- assess: checked by tests/cli/readme.rs -->\n```text\n";
 const ASSESS_END: &str = "```\n<!-- assess end -->";
 
 fn file(name: &str) -> PathBuf {

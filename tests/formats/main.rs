@@ -1,19 +1,16 @@
-//! Tests of imported formats: real files, mutated files, and targets that follow their declared
-//! tracks.
+//! Tests of imported formats: real files, mutated files, and plans of real encounters.
 
 mod common_ocean;
+mod routes;
 
 use std::path::Path;
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use searoom::frame::{Vector, direction, heading_of, wrap};
+use searoom::frame::Vector;
 use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, RelaxationLevel, Run};
 use searoom::scenario::import::{Assumed, Assumption, Contents, Format, Imported, Situation};
 use searoom::scenario::{Compliance, Scenario};
 use searoom::simulation::{Placement, random_traffic};
-use searoom::target::Target;
 use serde_json::{Value, json};
 
 fn benchmark(name: &str) -> Vec<Situation> {
@@ -210,126 +207,53 @@ fn with(pointer: &str, value: Option<Value>) -> String {
     document.to_string()
 }
 
+/// Pointer, its new JSON value or nothing to remove it, and the place of the fault.
+const MISTAKES: &str = r#"
+/ownShip |  | ownShip
+/ownShip | [] | ownShip
+/ownShip/waypoints |  | ownShip.waypoints
+/ownShip/waypoints/1 |  | ownShip.waypoints
+/ownShip/waypoints/0/position/lat | 4000000 | ownShip.waypoints[0].position.lat
+/ownShip/waypoints/1/position/lat | 10.0 | ownShip.waypoints[1].position
+/ownShip/waypoints/1/leg/sog | "ten" | ownShip.waypoints[1].leg.sog
+/ownShip/waypoints/1/leg/sog | 514.4 | ownShip.waypoints[1].leg.sog
+/ownShip/waypoints/1/leg/sog | 0 | ownShip.waypoints[1].leg.sog
+/ownShip/waypoints/1/leg |  | ownShip.waypoints[1]
+/ownShip/initial/heading | 361 | ownShip.initial.heading
+/ownShip/initial/navStatus | "Adrift" | ownShip.initial.navStatus
+/ownShip/initial/navStatus | 16 | ownShip.initial.navStatus
+/ownShip/static/shipType | "Kayak" | ownShip.static.shipType
+/ownShip/static/pathType | "bezier" | ownShip.static.pathType
+/ownShip/static/initDelay | 10 | ownShip
+/ownShip/static/dimensions |  | ownShip.static.dimensions
+/ownShip/static/dimensions/length | 400 | ownShip.static.dimensions
+/ownShip/static/dimensions/a | -1 | ownShip.static.dimensions.a
+/targetShips | {} | targetShips
+/targetShips/0/waypoints | [] | targetShips[0].waypoints
+/targetShips/0/static/dimensions |  | targetShips[0].static.dimensions
+/targetShips/0/waypoints/0/position/lon | "10" | targetShips[0].waypoints[0].position.lon
+/title | "two\nlines" | title
+"#;
+
 #[test]
 fn one_mistake_in_a_dnv_file_is_one_fault_with_its_place() {
-    let target = "/targetShips/0";
-    for (pointer, value, path) in [
-        ("/ownShip", None, "ownShip"),
-        ("/ownShip", Some(json!([])), "ownShip"),
-        ("/ownShip/waypoints", None, "ownShip.waypoints"),
-        ("/ownShip/waypoints/1", None, "ownShip.waypoints"),
-        (
-            "/ownShip/waypoints/0/position/lat",
-            Some(json!(4_000_000)),
-            "ownShip.waypoints[0].position.lat",
-        ),
-        (
-            "/ownShip/waypoints/1/position/lat",
-            Some(json!(10.0)),
-            "ownShip.waypoints[1].position",
-        ),
-        (
-            "/ownShip/waypoints/1/leg/sog",
-            Some(json!("ten")),
-            "ownShip.waypoints[1].leg.sog",
-        ),
-        (
-            "/ownShip/waypoints/1/leg/sog",
-            Some(json!(514.4)),
-            "ownShip.waypoints[1].leg.sog",
-        ),
-        (
-            "/ownShip/waypoints/1/leg/sog",
-            Some(json!(0)),
-            "ownShip.waypoints[1].leg.sog",
-        ),
-        ("/ownShip/waypoints/1/leg", None, "ownShip.waypoints[1]"),
-        (
-            "/ownShip/initial/heading",
-            Some(json!(361)),
-            "ownShip.initial.heading",
-        ),
-        (
-            "/ownShip/initial/navStatus",
-            Some(json!("Adrift")),
-            "ownShip.initial.navStatus",
-        ),
-        (
-            "/ownShip/initial/navStatus",
-            Some(json!(16)),
-            "ownShip.initial.navStatus",
-        ),
-        (
-            "/ownShip/static/shipType",
-            Some(json!("Kayak")),
-            "ownShip.static.shipType",
-        ),
-        (
-            "/ownShip/static/pathType",
-            Some(json!("bezier")),
-            "ownShip.static.pathType",
-        ),
-        ("/ownShip/static/initDelay", Some(json!(10)), "ownShip"),
-        (
-            "/ownShip/static/dimensions",
-            None,
-            "ownShip.static.dimensions",
-        ),
-        (
-            "/ownShip/static/dimensions/width",
-            Some(json!(null)),
-            "ownShip.static.dimensions",
-        ),
-        (
-            "/ownShip/static/dimensions/length",
-            Some(json!(400)),
-            "ownShip.static.dimensions",
-        ),
-        (
-            "/ownShip/static/dimensions/a",
-            Some(json!(-1)),
-            "ownShip.static.dimensions.a",
-        ),
-        ("/targetShips", Some(json!({})), "targetShips"),
-        (
-            "/targetShips/0/waypoints",
-            Some(json!([])),
-            "targetShips[0].waypoints",
-        ),
-        (
-            "/targetShips/0/static/dimensions",
-            None,
-            "targetShips[0].static.dimensions",
-        ),
-        (
-            "/targetShips/0/waypoints/0/position/lon",
-            Some(json!("10")),
-            "targetShips[0].waypoints[0].position.lon",
-        ),
-        ("/title", Some(json!("two\nlines")), "title"),
-    ] {
-        let mut text = with(pointer, value);
-        if path.ends_with("dimensions") && pointer.ends_with("width") {
-            // neither the whole document nor its parts
-            let mut document: Value = serde_json::from_str(&text).expect("JSON");
-            let dimensions = document
-                .pointer_mut("/ownShip/static/dimensions")
-                .expect("there");
-            *dimensions = json!({ "length": 122.0 });
-            text = document.to_string();
-            assert_eq!(
-                paths(&text, &Assumed::default()),
-                ["ownShip.static.dimensions.width"]
-            );
-            continue;
-        }
-        assert_eq!(paths(&text, &Assumed::default()), [path], "{pointer}");
+    for line in MISTAKES.lines().filter(|line| !line.is_empty()) {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let value = serde_json::from_str(cells[1]).ok();
+        assert_eq!(value.is_none(), cells[1].is_empty(), "{line}");
+        let text = with(cells[0], value);
+        assert_eq!(paths(&text, &Assumed::default()), [cells[2]], "{line}");
     }
+    // neither the whole width nor its parts
+    let length = json!({ "length": 122.0 });
+    let text = with("/ownShip/static/dimensions", Some(length));
+    let found = paths(&text, &Assumed::default());
+    assert_eq!(found, ["ownShip.static.dimensions.width"]);
     // a ship without dimensions has the size given by the user
     let sized = Assumed::default()
         .with(Assumption::Length, 80.0)
         .with(Assumption::Beam, 14.0);
-    let text = with(&format!("{target}/static/dimensions"), None);
+    let text = with("/targetShips/0/static/dimensions", None);
     assert_eq!(paths(&text, &sized), Vec::<String>::new());
     let scenario = situations(Contents::parse(&text, &sized).expect("good"))[0]
         .scenario(&sized)
@@ -454,257 +378,6 @@ fn paths_or_good(text: &str) -> usize {
             .count(),
         _ => 0,
     }
-}
-
-/// Target with a route: metres east and north of its start, speeds in knots, turn radii in metres.
-struct Declared {
-    points: Vec<Vector>,
-    knots: Vec<f64>,
-    radii: Vec<Option<f64>>,
-    delay: f64,
-}
-
-impl Declared {
-    fn random(rng: &mut ChaCha8Rng) -> Self {
-        // so many that changes are omitted
-        let many = rng.random_bool(0.2);
-        let legs = if many { 30 } else { rng.random_range(2..6) };
-        let lengths = if many { 400.0..900.0 } else { 1500.0..4000.0 };
-        let mut points = vec![Vector::new(rng.random_range(-5e3..5e3), 4000.0)];
-        let mut course = rng.random_range(-3.0..3.0);
-        for _ in 0..legs {
-            let last = points[points.len() - 1];
-            points.push(last + direction(course) * rng.random_range(lengths.clone()));
-            course += rng.random_range(-2.0..2.0);
-        }
-        let radius = |rng: &mut ChaCha8Rng| match rng.random_range(0..3) {
-            0 => None,
-            1 => Some(0.0),
-            _ if many => None,
-            _ => Some(rng.random_range(50.0..300.0)),
-        };
-        Self {
-            knots: (0..legs).map(|_| rng.random_range(4.0..20.0)).collect(),
-            radii: (0..=legs).map(|_| radius(rng)).collect(),
-            delay: if rng.random_bool(0.3) {
-                rng.random_range(1.0..600.0)
-            } else {
-                0.0
-            },
-            points,
-        }
-    }
-
-    /// Converts to a DNV file; the inverse projection gives degrees.
-    fn document(&self) -> String {
-        let mut document = dnv_01();
-        let origin = searoom::frame::Geographic {
-            lat_deg: 58.763449,
-            lon_deg: 10.490654,
-        };
-        let earth = searoom::frame::Georeference::new(origin).expect("on earth");
-        let waypoints: Vec<Value> = self
-            .points
-            .iter()
-            .enumerate()
-            .map(|(index, point)| {
-                let place = earth.to_geographic(*point);
-                let mut waypoint =
-                    json!({ "position": { "lat": place.lat_deg, "lon": place.lon_deg } });
-                if let Some(radius) =
-                    self.radii[index].filter(|_| index > 0 && index < self.knots.len())
-                {
-                    waypoint["turnRadius"] = json!(radius / 1852.0);
-                }
-                if index > 0 {
-                    waypoint["leg"] = json!({ "sog": self.knots[index - 1] });
-                }
-                waypoint
-            })
-            .collect();
-        let ship = document.pointer_mut("/targetShips/0").expect("there");
-        ship["waypoints"] = Value::Array(waypoints);
-        ship["initial"] = json!({});
-        ship["static"]["initDelay"] = json!(self.delay);
-        document.to_string()
-    }
-
-    /// Pieces of the declared route: length, heading as a function of the distance on the piece,
-    /// and its leg or two legs.
-    fn pieces(&self, rounded: bool) -> Vec<Piece> {
-        let mut pieces = Vec::new();
-        let mut begun = 0.0;
-        for leg in 0..self.knots.len() {
-            let way = self.points[leg + 1] - self.points[leg];
-            let heading = heading_of(way);
-            let mut ends = 0.0;
-            let mut arc = None;
-            if leg + 1 < self.knots.len() {
-                let turn = wrap(heading_of(self.points[leg + 2] - self.points[leg + 1]) - heading);
-                // 125 m is assumed for a hull of 50 × 10 m
-                let radius = self.radii[leg + 1].unwrap_or(if rounded { 125.0 } else { 0.0 });
-                ends = radius * (0.5 * turn.abs()).tan();
-                arc = Some(Piece {
-                    length: radius * turn.abs(),
-                    heading,
-                    turn,
-                    legs: [leg, leg + 1],
-                });
-            }
-            pieces.push(Piece {
-                length: way.norm() - begun - ends,
-                heading,
-                turn: 0.0,
-                legs: [leg, leg],
-            });
-            pieces.extend(arc);
-            begun = ends;
-        }
-        pieces
-    }
-}
-
-struct Piece {
-    length: f64,
-    heading: f64,
-    turn: f64,
-    legs: [usize; 2],
-}
-
-/// Offset in seconds of the sampled instants within a step, to exclude rounding.
-const INSIDE: f64 = 1e-4;
-
-/// Tests targets that follow their routes within the spread: fast and slow, with deviations to
-/// either side, on sharp corners and on arcs. At every instant their velocity and position are in
-/// the declared set, with the clearance that hulls and margin require.
-#[test]
-fn a_target_that_follows_her_route_is_in_her_set_at_all_times() {
-    let mut rng = ChaCha8Rng::seed_from_u64(11);
-    let (speed_spread, course_spread) = (0.5, 5.0_f64.to_radians());
-    let (mut deepest, mut followed) = (f64::NEG_INFINITY, 0);
-    for _ in 0..60 {
-        let declared = Declared::random(&mut rng);
-        let situation =
-            match Contents::parse(&declared.document(), &Assumed::default()).expect("JSON") {
-                Contents::Situations { mut situations, .. } => match situations.remove(0) {
-                    Ok(situation) => situation,
-                    // a turn that does not fit is refused
-                    Err(faults) => {
-                        assert!(faults[0].found.contains("turnRadius"), "{faults:?}");
-                        continue;
-                    }
-                },
-                other => panic!("{other:?}"),
-            };
-        let Imported {
-            scenario, notes, ..
-        } = imported(&situation);
-        let target = &scenario.targets[0];
-        let sets = &target.sets().expect("sets").velocities;
-        assert!(sets.len() > 1 && sets.len() <= 50, "{}", sets.len());
-        assert_eq!(
-            notes.iter().any(|n| n.contains("appears after")),
-            declared.delay > 0.0
-        );
-        let own = &scenario.own_ship;
-        let hull = |length: f64, beam: f64| 0.5 * length.hypot(beam);
-        let clearance = hull(50.0, 10.0) + hull(own.hull.length, own.hull.beam) + own.safety_margin;
-        // checking the position is expensive for many sets
-        let many = declared.knots.len() > 6;
-        let (runs, every) = if many { (6, 40) } else { (20, 1) };
-        let mut steps = 0;
-        for run in 0..runs {
-            // constant extremes first, then arbitrary values
-            let extreme = [
-                (1.0, 0.0),
-                (-1.0, 0.0),
-                (1.0, 1.0),
-                (-1.0, -1.0),
-                (-1.0, 1.0),
-            ]
-            .get(run)
-            .copied();
-            let pieces = declared.pieces(run % 2 == 0);
-            if pieces.iter().any(|p| p.length < 0.0) {
-                continue;
-            }
-            followed += 1;
-            let mut at = declared.points[0];
-            let mut time = declared.delay;
-            let worst = check(target, at, 0.5 * time, clearance);
-            assert!(worst <= 1e-6, "{worst}");
-            'way: for piece in &pieces {
-                let mut made = 0.0;
-                while made < piece.length {
-                    let (fast, stray) = extreme.unwrap_or_else(|| {
-                        (rng.random_range(-1.0..=1.0), rng.random_range(-1.0..=1.0))
-                    });
-                    let knots = declared.knots[piece.legs[usize::from(2.0 * made > piece.length)]];
-                    let speed = knots * 1852.0 / 3600.0 + fast * speed_spread;
-                    let error: f64 = stray * course_spread;
-                    let heading = piece.heading + piece.turn * made / piece.length;
-                    let rate = speed * error.cos();
-                    let step = 10.0_f64
-                        .min((piece.length - made) / rate)
-                        .min(piece.length / 8.0 / rate);
-                    let velocity = direction(heading + error) * speed;
-                    // skip steps produced by rounding
-                    let ends = [time + INSIDE, time + step - INSIDE];
-                    for moment in ends.into_iter().filter(|_| step > 2.0 * INSIDE) {
-                        let mut later = sets.iter().filter(|s| moment <= s.until);
-                        let now = later.next().expect("a last one");
-                        let now = now.velocities.as_polygon().expect("a polygon");
-                        let out = now.signed_distance(velocity);
-                        assert!(out <= 1e-9, "{out} m/s outside at {moment} s");
-                    }
-                    at += velocity * step;
-                    made += rate * step;
-                    time += step;
-                    if time > scenario.horizon {
-                        break 'way;
-                    }
-                    steps += 1;
-                    if steps % every == 0 {
-                        let worst = check(target, at, time, clearance);
-                        deepest = deepest.max(worst);
-                        assert!(worst <= 1e-3, "{worst} m outside at {time} s");
-                    }
-                }
-            }
-        }
-    }
-    assert!(followed > 500, "{followed}");
-    // the sets are not so large that the test cannot fail
-    assert!(deepest > -400.0, "{deepest}");
-}
-
-/// Clearance deficit in metres: by how much a target at a position is too near to the edge of its
-/// set.
-fn check(target: &Target, at: Vector, time: f64, clearance: f64) -> f64 {
-    let set = target.outer_set_at(time).expect("explicit sets");
-    set.signed_distance(at) + clearance
-}
-
-#[test]
-fn a_route_on_one_line_is_a_tracked_ship() {
-    let mut document = dnv_01();
-    let ship = document.pointer_mut("/targetShips/0").expect("there");
-    let middle =
-        json!({ "position": { "lat": 58.80500723, "lon": 10.4906874 }, "leg": { "sog": 12.1 } });
-    ship["waypoints"]
-        .as_array_mut()
-        .expect("a list")
-        .insert(1, middle);
-    let scenario =
-        situations(Contents::parse(&document.to_string(), &Assumed::default()).expect("good"))[0]
-            .scenario(&Assumed::default())
-            .expect("no faults")
-            .scenario;
-    let ship = scenario.targets[0].ship().expect("a ship");
-    // widened by the deviation of the middle point
-    assert!(
-        ship.course_spread >= 5.0_f64.to_radians() && ship.course_spread < 6.0_f64.to_radians()
-    );
 }
 
 /// Tests the encounters with half a metre per second and five degrees of uncertainty for every

@@ -4,6 +4,7 @@
 mod campaigns;
 
 mod campaign;
+mod control_solver;
 mod encounters;
 mod harbour;
 mod land;

@@ -1,32 +1,18 @@
 //! Tests of the optimal-control planner from scenario to verdict, and of its independent checker.
 
-use std::cell::Cell;
 use std::time::Duration;
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use searoom::document::PlanDocument;
 use searoom::evaluation::{Evaluation, Steering};
 use searoom::frame::Vector;
-use searoom::obstacle::{Obstacle, SpaceTimeObstacle};
+use searoom::obstacle::SpaceTimeObstacle;
 use searoom::pipeline::{self, Run};
-use searoom::planner::optimal_control::solver::{
-    Derivatives, Iterate, Multipliers, Point, StageProblem, Triple, Values, Vector as Column,
-    Workspace, solve,
-};
-use searoom::planner::optimal_control::transcription::Transcription;
-use searoom::planner::optimal_control::{
-    Attempt, Controls, Measured, Profile, RecedingHorizon, Settings, Status, Task, Weights,
-    attempt, family, plan,
-};
-use searoom::planner::{ControlSettings, NoPlan, Outcome, Problem};
+use searoom::planner::{NoPlan, Outcome};
 use searoom::report::figure::plan_figure;
 use searoom::report::plan_text;
 use searoom::scenario::Scenario;
 use searoom::trajectory::{Node, Steered, Trajectory};
-use searoom::vessel::{CyberShip2, ForceVector, StateVector, VesselKind};
-
-use crate::campaigns::control_scenes as scenes;
+use searoom::vessel::{ForceVector, VesselKind};
 
 const FIGURE_9: &str = include_str!("../../scenarios/paper/figure_9.toml");
 
@@ -170,145 +156,6 @@ fn every_way_to_spoil_a_plan_is_found() {
     );
 }
 
-/// Cheapest of the starts that need no other planner.
-fn best(task: &Task<CyberShip2>) -> Option<Attempt> {
-    family(task)
-        .into_iter()
-        .map(|(_, guess)| attempt(task, &guess, &Settings::default(), &|| true))
-        .filter(Attempt::is_feasible)
-        .min_by(|a, b| a.objective.total_cmp(&b.objective))
-}
-
-/// Problem with an additional terminal cost toward a goal.
-struct Drawn<'a> {
-    stages: Transcription<'a, CyberShip2>,
-    goal: Vector,
-    weight: f64,
-}
-
-impl StageProblem<6, 3> for Drawn<'_> {
-    fn stages(&self) -> usize {
-        self.stages.stages()
-    }
-
-    fn first(&self) -> Column<6> {
-        self.stages.first()
-    }
-
-    fn limits(&self) -> [Column<3>; 2] {
-        self.stages.limits()
-    }
-
-    fn rows(&self, stage: usize) -> usize {
-        self.stages.rows(stage)
-    }
-
-    fn values(&self, stage: usize, at: Point<6, 3>, rows: &mut [f64]) -> Values<6> {
-        let mut values = self.stages.values(stage, at, rows);
-        if stage + 1 == self.stages() {
-            let off = Vector::new(at.y[0], at.y[1]) - self.goal;
-            values.cost += self.weight * off.norm_squared();
-        }
-        values
-    }
-
-    fn derivatives(
-        &self,
-        stage: usize,
-        at: Point<6, 3>,
-        multipliers: Multipliers<6>,
-        out: &mut Derivatives<6, 3>,
-        rows: &mut [Triple<6, 3>],
-    ) {
-        self.stages.derivatives(stage, at, multipliers, out, rows);
-        if stage + 1 == self.stages() {
-            for i in 0..2 {
-                out.gradient.y[i] += 2.0 * self.weight * (at.y[i] - self.goal[i]);
-                out.convex.yy[(i, i)] += 2.0 * self.weight;
-            }
-        }
-    }
-}
-
-/// Compares with CasADi and IPOPT on the same transcription. They reach 7.844853, or 7.808142 with
-/// another homotopy class. The margin of the constraints costs a ten-thousandth.
-#[test]
-fn another_solver_finds_the_same_optimum() {
-    let desired = scenes::desired();
-    let keep_outs = scenes::figure_9();
-    let third = 1.0 / (1.5 * 1.5);
-    let task = Task {
-        controls: Controls {
-            force_limits: ForceVector::new(2.0, 1.5, 1.5),
-            weights: Weights {
-                state: StateVector::new(0.05, 0.05, 0.0, 0.0, 0.0, 1.0),
-                force: ForceVector::new(0.25, third, third),
-            },
-        },
-        ..scenes::task(&desired, &keep_outs, 50)
-    };
-    let stages = task.transcription();
-    let unit = stages.cost_unit();
-    let drawn = Drawn {
-        stages,
-        goal: Vector::new(20.0, 10.0),
-        weight: 5.0 / unit,
-    };
-    let straight = scenes::straight(&task);
-    let still = Iterate::guess(vec![Column::zeros(); 51], vec![Column::zeros(); 50]);
-    let starts = [
-        (Iterate::guess(straight.states, straight.forces), 7.808142),
-        (still, 7.844853),
-    ];
-    for (start, known) in starts {
-        let mut at = start;
-        let mut work = Workspace::new(&drawn);
-        let report = solve(&drawn, &mut at, &mut work, &Settings::default(), &|| true);
-        assert_eq!(report.status, Status::Solved);
-        let cost = report.objective * unit;
-        assert!((cost - known).abs() < 1e-3, "{cost} {known}");
-    }
-}
-
-#[test]
-fn a_controller_goes_on_warm_and_stays_clear() {
-    let desired = scenes::desired();
-    let keep_outs = scenes::figure_9();
-    let mut task = scenes::task(&desired, &keep_outs, 50);
-    let guess = best(&task).expect("a plan").profile;
-    let mut horizon = RecedingHorizon::new(&task, &guess, scenes::settings(), &|| true);
-    let mut rng = ChaCha8Rng::seed_from_u64(4);
-    let mut steps = 0;
-    for k in 0..25 {
-        let plan = &horizon.plan().profile;
-        let noise = StateVector::new(0.01, 0.01, 0.01, 0.005, 0.005, 0.002);
-        let mut state = plan.states[1] + noise.map(|n| n * rng.random_range(-1.0..1.0));
-        // no plan exists from a measurement inside a set
-        let time = task.time(1);
-        for keep in &keep_outs {
-            while keep.at(time).level(Vector::new(state[0], state[1])) < 1.02 {
-                let out = Vector::new(state[0], state[1]) - keep.at(time).center;
-                state[0] += 0.01 * out.x;
-                state[1] += 0.01 * out.y;
-            }
-        }
-        let measured = Measured {
-            state,
-            keep_outs: &keep_outs,
-        };
-        task = horizon.step(&task, measured, &|| true);
-        assert!(
-            horizon.plan().is_feasible(),
-            "{k}: {:?}",
-            horizon.plan().report
-        );
-        assert!((task.start_time - 2.0 * f64::from(k + 1)).abs() < 1e-9);
-        assert_eq!(horizon.plan().profile.states[0], state);
-        steps += horizon.plan().iterations;
-    }
-    assert!(steps < 25 * 30, "{steps}");
-}
-
 #[test]
 fn what_cannot_be_planned_is_said_with_the_place() {
     // a set that covers the start
@@ -360,55 +207,6 @@ fn what_cannot_be_planned_is_said_with_the_place() {
     assert!(away > 2.9 && away < 4.5, "{away}");
 }
 
-/// Tests settings that permit no plan. Scenario files are validated more strictly than library
-/// input.
-#[test]
-fn settings_that_no_plan_can_come_of_are_said_and_no_panic() {
-    let (own, desired) = (scenes::own_ship(), scenes::desired());
-    let obstacles: Vec<Obstacle> = scenes::figure_9()
-        .iter()
-        .map(|k| k.set().clone().into())
-        .collect();
-    let problem = Problem {
-        deadline: Duration::from_secs(5),
-        ..scenes::problem(&own, &desired, &obstacles)
-    };
-    let usual = ControlSettings::of(VesselKind::CyberShip2);
-    let limits = |surge: f64| ControlSettings {
-        force_limits: ForceVector::new(surge, 1.5, 1.5),
-        ..usual
-    };
-    let no_interval = ControlSettings {
-        intervals: 0,
-        ..usual
-    };
-    for (settings, why) in [
-        (no_interval, "no interval"),
-        (limits(0.0), "no force to choose"),
-        (limits(-2.0), "no force to choose"),
-        (limits(f64::NAN), "no force to choose"),
-    ] {
-        match plan(&problem, &settings).outcome {
-            Outcome::Infeasible(NoPlan::Unsolved { why: said, .. }) => {
-                assert!(said.contains(why), "{said}");
-            }
-            other => panic!("{settings:?}: {other:?}"),
-        }
-    }
-    // zero or negative weights: any result is allowed, except a plan with a NaN cost
-    for weight in [0.0, -1.0, f64::NAN] {
-        let settings = ControlSettings {
-            state_weights: StateVector::repeat(weight),
-            force_weights: ForceVector::repeat(weight),
-            ..usual
-        };
-        let begun = std::time::Instant::now();
-        let found = plan(&problem, &settings).outcome;
-        assert!(found.plan().is_none_or(|p| p.cost.is_finite()), "{weight}");
-        assert!(begun.elapsed() < Duration::from_secs(20));
-    }
-}
-
 #[test]
 fn a_budget_is_kept() {
     let text = FIGURE_9.replace("[planner]", "[planner]\ndeadline_s = 0.002");
@@ -445,38 +243,6 @@ fn a_budget_is_kept_on_a_fine_grid_and_the_best_plan_so_far_is_the_answer() {
         assert!(budget < 300.0);
     };
     assert!(best.evaluation.as_ref().is_some_and(Evaluation::verified));
-}
-
-/// Tests a step with many trial points.
-#[test]
-fn the_clock_is_read_between_the_trial_points_of_a_step() {
-    let (desired, keep_outs) = (scenes::desired(), scenes::figure_9());
-    let task = scenes::task(&desired, &keep_outs, 50);
-    let problem = task.transcription();
-    // number of clock readings and result if the deadline strikes at the n-th reading
-    let until = |guess: &Profile, strikes: usize| {
-        let mut at = Iterate::guess(guess.states.clone(), guess.forces.clone());
-        let mut work = Workspace::new(&problem);
-        let readings = Cell::new(0);
-        let keep_going = || {
-            readings.set(readings.get() + 1);
-            readings.get() < strikes
-        };
-        let settings = Settings::default();
-        let report = solve(&problem, &mut at, &mut work, &settings, &keep_going);
-        (readings.get(), report)
-    };
-    // one reading per step if the first trial point is always accepted
-    let guesses = family(&task).into_iter().map(|(_, guess)| guess);
-    let (guess, all) = guesses
-        .map(|guess| (until(&guess, usize::MAX), guess))
-        .find(|((all, report), _)| report.status == Status::Solved && *all > report.iterations)
-        .map(|((all, _), guess)| (guess, all))
-        .expect("a start with a step that is cut");
-    for strikes in 1..=all {
-        let (readings, report) = until(&guess, strikes);
-        assert_eq!((readings, report.status), (strikes, Status::OutOfTime));
-    }
 }
 
 /// Tests weights for which almost only the forces have a cost; Gauss–Newton steps do not progress

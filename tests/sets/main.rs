@@ -9,3 +9,4 @@ mod obstacles;
 mod outer_excess;
 mod relations;
 mod representations;
+mod sums;

@@ -90,8 +90,8 @@ fn the_level_set_of_a_sliver_is_held_against_the_set_that_was_given() {
     assert!(!checked(&small).verified());
 }
 
-/// Ellipses of 1 nm that grow in one direction, and of 50 km by half a metre: the distance of a
-/// narrow ellipse depends on the digits of its shape matrix.
+/// One ellipse of 1 nm grows in one direction, another of 50 km is half a metre wide. Their
+/// distances depend on the digits of the shape matrices.
 #[test]
 fn distances_from_narrow_ellipses_are_those_of_the_document() {
     verified(
@@ -120,7 +120,7 @@ fn distances_from_narrow_ellipses_are_those_of_the_document() {
     );
 }
 
-/// Corners of a set of 5,000 km at which the boundary turns by less than a nanoradian.
+/// A set of 5,000 km has corners at which the boundary turns by less than a nanoradian.
 #[test]
 fn corners_that_a_sum_omits_do_not_decide_a_distance() {
     verified(
@@ -161,6 +161,26 @@ fn a_set_thinner_than_its_shape_matrix_tells_is_left_for_good() {
     );
 }
 
+/// The ellipse around a needle and a disc is wider than both. A plan beside the needle takes no risk.
+#[test]
+fn a_needle_that_is_passed_is_no_risk() {
+    let plan = verified(
+        r#"title = "no risk"
+        horizon_s = 200
+        own_ship = { position = { east_m = 0, north_m = 0 }, course_deg = 283.00345941932255,
+            speed_mps = 5, length_m = 5, beam_m = 1.25, turning_radius_m = 0.001, safety_margin_m = 5 }
+        planner = { compliance = "rules", max_risk = 0.5 }
+        mission = { waypoints = [{ east_m = 0, north_m = 0 },
+            { east_m = -487.17824042826777, north_m = 112.50494235017821 }] }
+        targets = [{ name = "t", representation = "ellipsoid",
+            initial_set = { vertices_m = [[-725.7673606424016, 168.75741352526728]] },
+            velocity_set = { vertices_mps = [[3.4517398813529097, -0.5625247166466086],
+                [7.331608867708269, -0.5625247107350423], [1.4200425229297688, -0.5625247068551732],
+                [-2.459826463425591, -0.5625247127667395]] } }]"#,
+    );
+    assert_eq!(plan["cost"]["max_risk"], json!(0.0));
+}
+
 /// Half a turn is 36 times 5° or 37 times a little less: 12° are read as they were written.
 #[test]
 fn a_turn_rate_is_written_as_it_is_read() {
@@ -179,7 +199,7 @@ fn a_turn_rate_is_written_as_it_is_read() {
     );
 }
 
-/// A motion of which the planner adds up the error in other units and about another origin.
+/// The planner adds up the error of its motion in other units and about another origin.
 #[test]
 fn the_objective_is_that_of_the_motion_in_the_document() {
     let plan = verified(
@@ -214,7 +234,7 @@ fn a_ship_in_a_hurry_holds_no_speed() {
     assert_eq!(plan["escape"], Value::Null);
 }
 
-/// First turn, crossing and speed of a document, altered.
+/// Altered first turns, crossings and speeds are rejected.
 #[test]
 fn the_first_turn_and_the_crossing_are_those_of_the_motion() {
     let plan = document(scenario("colregs/give-way.toml"));

@@ -25,8 +25,11 @@ negative speed | /trajectory/segments/0/speed_mps = -5 | values
 bent | /trajectory/segments/0/turn_rate_deg_per_s + 0.01 | joint
 "#;
 
-/// Alterations that no table holds: name, change, word.
-const OTHERS: [(&str, fn(&mut Value), &str); 7] = [
+/// Name, change, and a word of an expected violation.
+type Alteration = (&'static str, fn(&mut Value), &'static str);
+
+/// Alterations that no table holds.
+const OTHERS: [Alteration; 7] = [
     (
         "sped up, over the same way",
         |d| {

@@ -192,8 +192,7 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
     let Some(route) = Route::new(problem, clock) else {
         return refuse(NoPlan::NoRoute);
     };
-    let mut nominal_motion = Vec::new();
-    route.follow(0.0, 0.0, &mut nominal_motion);
+    let nominal_motion = route.follow(0.0, 0.0);
     let arrival = nominal_motion.last().map_or(0.0, Segment::end_time);
     // negated on purpose: a NaN is too late
     if !(arrival <= problem.horizon) {
@@ -263,9 +262,8 @@ fn plan_clear_of(problem: &Problem, proxies: &[Proxy], clock: Clock) -> Planned 
         timed_out |= selection.refine(&conflicts, clock);
     }
     // a single manoeuvre around conflicts that are far apart is long and expensive, if it exists
-    let is_bent = problem.desired.legs().len() > 1;
     if !timed_out
-        && (sequential::are_several(&conflicts) || is_bent && !selection.has_plan())
+        && sequential::are_several(&conflicts)
         && let Some(motion) =
             sequential::resolve_sequentially(problem, proxies, &route, &nominal_motion, clock)
     {

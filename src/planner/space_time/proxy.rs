@@ -315,6 +315,7 @@ mod tests {
     use super::*;
     use crate::frame::direction;
     use crate::geometry::{ConvexPolygon, outer_disc};
+    use crate::planner::fixtures::own_ship;
     use rand::{Rng, SeedableRng};
 
     /// Compares with sampling, for sets that move, rest, approach and recede, and for pieces with
@@ -330,14 +331,7 @@ mod tests {
             };
             let own = OwnShip {
                 pose: Pose::new(near(3000.0), 0.0),
-                speed: 5.0,
-                hull: Hull {
-                    length: 30.0,
-                    beam: 8.0,
-                },
-                turning_radius: 100.0,
-                speeds: vec![2.5, 5.0, 6.0],
-                safety_margin: 20.0,
+                ..own_ship(&[2.5, 5.0, 6.0])
             };
             let drift = if case % 5 == 0 {
                 Vector::zeros()

@@ -4,7 +4,6 @@
 use crate::frame::{Pose, cross, heading_of, wrap};
 use crate::planner::Problem;
 use crate::planner::clock::Clock;
-use crate::planner::cost::space_time_error;
 use crate::tolerance;
 use crate::trajectory::{DesiredTrajectory, Segment};
 use crate::vessel::dubins;
@@ -100,8 +99,7 @@ impl Route {
         let desired = problem.desired;
         let mut best: Option<(f64, Self)> = None;
         for (leg, along) in joins(problem) {
-            let moving = own.speeds.iter().copied().filter(|u| *u > 0.0);
-            for speed in moving {
+            for speed in own.moving_speeds() {
                 if best.is_some() && clock.is_up() {
                     return best.map(|(_, route)| route);
                 }
@@ -119,12 +117,7 @@ impl Route {
                 if clock.is_up() {
                     return Some(route);
                 }
-                let mut followed = Vec::new();
-                route.follow(0.0, 0.0, &mut followed);
-                let cost: f64 = followed
-                    .iter()
-                    .map(|s| space_time_error(desired, s, problem.time_weight))
-                    .sum();
+                let cost = problem.error_of(&route.follow(0.0, 0.0));
                 let late = route.arrival(0.0, 0.0) > problem.horizon;
                 let rank = if late { cost + 1e12 } else { cost };
                 if rank.is_finite()
@@ -349,7 +342,8 @@ impl Route {
     /// Follows the route to its end: at the greatest speed while late, at the least while early,
     /// then on schedule. Where the desired speed is not one of own ship's, the speed alternates
     /// between slower and faster.
-    pub(crate) fn follow(&self, from: f64, time: f64, out: &mut Vec<Segment>) {
+    pub(crate) fn follow(&self, from: f64, time: f64) -> Vec<Segment> {
+        let mut out = Vec::with_capacity(4);
         let (mut at, mut time) = (from, time);
         let end = self.length();
         while end - at > tolerance::LENGTH_M {
@@ -385,13 +379,13 @@ impl Route {
             at += step;
             out.push(part);
         }
+        out
     }
 
     /// Arrival time when the route is followed from a distance at a time, seconds.
     pub(crate) fn arrival(&self, from: f64, time: f64) -> f64 {
-        let mut segments = Vec::new();
-        self.follow(from, time, &mut segments);
-        segments.last().map_or(time, Segment::end_time)
+        let motion = self.follow(from, time);
+        motion.last().map_or(time, Segment::end_time)
     }
 
     /// Speed, and the distance for which to keep it, metres.

@@ -26,7 +26,7 @@ const WIDE: f64 = 6.0;
 
 /// Colours and widths of the planners' methods, in the order of [`Method::of_planners`]; a longer
 /// list of methods starts again.
-const STYLES: [(&str, f64); 8] = [
+const STYLES: [(&str, f64); 9] = [
     ("#0072b2", STRONG),
     ("#56b4e9", WIDE),
     ("#12ad81", THIN),
@@ -35,6 +35,7 @@ const STYLES: [(&str, f64); 8] = [
     ("#e69f00", THIN),
     ("#e29ac3", STRONG),
     ("#b9b227", STRONG),
+    ("#7a5195", WIDE),
 ];
 
 impl LineStyle {

@@ -1,10 +1,9 @@
 //! Interior-point iteration: errors, barrier, step, multipliers.
 
-use super::dense::Vector;
 use super::iterate::{Iterate, RowPoint};
 use super::line_search::{Accepted, Search};
 use super::newton::Curvature;
-use super::stage::{StageProblem, Triple};
+use super::stage::{StageProblem, Triple, Vector};
 use super::workspace::Workspace;
 use super::{Report, Settings, Status};
 

@@ -1,7 +1,6 @@
 //! Primal-dual iterate of the interior-point method, which later solves can reuse.
 
-use super::dense::Vector;
-use super::stage::{Multipliers, Point, StageProblem};
+use super::stage::{Multipliers, Point, StageProblem, Vector};
 
 /// Row `row + elastic - slack = 0` with a priced elastic; slack and elastic are not negative.
 #[derive(Debug, Clone, Copy, PartialEq)]

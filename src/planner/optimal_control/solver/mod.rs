@@ -9,7 +9,6 @@
 //! After A. Wächter and L. T. Biegler (2006), doi:10.1007/s10107-004-0559-y; the recursion as in C.
 //! V. Rao, S. J. Wright and J. B. Rawlings (1998), doi:10.1023/A:1021711402723.
 
-mod dense;
 mod filter;
 mod interior;
 mod iterate;
@@ -19,10 +18,11 @@ mod riccati;
 mod stage;
 mod workspace;
 
-pub use dense::{Matrix, Vector};
 pub use interior::solve;
 pub use iterate::{Iterate, RowPoint};
-pub use stage::{Blocks, Derivatives, Multipliers, Point, StageProblem, Triple, Values};
+pub use stage::{
+    Blocks, Derivatives, Matrix, Multipliers, Point, StageProblem, Triple, Values, Vector,
+};
 pub use workspace::Workspace;
 
 /// Solver settings.

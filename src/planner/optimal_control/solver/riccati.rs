@@ -1,7 +1,8 @@
 //! Newton step by a Riccati recursion over the stages; the cost is linear in their number.
 
-use super::dense::{Cholesky, Lu, Matrix, Vector};
-use super::stage::{Blocks, Derivatives, Triple};
+use nalgebra::{Cholesky, Const};
+
+use super::stage::{Blocks, Derivatives, Matrix, Triple, Vector};
 
 /// Factorised stage of the equations
 ///
@@ -13,13 +14,14 @@ use super::stage::{Blocks, Derivatives, Triple};
 /// go.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StageFactor<const N: usize, const M: usize> {
-    equations: Lu<N>,
+    /// Inverse of the Jacobian of the equations in the next state.
+    inverse: Matrix<N, N>,
     by_state: Matrix<N, N>,
     by_control: Matrix<N, M>,
     constant: Vector<N>,
     /// Blocks of `H` that involve the next state; `yy` includes the cost to go from there.
     after: Blocks<N, M>,
-    cholesky: Cholesky<M>,
+    cholesky: Cholesky<f64, Const<M>>,
     gain: Matrix<M, N>,
     feed: Vector<M>,
     /// Block `ux` of the condensed stage.
@@ -31,12 +33,12 @@ pub(super) struct StageFactor<const N: usize, const M: usize> {
 impl<const N: usize, const M: usize> StageFactor<N, M> {
     pub fn new() -> Self {
         Self {
-            equations: Lu::identity(),
+            inverse: Matrix::identity(),
             by_state: Matrix::zeros(),
             by_control: Matrix::zeros(),
             constant: Vector::zeros(),
             after: Blocks::zeros(),
-            cholesky: Cholesky::identity(),
+            cholesky: Cholesky::pack_dirty(Matrix::identity()),
             gain: Matrix::zeros(),
             feed: Vector::zeros(),
             mixed: Matrix::zeros(),
@@ -52,14 +54,13 @@ pub(super) fn eliminate<const N: usize, const M: usize>(
     derivatives: &[Derivatives<N, M>],
 ) -> bool {
     for (factor, stage) in factors.iter_mut().zip(derivatives) {
-        let Some(lu) = Lu::new(stage.defect_y) else {
+        let inverse = stage.defect_y.try_inverse();
+        let Some(inverse) = inverse.filter(|m| m.sum().is_finite()) else {
             return false;
         };
-        factor.equations = lu;
-        factor.by_state = -stage.defect_x;
-        lu.solve(&mut factor.by_state);
-        factor.by_control = -stage.defect_u;
-        lu.solve(&mut factor.by_control);
+        factor.inverse = inverse;
+        factor.by_state = -inverse * stage.defect_x;
+        factor.by_control = -inverse * stage.defect_u;
     }
     true
 }
@@ -81,11 +82,11 @@ pub(super) fn factorise<const N: usize, const M: usize>(
         let mixed = h.ux + full_b.tr_mul(a) + b.tr_mul(&h.yx);
         let across = full_b.tr_mul(b);
         let uu = h.uu + 0.5 * (across + across.transpose()) + symmetric_half(&h.yu, b);
-        let Some(cholesky) = Cholesky::new(&uu) else {
+        let Some(cholesky) = positive_definite(uu) else {
             return false;
         };
         let mut gain = -mixed;
-        cholesky.solve(&mut gain);
+        cholesky.solve_mut(&mut gain);
         let round = half_a.tr_mul(a);
         let square = mixed.tr_mul(&gain);
         to_go = h.xx + round + round.transpose() + 0.5 * (square + square.transpose());
@@ -94,6 +95,17 @@ pub(super) fn factorise<const N: usize, const M: usize>(
         factor.mixed = mixed;
     }
     true
+}
+
+/// Cholesky factor; `None` where the matrix is not positive definite beyond rounding.
+fn positive_definite<const M: usize>(a: Matrix<M, M>) -> Option<Cholesky<f64, Const<M>>> {
+    let factor = Cholesky::new(a)?;
+    // negated on purpose: a NaN is not positive
+    let is_rounding = |j: usize| {
+        let square = factor.l_dirty()[(j, j)].powi(2);
+        !(square > M as f64 * f64::EPSILON * a[(j, j)].abs() && square.is_finite())
+    };
+    (!(0..M).any(is_rounding)).then_some(factor)
 }
 
 /// The part of `h' b + b' h` that is missing from `(yy b + h)' b`, made symmetric.
@@ -125,14 +137,13 @@ pub(super) fn solve<const N: usize, const M: usize>(
     let mut slope = Vector::<N>::zeros();
     for (k, factor) in factors.iter_mut().enumerate().rev() {
         let g = &right.gradient[k];
-        factor.constant = -right.defect[k];
-        factor.equations.solve(&mut factor.constant);
+        factor.constant = -factor.inverse * right.defect[k];
         factor.slope = g.y + slope;
         let to_go = factor.slope + factor.after.yy * factor.constant;
         let mut feed =
             -(g.u + factor.by_control.tr_mul(&to_go) + factor.after.yu.tr_mul(&factor.constant));
         let bent = g.x + factor.by_state.tr_mul(&to_go) + factor.after.yx.tr_mul(&factor.constant);
-        factor.cholesky.solve(&mut feed);
+        factor.cholesky.solve_mut(&mut feed);
         slope = bent + factor.mixed.tr_mul(&feed);
         factor.feed = feed;
     }
@@ -140,10 +151,9 @@ pub(super) fn solve<const N: usize, const M: usize>(
     for (k, factor) in factors.iter().enumerate() {
         let u = factor.gain * x + factor.feed;
         let y = factor.by_state * x + factor.by_control * u + factor.constant;
-        let mut multiplier =
+        let multiplier =
             -(factor.after.yx * x + factor.after.yu * u + factor.after.yy * y + factor.slope);
-        factor.equations.solve_transposed(&mut multiplier);
-        multipliers[k] = multiplier;
+        multipliers[k] = factor.inverse.tr_mul(&multiplier);
         steps[k] = Triple { x, u, y };
         x = y;
     }

@@ -1,6 +1,10 @@
 //! Multistage problem: the interface of the solver.
 
-use super::dense::{Matrix, Vector};
+/// Matrix with `R` rows and `C` columns.
+pub type Matrix<const R: usize, const C: usize> = nalgebra::SMatrix<f64, R, C>;
+
+/// Vector with `R` rows.
+pub type Vector<const R: usize> = nalgebra::SVector<f64, R>;
 
 /// Variables of one stage, or a gradient or step in them: state, control, next state.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,9 +1,8 @@
 //! Workspace of the iteration, allocated once.
 
-use super::dense::Vector;
 use super::filter::Filter;
 use super::riccati::StageFactor;
-use super::stage::{Blocks, Derivatives, StageProblem, Triple, Values};
+use super::stage::{Blocks, Derivatives, StageProblem, Triple, Values, Vector};
 
 /// Trial point: primal variables and function values.
 #[derive(Debug, Clone)]

@@ -292,8 +292,7 @@ mod tests {
     /// plan, with the cost that follows. Returns the largest ratio of the tight bound.
     fn tightest_ratio(problem: &Problem) -> f64 {
         let route = Route::new(problem, Clock::new(problem.deadline)).expect("a route");
-        let mut nominal_motion = Vec::new();
-        route.follow(0.0, 0.0, &mut nominal_motion);
+        let nominal_motion = route.follow(0.0, 0.0);
         let pieces = pieces(problem.obstacles, problem.horizon);
         let proxies: Vec<Proxy> = pieces.iter().map(Proxy::new).collect();
         let mut graph = Graph::new(

@@ -172,42 +172,16 @@ impl CostToGoGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Pose;
-    use crate::obstacle::LandObstacle;
-    use crate::planner::{Objective, SearchKind};
+    use crate::planner::fixtures::{own_ship, problem};
     use crate::trajectory::DesiredTrajectory;
-    use crate::vessel::{Hull, OwnShip};
     use std::time::Duration;
 
     #[test]
     fn the_grid_is_made_while_there_is_time() {
         let points = [Vector::zeros(), Vector::new(1000.0, 0.0)];
         let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
-        let own = OwnShip {
-            pose: Pose::new(Vector::zeros(), 0.0),
-            speed: 5.0,
-            hull: Hull {
-                length: 30.0,
-                beam: 8.0,
-            },
-            turning_radius: 100.0,
-            speeds: vec![5.0],
-            safety_margin: 0.0,
-        };
-        let problem = Problem {
-            own: &own,
-            desired: &desired,
-            alternatives: &[],
-            objective: Objective::SpaceTimeError,
-            obstacles: &[],
-            land_obstacle: LandObstacle::none(),
-            horizon: 400.0,
-            time_weight: 25.0,
-            search: SearchKind::AStar,
-            deadline: Duration::ZERO,
-            first_turn: None,
-            encountered: &[],
-        };
+        let own = own_ship(&[5.0]);
+        let problem = problem(&own, &desired, &[], 400.0);
         let within = |time| CostToGoGrid::of(&problem, &[], Clock::new(time));
         assert!(within(Duration::ZERO).is_none());
         let grid = within(Duration::from_secs(60)).expect("a grid");

@@ -149,8 +149,9 @@ fn continue_to_end(
 fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Segment>> {
     let (own, desired) = (problem.own, problem.desired);
     let mean = desired.length() / desired.duration();
-    let speeds = own.speeds.iter().copied().filter(|u| *u > 0.0);
-    let nearest = speeds.min_by(|a, b| (a - mean).abs().total_cmp(&(b - mean).abs()))?;
+    let nearest = own
+        .moving_speeds()
+        .min_by(|a, b| (a - mean).abs().total_cmp(&(b - mean).abs()))?;
     let direct = [own.pose.position, desired.end()];
     let direct = DesiredTrajectory::new(&direct, &[nearest]).ok();
     let desired = if straight { direct.as_ref()? } else { desired };
@@ -174,8 +175,7 @@ fn path_motion(problem: &Problem, straight: bool, clock: Clock) -> Option<Vec<Se
 /// horizon.
 pub fn nominal_motion(problem: &Problem) -> Option<Vec<Segment>> {
     let route = Route::new(problem, Clock::new(problem.deadline))?;
-    let mut motion = Vec::new();
-    route.follow(0.0, 0.0, &mut motion);
+    let motion = route.follow(0.0, 0.0);
     let arrival = motion.last()?.end_time();
     (arrival <= problem.horizon).then_some(motion)
 }
@@ -435,23 +435,8 @@ fn append(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Vector;
-    use crate::vessel::Hull;
+    use crate::planner::fixtures::own_ship;
     use std::cell::Cell;
-
-    fn own_ship(speeds: Vec<f64>) -> OwnShip {
-        OwnShip {
-            pose: Pose::new(Vector::zeros(), 0.0),
-            speed: 5.0,
-            hull: Hull {
-                length: 30.0,
-                beam: 8.0,
-            },
-            turning_radius: 100.0,
-            speeds,
-            safety_margin: 20.0,
-        }
-    }
 
     #[test]
     fn every_turn_is_tried_once_and_few_after_the_deadline() {
@@ -463,17 +448,17 @@ mod tests {
             assert!((pair[1].0 - pair[0].0 - TURN_RAD).abs() < 1e-9);
         }
         let many: Vec<f64> = (0..20).map(|k| 0.3 * f64::from(k)).collect();
-        let tried = speeds(&own_ship(many.clone()));
+        let tried = speeds(&own_ship(&many));
         assert_eq!(tried.len(), MOST_SPEEDS);
         assert_eq!((tried[0], tried[MOST_SPEEDS - 1]), (many[0], many[19]));
-        assert_eq!(speeds(&own_ship(vec![5.0])), [5.0]);
+        assert_eq!(speeds(&own_ship(&[5.0])), [5.0]);
     }
 
     /// A horizon of a day in a set that grows faster than own ship sails costs as many samples as
     /// an hour.
     #[test]
     fn a_set_that_is_never_left_costs_few_samples() {
-        let own = own_ship(vec![5.0]);
+        let own = own_ship(&[5.0]);
         let (growing, samples) = (8.0, Cell::new(0));
         let depth = |pose: &Pose, time: f64| {
             samples.set(samples.get() + 1);

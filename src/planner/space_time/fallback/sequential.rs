@@ -7,6 +7,7 @@
 use crate::planner::Problem;
 use crate::planner::clock::Clock;
 use crate::planner::space_time::graph::Graph;
+use crate::planner::space_time::graph::departure::until as motion_until;
 use crate::planner::space_time::graph::node;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::Proxy;
@@ -81,10 +82,7 @@ pub(crate) fn resolve_sequentially(
 pub(crate) fn checked_part(path: &[Segment], until: f64) -> Vec<Segment> {
     let start = path.first().map_or(until, |s| s.start_time);
     let until = until.max(start + TOGETHER_S);
-    path.iter()
-        .filter(|s| s.start_time < until)
-        .map(|s| s.between(s.start_time, until))
-        .collect()
+    motion_until(path, until)
 }
 
 /// First time at which a motion meets a proxy or land.

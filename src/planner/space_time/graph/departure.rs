@@ -2,8 +2,6 @@
 
 use crate::colregs::APPARENT_TIME;
 use crate::planner::Problem;
-use crate::planner::space_time::chain::Chain;
-use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::route::Route;
 use crate::planner::space_time::rules::compliance::apparent_slow_speed;
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
@@ -64,31 +62,4 @@ pub(crate) fn departure_motions(
         found.push((motion, 0.0));
     }
     found
-}
-
-/// Least readily apparent turns from the end of a motion `before` along the route, each held for
-/// `hold` seconds. They serve where the tangent to a vertex needs a smaller turn. Empty where no
-/// rule requires an apparent turn.
-pub(crate) fn apparent_turns<'a>(
-    problem: &'a Problem,
-    from: &State,
-    before: &'a [Segment],
-    hold: f64,
-) -> impl Iterator<Item = Vec<Segment>> + 'a {
-    let duty = problem.duty();
-    let sides = if duty.is_none() { &[] } else { duty.sides() };
-    let radius = problem.own.turning_radius;
-    let (pose, time) = before
-        .last()
-        .map_or((from.pose, from.time), |s| (s.end(), s.end_time()));
-    let moving = problem.own.speeds.iter().copied().filter(|u| *u > 0.0);
-    moving.flat_map(move |speed| {
-        sides.iter().map(move |side| {
-            let mut chain = Chain::new(pose, time, speed, radius);
-            chain.segments.extend_from_slice(before);
-            chain.arc(duty.least_turn() * radius * side.turn_sign());
-            chain.line(speed * hold);
-            chain.segments
-        })
-    })
 }

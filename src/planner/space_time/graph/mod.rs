@@ -11,21 +11,18 @@ pub(crate) mod tangent;
 
 use std::cell::Cell;
 
-use crate::frame::{Side, heading_of};
+use crate::frame::Side;
 use crate::geometry::outer_simplified;
 use crate::obstacle::{PolytopeObstacle, along_path};
 use crate::planner::clock::Clock;
-use crate::planner::cost::space_time_error;
 use crate::planner::space_time::bound::Heuristic;
 use crate::planner::space_time::bound::obstacle::ObstacleBound;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::fallback::sequential::{TOGETHER_S, checked_part};
-use crate::planner::space_time::graph::departure::{
-    apparent_turns, departure_motions, leave_for, until,
-};
+use crate::planner::space_time::graph::departure::{departure_motions, leave_for, until};
 use crate::planner::space_time::graph::intercept::{Interceptor, Limits};
 use crate::planner::space_time::graph::node::State;
-use crate::planner::space_time::graph::return_to_line::return_to_line;
+use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::graph::tangent::TangentEdges;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::{Proxy, by_obstacle, first_met};
@@ -35,7 +32,6 @@ use crate::planner::space_time::settings::{GRAPH_HOLDS_S, GRAPH_RETURN_ANGLES};
 use crate::planner::{NodeKind, Problem, SearchKind};
 use crate::search::Space;
 use crate::trajectory::Segment;
-use crate::vessel::OwnShip;
 
 /// Times before the first contact at which a manoeuvre may begin, besides t = 0, seconds.
 const LEADS_S: [f64; 5] = [8.0, 18.0, 30.0, 50.0, 80.0];
@@ -53,11 +49,6 @@ const VELOCITY_VERTICES: usize = 12;
 const RELEVANT_M: f64 = 120.0;
 /// Length in seconds of the pieces of the nominal motion in this test.
 const PIECE_S: f64 = 5.0;
-
-/// Positive speeds of own ship.
-fn moving(own: &OwnShip) -> impl Iterator<Item = f64> + '_ {
-    own.speeds.iter().copied().filter(|u| *u > 0.0)
-}
 
 /// Space-time graph of one problem.
 #[derive(Debug)]
@@ -117,7 +108,7 @@ impl<'a> Graph<'a> {
                     outer_simplified(h.body.initial(), INITIAL_VERTICES),
                     outer_simplified(h.body.velocity(), VELOCITY_VERTICES),
                 );
-                TangentEdges::new(h, &body, moving(problem.own))
+                TangentEdges::new(h, &body, problem.own.moving_speeds())
             })
             .chain(land::tangent_edges(problem, nominal_motion).filter(|_| !contacts.is_empty()))
             .collect();
@@ -187,10 +178,7 @@ impl<'a> Graph<'a> {
         if time > self.problem.horizon {
             return;
         }
-        let cost = motion
-            .iter()
-            .map(|s| space_time_error(self.problem.desired, s, self.problem.time_weight))
-            .sum();
+        let cost = self.problem.error_of(&motion);
         let chain = from.chain + u8::from(matches!(kind, NodeKind::Vertex { .. }));
         let held = if kind == NodeKind::Held {
             from.held + 1
@@ -235,12 +223,8 @@ impl<'a> Graph<'a> {
         }
         for &time in &times {
             let before = until(self.nominal_motion, time);
-            let along = before.len();
             for (motion, least_turn) in departure_motions(self.problem, self.route, &before) {
                 self.interceptions(from, &motion, least_turn, out);
-            }
-            for motion in apparent_turns(self.problem, from, &before, GRAPH_HOLDS_S[0]) {
-                self.push(out, NodeKind::Held, Ending::Follow, motion, along, from);
             }
         }
     }
@@ -299,11 +283,8 @@ impl<'a> Graph<'a> {
                             turn_rate: 0.0,
                         });
                     }
-                    self.route.follow(
-                        if speed > 0.0 { goal } else { at },
-                        corner.time,
-                        &mut motion,
-                    );
+                    let at = if speed > 0.0 { goal } else { at };
+                    motion.extend(self.route.follow(at, corner.time));
                     self.push(out, NodeKind::End, Ending::Follow, motion, 0, from);
                 }
             }
@@ -390,26 +371,12 @@ impl<'a> Graph<'a> {
         let (own, desired) = (self.problem.own, self.problem.desired);
         let (radius, speed) = (own.turning_radius, own.max_speed());
         let near = desired.nearest(from.pose.position, from.time, 0.0).leg;
+        let start = (&from.pose, from.time);
         for leg in near..desired.legs().len().min(near + 2) {
-            let Some(stretch) = self.route.stretch(leg, desired) else {
-                continue;
-            };
-            let l = &desired.legs()[leg];
-            let heading = heading_of(l.direction);
             for angle in GRAPH_RETURN_ANGLES {
-                let Some(back) = return_to_line(&from.pose, l.start, heading, radius, angle) else {
-                    continue;
-                };
-                let mut chain = Chain::new(from.pose, from.time, speed, radius);
-                chain.arc(back.first);
-                chain.line(back.line);
-                chain.arc(back.last);
-                let along = l.direction.dot(&(chain.pose.position - l.start));
-                if along >= stretch.from && along <= stretch.to {
-                    let at = stretch.distance + along - stretch.from;
-                    self.route.follow(at, chain.time, &mut chain.segments);
+                if let Some(motion) = motion_back(self.problem, self.route, start, leg, angle) {
                     let ending = Ending::Return { leg, speed };
-                    self.push(out, NodeKind::End, ending, chain.segments, 0, from);
+                    self.push(out, NodeKind::End, ending, motion, 0, from);
                 }
             }
         }

@@ -1,10 +1,14 @@
 //! Return onto a leg: turn, line, turn.
 
-use crate::frame::{Pose, Side, Vector, cross, wrap};
+use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
+use crate::planner::Problem;
+use crate::planner::space_time::chain::Chain;
+use crate::planner::space_time::route::Route;
+use crate::trajectory::Segment;
 
 /// Turn, line and turn onto a leg's line; each may have zero length.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Return {
+struct Return {
     /// Signed length of the first arc (to port positive), length of the line, signed length of the
     /// last arc, metres.
     pub first: f64,
@@ -12,9 +16,35 @@ pub(crate) struct Return {
     pub last: f64,
 }
 
+/// Motion at the greatest speed from a pose and time back onto a leg, then along the route to its
+/// end. `None` where the return does not end on the leg.
+pub(crate) fn motion_back(
+    problem: &Problem,
+    route: &Route,
+    (pose, time): (&Pose, f64),
+    leg: usize,
+    angle: f64,
+) -> Option<Vec<Segment>> {
+    let (own, desired) = (problem.own, problem.desired);
+    let (radius, stretch) = (own.turning_radius, route.stretch(leg, desired)?);
+    let l = &desired.legs()[leg];
+    let back = return_to_line(pose, l.start, heading_of(l.direction), radius, angle)?;
+    let mut chain = Chain::new(*pose, time, own.max_speed(), radius);
+    chain.arc(back.first);
+    chain.line(back.line);
+    chain.arc(back.last);
+    let along = l.direction.dot(&(chain.pose.position - l.start));
+    if !(along >= stretch.from && along <= stretch.to) {
+        return None;
+    }
+    let rest = route.follow(stretch.distance + along - stretch.from, chain.time);
+    chain.segments.extend(rest);
+    Some(chain.segments)
+}
+
 /// Return onto the line through `origin` along `heading`, approached at `angle` radians: first from
 /// own ship's side, else across the line. `None` where neither fits.
-pub(crate) fn return_to_line(
+fn return_to_line(
     pose: &Pose,
     origin: Vector,
     heading: f64,

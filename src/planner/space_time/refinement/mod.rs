@@ -118,34 +118,25 @@ impl Refinement {
     /// Starts from the initial guess. Where its return does not fit before the end of the leg,
     /// starts from one with shorter lines, or from one that ends at the last waypoint.
     pub(crate) fn fitting(context: &Context, guess: InitialGuess) -> Option<Self> {
-        let mut shorter = guess.clone();
-        for _ in 0..4 {
-            if let Some(refinement) = Self::new(context, shorter.clone()) {
-                return Some(refinement);
-            }
-            for (variable, length) in shorter.structure.variables.iter().zip(&mut shorter.lengths) {
-                if matches!(variable, SegmentVariable::Line { .. }) {
-                    *length *= 0.6;
-                }
-            }
-        }
-        let last = guess
-            .structure
-            .variables
-            .iter()
-            .rev()
-            .find_map(|s| match s {
-                SegmentVariable::Arc { side, speed } => Some((*side, *speed)),
+        Self::with_shorter_lines(context, guess.clone()).or_else(|| {
+            let variables = guess.structure.variables.iter().rev();
+            let last = variables.copied().find_map(|variable| match variable {
+                SegmentVariable::Arc { side, speed } => Some(Ending::Goal { side, speed }),
                 _ => None,
             });
-        let mut onward = guess;
+            let mut onward = guess;
+            onward.structure.ending = last?;
+            Self::with_shorter_lines(context, onward)
+        })
+    }
+
+    /// Starts from the initial guess, or from one with shorter lines.
+    fn with_shorter_lines(context: &Context, mut guess: InitialGuess) -> Option<Self> {
         for _ in 0..4 {
-            let (side, speed) = last?;
-            onward.structure.ending = Ending::Goal { side, speed };
-            if let Some(refinement) = Self::new(context, onward.clone()) {
+            if let Some(refinement) = Self::new(context, guess.clone()) {
                 return Some(refinement);
             }
-            for (variable, length) in onward.structure.variables.iter().zip(&mut onward.lengths) {
+            for (variable, length) in guess.structure.variables.iter().zip(&mut guess.lengths) {
                 if matches!(variable, SegmentVariable::Line { .. }) {
                     *length *= 0.6;
                 }

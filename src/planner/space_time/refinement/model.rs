@@ -220,10 +220,11 @@ impl Context<'_> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::frame::{Pose, Side, Vector};
+    use crate::frame::{Side, Vector};
     use crate::geometry::outer_disc;
-    use crate::obstacle::{LandObstacle, PolytopeObstacle};
+    use crate::obstacle::PolytopeObstacle;
     use crate::planner::clock::Clock;
+    use crate::planner::fixtures::{own_ship, problem};
     use crate::planner::space_time::piece::pieces;
     use crate::planner::space_time::proxy::Proxy;
     use crate::planner::space_time::refinement::InitialGuess;
@@ -232,24 +233,12 @@ pub(crate) mod tests {
     use crate::planner::space_time::refinement::structure::SegmentVariable;
     use crate::planner::space_time::route::Route;
     use crate::planner::space_time::selection::initial_guess::{Conflict, EvasiveManoeuvre};
-    use crate::planner::{Problem, SearchKind};
     use crate::trajectory::DesiredTrajectory;
-    use crate::vessel::{Hull, OwnShip};
 
     /// Runs a check on three manoeuvres near a target with all segment variables in use: two that
     /// return and one that ends at the goal.
     pub(crate) fn at_manoeuvres(check: impl Fn(&Context, &InitialGuess)) {
-        let own = OwnShip {
-            pose: Pose::new(Vector::new(0.0, 0.0), 0.0),
-            speed: 5.0,
-            hull: Hull {
-                length: 30.0,
-                beam: 8.0,
-            },
-            turning_radius: 100.0,
-            speeds: vec![2.5, 5.0, 6.0],
-            safety_margin: 20.0,
-        };
+        let own = own_ship(&[2.5, 5.0, 6.0]);
         let points = [(0.0, 0.0), (2500.0, 0.0)].map(|(x, y)| Vector::new(x, y));
         let desired = DesiredTrajectory::new(&points, &[5.0]).expect("valid");
         let velocity = crate::geometry::ConvexPolygon::hull(&[
@@ -262,20 +251,7 @@ pub(crate) mod tests {
             velocity.expect("finite"),
         )
         .into()];
-        let problem = Problem {
-            own: &own,
-            desired: &desired,
-            alternatives: &[],
-            objective: crate::planner::Objective::SpaceTimeError,
-            obstacles: &obstacles,
-            land_obstacle: LandObstacle::none(),
-            horizon: 900.0,
-            time_weight: 25.0,
-            search: SearchKind::AStar,
-            deadline: std::time::Duration::from_secs(5),
-            first_turn: None,
-            encountered: &[],
-        };
+        let problem = problem(&own, &desired, &obstacles, 900.0);
         let route = Route::new(&problem, Clock::new(problem.deadline)).expect("a route");
         let pieces = pieces(&obstacles, problem.horizon);
         let proxies = [Proxy::new(&pieces[0])];
@@ -286,13 +262,7 @@ pub(crate) mod tests {
             blocks: &[],
             chord: FINE_CHORD_RAD,
         };
-        let canonical = EvasiveManoeuvre {
-            turn: 0.7,
-            lead: 0.9,
-            reach: 1.0,
-            slow: false,
-            fast_share: 0.0,
-        };
+        let canonical = EvasiveManoeuvre::new(0.7, 0.9, 1.0);
         let conflict = Conflict {
             from: 140.0,
             to: 180.0,

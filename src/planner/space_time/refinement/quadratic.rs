@@ -151,6 +151,16 @@ mod tests {
         }
     }
 
+    /// Random point of the box near another.
+    fn beside(rng: &mut ChaCha8Rng, x: &Row, size: usize) -> Row {
+        let scale = 10f64.powf(rng.random_range(-4.0..0.5));
+        let mut p = *x;
+        for v in &mut p[..size] {
+            *v = (*v + scale * rng.random_range(-1.0..1.0)).clamp(-1.0, 2.0);
+        }
+        p
+    }
+
     /// Tests the optimality conditions: projected gradient on the exact penalty would be slow.
     #[test]
     fn solutions_are_feasible_and_no_feasible_direction_descends() {
@@ -180,12 +190,7 @@ mod tests {
             assert!(feasible(&x), "{x:?}");
             let best = value(&x);
             for _ in 0..300 {
-                let scale = 10f64.powf(rng.random_range(-4.0..0.5));
-                let mut p = x;
-                p[..n]
-                    .iter_mut()
-                    .for_each(|v| *v += scale * rng.random_range(-1.0..1.0));
-                p[..n].iter_mut().for_each(|v| *v = v.clamp(-1.0, 2.0));
+                let p = beside(&mut rng, &x, n);
                 if feasible(&p) {
                     assert!(value(&p) >= best - 1e-6, "{} {best}", value(&p));
                 }
@@ -237,12 +242,7 @@ mod tests {
             assert!((sum - paid).abs() < 1e-9 * paid, "{sum} {paid}");
             let best = value(&x);
             for _ in 0..300 {
-                let scale = 10f64.powf(rng.random_range(-4.0..0.5));
-                let mut p = x;
-                p[..n]
-                    .iter_mut()
-                    .for_each(|v| *v += scale * rng.random_range(-1.0..1.0));
-                p[..n].iter_mut().for_each(|v| *v = v.clamp(-1.0, 2.0));
+                let p = beside(&mut rng, &x, n);
                 assert!(value(&p) >= best - 1e-6, "{} {best}", value(&p));
             }
         }

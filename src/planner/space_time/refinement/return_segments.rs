@@ -1,11 +1,9 @@
 //! Return segments: the route followed after a manoeuvre, with the rates of its cost in the joining
 //! position and time.
 
-use crate::planner::cost::space_time_error;
 use crate::planner::space_time::refinement::approach::Approach;
 use crate::planner::space_time::refinement::rollout::Rollout;
 use crate::planner::space_time::refinement::trial::Context;
-use crate::trajectory::Segment;
 
 /// Cost of the route from a position and time, its rates per second and per metre, its second rate
 /// per second, and the schedule's seconds per metre there.
@@ -27,12 +25,7 @@ impl Context<'_> {
 
     /// Cost of following the route from a position at a time, m².
     fn return_cost(&self, distance: f64, time: f64) -> f64 {
-        let mut segments = Vec::with_capacity(4);
-        self.route.follow(distance, time, &mut segments);
-        segments
-            .iter()
-            .map(|s| space_time_error(self.problem.desired, s, self.problem.time_weight))
-            .sum()
+        self.problem.error_of(&self.route.follow(distance, time))
     }
 
     /// Closed form on the last leg: own ship recovers the lag at the greatest or least speed, then
@@ -109,9 +102,8 @@ impl Context<'_> {
         let (s, t) = rollout.joined;
         let (ds, dt) = (0.05, 0.01);
         let at = |distance: f64, time: f64| -> Option<f64> {
-            let mut segments = Vec::with_capacity(4);
-            self.route.follow(distance, time, &mut segments);
-            let segment: &Segment = segments.get(index)?;
+            let motion = self.route.follow(distance, time);
+            let segment = motion.get(index)?;
             let elapsed = segment.duration * approach.fraction;
             let position = segment.pose_after(elapsed).position;
             Some(of[0] * position.x + of[1] * position.y + of[2] * (segment.start_time + elapsed))

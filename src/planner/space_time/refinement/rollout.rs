@@ -17,6 +17,14 @@ pub(crate) enum SegmentOrigin {
     ReturnSegments { index: usize },
 }
 
+impl SegmentOrigin {
+    /// All of segment variable `index`.
+    pub(crate) fn whole(index: usize) -> Self {
+        let (from, to) = (0.0, 1.0);
+        Self::SegmentVariable { index, from, to }
+    }
+}
+
 /// Segment with its origin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Leg {

@@ -128,8 +128,7 @@ impl Structure {
         }
         rollout.return_segments = rollout.legs.len();
         if !matches!(self.ending, Ending::Goal { .. }) {
-            let mut return_segments = Vec::with_capacity(4);
-            route.follow(rollout.joined.0, rollout.joined.1, &mut return_segments);
+            let return_segments = route.follow(rollout.joined.0, rollout.joined.1);
             for (index, segment) in return_segments.into_iter().enumerate() {
                 let ahead = at.ahead_of(&segment);
                 rollout.legs.push(Leg {
@@ -180,18 +179,12 @@ impl Structure {
         }
         rollout.solved = [line, radius * relative.abs()];
         let n = self.variables.len();
-        at.roll_out(
+        let (line, arc) = (
             SegmentVariable::Line { speed },
-            n,
-            rollout.solved[0],
-            rollout,
-        );
-        at.roll_out(
             SegmentVariable::Arc { side, speed },
-            n + 1,
-            rollout.solved[1],
-            rollout,
         );
+        at.roll_out(line, n, rollout.solved[0], rollout);
+        at.roll_out(arc, n + 1, rollout.solved[1], rollout);
         let along = l.direction.dot(&(at.pose.position - l.start));
         if !(along >= stretch.from && along <= stretch.to) {
             return None;
@@ -228,18 +221,12 @@ impl Structure {
         }
         rollout.solved = [turn * radius, line];
         let n = self.variables.len();
-        at.roll_out(
-            SegmentVariable::Arc { side, speed },
-            n,
-            rollout.solved[0],
-            rollout,
-        );
-        at.roll_out(
+        let (line, arc) = (
             SegmentVariable::Line { speed },
-            n + 1,
-            rollout.solved[1],
-            rollout,
+            SegmentVariable::Arc { side, speed },
         );
+        at.roll_out(arc, n, rollout.solved[0], rollout);
+        at.roll_out(line, n + 1, rollout.solved[1], rollout);
         let (by_arc, by_line) = (
             rollout.rigid_motions[n].velocity_of(goal),
             rollout.rigid_motions[n + 1].ahead,
@@ -314,11 +301,7 @@ impl Cursor {
             rollout.legs.push(Leg {
                 segment,
                 ahead: self.ahead,
-                owner: SegmentOrigin::SegmentVariable {
-                    index,
-                    from: 0.0,
-                    to: 1.0,
-                },
+                owner: SegmentOrigin::whole(index),
             });
         }
         rollout.rigid_motions.push(RigidMotion {
@@ -351,11 +334,7 @@ impl Cursor {
         rollout.legs.push(Leg {
             segment,
             ahead: self.ahead,
-            owner: SegmentOrigin::SegmentVariable {
-                index,
-                from: 0.0,
-                to: 1.0,
-            },
+            owner: SegmentOrigin::whole(index),
         });
         if length > 0.0 {
             let (position, ahead) = if curvature == 0.0 {

@@ -7,6 +7,7 @@ use crate::colregs::{
 };
 use crate::frame::{Pose, Side, Vector, cross, heading_of, wrap};
 use crate::planner::Problem;
+use crate::planner::space_time::graph::departure::until as motion_until;
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::selection::initial_guess::ManoeuvreSpeeds;
 use crate::tolerance;
@@ -64,11 +65,7 @@ pub(crate) fn complies(context: &Context, nominal_motion: &[Segment], motion: &[
 /// count as one.
 fn small_turns(motion: &[Segment], until: f64) -> usize {
     let turns = |a: &Segment, b: &Segment| a.turn_rate * b.turn_rate > 0.0;
-    let before: Vec<Segment> = motion
-        .iter()
-        .filter(|s| s.start_time < until)
-        .map(|s| s.between(s.start_time, until))
-        .collect();
+    let before = motion_until(motion, until);
     let sums = before
         .chunk_by(turns)
         .map(|c| c.iter().map(|s| s.turn_rate * s.duration).sum::<f64>());
@@ -180,8 +177,7 @@ impl Departure {
     /// True when own ship never heads to port of its course before the departure, nor of the path's
     /// course there, until a time.
     fn keeps_off_port(&self, problem: &Problem, motion: &[Segment], until: f64) -> bool {
-        let off = motion[self.index..].iter().filter(|s| s.start_time < until);
-        off.map(|s| s.between(s.start_time, until)).all(|s| {
+        motion_until(&motion[self.index..], until).iter().all(|s| {
             [s.start, s.end()].iter().all(|pose| {
                 let at = problem
                     .desired

@@ -9,10 +9,9 @@
 use crate::colregs::{APPARENT_TIME, APPARENT_TURN};
 use crate::frame::{Side, heading_of, wrap};
 use crate::planner::clock::Clock;
-use crate::planner::cost::space_time_error;
 use crate::planner::space_time::chain::Chain;
 use crate::planner::space_time::graph::departure::until;
-use crate::planner::space_time::graph::return_to_line::return_to_line;
+use crate::planner::space_time::graph::return_to_line::motion_back;
 use crate::planner::space_time::proxy::first_met;
 use crate::planner::space_time::refinement::trial::Context;
 use crate::planner::space_time::rules::compliance::{apparent_slow_speed, complies};
@@ -148,14 +147,7 @@ impl<'s> Escapes<'s, '_> {
             time,
         });
         let again = std::rc::Rc::clone(&start);
-        let speeds = || {
-            self.problem()
-                .own
-                .speeds
-                .iter()
-                .copied()
-                .filter(|u| *u > 0.0)
-        };
+        let speeds = || self.problem().own.moving_speeds();
         let turning = TURNS
             .into_iter()
             .flat_map(move |turn| speeds().map(move |u| (turn * APPARENT_TURN, u)))
@@ -190,27 +182,18 @@ impl<'s> Escapes<'s, '_> {
     /// Returns onto the legs ahead, at the greatest speed.
     fn returns(&self, start: &Start, out: &Chain, turn: f64) -> Vec<StandOnPlan> {
         let (problem, route) = (self.problem(), self.context.route);
-        let (desired, own) = (problem.desired, problem.own);
-        let near = desired.nearest(out.pose.position, out.time, 0.0).leg;
-        let legs = near..desired.legs().len().min(near + 2);
+        let near = problem.desired.nearest(out.pose.position, out.time, 0.0);
+        let legs = near.leg..problem.desired.legs().len().min(near.leg + 2);
         let returns = legs.flat_map(|leg| ESCAPE_RETURN_ANGLES.map(|angle| (leg, angle)));
         let held = returns.filter_map(|(leg, angle)| {
-            let stretch = route.stretch(leg, desired)?;
-            let l = &desired.legs()[leg];
-            let heading = heading_of(l.direction);
-            let back = return_to_line(&out.pose, l.start, heading, own.turning_radius, angle)?;
-            let mut chain = Chain::new(out.pose, out.time, own.max_speed(), own.turning_radius);
-            chain.arc(back.first);
-            chain.line(back.line);
-            chain.arc(back.last);
-            let along = l.direction.dot(&(chain.pose.position - l.start));
-            if !(along >= stretch.from && along <= stretch.to) {
-                return None;
-            }
-            let at = stretch.distance + along - stretch.from;
-            route.follow(at, chain.time, &mut chain.segments);
             let mut escape = out.segments.clone();
-            escape.extend(chain.segments);
+            escape.extend(motion_back(
+                problem,
+                route,
+                (&out.pose, out.time),
+                leg,
+                angle,
+            )?);
             let speed = out.segments.first().map_or(0.0, |s| s.speed);
             self.held(start, escape, turn, speed)
         });
@@ -225,7 +208,7 @@ impl<'s> Escapes<'s, '_> {
             let mut escape = Vec::new();
             let at = route.run(along, start.time, speed * duration, speed, &mut escape);
             let time = escape.last().map_or(start.time, Segment::end_time);
-            route.follow(at, time, &mut escape);
+            escape.extend(route.follow(at, time));
             self.held(start, escape, 0.0, speed)
         });
         held.collect()
@@ -251,11 +234,8 @@ impl<'s> Escapes<'s, '_> {
         if !complies(self.context, self.nominal_motion, &motion) {
             return None;
         }
-        let errors = motion
-            .iter()
-            .map(|s| space_time_error(problem.desired, s, problem.time_weight));
         Some(StandOnPlan {
-            cost: errors.sum(),
+            cost: problem.error_of(&motion),
             escape: Escape {
                 latest: start.time,
                 turn,

@@ -24,21 +24,13 @@ pub(crate) struct ManoeuvreSpeeds {
 impl ManoeuvreSpeeds {
     /// Least and greatest moving speed, and the one nearest to the desired speed.
     pub(crate) fn of(problem: &Problem) -> Self {
-        let moving: Vec<f64> = problem
-            .own
-            .speeds
-            .iter()
-            .copied()
-            .filter(|u| *u > 0.0)
-            .collect();
+        let mut moving = problem.own.moving_speeds();
         let desired = problem.desired.length() / problem.desired.duration();
-        let nearest = moving
-            .iter()
-            .copied()
-            .min_by(|a, b| (a - desired).abs().total_cmp(&(b - desired).abs()));
+        let off = |u: &f64| (u - desired).abs();
+        let nearest = moving.clone().min_by(|a, b| off(a).total_cmp(&off(b)));
         let fast = problem.own.max_speed();
         Self {
-            slow: moving.first().copied().unwrap_or(fast),
+            slow: moving.next().unwrap_or(fast),
             normal: nearest.unwrap_or(fast),
             fast,
         }
@@ -181,13 +173,8 @@ impl InitialGuessBuilder {
 
     fn turn(&mut self, side: Side, lengths: &[(f64, f64)]) {
         for (speed, length) in lengths {
-            self.push(
-                SegmentVariable::Arc {
-                    side,
-                    speed: *speed,
-                },
-                *length,
-            );
+            let speed = *speed;
+            self.push(SegmentVariable::Arc { side, speed }, *length);
         }
     }
 
@@ -198,14 +185,14 @@ impl InitialGuessBuilder {
     }
 
     pub(crate) fn runs(&mut self, speeds: &ManoeuvreSpeeds, normal: f64, fast: f64, slow: f64) {
-        self.push(
-            SegmentVariable::Run {
-                speed: speeds.normal,
-            },
-            normal,
-        );
-        self.push(SegmentVariable::Run { speed: speeds.fast }, fast);
-        self.push(SegmentVariable::Run { speed: speeds.slow }, slow);
+        let runs = [
+            (speeds.normal, normal),
+            (speeds.fast, fast),
+            (speeds.slow, slow),
+        ];
+        for (speed, length) in runs {
+            self.push(SegmentVariable::Run { speed }, length);
+        }
     }
 
     pub(crate) fn build(self, ending: Ending) -> Option<InitialGuess> {
@@ -225,6 +212,25 @@ impl InitialGuessBuilder {
 }
 
 impl EvasiveManoeuvre {
+    /// Manoeuvre whose outbound part uses the greatest speed.
+    pub(crate) const fn new(turn: f64, lead: f64, reach: f64) -> Self {
+        Self {
+            turn,
+            lead,
+            reach,
+            slow: false,
+            fast_share: 0.0,
+        }
+    }
+
+    /// Manoeuvre whose outbound part uses the least speed.
+    pub(crate) const fn slow(turn: f64, lead: f64, reach: f64) -> Self {
+        Self {
+            slow: true,
+            ..Self::new(turn, lead, reach)
+        }
+    }
+
     /// Initial guess on one side of the route.
     pub(crate) fn guess(
         &self,
@@ -285,13 +291,7 @@ impl EvasiveManoeuvre {
                 speed: fast,
             });
         };
-        builder.push(
-            SegmentVariable::Arc {
-                side: back,
-                speed: fast,
-            },
-            angle.min(needed.max(0.1)) * radius,
-        );
+        builder.turn(back, &[(fast, angle.min(needed.max(0.1)) * radius)]);
         builder.build(Ending::Return { leg, speed: fast })
     }
 }
@@ -450,17 +450,9 @@ pub(crate) fn from_graph(problem: &Problem, path: &[&State]) -> Option<InitialGu
                 .and_then(|s| Side::of_turn(s.turn_rate))
                 .unwrap_or(back);
             let length = first.map_or(0.0, Segment::length);
-            builder.push(
-                SegmentVariable::Arc {
-                    side,
-                    speed: speeds.fast,
-                },
-                length,
-            );
-            builder.build(Ending::Return {
-                leg,
-                speed: speeds.fast,
-            })
+            let speed = speeds.fast;
+            builder.turn(side, &[(speed, length)]);
+            builder.build(Ending::Return { leg, speed })
         }
         Ending::Goal { side, speed } => builder.build(Ending::Goal { side, speed }),
         Ending::Follow => None,

@@ -8,7 +8,6 @@ pub(crate) mod warm_start;
 use crate::frame::Side;
 use crate::planner::Plan;
 use crate::planner::clock::Clock;
-use crate::planner::cost::space_time_error;
 use crate::planner::space_time::graph::node::State;
 use crate::planner::space_time::land;
 use crate::planner::space_time::proxy::first_met;
@@ -25,79 +24,31 @@ use crate::trajectory::Segment;
 
 /// Ahead of schedule first, then around the set: useful in every conflict.
 const FASTER_FIRST: EvasiveManoeuvre = EvasiveManoeuvre {
-    turn: 0.5,
-    lead: 0.3,
-    reach: 0.9,
-    slow: false,
     fast_share: 0.5,
+    ..EvasiveManoeuvre::new(0.5, 0.3, 0.9)
 };
 
 /// Manoeuvres tried on both sides regardless of the graph, whose best plan can lie in a poor basin
 /// of attraction. The best subset for 400 encounters of 152 combinations of angles, leads and
 /// offsets.
 const COMPACT: [EvasiveManoeuvre; 4] = [
-    EvasiveManoeuvre {
-        turn: 1.4,
-        lead: 0.6,
-        reach: 0.6,
-        slow: false,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 1.0,
-        lead: 1.0,
-        reach: 0.9,
-        slow: true,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 0.4,
-        lead: 1.4,
-        reach: 0.6,
-        slow: false,
-        fast_share: 0.0,
-    },
+    EvasiveManoeuvre::new(1.4, 0.6, 0.6),
+    EvasiveManoeuvre::slow(1.0, 1.0, 0.9),
+    EvasiveManoeuvre::new(0.4, 1.4, 0.6),
     FASTER_FIRST,
 ];
 
 /// Manoeuvres for conflicts that are long relative to their offset, as in overtaking.
 const SLENDER: [EvasiveManoeuvre; 5] = [
-    EvasiveManoeuvre {
-        turn: 0.2,
-        lead: 0.3,
-        reach: 0.6,
-        slow: false,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 0.2,
-        lead: 1.0,
-        reach: 0.9,
-        slow: false,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 0.7,
-        lead: 0.3,
-        reach: 0.6,
-        slow: true,
-        fast_share: 0.0,
-    },
-    EvasiveManoeuvre {
-        turn: 0.4,
-        lead: 0.3,
-        reach: 0.9,
-        slow: false,
-        fast_share: 0.0,
-    },
+    EvasiveManoeuvre::new(0.2, 0.3, 0.6),
+    EvasiveManoeuvre::new(0.2, 1.0, 0.9),
+    EvasiveManoeuvre::slow(0.7, 0.3, 0.6),
+    EvasiveManoeuvre::new(0.4, 0.3, 0.9),
     FASTER_FIRST,
 ];
 
 /// Slenderness from which a conflict uses [`SLENDER`].
 const SLENDER_FROM: f64 = 2.5;
-
-/// Ratio of the offsets of the two sides above which the farther side gets one manoeuvre only.
-const FAR_SIDE_RATIO: f64 = 1.8;
 
 /// Ratio of the offset astern to the lateral one below which waiting is tried as well.
 const WAITING_RATIO: f64 = 1.2;
@@ -213,14 +164,8 @@ impl<'a> Selection<'a> {
             let manoeuvres = if slender { &SLENDER[..] } else { &COMPACT[..] };
             let manoeuvres = &manoeuvres[..manoeuvres.len().min(self.search_budget.manoeuvres)];
             for &side in sides {
-                let far = conflict.offset(side) > FAR_SIDE_RATIO * conflict.offset(side.opposite());
-                let tried = if far && sides.len() > 1 {
-                    &manoeuvres[..1]
-                } else {
-                    manoeuvres
-                };
                 guesses.extend(
-                    tried
+                    manoeuvres
                         .iter()
                         .filter_map(|c| c.guess(problem, route, side, conflict, leg)),
                 );
@@ -350,10 +295,7 @@ impl<'a> Selection<'a> {
     /// Keeps a motion when it is clear, in time and the cheapest so far; true when it is clear.
     pub(crate) fn add_candidate(&mut self, motion: Vec<Segment>) -> bool {
         let problem = self.context.problem;
-        let cost: f64 = motion
-            .iter()
-            .map(|s| space_time_error(problem.desired, s, problem.time_weight))
-            .sum();
+        let cost = problem.error_of(&motion);
         let in_time = motion
             .last()
             .is_some_and(|s| s.end_time() <= problem.horizon);

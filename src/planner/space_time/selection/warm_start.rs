@@ -45,8 +45,7 @@ pub fn warm_started(problem: &Problem, from: &Trajectory) -> Planned {
 fn refined(problem: &Problem, proxies: &[Proxy], motion: &[Segment], clock: Clock) -> Planned {
     let found = Route::new(problem, clock).and_then(|route| {
         let guess = initial_guess_from(problem, &route, motion)?;
-        let mut nominal_motion = Vec::new();
-        route.follow(0.0, 0.0, &mut nominal_motion);
+        let nominal_motion = route.follow(0.0, 0.0);
         let blocks = land::proxies(problem);
         let context = Context {
             problem,

@@ -1,0 +1,285 @@
+//! Assessments: documents, tables, figures, and what they cannot read.
+
+use std::fs;
+
+use super::program::{HEAD_ON, assert_values, document, searoom, stdout, text, write};
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::{contains, is_empty};
+use serde_json::Value;
+
+/// Values of the document of an assessment.
+const ASSESSMENT: &str = r#"
+/scenario "Give-way"
+/targets/0/name "target"
+/targets/0/representation "polytope"
+/targets/0/sections/0/t_s 0.0
+/targets/0/sections/1/t_s 60.0
+/points/0/east_m -10.0
+/points/0/north_m 5.5
+/points/0/t_s 0.0
+/points/0/targets/0/inside false
+/points/0/targets/0/alpha null
+/points/0/targets/0/risk 0.0
+/points/1/t_s 300.0
+/hold_course/targets/0/name "target"
+/hold_course/targets/0/dcpa_m 0.0
+/velocities/0/east_mps -5.0
+/velocities/0/targets/0/in_velocity_obstacle false
+/velocities/1/north_mps 6.0
+/velocities/2/targets/0/in_velocity_obstacle true
+/targets/0/sections/0/vertices_m/0/1 number
+/points/1/targets/0/alpha number
+/hold_course/targets/0/tcpa_s number
+/hold_course/targets/0/max_risk number
+/alteration/starboard_deg number
+/alteration/port_deg number
+/alteration/speed_mps number
+/velocities/0/targets/0/dcpa_m number
+/velocities/0/targets/0/tcpa_s number
+"#;
+
+#[test]
+fn an_assessment_document_has_what_the_contract_names() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let points = write(folder.path(), "points.csv", "t_s,east_m,north_m\n300,0,0\n");
+    let velocities = write(
+        folder.path(),
+        "velocities.csv",
+        "east_mps,north_mps\n0,6\n5,0\n",
+    );
+    let args = [
+        "assess",
+        "scenarios/colregs/give-way.toml",
+        "--at",
+        "-10,5.5,0",
+        "--points",
+        &points,
+        "--velocity",
+        "-5,0",
+        "--velocities",
+        &velocities,
+        "--section",
+        "0",
+        "--section",
+        "60",
+        "--json",
+    ];
+    let assert = searoom(&args).success().stderr(is_empty());
+    let assessment = document(&assert);
+    assert_values(&assessment, ASSESSMENT);
+    assert_eq!(stdout(&assert), stdout(&searoom(&args)), "the same bytes");
+    let area = |document: &Value| {
+        let vertices = document["targets"][0]["sections"][0]["vertices_m"].clone();
+        let north = |v: &Value| v[1].as_f64().expect("a number");
+        let norths: Vec<f64> = vertices
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(north)
+            .collect();
+        norths.iter().fold(f64::MIN, |a, b| a.max(*b))
+            - norths.iter().fold(f64::MAX, |a, b| a.min(*b))
+    };
+    let shaped = document(&searoom(&[&args[..], &["--shaped"]].concat()).success());
+    assert!(area(&shaped) > area(&assessment));
+}
+
+/// The velocity that the document recommends is in no velocity obstacle, and one a little less far
+/// is.
+#[test]
+fn a_recommended_alteration_leaves_every_velocity_obstacle() {
+    for name in ["give-way", "head-on", "overtaking", "stand-on"] {
+        let file = format!("scenarios/colregs/{name}.toml");
+        let assessed = |velocity: [f64; 2]| {
+            let [east, north] = velocity;
+            let option = format!("{east},{north}");
+            let found = searoom(&["assess", &file, "--json", "--velocity", &option]).success();
+            document(&found)
+        };
+        let scenario = searoom::scenario::Scenario::read(file.as_ref()).expect("good");
+        let (speed, heading) = (scenario.own_ship.speed, scenario.own_ship.pose.heading);
+        let free = |heading: f64, speed: f64| {
+            let found = assessed([heading.cos() * speed, heading.sin() * speed]);
+            let targets = found["velocities"][0]["targets"]
+                .as_array()
+                .expect("a list")
+                .clone();
+            targets.iter().all(|t| t["in_velocity_obstacle"] == false)
+        };
+        let alteration = assessed([0.0, 0.0])["alteration"].clone();
+        for (key, sign) in [("starboard_deg", -1.0), ("port_deg", 1.0)] {
+            if let Some(turn) = alteration[key].as_f64() {
+                let turned = |share: f64| heading + sign * share * turn.to_radians();
+                assert!(free(turned(1.0), speed), "{name} {key} {turn}");
+                assert!(
+                    turn == 0.0 || !free(turned(0.999), speed),
+                    "{name} {key} {turn}"
+                );
+            }
+        }
+        if let Some(change) = alteration["speed_mps"].as_f64() {
+            assert!(free(heading, speed + change), "{name} {change}");
+            assert!(change == 0.0 || !free(heading, speed + 0.999 * change));
+        }
+    }
+}
+
+#[test]
+fn an_assessment_reads_as_a_table() {
+    searoom(&[
+        "assess",
+        "scenarios/colregs/give-way.toml",
+        "--at",
+        "0,0,0",
+        "--velocity",
+        "-1,0",
+        "--section",
+        "1.5",
+    ])
+    .success()
+    .stderr(is_empty())
+    .stdout(
+        contains("Give-way: 1 target, hard sets, 0 to 400 s")
+            .and(contains("Holding course 090.0° at 5.00 m/s"))
+            .and(contains("to starboard").and(contains("to port").and(contains("slower"))))
+            .and(contains("Points").and(contains("Velocities").and(contains("Sections")))),
+    );
+}
+
+#[test]
+fn what_an_assessment_cannot_read_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = "scenarios/colregs/head-on.toml";
+    let allowed = "allowed: a header line east_m,north_m,t_s and at least one row";
+    let wide = "allowed: a number from -10000000 to 10000000";
+    for (name, contents, said) in [
+        (
+            "empty.csv",
+            "",
+            vec!["line 1: found an empty file", allowed],
+        ),
+        (
+            "bare.csv",
+            "east_m,north_m,t_s\n",
+            vec!["found no rows", allowed],
+        ),
+        (
+            "short.csv",
+            "east_m,north_m,t_s\n1,2,3\n4,5\n",
+            vec!["line 3: t_s: found no value: the row has 2 of 3", "1 fault"],
+        ),
+        (
+            "long.csv",
+            "east_m,north_m,t_s\n1,2,3,4\n",
+            vec!["line 2: found 4 values; allowed: 3: east_m,north_m,t_s"],
+        ),
+        (
+            "early.csv",
+            "east_m,north_m,t_s\n1,2,-0.5\nx,,3\n",
+            vec![
+                "2: t_s: found -0.5; allowed: a number from 0 to 1000000",
+                "3: east_m: found the text \"x\"",
+                "3: north_m: found nothing",
+                wide,
+            ],
+        ),
+        (
+            "other.csv",
+            "east_mps,north_mps\n1,2\n",
+            vec![
+                "line 1: found an unknown column \"east_mps\"",
+                "line 1: t_s: found no such column",
+            ],
+        ),
+    ] {
+        let file = write(folder.path(), name, contents);
+        let mut assert = searoom(&["assess", scenario, "--points", &file])
+            .code(2)
+            .stdout(is_empty())
+            .stderr(contains(name));
+        for said in said {
+            assert = assert.stderr(contains(said));
+        }
+    }
+    let missing = text(&folder.path().join("missing.csv")).to_owned();
+    searoom(&["assess", scenario, "--velocities", &missing])
+        .code(2)
+        .stderr(contains("missing.csv: cannot be read"));
+    searoom(&["assess", scenario, "--velocities", text(folder.path())])
+        .code(2)
+        .stderr(contains("not a regular file"));
+    for (option, value, said) in [
+        (
+            "--at",
+            "1,2",
+            "found 2 values; allowed: 3: east_m,north_m,t_s",
+        ),
+        ("--at", "1,2,-1", "t_s: found -1; allowed: a number from 0"),
+        ("--at", "nan,2,1", "east_m: found NaN"),
+        ("--velocity", "1,101", "north_mps: found 101"),
+        ("--section", "-1", "t_s: found -1"),
+    ] {
+        searoom(&["assess", scenario, option, value])
+            .code(2)
+            .stdout(is_empty())
+            .stderr(contains(option).and(contains(said)));
+    }
+    // faults of the scenario and of the rows together
+    let bad = write(folder.path(), "bad.toml", "title = 3");
+    let empty = text(&folder.path().join("empty.csv")).to_owned();
+    searoom(&["assess", &bad, "--points", &empty])
+        .code(2)
+        .stderr(contains("title: found 3").and(contains("an empty file")));
+    searoom(&["assess", text(folder.path())])
+        .code(2)
+        .stderr(contains("a folder"));
+    // polygons given velocities that are an ellipse
+    let mixed = format!(
+        "{HEAD_ON}\n[[targets]]\nname = \"mixed\"\ninitial_set = {{ vertices_m = [[900, 900]] }}\n\
+         velocity_set = {{ center_mps = [1, 0], shape_m2_per_s2 = [[0.04, 0], [0, 0.06]] }}\n"
+    );
+    let file = write(folder.path(), "mixed.toml", mixed);
+    searoom(&["assess", &file])
+        .code(2)
+        .stdout(is_empty())
+        .stderr(contains("mixed.toml").and(contains("targets[1].velocity_set")));
+}
+
+#[test]
+fn an_assessment_can_be_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = "scenarios/colregs/give-way.toml";
+    let drawn = |name: &str| {
+        let file = folder.path().join(name);
+        searoom(&[
+            "assess",
+            scenario,
+            "--section",
+            "0",
+            "--section",
+            "100",
+            "--figure",
+            text(&file),
+        ])
+        .success()
+        .stderr(is_empty())
+        .stdout(contains("Give-way"));
+        fs::read(&file).expect("written")
+    };
+    let svg = drawn("new/a.svg");
+    assert!(svg.starts_with(b"<svg"));
+    assert_eq!(svg, drawn("b.SVG"), "the same bytes");
+    assert!(drawn("a.png").starts_with(b"\x89PNG\r\n\x1a\n"));
+    for (name, said) in [
+        ("a.pdf", "allowed: one of the two"),
+        ("a", "neither in .svg nor in .png"),
+        ("a.svg/b.svg", "the folder cannot be made"),
+        (".", "neither"),
+    ] {
+        let path = folder.path().join("new").join(name);
+        searoom(&["assess", scenario, "--figure", text(&path)])
+            .code(2)
+            .stdout(is_empty())
+            .stderr(contains(said));
+    }
+}
